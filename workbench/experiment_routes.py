@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
@@ -12,7 +12,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from actr3d.values import escape_surrogates, to_json
 from workbench.design_files import described
 from workbench.experiment_command import ExperimentRunError
-from workbench.experiment_folder import REPORT_FILES
+from workbench.experiment_folder import PAGE, REPORT_FILES
 from workbench.experiments import Experiments
 from workbench.open_file import OpenFile, gone
 from workbench.page_commands import PageMessage
@@ -25,7 +25,10 @@ router = APIRouter(prefix="/api")
 
 MOST_ROWS = 500
 """Maximum number of rows in one answer."""
-REPORT_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; font-src data:; sandbox allow-downloads allow-same-origin; frame-ancestors 'self'"
+REPORT_POLICY = (
+    "default-src 'none'; img-src data:; style-src 'unsafe-inline'; font-src data:; "
+    "sandbox allow-downloads allow-same-origin; frame-ancestors 'self'"
+)
 """What a report may do: show itself, and keep its files, for which it has the page's origin and cookie; its code does not run."""
 
 Identifier = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
@@ -200,16 +203,25 @@ async def make_report(request: Request, experiment: Id, body: Trusting | None = 
     return {"report": experiment}
 
 
-@router.get("/experiments/{experiment}/report/{file:path}")
-def report(request: Request, experiment: Id, file: str) -> Response:
-    """Returns a file of the report: `index.html`, whose scripts do not run, or for a download one of its figures and tables."""
+@router.get("/experiments/{experiment}/report/index.html")
+def report(request: Request, experiment: Id) -> Response:
+    """Returns the report of an experiment, an HTML page; no script in it runs."""
+    response = _report_file(request, experiment, PAGE)
+    response.headers["content-security-policy"] = REPORT_POLICY
+    return response
+
+
+@router.get("/experiments/{experiment}/report/{folder}/{file}")
+def report_file(request: Request, experiment: Id, folder: Literal["figures", "tables"], file: str) -> Response:
+    """Returns a figure or table of the report, for a download."""
+    return _report_file(request, experiment, f"{folder}/{file}", f"{experiment}-{file}")
+
+
+def _report_file(request: Request, experiment: str, file: str, download: str | None = None) -> Response:
     path = experiments_of(request).folder(experiment).report_file(file)
     if path is None:
         return _json({"error": "the report has no such file, or it has not been made yet"}, 404)
-    name = None if path.suffix == ".html" else f"{experiment}-{path.name}"
-    response = OpenFile(path.open("rb", buffering=0), REPORT_FILES[path.suffix], name)
-    response.headers["content-security-policy"] = REPORT_POLICY
-    return response
+    return OpenFile(path.open("rb", buffering=0), REPORT_FILES[path.suffix], download)
 
 
 async def _made(request: Request, form: str, name: str, empty: dict[str, Any], **options: Any) -> Response:

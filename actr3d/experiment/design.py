@@ -106,6 +106,40 @@ class Group(Configuration):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Measure(Configuration):
+    """A measure of a trial: `Measure(name="latency", unit="s", over="block")`."""
+
+    name: str
+    unit: str | None = None
+    meaning: str = ""
+    over: str | None = None
+    """What is numbered if a trial has a list of values, such as `block`; None if it has one value. The table of trials has a column for
+    each number, `latency_1`, `latency_2`, ...; fits and reports take the number as another factor."""
+
+    def columns(self, value: Any) -> dict[str, Any]:
+        """Returns the columns that a value fills.
+
+        Raises:
+            DesignError: If it must be a list, and is none.
+        """
+        if self.over is None:
+            return {self.name: value}
+        as_list: Any = getattr(value, "tolist", None)
+        value = as_list() if callable(as_list) else value  # of numpy
+        if not isinstance(value, (list, tuple)):
+            raise DesignError(f"measure '{self.name}': must be a list, with a value for each {self.over} (got {value!r})", self.name)
+        return {f"{self.name}_{number}": one for number, one in enumerate(cast("Sequence[Any]", value), start=1)}
+
+    def values(self, row: Mapping[str, Any]) -> Iterator[tuple[dict[str, Any], Any]]:
+        """Yields the values in a row of the table of trials, each with its number by the name of `over`."""
+        if self.over is None:
+            yield {}, row.get(self.name)
+        else:
+            numbers = itertools.takewhile(lambda number: f"{self.name}_{number}" in row, itertools.count(1))
+            yield from (({self.over: number}, row[f"{self.name}_{number}"]) for number in numbers)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Design(Configuration):
     """An experiment with a model.
 
@@ -130,8 +164,8 @@ class Design(Configuration):
     results: Callable[[Any], Mapping[str, Any]] | None = None
     """Computes the measures of a trial by name: from the simulation at its end, or from the module of a program that has run. None: the
     fields of the simulation's result, or the program's variables named by `measures`."""
-    measures: Sequence[str] = ()
-    """The names of the measures to keep; empty to keep all of them."""
+    measures: Sequence[str | Measure] = ()
+    """The measures to keep, or their names; empty to keep all of them."""
     until: Annotated[float, Gt(0)] = 60.0
     """The maximum simulated time of a trial [s]."""
     limit: Annotated[float, Gt(0)] = 600.0
@@ -168,9 +202,24 @@ class Design(Configuration):
         grouped = {name for group in self.groups.values() for name in group.parameters}
         for twice in self.settings.keys() & {*self.factors, *grouped}:
             raise DesignError(f"Design.settings: '{twice}' is already a factor, or a parameter of a group", twice)
+        given = [one.name for one in self.kept]
+        for measure in self.kept:
+            if given.count(measure.name) > 1:
+                raise DesignError(f"Design.measures: '{measure.name}' is there twice", measure.name)
+            if measure.over in {*self.factors, *self.settings, *grouped, *OWN_COLUMNS}:
+                raise DesignError(f"Design.measures: '{measure.name}' is over '{measure.over}', which is another column", measure.name)
         for name in {*self.factors, *self.settings, *grouped}:
             if name in OWN_COLUMNS and name != "group":
                 raise DesignError(f"Design: '{name}' is a column of every table of trials; rename the parameter", name)
+
+    @property
+    def kept(self) -> tuple[Measure, ...]:
+        """The measures to keep; empty to keep all of them."""
+        return tuple(one if isinstance(one, Measure) else Measure(name=one) for one in self.measures)
+
+    def measure(self, name: str) -> Measure:
+        """Returns the measure of that name; one that the design does not describe has one value in each trial."""
+        return next((one for one in self.kept if one.name == name), Measure(name=name))
 
     # -- the table of trials
 

@@ -32,7 +32,7 @@ from scipy.stats import chi2  # pyright: ignore[reportMissingTypeStubs]
 from actr3d.configuration import Configuration
 from actr3d.errors import ExperimentError, did_you_mean
 from actr3d.experiment.cluster import Progress, run_experiment
-from actr3d.experiment.design import Design
+from actr3d.experiment.design import Design, Measure
 from actr3d.experiment.human_data import OF_MEANS, Schema, library_human_data, read_human_data
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store
@@ -273,7 +273,7 @@ class Fit:
             store = Store.create(folder, experiment.specification)
         with store:
             run_experiment(experiment, store, self._client, show=lambda progress: self._show(name, progress))
-            return cells_of_rows(store.rows(), self.measure, [name for name, _ in next(iter(self.target))])
+            return cells_of_rows(store.rows(), experiment.design.measure(self.measure), [name for name, _ in next(iter(self.target))])
 
     def _surface(self, target: Mapping[Cell, float]) -> QuadraticSurface:
         """Returns the surface of the sums of squares of all candidates so far."""
@@ -293,7 +293,7 @@ class Fit:
         store = Store(folder) if (folder / SPECIFICATION).exists() else Store.create(folder, experiment.specification)
         with store:
             run_experiment(experiment, store, self._client, show=lambda progress: self._show(f"hold-out {name}", progress))
-            means = cells_of_rows(store.rows(), target[0].measure, [column for column, _ in next(iter(cells))])
+            means = cells_of_rows(store.rows(), experiment.design.measure(target[0].measure), [column for column, _ in next(iter(cells))])
         return agreement(means, cells)
 
     def _ablated(self, change: str, values: Mapping[str, float]) -> Agreement:
@@ -381,6 +381,10 @@ def load_target(name: str, design: Design, measure: str | None = None) -> tuple[
     path = known.get(name, Path(name))
     if not path.is_file():
         raise ExperimentError(f"human data '{name}': no such file{did_you_mean(name, known)}; the library has: {', '.join(known)}")
+    levels: Any = {
+        factor: [level if isinstance(level, str) else float(level) for level in given] for factor, given in design.factors.items()
+    }
+    levels |= {one.over: () for one in design.kept if one.over is not None}
     with path.open(encoding="utf-8-sig", errors="replace", newline="") as file:
         lines = [row for row in csv.reader(file) if row and not row[0].lstrip().startswith("#")]
     head = [cell.strip() for cell in lines[0]] if lines else []
@@ -388,14 +392,11 @@ def load_target(name: str, design: Design, measure: str | None = None) -> tuple[
         place = head.index("measure")
         measures = [row[place].strip() for row in lines[1:] if len(row) > place]
     else:
-        measures = [column for column in head if column not in {"participant", "group", *OF_MEANS, *design.factors}]
-    levels: Any = {
-        factor: [level if isinstance(level, str) else float(level) for level in given] for factor, given in design.factors.items()
-    }
+        measures = [column for column in head if column not in {"participant", "group", *OF_MEANS, *levels}]
     data = read_human_data(path, Schema(groups=list(design.groups), factors=levels, measures=list(dict.fromkeys(measures))))
     people: defaultdict[tuple[str, Cell], defaultdict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
     for number, row in enumerate(data.rows):
-        cell = tuple((column, row[column]) for column in ("group", *design.factors) if row.get(column) is not None)
+        cell = tuple((column, row[column]) for column in ("group", *levels) if row.get(column) is not None)
         for one in [row["measure"]] if data.published else data.measures:
             value = row["mean"] if data.published else row[one]
             if value is not None:
@@ -428,7 +429,7 @@ def cells_of_target(target: Sequence[TargetMean]) -> dict[Cell, float]:
     return found
 
 
-def cells_of_rows(rows: Any, measure: str, columns: Sequence[str]) -> dict[Cell, float]:
+def cells_of_rows(rows: Any, measure: Measure, columns: Sequence[str]) -> dict[Cell, float]:
     """Returns the means of a measure by cell, with participants as the unit: means of the participants' means.
 
     Raises:
@@ -438,11 +439,12 @@ def cells_of_rows(rows: Any, measure: str, columns: Sequence[str]) -> dict[Cell,
     known: dict[str, Any] = {}
     for row in rows:
         known = row
-        value = row.get(measure)
-        if isinstance(value, (int, float)) and all(column in row for column in columns):
-            found[tuple(sorted((column, row[column]) for column in columns))][row["participant"]].append(float(value))
+        for number, value in measure.values(row):
+            known = {**row, **number, measure.name: value}
+            if isinstance(value, (int, float)) and all(column in known for column in columns):
+                found[tuple(sorted((column, known[column]) for column in columns))][row["participant"]].append(float(value))
     if not found:
-        wrong = next((name for name in (measure, *columns) if name not in known), measure)
+        wrong = next((name for name in (measure.name, *columns) if name not in known), measure.name)
         raise ExperimentError(f"no trial has a value of '{wrong}'{did_you_mean(wrong, known)}; the columns are: {', '.join(known)}")
     return {cell: fmean(fmean(values) for values in people.values()) for cell, people in found.items()}
 

@@ -15,7 +15,7 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
 from actr3d.errors import ExperimentError, did_you_mean
-from actr3d.experiment.design import OWN_COLUMNS, Trial
+from actr3d.experiment.design import OWN_COLUMNS, Measure, Trial
 from actr3d.experiment.specification import Experiment
 from actr3d.parameter_schema import parameters_of
 from actr3d.printing import ModelOutput, printing_to
@@ -115,16 +115,27 @@ def _checked(measures: Any, experiment: Experiment, trial: Trial) -> Row:
         raise ExperimentError(f"Design.results: must return measures by name (returned {measures!r})")
     given = cast("Mapping[str, Any]", measures)
     kept: Row = {}
-    for name in experiment.design.measures or given:
-        if name not in given:
-            raise ExperimentError(f"Design.measures: the trial has no measure '{name}'{did_you_mean(name, given)}")
-        if name in trial.columns or name in OWN_COLUMNS:
-            raise ExperimentError(f"measure '{name}': is already a column of the trials; rename it")
-        value = given[name]
-        item: Any = getattr(value, "item", None)
-        if type(value) not in PLAIN and callable(item) and getattr(value, "ndim", None) == 0:  # a number of numpy
-            value = item()
-        if type(value) not in PLAIN:
-            raise ExperimentError(f"measure '{name}': must be a number, text, True, False or None (got {value!r})")
-        kept[name] = None if isinstance(value, float) and not math.isfinite(value) else value
+    for measure in experiment.design.kept or [Measure(name=name) for name in given]:
+        if measure.name not in given:
+            raise ExperimentError(f"Design.measures: the trial has no measure '{measure.name}'{did_you_mean(measure.name, given)}")
+        for name, value in measure.columns(given[measure.name]).items():
+            if name in trial.columns or name in OWN_COLUMNS or name in kept:
+                raise ExperimentError(f"measure '{name}': is already a column of the trials; rename it")
+            kept[name] = _plain(name, value)
+            experiment.describe_column(name, measure)
     return kept
+
+
+def _plain(name: str, value: Any) -> Any:
+    """Returns a value of a measure as a plain one; None if it is not finite.
+
+    Raises:
+        ExperimentError: If it has another type.
+    """
+    item: Any = getattr(value, "item", None)
+    if type(value) not in PLAIN and callable(item) and getattr(value, "ndim", None) == 0:  # a number of numpy
+        value = item()
+    if type(value) not in PLAIN:
+        lists = "; of a list, give Design.measures a Measure with `over`" if isinstance(value, (list, tuple)) else ""
+        raise ExperimentError(f"measure '{name}': must be a number, text, True, False or None (got {value!r}){lists}")
+    return None if isinstance(value, float) and not math.isfinite(value) else value

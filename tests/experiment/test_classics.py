@@ -141,9 +141,9 @@ def test_latency_falls_with_practice() -> None:
 
 
 def test_paired_associates_are_close_to_the_published_means() -> None:
-    human = {row["measure"]: float(row["mean"]) for row in human_rows("paired_associates")}
+    human = {(row["measure"], row["block"]): float(row["mean"]) for row in human_rows("paired_associates")}
     for measure, most in (("accuracy", 0.08), ("latency", 0.15)):
-        squares = [(found - human[f"{measure}_{block}"]) ** 2 for block, found in enumerate(by_block(measure), start=2)]
+        squares = [(found - human[measure, str(block)]) ** 2 for block, found in enumerate(by_block(measure), start=2)]
         assert math.sqrt(mean(squares)) < most, measure
 
 
@@ -173,7 +173,7 @@ def test_choices_approach_the_reinforced_side() -> None:
 
 def test_utility_learning_is_close_to_the_published_means() -> None:
     rows = rows_of("utility_learning", 30, heads_probability=(0.9,))
-    squares = [(mean(row[one["measure"]] for row in rows) - float(one["mean"])) ** 2 for one in human_rows("utility_learning")]
+    squares = [(mean(row[f"heads_{one['block']}"] for row in rows) - float(one["mean"])) ** 2 for one in human_rows("utility_learning")]
     assert math.sqrt(mean(squares)) < 0.08
 
 
@@ -201,13 +201,15 @@ def test_human_data_name_conditions_and_measures_of_their_design(name: str) -> N
     rows = human_rows(name)
     factors = [column for column in rows[0] if column not in MEASURED]
     assert list(rows[0]) == ["group", *factors, *MEASURED[1:]]
-    assert set(factors) == set(design.factors)
+    over = {measure.name: measure.over for measure in design.kept}
+    assert set(factors) == {*design.factors, *filter(None, over.values())}
     assert not set(factors) & set(OWN_COLUMNS)
     known = set(rows_of(name, 1)[0])
     for row in rows:
         assert row["group"] in design.groups
-        assert row["measure"] in known
-        assert all(row[factor] in map(str, design.factors[factor]) for factor in factors)
+        numbered = over[row["measure"]] is not None
+        assert (f"{row['measure']}_{row['block']}" if numbered else row["measure"]) in known
+        assert all(row[factor] in map(str, levels) for factor, levels in design.factors.items())
         assert float(row["mean"]) >= 0
         assert row["sd"] == row["n"] == "", "the tutorial quotes neither"
         assert row["source"].endswith("(S)")

@@ -12,7 +12,8 @@ import pytest
 
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError
 from actr3d.experiment.cluster import local_cluster
-from actr3d.experiment.fit import Fit, QuadraticSurface, Range, TargetMean, agreement, cells_of_target, load_target
+from actr3d.experiment.design import Measure
+from actr3d.experiment.fit import Fit, QuadraticSurface, Range, TargetMean, agreement, cells_of_rows, cells_of_target, load_target
 from actr3d.experiment.specification import specify
 
 LINE = """
@@ -152,6 +153,14 @@ def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:
     assert surface.minimum()[0] == pytest.approx(0.4, abs=0.02)
 
 
+def test_means_of_lists_are_compared_by_number() -> None:
+    measure = Measure(name="share", over="block")
+    rows = [{"participant": who, "share_1": 0.0, "share_2": high, "share_3": None} for who, high in (("a", 0.5), ("b", 1.0))]
+    assert cells_of_rows(rows, measure, ["block"]) == {(("block", 1),): 0.0, (("block", 2),): 0.75}
+    with pytest.raises(ExperimentError, match="no trial has a value of 'word'"):
+        cells_of_rows(rows, measure, ["word"])
+
+
 def test_targets_are_means_of_human_data(tmp_path: Path) -> None:
     design = specify("fan_effect").design
     means_of_people = load_target("fan_effect", design, "reaction_time")
@@ -161,6 +170,8 @@ def test_targets_are_means_of_human_data(tmp_path: Path) -> None:
     path.write_text("participant,probe,reaction_time\np,target,1\np,target,2\nq,target,3\n")
     (one,) = load_target(str(path), design)
     assert (one.conditions, one.measure, one.mean) == ({"group": "all", "probe": "target"}, "reaction_time", 2.25)
+    by_block = load_target("paired_associates", specify("paired_associates").design, "latency")
+    assert [one.conditions["block"] for one in by_block] == list(range(2, 9))
     with pytest.raises(ExperimentError, match=r"human data 'fan_efect': no such file; did you mean 'fan_effect'"):
         load_target("fan_efect", design)
     with pytest.raises(ExperimentError, match="have no means of 'speed'; they have: reaction_time"):

@@ -108,6 +108,26 @@ def test_own_human_data_are_drawn_and_compared(walked: Path, tmp_path: Path) -> 
         write_report(walked)
 
 
+def test_lists_are_shown_by_number_beside_people(tmp_path: Path) -> None:
+    def learn(trial: Any) -> dict[str, Any]:
+        luck = 0.01 * (trial.number % 7)
+        accuracy = {f"accuracy_{block}": 0.1 * block + luck for block in range(1, 9)}
+        return {**accuracy, "latency_1": None, **{f"latency_{block}": 3.0 - 0.2 * block + luck for block in range(2, 9)}}
+
+    folder = store_rows(tmp_path / "learned", "paired_associates", learn, participants=12)
+    write_report(folder)
+    assert [row["block"] for row in table(folder, "means_accuracy")] == [f"{block}" for block in range(1, 9)]
+    assert [row["block"] for row in table(folder, "means_latency")] == [f"{block}" for block in range(2, 9)]
+    assert [row["effect"] for row in table(folder, "anova_latency")] == ["block"]
+    fits = {row["measure"]: row for row in table(folder, "fit_to_people")}
+    assert {name: fit["cells"] for name, fit in fits.items()} == {"accuracy": "8", "latency": "7"}
+    assert float(fits["latency"]["r2"]) > 0.8
+    assert ">people</text>" in (folder / "report/figures/measure_accuracy.svg").read_text(encoding="utf-8")
+    assert "accuracy_3" not in page(folder)
+    write_report(folder, compare=store_rows(tmp_path / "again", "paired_associates", learn, participants=3))
+    assert {row["measure"]: row["cells"] for row in table(folder, "fit_to_other")} == {"accuracy": "8", "latency": "7"}
+
+
 def test_failures_and_missing_trials_are_said_plainly(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, participants=3)
 

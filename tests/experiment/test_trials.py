@@ -23,7 +23,7 @@ from actr3d.experiment.trial_process import TrialProcess
 from tests.helpers.experiments import COUNTER, write_experiment
 
 
-def rows_of(path: Path, **values: Any) -> list[dict[str, Any]]:
+def rows_of(path: Path | str, **values: Any) -> list[dict[str, Any]]:
     """Runs all trials of a design in one process, without a cluster."""
     experiment = specify(str(path), values=values)
     process, text = TrialProcess(), experiment.specification.to_json()
@@ -130,7 +130,10 @@ def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("end", "says"),
     [
-        ("rt = [1]", r"measure 'rt': must be a number, text, True, False or None \(got \[1\]\)"),
+        (
+            "rt = [1]",
+            r"measure 'rt': must be a number, text, True, False or None \(got \[1\]\); of a list, give Design.measures a Measure",
+        ),
         ("del rt", r"Design\.measures: the trial has no measure 'rt'"),
     ],
 )
@@ -140,6 +143,45 @@ def test_measures_that_cannot_be_kept_are_failures(tmp_path: Path, end: str, say
     with pytest.raises(ExperimentError, match=says):
         raise ExperimentError(errors.pop())
     assert not errors
+
+
+LISTS = """
+from actr3d.experiment import Measure
+
+mine = counting
+
+
+@design
+def counting():
+    from dataclasses import replace
+    measures = ["rt", Measure(name="share", unit="%", meaning="How many.", over="block")]
+    return replace(mine(), measures=measures)
+"""
+
+
+def test_a_list_has_a_column_for_each_number(tmp_path: Path) -> None:
+    model = f"{COUNTER}import numpy as np\nshare = [0.5, None, n] if n < 5 else np.array([1.0, 2.0])\n"
+    path = write_experiment(tmp_path, model=model, factors='{"n": [1, 5]}', participants=1, trials=1)
+    path.write_text(path.read_text() + LISTS)
+    experiment = specify(f"{path}:counting")
+    text, process = experiment.specification.to_json(), TrialProcess()
+    try:
+        rows = [{**trial.columns, **process.run(text, trial.number, 60)} for trial in experiment.design.table()]
+    finally:
+        process.end()
+    shares = {row["n"]: [row.get(f"share_{number}", "none") for number in (1, 2, 3)] for row in rows}
+    assert shares == {1: [0.5, None, 1], 5: [1.0, 2.0, "none"]}
+    assert process.about["share_2"] == {"unit": "%", "meaning": "How many (block 2)."}
+    measure = experiment.design.measure("share")
+    assert list(measure.values({"share_1": 3, "share_2": None, "share_4": 1})) == [({"block": 1}, 3), ({"block": 2}, None)]
+    assert list(experiment.design.measure("rt").values({"rt": 1})) == [({}, 1)]
+
+
+def test_what_must_be_a_list_and_is_none_is_a_failure(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, model=f"{COUNTER}share = 1\n", participants=1, trials=1, factors="{}")
+    path.write_text(path.read_text() + LISTS)
+    (row,) = rows_of(f"{path}:counting")
+    assert row["error"].endswith("measure 'share': must be a list, with a value for each block (got 1)")
 
 
 def test_numbers_of_numpy_and_without_value_are_plain_measures(tmp_path: Path) -> None:

@@ -68,6 +68,9 @@ def bodies(schema: dict[str, Any]) -> Iterator[str]:
         yield f"{{{HALF}: NaN}}"
 
 
+PLACES = ("session", "recording", "experiment", "folder", "file")
+
+
 def told(answer: httpx.Response) -> None:
     """Checks that an answer is no failure, and if it is a refusal, says why in the way of all others."""
     assert answer.status_code < 500, (answer.request.url, answer.request.content[:200], answer.text)
@@ -83,14 +86,15 @@ def told(answer: httpx.Response) -> None:
 def test_what_cannot_be_taken_is_told(method: str, path: str, server: Served, session: str) -> None:
     operation = DESCRIPTION["paths"][path][method]
     described = operation.get("requestBody", {}).get("content", {}).get("application/json", {}).get("schema")
+    here = {**dict.fromkeys(PLACES, "x"), "session": session}
     with httpx.Client(base_url=server.url, headers=server.headers, timeout=60, limits=EACH_ITS_OWN) as client:
         for value in IN_ADDRESS:
-            told(client.request(method, path.format(session=value, recording=value), content=b"{}"))
+            told(client.request(method, path.format(**dict.fromkeys(PLACES, value)), content=b"{}"))
             for name in [parameter["name"] for parameter in operation.get("parameters", ()) if parameter["in"] == "query"]:
-                told(client.request(method, f"{path.format(session=session, recording='x')}?{name}={value}", content=b"{}"))
+                told(client.request(method, f"{path.format(**here)}?{name}={value}", content=b"{}"))
         if described is not None:
             for body in (*BODIES, *(body.encode() for body in bodies(described))):
-                answer = client.request(method, path.format(session=session, recording="x"), content=body)
+                answer = client.request(method, path.format(**here), content=body)
                 told(answer)
                 assert answer.status_code >= 400 or LONG.encode() in body, body
 

@@ -253,9 +253,9 @@ def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished:
         download = workbench.get(f"{path}/{file}")
         assert download.content == (folder / file).read_bytes()
         assert download.headers["content-disposition"] == f'attachment; filename="{finished}-{file.rpartition("/")[2]}"'
-    for file in ("../experiment.json", "%2e%2e/experiment.json", "tables/../../experiment.json", "figures", "", "tables/none.csv"):
+    for file in ("../experiment.json", "%2e%2e/experiment.json", "tables/..%2f..%2fexperiment.json", "figures", "", "tables/none.csv"):
         url = httpx.URL(workbench.url, raw_path=f"{path}/{file}".encode())
-        assert httpx.get(url, headers=workbench.headers, timeout=60).status_code == 404
+        assert httpx.get(url, headers=workbench.headers, timeout=60).status_code in (404, 422)
     assert answer.headers["content-type"] == "text/html; charset=utf-8"
     policy = answer.headers.get_list("content-security-policy")
     assert len(policy) == 1

@@ -23,19 +23,25 @@ from typing import Any
 import httpx
 import pytest
 
+from tests.helpers.experiments import write_experiment
 from tests.helpers.workbench_server import Served, served
 from tests.server.test_bad_input import DESCRIPTION, OPERATIONS, resolved, valid
 
 SOURCE = "counting.py"
 RECORDINGS = tuple(f"r{number}" for number in range(5))
 MODELS = tuple(f"m{number}.py" for number in range(3))
+EXPERIMENTS = tuple(f"e{number}" for number in range(3))
+COLUMNS = {"x": "n", "measure": "rt"}
 CLEAR = {400, 404, 409, 415, 422}
 """What an error may be called; 500 is one of the server."""
 
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("storm") / "models") as running:
+    folder = tmp_path_factory.mktemp("storm") / "models"
+    folder.mkdir()
+    write_experiment(folder)
+    with served(folder) as running:
         yield running
 
 
@@ -52,18 +58,31 @@ def whole(server: Served) -> Path:
     return (folder / f"{name}.sqlite").rename(server.folder / "whole.sqlite")
 
 
+@pytest.fixture(scope="module")
+def experiment(server: Served) -> Path:
+    """A small experiment with its report, from which all others are copied."""
+    name = server.post("/api/experiments", {"design": "counting_design.py:counting", "workers": 1}).json()["id"]
+    while server.get(f"/api/experiments/{name}").json()["state"] != "finished":
+        time.sleep(0.1)
+    assert server.post(f"/api/experiments/{name}/report", {}).status_code == 200
+    return (server.folder / ".workbench" / "experiments" / name).rename(server.folder.parent / "experiment")
+
+
 class Storm:
     """Asks everything of a server, and renames, deletes and makes again what it asks for.
 
     Args:
         server: The server.
         whole: The recording that is copied.
+        experiment: The experiment that is copied.
         seed: Of what is chosen at random.
     """
 
-    def __init__(self, server: Served, whole: Path, seed: int) -> None:
+    def __init__(self, server: Served, whole: Path, experiment: Path, seed: int) -> None:
         self._server = server
         self._whole = whole
+        self._experiment = experiment
+        self._report = [path.relative_to(experiment / "report") for path in experiment.glob("report/*/*")]
         self._random = random.Random(seed)
         self._client = httpx.Client(base_url=server.url, headers=server.headers, timeout=120)
         self.counts: Counter[tuple[str, int]] = Counter()
@@ -79,7 +98,8 @@ class Storm:
         self._client.close()
 
     def _make_again(self) -> None:
-        """Puts some recording and some model where none is, as a new run does."""
+        """Puts some recording, experiment and model where none is, as a new run does."""
+        self._copy_experiment(self._server.folder / ".workbench" / "experiments" / self._random.choice(EXPERIMENTS))
         folder = self._server.folder / ".workbench" / "recordings"
         beside = folder / f".{self._random.random()}"
         shutil.copy(self._whole, beside)
@@ -88,10 +108,20 @@ class Storm:
         if not model.exists():
             model.write_bytes((self._server.folder / SOURCE).read_bytes())
 
+    def _copy_experiment(self, to: Path) -> None:
+        beside = to.with_name(f".{self._random.random()}")
+        shutil.copytree(self._experiment, beside)
+        try:
+            beside.rename(to)
+        except OSError:  # there is one already
+            shutil.rmtree(beside)
+
     def _ask(self, method: str, path: str, query: dict[str, str]) -> None:
         operation = DESCRIPTION["paths"][path][method]
         session = self._random.choice(self._client.get("/api/sessions").json()["sessions"] or [{"id": "none"}])["id"]
-        place = path.format(recording=self._random.choice(RECORDINGS), session=session)
+        file = self._random.choice(self._report)
+        names = {"recording": self._random.choice(RECORDINGS), "experiment": self._random.choice(EXPERIMENTS)}
+        place = path.format(**names, session=session, folder=file.parent, file=file.name)
         body: Any = None
         if "requestBody" in operation:
             body = self._body(path, operation["requestBody"]["content"]["application/json"]["schema"])
@@ -103,7 +133,7 @@ class Storm:
             self.problems.append(f"{method} {place} {query}: {type(error).__name__}: {error}")
             return
         self.counts[f"{method} {path}", answer.status_code] += 1
-        told = self._problem(answer)
+        told = self._problem(answer) if "{file}" not in path or not answer.is_success else self._cut(answer, file)
         if told:
             self.problems.append(f"{method} {place} {query} {body}: {answer.status_code} {told}")
 
@@ -129,10 +159,13 @@ class Storm:
             return "" if answer.text.rstrip().endswith("</html>") else "it is cut off"
         return ""
 
+    def _cut(self, answer: httpx.Response, file: Path) -> str:
+        return "" if answer.content == (self._experiment / "report" / file).read_bytes() else "it is not the file of the report"
+
     def _queries(self, method: str, path: str) -> Iterator[dict[str, str]]:
         """Yields what stands after the address: each choice where there are some."""
         known = [one for one in DESCRIPTION["paths"][path][method].get("parameters", []) if one["in"] == "query"]
-        needed = {one["name"]: self._random.choice(MODELS) for one in known if one["required"]}
+        needed = {one["name"]: COLUMNS.get(one["name"]) or self._random.choice(MODELS) for one in known if one["required"]}
         chosen = [[(one["name"], value) for value in one["schema"]["enum"]] for one in known if "enum" in one["schema"]]
         for some in itertools.product(*chosen):
             yield {**needed, **dict(some)}
@@ -147,8 +180,8 @@ class Storm:
 
 
 @pytest.mark.parametrize(("clients", "rounds"), [(3, 1), pytest.param(8, 2, marks=pytest.mark.slow)])
-def test_every_answer_is_whole_or_a_clear_error(server: Served, whole: Path, clients: int, rounds: int) -> None:
-    storms = [Storm(server, whole, seed) for seed in range(clients)]
+def test_every_answer_is_whole_or_a_clear_error(server: Served, whole: Path, experiment: Path, clients: int, rounds: int) -> None:
+    storms = [Storm(server, whole, experiment, seed) for seed in range(clients)]
     with ThreadPoolExecutor(clients) as pool:
         list(pool.map(Storm.blow, storms, [rounds] * clients))
     problems = [problem for storm in storms for problem in storm.problems]

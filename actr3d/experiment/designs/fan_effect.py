@@ -1,13 +1,13 @@
 """The person-location experiment of Anderson (1974) on the fan effect."""
 
-from actr3d.experiment.design import Design, Group, design
+from actr3d.experiment.design import Design, Group, Measure, design
 
 
 @design
 def fan_effect() -> Design:
     """Recognising facts: person and location with one, two or three facts each, targets and foils (Anderson 1974, experiment 1).
 
-    A row is one sentence. `reaction_time` is in seconds, `correct` says whether the answer is right. The numbers of participants and
+    A row is one sentence. The numbers of participants and
     trials are not the original's, which are not known here. Human data: 18 mean reaction times, as the ACT-R tutorial (unit 5) quotes
     them; it quotes no error rates and no standard deviations.
     """
@@ -17,6 +17,6 @@ def fan_effect() -> Design:
         factors=factors,
         groups={"all": Group(participants=20)},
         trials=10,
-        measures=("reaction_time", "correct"),
+        measures=[Measure(name="reaction_time", unit="s"), Measure(name="correct", meaning="Whether the answer is right.")],
         human="fan_effect",
     )

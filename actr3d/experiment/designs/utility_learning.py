@@ -1,31 +1,34 @@
 """The experiment of Friedman et al. (1964) on probability learning."""
 
 from types import ModuleType
+from typing import Any
 
-from actr3d.experiment.design import Design, Group, design
+from actr3d.experiment.design import Design, Group, Measure, design
 
 
 @design
 def utility_learning() -> Design:
     """Probability learning: 48 guesses of an event that happens in 10, 30, 50, 70 or 90 % of the cases (Friedman et al. 1964).
 
-    A row is one session: its guesses follow from one another, and each session begins without experience. `heads_1` to `heads_4` are the
-    shares of guesses of heads in blocks of 12, `late` that in the second half. The number of participants is not the original's, which
-    is not known here. Human data: the means of the four blocks for 90 %, as the ACT-R tutorial (unit 6) quotes them; it quotes no
-    standard deviations. For the other probabilities only a line is quoted (see the model), and no means.
+    A row is one session: its guesses follow from one another, and each session begins without experience. The number of participants
+    is not the original's, which is not known here. Human data: the means of the four blocks for 90 %, as the ACT-R tutorial (unit 6)
+    quotes them; it quotes no standard deviations. For the other probabilities only a line is quoted (see the model), and no means.
     """
     return Design(
         model="utility_learning.py",
         factors={"heads_probability": (0.1, 0.3, 0.5, 0.7, 0.9)},
         groups={"all": Group(participants=100)},
-        results=_by_block,
+        results=_shares,
+        measures=[
+            Measure(name="heads", meaning="The share of guesses of heads, in blocks of 12.", over="block"),
+            Measure(name="late", meaning="The share of guesses of heads in the second half."),
+        ],
         until=1000.0,
         human="utility_learning",
     )
 
 
-def _by_block(program: ModuleType) -> dict[str, float]:
+def _shares(program: ModuleType) -> dict[str, Any]:
     """Returns the share of guesses of heads in each block, and in the second half."""
-    heads = program.heads
-    late = heads[len(heads) // 2 :]
-    return {**{f"heads_{block}": share for block, share in enumerate(heads, start=1)}, "late": sum(late) / len(late)}
+    late = program.heads[len(program.heads) // 2 :]
+    return {"heads": program.heads, "late": sum(late) / len(late)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.special import stdtrit
 
+from actr3d.experiment.design import Design
 from actr3d.experiment.human_data import HumanData, Schema, library_human_data, read_human_data
 from actr3d.experiment.report.figures import Look
 from actr3d.experiment.report.libraries import pandas
@@ -34,31 +36,38 @@ class Beside:
         return self.frame[self.frame["measure"] == measure]
 
 
-def schema_of(results: Results) -> Schema:
+def factors_of(parts: Sequence[Results]) -> dict[str, list[float] | list[str]]:
+    """Returns all factors of an experiment, also what its measures are numbered by."""
+    return {name: levels for part in parts for name, levels in part.all_factors.items()}
+
+
+def schema_of(parts: Sequence[Results]) -> Schema:
     """Returns what human data for an experiment may hold."""
-    return Schema(groups=results.groups, factors=results.all_factors, measures=results.measures)
+    measures = [name for part in parts for name in part.measures]
+    return Schema(groups=parts[0].groups, factors=factors_of(parts), measures=measures)
 
 
-def human_data_of(results: Results, file: Path | str | None) -> tuple[HumanData | None, str]:
+def human_data_of(design: Design, parts: Sequence[Results], file: Path | str | None) -> tuple[HumanData | None, str]:
     """Returns the human data of a report, and a text that says why there are none.
 
     Args:
-        results: The experiment.
+        design: The design of the experiment.
+        parts: The experiment, from `by_number`.
         file: A file, or None for what the design names.
 
     Raises:
         ExperimentError: If the file does not follow the schema.
     """
     if file is not None:
-        return read_human_data(file, schema_of(results)), ""
-    name, known = results.design.human, library_human_data()
+        return read_human_data(file, schema_of(parts)), ""
+    name, known = design.human, library_human_data()
     if name is None:
         return None, "The design names no human data, and none were given with --human."
     if name not in known:
         return None, f"The design names the human data '{name}', which the library does not have, and none were given with --human."
-    if name in known and not set(results.measures) & _measures_in(known[name]):
+    if name in known and not set(schema_of(parts).measures) & _measures_in(known[name]):
         return None, f"The published means '{name}' are of other measures than this experiment has."
-    return read_human_data(known[name], schema_of(results)), ""
+    return read_human_data(known[name], schema_of(parts)), ""
 
 
 def _measures_in(path: Path) -> set[str]:
@@ -66,9 +75,9 @@ def _measures_in(path: Path) -> set[str]:
     return set(path.read_text(encoding="utf-8").replace("\n", ",").split(","))
 
 
-def beside_people(data: HumanData, results: Results) -> Beside:
+def beside_people(data: HumanData, parts: Sequence[Results]) -> Beside:
     """Returns human data as means by cell."""
-    pd, factors = pandas(), list(results.all_factors)
+    pd, factors = pandas(), list(factors_of(parts))
     columns = ["group", *factors, "measure", "mean", "sd", "low", "high", "n"]
     if data.published:
         frame = pd.DataFrame([dict(row) for row in data.rows], columns=["group", *factors, "measure", "mean", "sd", "n"])
@@ -90,16 +99,19 @@ def beside_people(data: HumanData, results: Results) -> Beside:
     return Beside(label="people", look="human", frame=frame.reindex(columns=columns))
 
 
-def beside_experiment(other: Results, results: Results) -> Beside | None:
+def beside_experiment(others: Sequence[Results], parts: Sequence[Results]) -> Beside | None:
     """Returns the means of another experiment; None if it has no measure in common."""
-    pd, common = pandas(), [name for name in results.measures if name in other.measures]
-    by = ["group", *(name for name in results.all_factors if name in other.rows)]
-    pieces = [cell_means(other.rows, measure, by).assign(measure=measure) for measure in common]
+    pd, pieces = pandas(), list[Any]()
+    for part, other in itertools.product(parts, others):
+        if part.numbers.keys() == other.numbers.keys():
+            by = ["group", *(name for name in part.all_factors if name in other.rows)]
+            common = [name for name in part.measures if name in other.measures]
+            pieces += [cell_means(other.rows, measure, by).assign(measure=measure) for measure in common]
     if not pieces:
         return None
     frame = pd.concat(pieces, ignore_index=True)
-    columns = ["group", *results.all_factors, "measure", "mean", "sd", "low", "high", "n"]
-    return Beside(label=other.label, look="other", frame=frame.reindex(columns=columns))
+    columns = ["group", *factors_of(parts), "measure", "mean", "sd", "low", "high", "n"]
+    return Beside(label=others[0].label, look="other", frame=frame.reindex(columns=columns))
 
 
 def matched(results: Results, beside: Beside, measure: str) -> Any:
@@ -116,10 +128,10 @@ def matched(results: Results, beside: Beside, measure: str) -> Any:
     return pandas().DataFrame(found, columns=[*keys, "model", "beside"])
 
 
-def fit_to(results: Results, beside: Beside, measures: Sequence[str]) -> Any:
+def fit_to(parts: Sequence[Results], beside: Beside) -> Any:
     """Returns a `DataFrame` with a row for each measure: the agreement of the means of all cells that both have."""
     found: list[dict[str, Any]] = []
-    for measure in measures:
+    for results, measure in ((part, measure) for part in parts for measure in part.measures):
         cells = matched(results, beside, measure)
         if len(cells):
             rmse, r2 = agreement(cells["model"], cells["beside"])

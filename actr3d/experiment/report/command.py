@@ -13,7 +13,7 @@ from actr3d.experiment.report.figures import png, svg
 from actr3d.experiment.report.general import comparison_section, human_section, measure_sections, what_was_run
 from actr3d.experiment.report.page import page
 from actr3d.experiment.report.parts import Plot, Section, Table
-from actr3d.experiment.report.results import Results, read_results
+from actr3d.experiment.report.results import Results, by_number, read_results
 
 REPORT, PAGE = "report", "index.html"
 """The folder of a report in that of the experiment, and the name of its page."""
@@ -36,18 +36,19 @@ def write_report(folder: Path | str, *, human: Path | str | None = None, compare
         ExperimentError: If a folder holds no experiment or no trials, the human data are not valid, or the report cannot be written.
     """
     results = read_results(folder)
-    data, why = human_data_of(results, human)
-    people = None if data is None else beside_people(data, results)
+    parts = by_number(results)
+    data, why = human_data_of(results.design, parts, human)
+    people = None if data is None else beside_people(data, parts)
     other = None if compare is None else read_results(compare)
-    beside = None if other is None else beside_experiment(other, results)
+    beside = None if other is None else beside_experiment(by_number(other), parts)
     others: list[Beside] = [one for one in (people, beside) if one is not None]
     sections = [what_was_run(results)]
     for make in find_analyses(results.rows.columns):
         sections += make(results, others)
-    sections.append(human_section(results, data, why, people))
+    sections.append(human_section(parts, data, why, people))
     if other is not None:
-        sections.append(comparison_section(results, other, beside))
-    sections += measure_sections(results, others)
+        sections.append(comparison_section(results, other, parts, beside))
+    sections += measure_sections(parts, others)
     return _write(Path(folder), results, sections)
 
 

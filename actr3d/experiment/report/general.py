@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from actr3d.experiment.human_data import HumanData
-from actr3d.experiment.report.beside import Beside, fit_to, matched, missing
+from actr3d.experiment.report.beside import Beside, factors_of, fit_to, matched, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
@@ -19,6 +19,8 @@ from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Te
 
 MOST_PANES = 6
 """A factor with more levels than this makes no panes of a figure."""
+MOST_TICKS = 12
+"""Axes have a tick for each of up to so many levels that are whole numbers."""
 MOST_KINDS = 20
 """A measure with more different texts than this is not counted."""
 TAIL = 700
@@ -78,27 +80,27 @@ def failures(results: Results) -> Table:
     return Table(name="failures", title="Failures", frame=table, note=note)
 
 
-def human_section(results: Results, data: HumanData | None, why: str, beside: Beside | None) -> Section:
+def human_section(parts: Sequence[Results], data: HumanData | None, why: str, beside: Beside | None) -> Section:
     """Returns the section on human data: what there is, where it is from, and how well the model agrees with it."""
     if data is None or beside is None:
         return Section(title="Human data", parts=[why, "No human mean is invented: figures without people show the model only."])
     kind = "published means" if data.published else "trials of people"
-    parts: list[str | Table | Plot | Caution] = [f"{data.name}: {len(data.rows):,} rows of {kind}.", *(f"{note}" for note in data.notes)]
+    found: list[str | Table | Plot | Caution] = [f"{data.name}: {len(data.rows):,} rows of {kind}.", *(f"{note}" for note in data.notes)]
     if data.published:
-        parts += [f"Source: {source}" for source in data.sources]
-        parts.append("Intervals of published means follow from their SD and n (t distribution); means without these have none.")
-    fit = fit_to(results, beside, data.measures)
-    without = [name for name in results.measures if name not in data.measures]
+        found += [f"Source: {source}" for source in data.sources]
+        found.append("Intervals of published means follow from their SD and n (t distribution); means without these have none.")
+    fit = fit_to(parts, beside)
+    without = [name for part in parts for name in part.measures if name not in data.measures]
     if len(fit):
         note = "Agreement of the means of all cells that both have. A model must be compared with a baseline, too."
-        parts.append(Table(name="fit_to_people", title="Agreement with people", frame=fit, note=note, hidden=["beside"]))
-        parts.append(_matched_table(results, [beside], data.measures, "means_beside_people", "Means beside those of people"))
+        found.append(Table(name="fit_to_people", title="Agreement with people", frame=fit, note=note, hidden=["beside"]))
+        found.append(_matched_table(parts, beside, "means_beside_people", "Means beside those of people"))
     if without:
-        parts.append(f"No human data for: {', '.join(without)}.")
-    return Section(title="Human data", parts=parts)
+        found.append(f"No human data for: {', '.join(without)}.")
+    return Section(title="Human data", parts=found)
 
 
-def comparison_section(results: Results, other: Results, beside: Beside | None) -> Section:
+def comparison_section(results: Results, other: Results, parts: Sequence[Results], beside: Beside | None) -> Section:
     """Returns the section that compares two experiments."""
     title = f"Compared with {other.label}"
     if beside is None:
@@ -110,30 +112,27 @@ def comparison_section(results: Results, other: Results, beside: Beside | None) 
     text = (
         f"{other.label} ({two.name}, {len(other.rows):,} trials) differs in: {', '.join([*different, *changed]) or 'nothing that was set'}."
     )
-    fit = fit_to(results, beside, results.measures)
-    parts: list[str | Table | Plot | Caution] = [text]
+    fit = fit_to(parts, beside)
+    found: list[str | Table | Plot | Caution] = [text]
     if len(fit):
-        parts.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
-        parts.append(_matched_table(results, [beside], results.measures, "means_beside_other", f"Means beside those of {other.label}"))
-    return Section(title=title, parts=parts)
+        found.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
+        found.append(_matched_table(parts, beside, "means_beside_other", f"Means beside those of {other.label}"))
+    return Section(title=title, parts=found)
 
 
 def _differs(name: str, one: Any, two: Any) -> bool:
     return one.values.get(name) != two.values.get(name)
 
 
-def _matched_table(results: Results, others: Sequence[Beside], measures: Sequence[str], name: str, title: str) -> Table:
-    pieces = [
-        matched(results, other, measure).assign(measure=measure).rename(columns={"beside": other.label.replace(" ", "_")})
-        for other in others
-        for measure in measures
-    ]
+def _matched_table(parts: Sequence[Results], beside: Beside, name: str, title: str) -> Table:
+    pieces = [matched(part, beside, measure).assign(measure=measure) for part in parts for measure in part.measures]
     frame = pandas().concat([piece for piece in pieces if len(piece)], ignore_index=True)
-    first = ["measure", "group", *results.all_factors]
+    frame = frame.rename(columns={"beside": beside.label.replace(" ", "_")})
+    first = ["measure", "group", *factors_of(parts)]
     return Table(name=name, title=title, frame=frame[[*first, *(c for c in frame if c not in first)]], folded=True)
 
 
-def measure_sections(results: Results, others: Sequence[Beside]) -> list[Section]:
+def measure_sections(parts: Sequence[Results], others: Sequence[Beside]) -> list[Section]:
     """Returns a section for each measure, and one that explains what all measures show."""
     note = (
         "Means are of participants: first the trials of a participant in a cell are averaged, then the participants. Intervals are 95 % "
@@ -141,8 +140,8 @@ def measure_sections(results: Results, others: Sequence[Beside]) -> list[Section
         "with more simulated participants, any difference becomes significant, so read the effect sizes. They are not corrected for the "
         "number of measures."
     )
-    found = [Section(title="All measures", parts=[note, *_outcomes(results)])]
-    return found + [_measure_section(results, name, others) for name in results.measures]
+    found = [Section(title="All measures", parts=[note, *_outcomes(parts[0])])]
+    return found + [_measure_section(part, name, others) for part in parts for name in part.measures]
 
 
 def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
@@ -175,7 +174,8 @@ def _measure_section(results: Results, measure: str, others: Sequence[Beside]) -
         name=f"means_{measure}", title="Means", frame=means, units=units, hidden=("measure", "unit"), note=note, folded=len(means) > 12
     )
     parts += [table, *_participants(results, measure, unit), *test_parts(run_tests(results, measure), measure)]
-    return Section(title=results.name_with_unit(measure), parts=parts, folded=True)
+    human = any(one.look == "human" and len(one.of(measure)) for one in others)
+    return Section(title=results.name_with_unit(measure), parts=parts, folded=not human)
 
 
 def _participants(results: Results, measure: str, unit: str) -> list[Table]:
@@ -216,10 +216,11 @@ class Layout:
 
 
 def layout_of(results: Results) -> Layout | None:
-    """Returns the layout of the figures of an experiment: x is the factor with the most levels, numbers before texts; the groups, or
-    the next factor, are curves; other factors are panes, as long as there are few. Returns None if there is nothing to lay out."""
+    """Returns the layout of the figures of an experiment: x is what values are numbered by, or else the factor with the most levels,
+    numbers before texts; the groups, or the next factor, are curves; other factors are panes, as long as there are few. Returns None if
+    there is nothing to lay out."""
     factors = results.factors
-    order = sorted(factors, key=lambda name: (isinstance(factors[name][0], str), -len(factors[name])))
+    order = sorted(factors, key=lambda name: (name not in results.numbers, isinstance(factors[name][0], str), -len(factors[name])))
     grouped = ["group"] if len(results.groups) > 1 else []
     left = [*order[1:]] if order else []
     if not order:
@@ -249,6 +250,8 @@ def figure_of(results: Results, measure: str, others: Sequence[Beside]) -> tuple
         title = ", ".join(f"{name.replace('_', ' ')} {plain_text(level)}{_unit(results, name)}" for name, level in here.items())
         panes.append(Pane(title=title, curves=curves))
     ticks = [(place, str(level)) for level, place in places.items()]
+    if all(isinstance(level, float) and level.is_integer() for level in levels[layout.x]) and len(levels[layout.x]) <= MOST_TICKS:
+        ticks = [(float(level), f"{level:g}") for level in levels[layout.x]]
     figure = curves_figure(panes, results.name_with_unit(layout.x), results.name_with_unit(measure), ticks=ticks)
     note = "Means of participants with 95 % bootstrap intervals."
     if layout.averaged:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,8 @@ class Results:
     """The measures that are numbers; switches count as 1 and 0, so that their means are proportions."""
     outcomes: Sequence[str]
     """The measures that are texts."""
+    numbers: Mapping[str, list[float]] = field(default_factory=dict[str, "list[float]"])
+    """What the values of a trial are numbered by, such as `block`, and its numbers: a further factor. See `by_number`."""
 
     @property
     def factors(self) -> dict[str, list[float] | list[str]]:
@@ -58,8 +61,8 @@ class Results:
 
     @property
     def all_factors(self) -> dict[str, list[float] | list[str]]:
-        """All factors of the design, also those with one level, with their levels as in `factors`."""
-        return {factor_name(name): plain_levels(levels) for name, levels in self.design.factors.items()}
+        """All factors of the design, also those with one level, with their levels as in `factors`; then `numbers`."""
+        return {**{factor_name(name): plain_levels(levels) for name, levels in self.design.factors.items()}, **self.numbers}
 
     @property
     def groups(self) -> list[str]:
@@ -74,6 +77,34 @@ class Results:
     def name_with_unit(self, column: str) -> str:
         """Returns a name for axes: words instead of underscores, and the unit."""
         return name_with_unit(column, self.unit(column))
+
+
+def by_number(results: Results) -> list[Results]:
+    """Returns the results such that each measure has one value in a row: those with one value a trial, then each of the others, with a
+    row for each number and with the number as a further factor."""
+    pd, found, taken = pandas(), list[Results](), set[str]()
+    for measure in results.design.kept:
+        if measure.over is None:
+            continue
+        numbered = re.compile(rf"{re.escape(measure.name)}_(\d+)")
+        numbers = {column: float(match[1]) for column in results.columns if (match := numbered.fullmatch(column))}
+        taken |= numbers.keys()
+        there = {column: number for column, number in numbers.items() if column in results.measures}
+        if there:
+            over, rest = factor_name(measure.over), results.rows.drop(columns=[column for column in numbers if column in results.rows])
+            rows = [rest.assign(**{over: number, measure.name: results.rows[column]}) for column, number in there.items()]
+            about = Column(name=measure.name, type="real", unit=measure.unit, meaning=measure.meaning)
+            found.append(
+                replace(
+                    results,
+                    columns={**results.columns, measure.name: about},
+                    rows=pd.concat(rows, ignore_index=True),
+                    measures=[measure.name],
+                    outcomes=[],
+                    numbers={over: list(there.values())},
+                )
+            )
+    return [replace(results, measures=[name for name in results.measures if name not in taken]), *found]
 
 
 def name_with_unit(name: str, unit: str) -> str:
