@@ -264,7 +264,7 @@ def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     drawn(page)
     after = int(bar.get_attribute("aria-valuenow") or 0)
     assert after < before
-    open_tab(page, "Runs")
+    open_tab(page, "Experiments")
     for key in ("Shift+Tab", "Tab", "ArrowRight"):
         page.keyboard.press(key)
     expect(page.get_by_role("tab", name="Console")).to_have_attribute("aria-selected", "true")
