@@ -106,8 +106,8 @@ class Group(Configuration):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Measure(Configuration):
-    """A measure of a trial: `Measure(name="latency", unit="s", over="block")`."""
+class Measured(Configuration):
+    """A measure of a trial: `Measured(name="latency", unit="s", over="block")`."""
 
     name: str
     unit: str | None = None
@@ -164,7 +164,7 @@ class Design(Configuration):
     results: Callable[[Any], Mapping[str, Any]] | None = None
     """Computes the measures of a trial by name: from the simulation at its end, or from the module of a program that has run. None: the
     fields of the simulation's result, or the program's variables named by `measures`."""
-    measures: Sequence[str | Measure] = ()
+    measures: Sequence[str | Measured] = ()
     """The measures to keep, or their names; empty to keep all of them."""
     until: Annotated[float, Gt(0)] = 60.0
     """The maximum simulated time of a trial [s]."""
@@ -213,13 +213,13 @@ class Design(Configuration):
                 raise DesignError(f"Design: '{name}' is a column of every table of trials; rename the parameter", name)
 
     @property
-    def kept(self) -> tuple[Measure, ...]:
+    def kept(self) -> tuple[Measured, ...]:
         """The measures to keep; empty to keep all of them."""
-        return tuple(one if isinstance(one, Measure) else Measure(name=one) for one in self.measures)
+        return tuple(one if isinstance(one, Measured) else Measured(name=one) for one in self.measures)
 
-    def measure(self, name: str) -> Measure:
+    def measure(self, name: str) -> Measured:
         """Returns the measure of that name; one that the design does not describe has one value in each trial."""
-        return next((one for one in self.kept if one.name == name), Measure(name=name))
+        return next((one for one in self.kept if one.name == name), Measured(name=name))
 
     # -- the table of trials
 

@@ -32,7 +32,7 @@ from scipy.stats import chi2  # pyright: ignore[reportMissingTypeStubs]
 from actr3d.configuration import Configuration
 from actr3d.errors import ExperimentError, did_you_mean
 from actr3d.experiment.cluster import Progress, run_experiment
-from actr3d.experiment.design import Design, Measure
+from actr3d.experiment.design import Design, Measured
 from actr3d.experiment.human_data import OF_MEANS, Schema, library_human_data, read_human_data
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store
@@ -429,7 +429,7 @@ def cells_of_target(target: Sequence[TargetMean]) -> dict[Cell, float]:
     return found
 
 
-def cells_of_rows(rows: Any, measure: Measure, columns: Sequence[str]) -> dict[Cell, float]:
+def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[Cell, float]:
     """Returns the means of a measure by cell, with participants as the unit: means of the participants' means.
 
     Raises:

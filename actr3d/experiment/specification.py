@@ -30,7 +30,7 @@ from actr3d.actr.loading.sweep import parameters as variables_of
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, did_you_mean
 from actr3d.experiment import designs
-from actr3d.experiment.design import Design, Measure, is_design
+from actr3d.experiment.design import Design, Measured, is_design
 from actr3d.parameter_schema import Parameter
 from actr3d.printing import ModelOutput, printing_to
 from actr3d.recording.schema import versions
@@ -156,7 +156,7 @@ class Experiment:
         """Adds units and meanings of measures, once they are known."""
         self.about |= {field.name: {"unit": field.unit, "meaning": field.help} for field in fields_of_result}
 
-    def describe_column(self, name: str, measure: Measure) -> None:
+    def describe_column(self, name: str, measure: Measured) -> None:
         """Adds the unit and meaning that the design gives a measure, for one of its columns."""
         if measure.unit or measure.meaning:
             which = "" if measure.over is None else f" ({measure.over} {name.rpartition('_')[2]})"

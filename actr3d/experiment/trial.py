@@ -15,7 +15,7 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
 from actr3d.errors import ExperimentError, did_you_mean
-from actr3d.experiment.design import OWN_COLUMNS, Measure, Trial
+from actr3d.experiment.design import OWN_COLUMNS, Measured, Trial
 from actr3d.experiment.specification import Experiment
 from actr3d.parameter_schema import parameters_of
 from actr3d.printing import ModelOutput, printing_to
@@ -115,7 +115,7 @@ def _checked(measures: Any, experiment: Experiment, trial: Trial) -> Row:
         raise ExperimentError(f"Design.results: must return measures by name (returned {measures!r})")
     given = cast("Mapping[str, Any]", measures)
     kept: Row = {}
-    for measure in experiment.design.kept or [Measure(name=name) for name in given]:
+    for measure in experiment.design.kept or [Measured(name=name) for name in given]:
         if measure.name not in given:
             raise ExperimentError(f"Design.measures: the trial has no measure '{measure.name}'{did_you_mean(measure.name, given)}")
         for name, value in measure.columns(given[measure.name]).items():
@@ -136,6 +136,6 @@ def _plain(name: str, value: Any) -> Any:
     if type(value) not in PLAIN and callable(item) and getattr(value, "ndim", None) == 0:  # a number of numpy
         value = item()
     if type(value) not in PLAIN:
-        lists = "; of a list, give Design.measures a Measure with `over`" if isinstance(value, (list, tuple)) else ""
+        lists = "; of a list, give Design.measures a Measured with over=" if isinstance(value, (list, tuple)) else ""
         raise ExperimentError(f"measure '{name}': must be a number, text, True, False or None (got {value!r}){lists}")
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -237,11 +237,11 @@ def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_run
             r"d\.py:3: Design\.measures: must name the variables of the program that are its measures",
         ),
         (
-            "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(measures=['n',\n    Measure(name='n')])\n",
+            "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(measures=['n',\n    Measured(name='n')])\n",
             r"d\.py:5: Design\.measures: 'n' is there twice",
         ),
         (
-            "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(\n    measures=[Measure(name='m', over='end')])\n",
+            "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(\n    measures=[Measured(name='m', over='end')])\n",
             r"d\.py:6: Design\.measures: 'm' is over 'end', which is another column",
         ),
     ],

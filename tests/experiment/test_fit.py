@@ -12,7 +12,7 @@ import pytest
 
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError
 from actr3d.experiment.cluster import local_cluster
-from actr3d.experiment.design import Measure
+from actr3d.experiment.design import Measured
 from actr3d.experiment.fit import Fit, QuadraticSurface, Range, TargetMean, agreement, cells_of_rows, cells_of_target, load_target
 from actr3d.experiment.specification import specify
 
@@ -154,7 +154,7 @@ def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:
 
 
 def test_means_of_lists_are_compared_by_number() -> None:
-    measure = Measure(name="share", over="block")
+    measure = Measured(name="share", over="block")
     rows = [{"participant": who, "share_1": 0.0, "share_2": high, "share_3": None} for who, high in (("a", 0.5), ("b", 1.0))]
     assert cells_of_rows(rows, measure, ["block"]) == {(("block", 1),): 0.0, (("block", 2),): 0.75}
     with pytest.raises(ExperimentError, match="no trial has a value of 'word'"):

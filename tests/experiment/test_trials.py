@@ -132,7 +132,7 @@ def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:
     [
         (
             "rt = [1]",
-            r"measure 'rt': must be a number, text, True, False or None \(got \[1\]\); of a list, give Design.measures a Measure",
+            r"measure 'rt': must be a number, text, True, False or None \(got \[1\]\); of a list, give Design.measures a Measured",
         ),
         ("del rt", r"Design\.measures: the trial has no measure 'rt'"),
     ],
@@ -146,7 +146,7 @@ def test_measures_that_cannot_be_kept_are_failures(tmp_path: Path, end: str, say
 
 
 LISTS = """
-from actr3d.experiment import Measure
+from actr3d.experiment import Measured
 
 mine = counting
 
@@ -154,7 +154,7 @@ mine = counting
 @design
 def counting():
     from dataclasses import replace
-    measures = ["rt", Measure(name="share", unit="%", meaning="How many.", over="block")]
+    measures = ["rt", Measured(name="share", unit="%", meaning="How many.", over="block")]
     return replace(mine(), measures=measures)
 """
 

@@ -1,6 +1,6 @@
 """The person-location experiment of Anderson (1974) on the fan effect."""
 
-from actr3d.experiment.design import Design, Group, Measure, design
+from actr3d.experiment.design import Design, Group, Measured, design
 
 
 @design
@@ -17,6 +17,6 @@ def fan_effect() -> Design:
         factors=factors,
         groups={"all": Group(participants=20)},
         trials=10,
-        measures=[Measure(name="reaction_time", unit="s"), Measure(name="correct", meaning="Whether the answer is right.")],
+        measures=[Measured(name="reaction_time", unit="s"), Measured(name="correct", meaning="Whether the answer is right.")],
         human="fan_effect",
     )

@@ -1,6 +1,6 @@
 """The experiment of Anderson (1981) on learning pairs of a noun and a digit."""
 
-from actr3d.experiment.design import Design, Group, Measure, design
+from actr3d.experiment.design import Design, Group, Measured, design
 
 
 @design
@@ -15,8 +15,8 @@ def paired_associates() -> Design:
         model="paired_associates.py",
         groups={"all": Group(participants=100)},
         measures=[
-            Measure(name="accuracy", meaning="The share of right answers.", over="block"),
-            Measure(name="latency", unit="s", meaning="The mean latency of right answers.", over="block"),
+            Measured(name="accuracy", meaning="The share of right answers.", over="block"),
+            Measured(name="latency", unit="s", meaning="The mean latency of right answers.", over="block"),
         ],
         until=10_000.0,
         human="paired_associates",

@@ -3,7 +3,7 @@
 from types import ModuleType
 from typing import Any
 
-from actr3d.experiment.design import Design, Group, Measure, design
+from actr3d.experiment.design import Design, Group, Measured, design
 
 
 @design
@@ -20,8 +20,8 @@ def utility_learning() -> Design:
         groups={"all": Group(participants=100)},
         results=_shares,
         measures=[
-            Measure(name="heads", meaning="The share of guesses of heads, in blocks of 12.", over="block"),
-            Measure(name="late", meaning="The share of guesses of heads in the second half."),
+            Measured(name="heads", meaning="The share of guesses of heads, in blocks of 12.", over="block"),
+            Measured(name="late", meaning="The share of guesses of heads in the second half."),
         ],
         until=1000.0,
         human="utility_learning",
