@@ -396,14 +396,15 @@ def _lines(out: Output) -> Callable[[State], None]:
             begin.append((now, state.done))
         if now - last[0] >= EVERY:
             last[0] = now
-            out.line(f"{state.done:,} of {state.total:,} trials, {state.failures:,} failed {_rate(begin[0], state)}")
+            out.line(f"{state.done:,} of {state.total:,} trials, {state.failures:,} failed, {_rate(begin[0], state)}")
 
     return show
 
 
 def _rate(begin: tuple[float, int], state: State) -> str:
     took, done = time.monotonic() - begin[0], state.done - begin[1]
+    workers = "1 worker" if state.workers == 1 else f"{state.workers} workers"
     if not done:
-        return f"{state.workers} workers"
+        return workers
     left = (state.total - state.done) * took / done
-    return f"{done / took:,.1f}/s, {state.workers} workers, {left:,.0f} s left"
+    return f"{done / took:,.1f}/s, {workers}, {left:,.0f} s left"

@@ -9,9 +9,11 @@ from __future__ import annotations
 import json
 import os
 import selectors
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from contextlib import suppress
@@ -33,6 +35,8 @@ class TrialProcess:
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
+        self._folder = ""
+        """The folder for the temporary files of the process."""
         self._loaded: str | None = None
         self.about: dict[str, dict[str, str | None]] = {}
         """Units and meanings of columns of the loaded experiment, as far as they are known."""
@@ -69,6 +73,7 @@ class TrialProcess:
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
+            shutil.rmtree(self._folder, ignore_errors=True)
             for pipe in (process.stdin, process.stdout):
                 if pipe is not None:
                     with suppress(OSError):
@@ -78,8 +83,9 @@ class TrialProcess:
         """Starts the process if there is none, and loads an experiment there if it is not the loaded one."""
         if self._process is None:
             # The order of sets of texts is the same in every process.
-            environment = {**os.environ, "PYTHONHASHSEED": "0"}
-            command = [sys.executable, "-m", "actr3d.experiment.trial_process"]
+            self._folder = tempfile.mkdtemp(prefix="actr3d-trials-")
+            environment = {**os.environ, "PYTHONHASHSEED": "0", "TMPDIR": self._folder}
+            command = [sys.executable, "-m", "actr3d.experiment.trial_process", self._folder]
             self._process = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True, bufsize=0
             )
@@ -132,8 +138,12 @@ class TrialProcess:
         return f"with exit code {code}" if code >= 0 else f"by the signal {signal.Signals(-code).name}"
 
 
-def main() -> None:
-    """Answers lines until the input ends."""
+def main(folder: str) -> None:
+    """Answers lines until the input ends.
+
+    Args:
+        folder: The folder for temporary files, which is deleted then.
+    """
     # What a model prints, also through file descriptors, must not mix with the answers.
     answers = os.fdopen(os.dup(1), "wb", buffering=0)
     questions = os.fdopen(os.dup(0), "rb")
@@ -142,12 +152,11 @@ def main() -> None:
         os.dup2(nothing, number)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the client ends this process
     with suppress(BrokenPipeError):
-        _answer(questions, answers)
+        _answer(_Questions(questions, folder), answers)
 
 
-def _answer(questions: BinaryIO, answers: BinaryIO) -> None:
+def _answer(asked: _Questions, answers: BinaryIO) -> None:
     """Answers with what `run_trial` returns, or with the error of an experiment that cannot be loaded."""
-    asked = _Questions(questions)
     question: str | int = asked.next()
     while True:
         try:
@@ -172,8 +181,9 @@ def _answer(questions: BinaryIO, answers: BinaryIO) -> None:
 class _Questions:
     """Reads experiments and numbers of trials in a thread, and ends this process at once when the client is gone."""
 
-    def __init__(self, file: BinaryIO) -> None:
+    def __init__(self, file: BinaryIO, folder: str) -> None:
         self._file = file
+        self._folder = folder
         self._there = threading.Condition()
         self._waiting: list[str | int] = []
         threading.Thread(target=self._read, daemon=True).start()
@@ -189,8 +199,9 @@ class _Questions:
             with self._there:
                 self._waiting.append(json.loads(line))
                 self._there.notify()
+        shutil.rmtree(self._folder, ignore_errors=True)
         os._exit(0)
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1])

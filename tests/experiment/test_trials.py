@@ -8,6 +8,7 @@ import signal
 import sqlite3
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -106,7 +107,10 @@ def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:
         "print('ready', flush=True)\n"
         "p.run(specify(sys.argv[1]).specification.to_json(), 0, 600)\n"
     )
-    worker = subprocess.Popen([sys.executable, "-c", code, str(path)], stdout=subprocess.PIPE)
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    environment = {**os.environ, "TMPDIR": str(temporary)}
+    worker = subprocess.Popen([sys.executable, "-c", code, str(path)], stdout=subprocess.PIPE, env=environment)
     assert worker.stdout is not None
     assert worker.stdout.readline() == b"ready\n"
 
@@ -125,6 +129,17 @@ def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:
     ):
         time.sleep(0.05)
     assert time.monotonic() < deadline, "it ran on without its worker"
+    assert not list(temporary.iterdir())
+
+
+def test_nothing_is_left_of_processes_that_were_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    model = COUNTER.replace("model.run()", "import tempfile\nopen(tempfile.mkstemp()[1], 'w').close()\nmodel.run()")
+    path = write_experiment(tmp_path, model=model, factors='{"mode": ["count", "die"]}', participants=1, trials=1)
+    assert sorted(row["end"] for row in rows_of(path)) == ["crash", "end"]
+    assert not list(temporary.iterdir())
 
 
 @pytest.mark.parametrize(
