@@ -16,7 +16,7 @@ from actr3d.recording.key import is_sealed, make_key, seal
 from workbench.experiment_command import ExperimentRunError
 from workbench.experiment_messages import ExperimentFacts
 
-SPECIFICATION, TABLE, LOCK, NOTES = "experiment.json", "trials.sqlite", "lock", "workbench.json"
+SPECIFICATION, FACTS, TABLE, LOCK, NOTES = "experiment.json", "facts.json", "trials.sqlite", "lock", "workbench.json"
 """The files of an experiment's folder; the workbench writes only the last one."""
 REPORT, PAGE = "report", "index.html"
 """The folder of the report, and its page."""
@@ -31,9 +31,6 @@ LARGEST_REPORT = 200_000_000
 class Notes(msgspec.Struct, frozen=True, kw_only=True):
     """What the workbench keeps of an experiment beside its table."""
 
-    facts: ExperimentFacts | None = None
-    changed: dict[str, Any] = {}
-    """The values and numbers that replace those of the design."""
     seal: str = ""
     """The seal of this installation, with which it recognizes an experiment that it has made."""
     problem: str | None = None
@@ -69,6 +66,14 @@ class ExperimentFolder:
         except OSError:
             return False
         return False
+
+    @property
+    def facts(self) -> ExperimentFacts | None:
+        """The facts of the experiment; None if they cannot be read."""
+        try:
+            return msgspec.json.decode(self._read(FACTS), type=ExperimentFacts)
+        except (OSError, msgspec.MsgspecError, ValueError, RecursionError):
+            return None
 
     @property
     def table(self) -> Path | None:

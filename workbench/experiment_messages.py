@@ -28,6 +28,10 @@ class ExperimentFacts(ExperimentEvent, frozen=True, kw_only=True, tag="facts"):
     """Values of parameters by group and name; a text for a distribution."""
     settings: dict[str, Any] = {}
     """Values of other parameters by name."""
+    changed: dict[str, Any] = {}
+    """The values and numbers that replace those of the design."""
+    measures: list[dict[str, Any]] = []
+    """The measures that the design names: name, unit, meaning, over."""
     seed: int = 0
     model: str = ""
     """The model file."""

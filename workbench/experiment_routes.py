@@ -177,14 +177,20 @@ async def rows(
 
 @router.get("/experiments/{experiment}/means")
 async def means(
-    request: Request, experiment: Id, x: Column, measure: Column, by: Annotated[list[Column] | None, Query(max_length=4)] = None
+    request: Request,
+    experiment: Id,
+    x: Column,
+    measure: Column,
+    by: Annotated[list[Column] | None, Query(max_length=4)] = None,
+    over: Column | None = None,
 ) -> Response:
     """Returns the mean of a measure for each combination of the values of columns, over participants, with its standard error.
 
     `{points: [{at: [value of x and of each column of by], mean, error, participants, trials}]}`; of True and False, the share of True.
+    With `over`, the measure has a column for each number, `measure_1`, `measure_2`, ..., and `over` is the name of the column of numbers.
     """
     empty = {"x": x, "by": by or [], "measure": measure, "unit": None, "columns": [], "points": []}
-    return await _made(request, "trial means", experiment, empty, x=x, by=by or [], measure=measure)
+    return await _made(request, "trial means", experiment, empty, x=x, by=by or [], measure=measure, over=over)
 
 
 @router.post("/experiments/{experiment}/trial")

@@ -22,6 +22,8 @@ MOST_CELLS = 50_000
 """Maximum number of means of participants."""
 MOST_POINTS = 2_000
 """Maximum number of points of a figure."""
+MOST_NUMBERS = 400
+"""Maximum number of values of a measure in one trial."""
 MOST_TEXT = 20_000
 """Maximum length of a value of a row [characters]."""
 NUMBERS = ("integer", "real", "boolean")
@@ -120,25 +122,26 @@ class Table:
         rows = [{**_row(data), "trial": number, "wall_s": wall, "worker": worker} for number, data, wall, worker in found]
         return {"total": total, "first": first, "columns": self.columns, "rows": rows}
 
-    def means(self, x: str, by: Sequence[str], measure: str) -> dict[str, Any]:
+    def means(self, x: str, by: Sequence[str], measure: str, over: str | None = None) -> dict[str, Any]:
         """Returns the mean of a measure for each combination of values: the mean of the participants' means, with its standard error.
 
         Args:
             x: The column along the axis.
             by: The columns whose combinations are the lines.
             measure: The column that is averaged; of True and False, the share of True.
+            over: The name of a further column with the number of a value, for a measure that has a column for each number; None for
+                one with one value a trial.
 
         Raises:
             TableError: If there is no such column, the measure has no numbers, or there are too many points.
         """
-        if self._types.get(measure) not in NUMBERS:
-            raise TableError(f"'{measure}' has no numbers" if measure in self._types else f"there is no column '{measure}'")
+        columns = self._numbered(measure, over)
+        parts = [f"SELECT data, wall_s, worker, {number} AS number, {self._value(name)} AS value FROM trial" for number, name in columns]
         keys = [x, *by]
-        parts = ", ".join(f"{self._value(name)}, {self._kind(name)}" for name in keys)
-        value = self._value(measure)
+        wanted = ", ".join("number, NULL" if name == over else f"{self._value(name)}, {self._kind(name)}" for name in keys)
         sql = (
-            f"SELECT {parts}, json_extract(data, '$.participant'), count(*), avg({value}) FROM trial WHERE typeof({value}) IN "
-            f"('integer', 'real') GROUP BY {', '.join(str(n + 1) for n in range(2 * len(keys) + 1))} LIMIT ?"
+            f"SELECT {wanted}, json_extract(data, '$.participant'), count(*), avg(value) FROM ({' UNION ALL '.join(parts)}) WHERE "
+            f"typeof(value) IN ('integer', 'real') GROUP BY {', '.join(str(n + 1) for n in range(2 * len(keys) + 1))} LIMIT ?"
         )
         found = self._read(sql, [MOST_CELLS + 1])
         cells: dict[tuple[Any, ...], list[tuple[int, float]]] = defaultdict(list)
@@ -148,8 +151,28 @@ class Table:
         if len(found) > MOST_CELLS or len(cells) > MOST_POINTS:
             raise TableError(f"{' and '.join(keys)} have too many different values for a figure")
         points = [{"at": [_typed(*part) for part in key], **_mean(parts)} for key, parts in cells.items()]
-        unit = next((column["unit"] for column in self.columns if column["name"] == measure), None)
+        unit = next((column["unit"] for column in self.columns if column["name"] == columns[0][1]), None)
         return {"x": x, "by": list(by), "measure": measure, "unit": unit, "columns": self.columns, "points": points}
+
+    def _numbered(self, measure: str, over: str | None) -> list[tuple[int, str]]:
+        """Returns the columns of a measure, each with its number.
+
+        Raises:
+            TableError: If there are none, or they have no numbers.
+        """
+        if over is None:
+            found = [(0, measure)]
+            if self._types.get(measure) not in NUMBERS:
+                raise TableError(f"'{measure}' has no numbers" if measure in self._types else f"there is no column '{measure}'")
+            return found
+        if over in self._types:
+            raise TableError(f"'{over}' is a column of the trials")
+        ends = {name: name.removeprefix(f"{measure}_") for name in self._types if name.startswith(f"{measure}_")}
+        found = sorted((int(end), name) for name, end in ends.items() if end.isascii() and end.isdigit() and len(end) < 9)
+        found = [(number, name) for number, name in found if self._types[name] in NUMBERS][:MOST_NUMBERS]
+        if not found:
+            raise TableError(f"there are no columns '{measure}_1', '{measure}_2', ... with numbers")
+        return found
 
     def _value(self, name: str) -> str:
         """Returns the SQL for the value of a column."""

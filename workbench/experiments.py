@@ -177,7 +177,7 @@ class Experiments:
             "name": _STAMP.sub("", name) if facts is None else facts.name,
             "made": begun(folder.path),
             "total": total,
-            "changed": notes.changed,
+            "changed": {} if facts is None else facts.changed,
             "report": folder.report_made,
             "problem": None,
         }
@@ -206,7 +206,7 @@ class Experiments:
 
     def _facts(self, folder: ExperimentFolder) -> ExperimentFacts | None:
         run = self._running.get(folder.path.name)
-        return folder.notes.facts if run is None or run.facts is None else run.facts
+        return folder.facts if run is None or run.facts is None else run.facts
 
     # -- checking
 
@@ -279,8 +279,7 @@ class Experiments:
         argument = design_argument(self._models, design)
         name = f"{re.sub(r'[^A-Za-z0-9_]', '_', argument.rpartition(':')[2])[:60]}-{stamp()}"
         arguments = ["experiment", argument, "--json", "--out", str(self._made_root() / name), *_options(values, participants, trials)]
-        numbers = {key: count for key, count in (("participants", participants), ("trials", trials)) if count is not None}
-        await self._begin(name, [*arguments, *_workers(workers)], {**numbers, **values})
+        await self._begin(name, [*arguments, *_workers(workers)], new=True)
         return name
 
     async def resume(self, name: str, workers: int | None, *, trust: bool) -> None:
@@ -300,20 +299,20 @@ class Experiments:
         folder = self._trusted(name, trust=trust)
         if name in self._running or folder.is_locked:
             raise ExperimentRunError("this experiment runs already")
-        await self._begin(name, ["experiment", str(folder.path), "--json", "--resume", *_workers(workers)], None)
+        await self._begin(name, ["experiment", str(folder.path), "--json", "--resume", *_workers(workers)], new=False)
 
-    async def _begin(self, name: str, arguments: Sequence[str], changed: Mapping[str, Any] | None) -> None:
+    async def _begin(self, name: str, arguments: Sequence[str], *, new: bool) -> None:
         """Starts a command that runs an experiment, and waits until it has checked the design.
 
         Args:
             name: The experiment.
             arguments: Those of the command.
-            changed: The values that replace those of the design; None for an experiment that is continued.
+            new: Whether the command makes the experiment; else it continues it.
         """
         if self._closed or len(self._running) + self._starting >= MOST_RUNNING:
             raise ExperimentRunError(f"{MOST_RUNNING} experiments run already: stop one, or wait for its end")
         folder = ExperimentFolder(self._root / name)
-        facts = None if changed is not None else folder.notes.facts
+        facts = None if new else folder.facts
         self._starting += 1
         try:
             command = await ExperimentCommand.start(arguments, self._made_root())
@@ -321,24 +320,22 @@ class Experiments:
             self._starting -= 1
         run = self._running[name] = RunningExperiment(command, facts, self._counts.get(name, (None, _NOTHING))[1]["done"])
         began: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        run.task = asyncio.create_task(self._follow(folder, run, began, changed))
+        run.task = asyncio.create_task(self._follow(folder, run, began, new=new))
         try:
             await asyncio.wait_for(asyncio.shield(began), START_TIME)
         except TimeoutError:
             run.task.cancel()
             raise RefusedDesignError(f"the design takes longer than {START_TIME:g} s") from None
 
-    async def _follow(
-        self, folder: ExperimentFolder, run: RunningExperiment, began: asyncio.Future[None], changed: Mapping[str, Any] | None
-    ) -> None:
+    async def _follow(self, folder: ExperimentFolder, run: RunningExperiment, began: asyncio.Future[None], *, new: bool) -> None:
         """Reads what a command reports until it has ended."""
         problem = None
         try:
             async for event in run.command.events():
                 run.take(event)
                 if isinstance(event, ExperimentFacts) and not began.done():
-                    folder.note(facts=event, problem=None, **({} if changed is None else {"changed": dict(changed)}))
-                    if changed is not None:
+                    folder.note(problem=None)
+                    if new:
                         folder.seal()
                     began.set_result(None)
             await run.command.wait()

@@ -138,7 +138,9 @@ def run(
     experiment, store = _opened(name, values, participants, trials, folder, resume=resume, any_version=any_version)
     with store:
         total, begin, before = len(experiment.design), time.monotonic(), store.count
-        out.event("facts", {**facts_of(experiment), "folder": str(store.folder)})
+        facts = facts_of(experiment)
+        store.write_facts({"event": "facts", **facts})
+        out.event("facts", {**facts, "folder": str(store.folder)})
         out.line(f"[bold]{experiment.specification.name}[/bold]: {total:,} trials in '{store.folder}', {before:,} finished")
         if before < total:
             cluster = local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler)
@@ -224,9 +226,10 @@ def fit(
 
 def facts_of(experiment: Experiment) -> dict[str, Any]:
     """Returns what programs show of an experiment: its size, factors, groups, and the parameters of its model."""
-    design = experiment.design
+    design, specification = experiment.design, experiment.specification
+    counts = {"participants": specification.participants, "trials": specification.trials}
     return {
-        "name": experiment.specification.name,
+        "name": specification.name,
         "description": experiment.description,
         "trials": len(design),
         "trials_a_cell": design.trials,
@@ -237,8 +240,10 @@ def facts_of(experiment: Experiment) -> dict[str, Any]:
             for name, group in design.groups.items()
         },
         "settings": {name: value if isinstance(value, PLAIN) else str(value) for name, value in design.settings.items()},
+        "changed": {**{name: count for name, count in counts.items() if count is not None}, **specification.values},
+        "measures": [asdict(one) for one in design.kept],
         "seed": design.seed,
-        "model": experiment.specification.model.file,
+        "model": specification.model.file,
         "parameters": [
             {"name": one.name, "help": one.help, "unit": one.unit, "default": one.default, "choices": one.choices}
             for one in experiment.parameters

@@ -6,7 +6,7 @@ import fcntl
 import json
 import os
 import sqlite3
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,8 +15,9 @@ from typing import Any, Self
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Specification
 from actr3d.experiment.trial import Row
+from actr3d.values import to_json
 
-SPECIFICATION, TRIALS, LOCK = "experiment.json", "trials.sqlite", "lock"
+SPECIFICATION, FACTS, TRIALS, LOCK = "experiment.json", "facts.json", "trials.sqlite", "lock"
 """The names of the files in the folder."""
 CHUNK = 5_000
 """Rows that are read at a time."""
@@ -113,6 +114,20 @@ class Store:
         self.close()
 
     # -- writing
+
+    def write_facts(self, facts: Mapping[str, Any]) -> None:
+        """Writes what other programs show of the experiment without loading its code.
+
+        Raises:
+            ExperimentError: If the file cannot be written.
+        """
+        path = self.folder / FACTS
+        part = path.with_name(f"{FACTS}.part")
+        try:
+            part.write_text(to_json(facts), encoding="utf-8")
+            part.replace(path)
+        except OSError as error:
+            raise ExperimentError(f"'{path}': cannot be written ({_why(error)})") from None
 
     @contextmanager
     def only_writer(self) -> Generator[None]:

@@ -38,6 +38,16 @@ function keysOf(facts, columns) {
 
 const isMeasure = ({ role, name, type }) => (role === "measure" || name === "wall_s") && ["integer", "real", "boolean"].includes(type);
 
+/** Returns the columns with one for each measure that has several numbered ones in the table: {..., over: what is numbered}. */
+function joined(facts, columns) {
+  const numbered = (facts.measures ?? []).filter(({ over }) => over);
+  const measureOf = (column) => numbered.find(({ name }) => column.name.startsWith(`${name}_`) && /^\d+$/.test(column.name.slice(name.length + 1)));
+  const found = columns.map((column) => (measureOf(column) ? { ...measureOf(column), type: "real", role: "measure" } : column));
+  return found.filter(({ name }, n) => found.findIndex((one) => one.name === name) === n);
+}
+
+const overOf = (columns, measure) => columns.find(({ name }) => name === measure)?.over;
+
 /** Returns what is shown unless the user has chosen otherwise. */
 function defaults(facts, columns) {
   const keys = keysOf(facts, columns);
@@ -48,19 +58,22 @@ function defaults(facts, columns) {
     if ([...by, name].reduce((product, one) => product * sizeOf(facts, one), 1) <= 6) by.push(name);
   }
   const measures = columns.filter(isMeasure).filter(({ name }) => name !== "wall_s");
-  return { x, by, measure: (measures.find(({ type }) => type === "real") ?? measures[0])?.name ?? "wall_s" };
+  const measure = (measures.find(({ type }) => type === "real") ?? measures[0])?.name ?? "wall_s";
+  return { x: overOf(columns, measure) ?? x, by: overOf(columns, measure) ? factors.slice(0, 1) : by, measure };
 }
 
 function chosenFor(name, facts, columns) {
   const otherwise = defaults(facts, columns);
   const { x, by, measure } = { ...otherwise, ...choices.value[name] };
-  const known = (column) => columns.some((one) => one.name === column);
-  const axis = known(x) ? x : otherwise.x;
-  return { x: axis, by: by.filter((one) => known(one) && one !== axis), measure: known(measure) ? measure : otherwise.measure };
+  const chosen = columns.some(({ name: one }) => one === measure) ? measure : otherwise.measure;
+  const over = overOf(columns, chosen);
+  const known = (column) => column === over || columns.some((one) => one.name === column);
+  const axis = [x, otherwise.x, over, ...keysOf(facts, columns)].find(known);
+  return { x: axis, by: by.filter((one) => known(one) && one !== axis), measure: chosen, over };
 }
 
-function pathOf(id, { x, by, measure }) {
-  const query = new URLSearchParams([["x", x], ["measure", measure], ...by.map((name) => ["by", name])]);
+function pathOf(id, { x, by, measure, over }) {
+  const query = new URLSearchParams([["x", x], ["measure", measure], ...by.map((name) => ["by", name]), ...(over ? [["over", over]] : [])]);
   return `/api/experiments/${encodeURIComponent(id)}/means?${query}`;
 }
 
@@ -102,14 +115,15 @@ function pairOf(experiment, other) {
 
 function Menus({ experiment, facts, columns, chosen }) {
   const set = (changes) => (choices.value = { ...choices.value, [experiment.name]: { ...chosen, ...changes } });
-  const keys = keysOf(facts, columns);
+  const keys = [...(chosen.over ? [chosen.over] : []), ...keysOf(facts, columns)];
   const measures = columns.filter(isMeasure);
+  const measured = (measure) => set({ measure, ...(overOf(columns, measure) ? { x: overOf(columns, measure) } : {}) });
   const factors = keys.filter((name) => sizeOf(facts, name) > 1 && name !== chosen.x);
   const lines = [[], ...keys.filter((name) => name !== chosen.x).map((name) => [name]), ...(factors.length > 1 ? [factors.slice(0, 2)] : []), ...(factors.length > 2 ? [factors.slice(0, 3)] : [])];
   if (!lines.some((by) => by.join() === chosen.by.join())) lines.push(chosen.by);
   return html`<div class="menus">
     <${Parts} experiment=${experiment} />
-    <select aria-label="Measure" title="What is averaged" value=${chosen.measure} onChange=${(event) => set({ measure: event.currentTarget.value })}>
+    <select aria-label="Measure" title="What is averaged" value=${chosen.measure} onChange=${(event) => measured(event.currentTarget.value)}>
       ${measures.map(({ name, meaning }) => html`<option key=${name} value=${name} title=${meaning}>${columnText(name)}</option>`)}
     </select>
     <label>by <select aria-label="Axis" value=${chosen.x} onChange=${(event) => set({ x: event.currentTarget.value, by: chosen.by.filter((name) => name !== event.currentTarget.value) })}>
@@ -200,7 +214,7 @@ function Plot({ lines, known, about, children }) {
   function show(some) {
     if (some.length === 0) return;
     const values = [about.x, ...about.by].map((name, n) => [name, some[0].point.at[n]]);
-    showExperiment(some[0].line.experiment, Object.fromEntries(values.filter(([, value], n) => some.every((one) => one.point.at[n] === value))));
+    showExperiment(some[0].line.experiment, Object.fromEntries(values.filter(([name, value], n) => name !== about.over && some.every((one) => one.point.at[n] === value))));
   }
 
   return html`<figure class="means" aria-label=${title}>
@@ -232,7 +246,8 @@ function near(points, x, y) {
 }
 
 /** @param experiment The summary of the experiment. @param facts Its facts. @param columns Its columns. */
-export function Figure({ experiment, facts, columns }) {
+export function Figure({ experiment, facts, columns: all }) {
+  const columns = joined(facts, all);
   const chosen = chosenFor(experiment.name, facts, columns);
   const other = (experiments.value ?? []).find(({ id, done }) => id === compared.value && id !== experiment.id && done > 0) ?? null;
   const own = useFresh(pathOf(experiment.id, chosen), experiment.done);
@@ -247,14 +262,14 @@ export function Figure({ experiment, facts, columns }) {
     const [first, dashed] = both.map((one, n) => linesOf(one, facts, combinations, n === 1, n === 1 ? other?.id : experiment.id));
     return [...first, ...dashed];
   }, [answer, second, other?.id]);
-  const all = answer ? combinationsOf([answer], answer.by, facts).length : 0;
+  const combined = answer ? combinationsOf([answer], answer.by, facts).length : 0;
   const error = own.error ?? (other ? others.error && `${other.name}: ${others.error}` : null);
   return html`
     <${Menus} experiment=${experiment} facts=${facts} columns=${columns} chosen=${chosen} />
     ${error ? html`<p class="problem bad" role="alert">${error}</p>` : null}
-    ${all > MOST_LINES ? html`<p class="problem warning">The first ${MOST_LINES} of ${all} lines are drawn.</p>` : null}
+    ${combined > MOST_LINES ? html`<p class="problem warning">The first ${MOST_LINES} of ${combined} lines are drawn.</p>` : null}
     ${answer && lines.length > 0
-      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, unit: unitOf(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} experiment=${experiment} other=${other} /><//>`
+      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOf(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} experiment=${experiment} other=${other} /><//>`
       : html`<p class="empty" role="status">${answer || error ? "No finished trial has a value of this measure." : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
   `;
 }

@@ -176,7 +176,8 @@ function estimate(design, trials, workers) {
   const each = seconds.value[design];
   if (each === undefined) return "measuring the duration of a trial …";
   const processes = Math.max(1, Math.min(workers ?? Infinity, known.value.processors));
-  return `about ${durationText((each * trials) / processes)} (${each < 0.1 ? each.toFixed(3) : each.toFixed(2)} s a trial)`;
+  const all = (each * trials) / processes;
+  return `${all < 1 ? "" : "about "}${durationText(all)} (${each < 0.1 ? each.toFixed(3) : each.toFixed(2)} s a trial)`;
 }
 
 function Foot({ design, facts, error }) {

@@ -82,7 +82,13 @@ function Contents({ experiment, facts }) {
   if (facts === null) return html`${parts}<p class="empty" role="status"><progress aria-label="Reading"></progress> Reading the experiment …</p>`;
   if (part.value === "about") return html`${parts}<${About} experiment=${experiment} facts=${facts} />`;
   if (part.value === "trials") return html`<${Trials} experiment=${experiment} facts=${facts} />`;
-  if (part.value === "report" && experiment.report) return html`${parts}<iframe class="report" title="Report" sandbox="allow-downloads allow-same-origin" src="${path}/report/index.html?${experiment.report}"></iframe>`;
+  if (part.value === "report" && experiment.report) {
+    const report = `${path}/report/index.html?${experiment.report}`;
+    return html`
+      <div class="menus"><${Parts} experiment=${experiment} /><a href=${report} target="_blank" rel="noopener">in a tab of its own</a></div>
+      <iframe class="report" title="Report" sandbox="allow-downloads allow-same-origin" src=${report}></iframe>
+    `;
+  }
   if (columns.length > 2) return html`<${Figure} experiment=${experiment} facts=${facts} columns=${columns} />`;
   return html`${parts}<p class="empty" role="status">${isRunning(experiment) ? "The figure appears with the first finished trials." : experiment.done > 0 ? html`<progress aria-label="Reading"></progress> Reading the trials …` : "No trial has finished."}</p>`;
 }

@@ -7,6 +7,8 @@ import os
 import re
 import shutil
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -237,6 +239,34 @@ def test_code_of_an_experiment_from_elsewhere_runs_only_with_permission(workbenc
     assert workbench.get("/api/experiments/from-elsewhere/code").json()["made_here"] is True
 
 
+def test_means_of_a_measure_with_several_numbers(workbench: Served) -> None:
+    folder = workbench.folder / "numbered"
+    folder.mkdir(exist_ok=True)
+    model = COUNTER.replace("rt = model.now()", "rt = [n, None, 2.0 * n]")
+    path = write_experiment(folder, factors='{"n": [1, 2]}', trials=2, model=model)
+    text = path.read_text("utf-8").replace('["rt", "luck"]', '[Measured(name="rt", unit="s", over="block"), "luck"]')
+    path.write_text(text.replace("import Design,", "import Design, Measured,"), "utf-8")
+    name = started(workbench, "numbered/counting_design.py:counting")
+    facts = awaited(workbench, name, "finished")["facts"]
+    assert facts["measures"][0] == {"name": "rt", "unit": "s", "meaning": "", "over": "block"}
+    path = f"/api/experiments/{name}/means"
+
+    def points(**query: str) -> list[list[Any]]:
+        answer = workbench.get(path, params={"measure": "rt", "over": "block", **query}).json()
+        assert answer["unit"] == "s"
+        return sorted([*point["at"], point["mean"], point["trials"]] for point in answer["points"])
+
+    assert points(x="block") == [[1, 1.5, 8], [3, 3.0, 8]]
+    assert points(x="block", by="n") == [[1, 1, 1.0, 4], [1, 2, 2.0, 4], [3, 1, 2.0, 4], [3, 2, 4.0, 4]]
+    assert points(x="n") == [[1, 1.5, 8], [2, 3.0, 8]]
+    for query, problem in (
+        ({"measure": "rt", "x": "n"}, "there is no column 'rt'"),
+        ({"measure": "luck", "x": "n", "over": "block"}, "there are no columns 'luck_1', 'luck_2', ... with numbers"),
+        ({"measure": "rt", "x": "n", "over": "n"}, "'n' is a column of the trials"),
+    ):
+        assert workbench.get(path, params=query).json()["error"] == problem
+
+
 def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished: str) -> None:
     path = f"/api/experiments/{finished}/report"
     folder = workbench.folder / ".workbench/experiments" / finished / "report"
@@ -253,7 +283,7 @@ def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished:
         download = workbench.get(f"{path}/{file}")
         assert download.content == (folder / file).read_bytes()
         assert download.headers["content-disposition"] == f'attachment; filename="{finished}-{file.rpartition("/")[2]}"'
-    for file in ("../experiment.json", "%2e%2e/experiment.json", "tables/..%2f..%2fexperiment.json", "figures", "", "tables/none.csv"):
+    for file in ("../experiment.json", "%2e%2e/experiment.json", "tables/..%2f..%2fexperiment.json", "figures", "tables/none.csv"):
         url = httpx.URL(workbench.url, raw_path=f"{path}/{file}".encode())
         assert httpx.get(url, headers=workbench.headers, timeout=60).status_code in (404, 422)
     assert answer.headers["content-type"] == "text/html; charset=utf-8"
@@ -345,11 +375,24 @@ def test_odd_questions_get_an_answer_and_change_nothing(workbench: Served, finis
     assert workbench.get(f"/api/experiments/{finished}/rows?most=1").json()["total"] == 24
 
 
+def test_an_experiment_of_the_command_line_is_shown_with_its_facts(workbench: Served, tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, trials=1)
+    folder = workbench.folder / ".workbench/experiments" / "by-hand"
+    options = ["--set", "n=[2, 3]", "--participants", "1", "--workers", "1", "--out", str(folder)]
+    subprocess.run([sys.executable, "-m", "actr3d", "experiment", str(path), *options], check=True, capture_output=True)
+    now = state_of(workbench, "by-hand")
+    assert (now["state"], now["name"], now["total"], now["done"]) == ("finished", "counting", 2, 2)
+    assert now["changed"] == {"participants": 1, "n": [2, 3]}
+    assert now["facts"]["factors"] == {"n": [2, 3]}
+    shutil.rmtree(folder)
+
+
 def test_a_folder_with_damaged_files_is_listed_and_read_with_an_error(workbench: Served) -> None:
     folder = workbench.folder / ".workbench/experiments" / "damaged"
     folder.mkdir(parents=True)
     (folder / "experiment.json").write_bytes(b"\xff not JSON")
-    (folder / "workbench.json").write_text('{"facts": 1}', "utf-8")
+    (folder / "workbench.json").write_text('{"seal": 1}', "utf-8")
+    (folder / "facts.json").write_text('{"event": "facts", "name": 1}', "utf-8")
     (folder / "trials.sqlite").write_bytes(b"no database" * 100)
     now = state_of(workbench, "damaged")
     assert (now["state"], now["total"], now["name"]) == ("failed", None, "damaged")
