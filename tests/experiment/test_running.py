@@ -197,7 +197,7 @@ def a_cluster(port: int) -> Generator[Any]:
 
 @pytest.mark.parametrize("kills", [1, pytest.param(6, marks=pytest.mark.slow)])
 def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, kills: int, unused_port: int) -> None:
-    path = write_experiment(tmp_path, participants=2, trials=30, model=SLOW_MODEL)
+    path = write_experiment(tmp_path, participants=2, trials=10 + 10 * kills, model=SLOW_MODEL)
     dice = random.Random(kills)
     command = [*COMMAND, str(path), "--out", str(tmp_path / "out"), "--resume", "--scheduler", f"tcp://127.0.0.1:{unused_port}"]
     for _ in range(kills):
