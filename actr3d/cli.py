@@ -318,6 +318,8 @@ def _experiment(options: argparse.Namespace) -> int:
 
         out = command.Output(json=options.json)
         if options.name is None:
+            if any((*_numbers(options).values(), options.trial is not None, options.record, options.out, options.resume, options.check)):
+                raise SettingError("which experiment? name a design, a file or the folder of an experiment before the options")
             return command.list_designs(out)
         if options.trial is not None or options.record is not None:
             if options.trial is None or options.record is None:

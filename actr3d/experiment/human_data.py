@@ -2,8 +2,9 @@
 
 Both are CSV files (UTF-8, a line of names, then one row a line). Lines that begin with `#` are notes, which the report shows. Factors,
 groups and measures have the names that they have in the design and in the table of trials; `columns.csv` in the folder of an experiment
-lists them with their units. What the values of a measure are numbered by, such as `block`, is one more factor; the measure has its own name
-there, `latency` for `latency_1`, `latency_2`, and so on. A factor whose name is that of another column of published means, such as `n`, has an underscore added: `n_`.
+lists them with their units. What the values of a measure are numbered by, such as `block`, is one more factor; the measure has its own
+name there, `latency` for `latency_1`, `latency_2`, and so on. A factor whose name is that of another column of published means, such as
+`n`, has an underscore added: `n_`.
 An empty cell is a value that is missing.
 
 **Trials** have the columns

@@ -237,6 +237,10 @@ def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_run
             r"d\.py:3: Design\.measures: must name the variables of the program that are its measures",
         ),
         (
+            "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(measures=['n'], trials=10**9)\n",
+            r"d\.py:5: Design\.trials: must give at most 10,000,000 trials in all \(got 1,000,000,000\)",
+        ),
+        (
             "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(measures=['n',\n    Measured(name='n')])\n",
             r"d\.py:5: Design\.measures: 'n' is there twice",
         ),

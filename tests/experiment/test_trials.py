@@ -361,3 +361,5 @@ def test_a_trial_is_recorded_and_replayed(tmp_path: Path, capsys: pytest.Capture
     assert "trial: must be a number from 0 to 23 (got 99)" in capsys.readouterr().err
     assert main(["experiment", "out", "--trial", "7"]) == 2
     assert "--trial ID and --record RECORDING are given together" in capsys.readouterr().err
+    assert main(["experiment", "--trial", "3", "--record", str(tmp_path / "b.rec")]) == 2
+    assert "which experiment? name a design, a file or the folder" in capsys.readouterr().err
