@@ -5,6 +5,34 @@ import { call } from "../server.js";
 
 const BETWEEN = 1000; // the least interval between two requests [ms]
 
+/** Asks one question, at most once at a time, and rests after each answer for at least twice as long as it took. */
+class Asker {
+  constructor(path, found) {
+    this.path = path;
+    this.found = found;
+    this.leave = new AbortController();
+    this.busy = false;
+    this.again = false; // whether it was to ask while it was busy
+  }
+
+  async ask() {
+    if (this.busy) return void (this.again = true);
+    this.busy = true;
+    const begun = Date.now();
+    const answer = await call("GET", this.path, undefined, this.leave.signal).then((answer) => ({ answer, error: null }), (error) => ({ answer: null, error: error.message }));
+    if (this.leave.signal.aborted) return;
+    this.found.value = { path: this.path, ...answer, waiting: false };
+    setTimeout(() => this.rested(), Math.max(BETWEEN, 2 * (Date.now() - begun)));
+  }
+
+  rested() {
+    this.busy = false;
+    if (!this.again || this.leave.signal.aborted) return;
+    this.again = false;
+    this.ask();
+  }
+}
+
 /**
  * Returns {answer, error, waiting}; the answer to the previous question stays until the next one arrives.
  *
@@ -13,23 +41,12 @@ const BETWEEN = 1000; // the least interval between two requests [ms]
  */
 export function useFresh(path, version) {
   const found = useSignal({ path: null, answer: null, error: null, waiting: false });
-  const last = useRef({ path: null, at: 0 });
+  const asker = useRef(null);
   useEffect(() => {
-    if (path === null) return undefined;
-    const leave = new AbortController();
-    async function ask() {
-      last.current = { path, at: Date.now() };
-      if (found.peek().path !== path) found.value = { ...found.peek(), waiting: true };
-      try {
-        const answer = await call("GET", path, undefined, leave.signal);
-        found.value = { path, answer, error: null, waiting: false };
-      } catch (error) {
-        if (!leave.signal.aborted) found.value = { path, answer: null, error: error.message, waiting: false };
-      }
-    }
-    const pause = last.current.path === path ? Math.max(0, last.current.at + BETWEEN - Date.now()) : 0;
-    const timer = setTimeout(ask, pause);
-    return () => (clearTimeout(timer), leave.abort());
-  }, [path, version]);
+    asker.current = path === null ? null : new Asker(path, found);
+    if (path !== null) found.value = { ...found.peek(), waiting: true };
+    return () => asker.current?.leave.abort();
+  }, [path]);
+  useEffect(() => void asker.current?.ask(), [path, version]);
   return found.value;
 }

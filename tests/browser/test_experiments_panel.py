@@ -96,3 +96,30 @@ def test_two_pages_see_an_experiment_stop_and_go_on(pages: Callable[..., Page], 
     second.get_by_role("dialog").get_by_role("button", name="Delete", exact=True).click()
     for page in (first, second):
         expect(page.get_by_role("table", name="Experiments")).not_to_contain_text("stopped")
+
+
+SLOWLY = """() => { const fetched = window.fetch;
+window.fetch = (what, how) => !String(what).includes("/means?") ? fetched(what, how) : new Promise((done, failed) => {
+    how?.signal?.addEventListener("abort", () => failed(new DOMException("aborted", "AbortError")));
+    setTimeout(() => fetched(what, how).then(done, failed), 3000);
+}); }"""
+
+
+def test_a_figure_fills_in_although_its_means_take_longer_than_new_trials(
+    pages: Callable[..., Page], workbench: Served, design: str
+) -> None:
+    name = workbench.post("/api/experiments", {"design": design, "trials": 5000, "workers": 1}).json()["id"]
+    page = pages("counting.py", tab="experiments")
+    page.evaluate(SLOWLY)
+    page.locator(f"tr[data-experiment='{name}']").click()
+
+    def trials() -> int:
+        found = re.search(r"([\d,]+) trials?\)", page.locator(".point").first.get_attribute("aria-label") or "")
+        assert found is not None
+        return int(found[1].replace(",", ""))
+
+    expect(page.locator(".point")).not_to_have_count(0)
+    before = trials()
+    until(page, lambda: trials() > before)
+    workbench.post(f"/api/experiments/{name}/stop")
+    expect(page.locator(".tools .state")).to_have_text("stopped")
