@@ -144,7 +144,7 @@ class _Reader:
         published = "measure" in head or "mean" in head
         measures = [] if published else list(schema.measures)
         known = [*(["group", *OF_MEANS] if published else ["participant", "group"]), *schema.factors, *measures]
-        wrong = [f"{where}: column '{name}' stands there twice" for name in dict.fromkeys(head) if head.count(name) > 1]
+        wrong = [f"{where}: column '{name}' is there twice" for name in dict.fromkeys(head) if head.count(name) > 1]
         wrong += [
             f"{where}: unknown column '{name}'{did_you_mean(name, known)}; there may be: {', '.join(known)}"
             for name in head

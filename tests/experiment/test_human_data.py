@@ -50,7 +50,7 @@ BAD = {
         "participant,group,apperture,wall_angle_deg\n",
         r"people.csv:1: unknown column 'apperture'; did you mean 'aperture'\?",
     ),
-    "twice": ("participant,group,group,wall_angle_deg\n", r"people.csv:1: column 'group' stands there twice"),
+    "twice": ("participant,group,group,wall_angle_deg\n", r"people.csv:1: column 'group' is there twice"),
     "no participant": ("group,aperture,wall_angle_deg\n", r"people.csv:1: column 'participant' is missing; trials need"),
     "no measure": ("participant,group,aperture\n", r"people.csv:1: no column is a measure; there may be: wall_angle_deg, speed_m_s"),
     "no source": ("group,measure,mean\n", r"people.csv:1: column 'source' is missing; published means need"),

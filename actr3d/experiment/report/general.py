@@ -20,7 +20,7 @@ from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Te
 MOST_PANES = 6
 """A factor with more levels than this makes no panes of a figure."""
 MOST_TICKS = 12
-"""Axes have a tick for each of up to so many levels that are whole numbers."""
+"""An axis has a tick for each level if all are whole numbers and there are at most this many."""
 MOST_KINDS = 20
 """A measure with more different texts than this is not counted."""
 TAIL = 700

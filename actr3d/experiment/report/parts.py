@@ -19,7 +19,7 @@ class Table:
     note: str = ""
     """What a reader has to know."""
     units: Mapping[str, str] = field(default_factory=dict[str, str])
-    """Units of columns; they stand in the head of the table on the page."""
+    """Units of columns; the page shows them in the head of the table."""
     digits: Mapping[str, int] = field(default_factory=dict[str, int])
     """Decimals of columns on the page; others have three significant digits."""
     hidden: Sequence[str] = ()
