@@ -13,6 +13,7 @@ from actr3d.cli import main
 from actr3d.errors import ExperimentError
 from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.command import write_report
+from actr3d.experiment.report.figures import legend_columns
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from tests.helpers.experiments import write_experiment
@@ -106,6 +107,13 @@ def test_own_human_data_are_drawn_and_compared(walked: Path, tmp_path: Path) -> 
         assert "Human mean angles for each aperture are not available" not in page(walked)
     finally:
         write_report(walked)
+
+
+def test_the_entries_of_a_legend_fit_into_the_figure() -> None:
+    assert legend_columns([5, 5, 10, 17, 19], 8.6) == 5
+    assert legend_columns([21] * 5 + [5, 6], 6.4) == 3
+    assert legend_columns([5, 5, 10, 17, 19, 29], 8.6) == 3
+    assert legend_columns([200, 3], 6.4) == 1
 
 
 def test_lists_are_shown_by_number_beside_people(tmp_path: Path) -> None:

@@ -52,6 +52,8 @@ SCALE = 1.53
 Look = Literal["model", "points", "human", "other", "baseline"]
 """`model`: the experiment of the report; `points`: the same without a line; `human`: people;
 `other`: another experiment or model; `baseline`: what any model must beat."""
+CHARACTERS, ROOM_OF_HANDLE = 13, 6
+"""How many characters of a legend fit into an inch, and how many take the room of a line with its marker."""
 LOOKS: dict[str, dict[str, Any]] = {
     "model": {"linestyle": "-", "linewidth": 1.8, "markersize": 5.5},
     "points": {"linestyle": "none", "markersize": 6},
@@ -179,10 +181,23 @@ def _legend(figure: Any, panes: Sequence[Pane], labels: Sequence[str]) -> None:
     bands = dict.fromkeys(band[2] for pane in panes for band in (pane.band, pane.level) if band is not None)
     handles += [patch(facecolor=MUTED, alpha=0.25, linewidth=0, label=text) for text in bands]
     if handles:
-        wide = figure.get_figwidth() * 14  # characters in a row; a handle takes the place of six
-        rows = math.ceil(sum(len(str(handle.get_label())) + 6 for handle in handles) / wide)
-        columns = math.ceil(len(handles) / rows)
+        columns = legend_columns([len(str(handle.get_label())) for handle in handles], figure.get_figwidth())
         figure.legend(handles=handles, loc="outside upper left", ncols=columns, borderaxespad=0.2, columnspacing=1.6, handlelength=2.2)
+
+
+def legend_columns(lengths: Sequence[int], width: float) -> int:
+    """Returns the greatest number of columns of a legend that fits into a figure.
+
+    Args:
+        lengths: The lengths of its labels [characters]; a column is filled before the next one.
+        width: The width of the figure [inches].
+    """
+    for columns in range(len(lengths), 1, -1):
+        rows = math.ceil(len(lengths) / columns)
+        widest = [max(lengths[first : first + rows]) + ROOM_OF_HANDLE for first in range(0, len(lengths), rows)]
+        if sum(widest) <= CHARACTERS * width:
+            return len(widest)
+    return 1
 
 
 def png(figure: Any) -> bytes:
