@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import fields
-from functools import cache
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import annotated_types
 
 from actr3d.errors import ConfigurationError, did_you_mean
+from actr3d.weak_cache import weak_cache
 
 
 class Live:
@@ -71,7 +71,7 @@ class Configuration:
         return cls(**values)
 
 
-@cache
+@weak_cache
 def _hints(of: type) -> dict[str, Any]:
     return get_type_hints(of, include_extras=True)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from functools import cache
 from numbers import Real
 from typing import Any, ClassVar, Self, cast
 
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from actr3d.errors import VisionError
 from actr3d.vision.units import LABEL, Metres, MetresPerSecond, Radians, units_of
+from actr3d.weak_cache import weak_cache
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +93,7 @@ class Feature:
         return copy
 
 
-@cache
+@weak_cache
 def slot_names(kind: type[Feature]) -> tuple[str, ...]:
     """Returns the names of a kind's slots besides `feature`."""
     return tuple(field.name for field in fields(kind))

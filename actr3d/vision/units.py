@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+from actr3d.weak_cache import weak_cache
 
 
 @dataclass(frozen=True)
@@ -50,13 +51,13 @@ Label = Annotated[int, LABEL]
 """An opaque label of an object in a view; 0 means no object, and is left out of chunks."""
 
 
-@cache
+@weak_cache
 def units_of(thing: type | Callable[..., Any]) -> dict[str, Unit]:
     """Returns the units of a feature's fields, or of a detector's parameters, by name."""
     return {name: _unit_of(hint) for name, hint in get_type_hints(thing, include_extras=True).items()}
 
 
-@cache
+@weak_cache
 def bounds_of(function: Callable[..., Any]) -> dict[str, tuple[Any, ...]]:
     """Returns the bounds in the types of a detector's parameters, such as `Ge(0)`, by name."""
     hints = get_type_hints(function, include_extras=True)

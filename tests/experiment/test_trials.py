@@ -17,9 +17,10 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
-from actr3d.experiment.specification import specify
+from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.table import export
+from actr3d.experiment.trial import run_trial
 from actr3d.experiment.trial_process import TrialProcess
 from tests.helpers.experiments import COUNTER, write_experiment
 
@@ -363,3 +364,20 @@ def test_a_trial_is_recorded_and_replayed(tmp_path: Path, capsys: pytest.Capture
     assert "--trial ID and --record RECORDING are given together" in capsys.readouterr().err
     assert main(["experiment", "--trial", "3", "--record", str(tmp_path / "b.rec")]) == 2
     assert "which experiment? name a design, a file or the folder" in capsys.readouterr().err
+
+
+def test_nothing_of_a_trial_stays_alive() -> None:
+    specification = specify("warren_whang_1987").specification
+
+    def alive() -> int:
+        gc.collect()
+        return sum(isinstance(thing, type) and str(thing.__module__).startswith("actr3d_model_") for thing in gc.get_objects())
+
+    with specification.sealed() as helpers:
+        experiment = Experiment(specification, helpers)
+        counts: list[int] = []
+        for number in range(4):
+            assert run_trial(experiment, experiment.design.trial(number), helpers)["end"] == "stop"
+            counts.append(alive())
+    assert counts[1] > 0
+    assert counts[1:] == [counts[1]] * 3

@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import lru_cache
 from typing import Any
 
 from actr3d.actr.chunks.chunk import Chunk
@@ -27,6 +26,7 @@ from actr3d.clock import seconds
 from actr3d.errors import ChunkError, did_you_mean
 from actr3d.trace import Trace
 from actr3d.warnings import warn_modeller
+from actr3d.weak_cache import weak_cache
 
 
 class Memory(WithParameters, Model):
@@ -432,7 +432,7 @@ def check_keywords(keys: Mapping[str, Any], modules: Iterable[MemorySubModule]) 
         warn_modeller(f"memory.add has no keyword '{name}' that any activation module takes{did_you_mean(name, taken)}")
 
 
-@lru_cache(maxsize=256)
+@weak_cache
 def _taken(kind: type[MemorySubModule]) -> tuple[frozenset[str], bool]:
     """Returns the keywords that a class of modules takes by name, and whether it may use any other."""
     names: set[str] = set()

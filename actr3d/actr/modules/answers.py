@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from functools import cache
 from typing import Any, cast
 
 from actr3d.actr.chunks.chunk import PLAIN_TYPES
+from actr3d.weak_cache import weak_cache
 
 
-@cache
+@weak_cache
 def _traced_fields(kind: type[Any]) -> tuple[str, ...]:
     return tuple(field.name for field in fields(kind) if "not_traced" not in field.metadata)
 

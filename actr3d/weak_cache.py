@@ -1,0 +1,29 @@
+"""A cache of results about classes and functions, which does not keep them alive: those of a model file are gone when the model is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import TypeVar
+from weakref import WeakKeyDictionary
+
+K = TypeVar("K")
+V = TypeVar("V")
+
+
+def weak_cache(function: Callable[[K], V]) -> Callable[[K], V]:
+    """Returns a function that stores each result for as long as there is what it is about.
+
+    A result must not refer to what it is about.
+    """
+    found: WeakKeyDictionary[K, V] = WeakKeyDictionary()
+
+    @wraps(function)
+    def of(thing: K) -> V:
+        try:
+            return found[thing]
+        except KeyError:
+            result = found[thing] = function(thing)
+            return result
+
+    return of
