@@ -156,7 +156,7 @@ class Findings:
             for condition in self.conditions
         ]
         rise = max((b - a for curve in curves for a, b in pairwise(curve)), default=math.inf)
-        found = f"largest rise from one aperture to the next {rise:.1f} degrees"
+        found = f"largest rise from one aperture to the next {rise:.1f} degrees" if rise > 0 else "no rise from one aperture to the next"
         return Constraint(number=1, says=says, met=rise <= STEADY, found=found)
 
     def wider_turns_more(self) -> Constraint:
