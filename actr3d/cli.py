@@ -388,7 +388,7 @@ def _soak(options: argparse.Namespace) -> int:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    if arguments is None and sys.argv[1:2] == ["run"]:
+    if arguments is None and sys.argv[1:2] and sys.argv[1] in RUNNING:
         _order_sets()
     if sys.stdout is None:  # it was closed before the command started
         sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays open until the end
@@ -415,6 +415,10 @@ def _check_run(options: argparse.Namespace, words: list[str], arguments: list[st
     elif words and arguments.index(words[0]) < arguments.index(file):
         options.parser.error(f"{words[0]} is not an option of every run; those of the model file come after its name")
     options.words = words
+
+
+RUNNING = ("run", "replay", "experiment")
+"""The commands that run a model in their own process."""
 
 
 def _order_sets() -> None:

@@ -152,7 +152,7 @@ class _Run:
     ) -> None:
         self._experiment, self._store, self._client, self._show, self._stop = experiment, store, client, show, stop
         self._json = experiment.specification.to_json()
-        self._versions = ", ".join(f"{name} {text}" for name, text in experiment.specification.versions.items())
+        self._versions = ", ".join(f"{name} {text}" for name, text in versions().items())
         self._done, self._failures, self._seconds = done, failures, BATCH
         self._waiting: dict[Any, list[int]] = {}
         self._finished: SimpleQueue[Any] = SimpleQueue()

@@ -50,7 +50,7 @@ class Output:
     def line(self, text: str, *, markup: bool = True) -> None:
         """Prints a line of text, unless the output is JSON."""
         if not self.json:
-            self.console.print(text, highlight=False, markup=markup)
+            self.console.print(text, highlight=False, markup=markup, emoji=False)
 
     def event(self, name: str, data: Mapping[str, Any]) -> None:
         """Prints an object, if the output is JSON."""

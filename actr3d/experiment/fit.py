@@ -20,6 +20,7 @@ import warnings
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from hashlib import sha256
 from pathlib import Path
 from statistics import fmean
 from typing import Any, cast
@@ -177,7 +178,8 @@ class Fit:
         self.target = cells_of_target(target)
         self.measure = target[0].measure
         for ends in itertools.product(*((one.low, one.high) for one in ranges)):
-            self._experiment(dict(zip(self._names, ends, strict=True)))  # checks the bounds of the model's parameters
+            experiment = self._experiment(dict(zip(self._names, ends, strict=True)))  # checks the bounds of the model's parameters
+            _check_conditions(self.target, experiment.design)
         self._points: list[dict[str, float]] = []
         self._means: list[dict[Cell, float]] = []
 
@@ -254,7 +256,7 @@ class Fit:
     def _evaluate(self, number: int) -> None:
         point = self._propose(number)
         self._points.append(point)
-        self._means.append(self._simulate(f"candidate {number:04}", self._experiment(point)))
+        self._means.append(self._simulate("candidate", self._experiment(point)))
 
     def _experiment(self, values: Mapping[str, Any], design: str | None = None) -> Experiment:
         if design is not None:
@@ -262,18 +264,26 @@ class Fit:
         options = self._options
         return specify(self._design, values={**options["values"], **values}, participants=options["participants"], trials=options["trials"])
 
-    def _simulate(self, name: str, experiment: Experiment) -> dict[Cell, float]:
-        """Runs an experiment, or continues it, and returns its means by cell."""
-        folder = self._folder / name
-        if (folder / SPECIFICATION).exists():
-            store = Store(folder)
-            if store.specification != experiment.specification:
-                raise ExperimentError(f"'{folder}': belongs to another fit; choose another --out")
-        else:
-            store = Store.create(folder, experiment.specification)
+    def _simulate(
+        self, kind: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
+    ) -> dict[Cell, float]:
+        """Runs an experiment, or continues it, and returns its means by cell.
+
+        Its folder is named by all that determines its rows: what has run before is used again, and nothing else.
+
+        Args:
+            kind: What it is for.
+            experiment: The experiment.
+            measure: The measure; None for that of the fit.
+            target: The means with which it is compared; None for those of the fit.
+        """
+        text = experiment.specification.to_json()
+        folder = self._folder / f"{kind} {sha256(text.encode('utf-8', 'surrogatepass')).hexdigest()[:12]}"
+        store = Store(folder) if (folder / SPECIFICATION).exists() else Store.create(folder, experiment.specification)
         with store:
-            run_experiment(experiment, store, self._client, show=lambda progress: self._show(name, progress))
-            return cells_of_rows(store.rows(), experiment.design.measure(self.measure), [name for name, _ in next(iter(self.target))])
+            run_experiment(experiment, store, self._client, show=lambda progress: self._show(kind, progress))
+            columns = [name for name, _ in next(iter(self.target if target is None else target))]
+            return cells_of_rows(store.rows(), experiment.design.measure(measure or self.measure), columns)
 
     def _surface(self, target: Mapping[Cell, float]) -> QuadraticSurface:
         """Returns the surface of the sums of squares of all candidates so far."""
@@ -288,13 +298,7 @@ class Fit:
 
     def _held_out(self, name: str, target: Sequence[TargetMean], values: Mapping[str, float]) -> Agreement:
         cells = cells_of_target(target)
-        experiment = self._experiment(values, name)
-        folder = self._folder / f"hold-out {Path(name).stem}"
-        store = Store(folder) if (folder / SPECIFICATION).exists() else Store.create(folder, experiment.specification)
-        with store:
-            run_experiment(experiment, store, self._client, show=lambda progress: self._show(f"hold-out {name}", progress))
-            means = cells_of_rows(store.rows(), experiment.design.measure(target[0].measure), [column for column, _ in next(iter(cells))])
-        return agreement(means, cells)
+        return agreement(self._simulate("hold-out", self._experiment(values, name), target[0].measure, cells), cells)
 
     def _ablated(self, change: str, values: Mapping[str, float]) -> Agreement:
         name, equals, text = change.partition("=")
@@ -304,14 +308,14 @@ class Fit:
             value: Any = json.loads(text)
         except ValueError:
             value = text
-        return agreement(self._simulate(f"ablated {change}", self._experiment({**values, name: value})), self.target)
+        return agreement(self._simulate("ablated", self._experiment({**values, name: value})), self.target)
 
     def _recover(self, number: int) -> dict[str, float]:
         """Simulates data with known parameters, and estimates these from the candidates."""
         rng = random.Random(f"{self._seed} recover {number}")
         true = {one.name: round(rng.uniform(one.low, one.high), 6) for one in self._ranges}
         experiment = self._experiment({**true, "seed": 1_000_000 + number})
-        simulated = self._simulate(f"simulated {number:04}", experiment)
+        simulated = self._simulate("simulated", experiment)
         target = {cell: simulated[cell] for cell in self.target if cell in simulated}
         return {**{f"true {name}": value for name, value in true.items()}, **self._values_at(self._surface(target).minimum())}
 
@@ -409,6 +413,21 @@ def load_target(name: str, design: Design, measure: str | None = None) -> tuple[
     if not found:
         raise ExperimentError(f"human data '{name}': have no means of '{measure}'; they have: {', '.join(data.measures) or 'none'}")
     return found
+
+
+def _check_conditions(target: Mapping[Cell, float], of: Design) -> None:
+    """Checks that a design has the conditions of a target.
+
+    Raises:
+        ExperimentError: If the target has a mean for a level that the design lacks.
+    """
+    for cell in target:
+        for name, level in cell:
+            levels = of.factors.get(name)
+            if levels is not None and level not in levels:
+                known = ", ".join(map(str, levels))
+                what = f"{level:g}" if isinstance(level, float) else level
+                raise ExperimentError(f"--target: has a mean for {name} {what}, which the design does not have; it has: {known}")
 
 
 def cells_of_target(target: Sequence[TargetMean]) -> dict[Cell, float]:

@@ -144,6 +144,8 @@ class _Reader:
         published = "measure" in head or "mean" in head
         measures = [] if published else list(schema.measures)
         known = [*(["group", *OF_MEANS] if published else ["participant", "group"]), *schema.factors, *measures]
+        if len(head) == 1 and ";" in head[0]:
+            raise ExperimentError(f"{where}: the columns must be separated by commas (got {head[0]!r})")
         wrong = [f"{where}: column '{name}' is there twice" for name in dict.fromkeys(head) if head.count(name) > 1]
         wrong += [
             f"{where}: unknown column '{name}'{did_you_mean(name, known)}; there may be: {', '.join(known)}"
@@ -217,7 +219,7 @@ class _Reader:
         if not text and not needed:
             return None
         try:
-            value = float(text)
+            value = math.nan if "_" in text else float(text)
         except ValueError:
             value = math.nan
         if not math.isfinite(value) or value < least or (whole and value != int(value)):

@@ -5,12 +5,13 @@ from __future__ import annotations
 import fcntl
 import json
 import os
+import secrets
 import sqlite3
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, cast
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Specification
@@ -79,7 +80,7 @@ class Store:
         self.specification = Specification.from_json(text, str(path))
         try:
             self._database = sqlite3.connect(self.folder / TRIALS, timeout=30, isolation_level=None, check_same_thread=False)
-            self._database.executescript(f"PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL; {_SCHEMA}")
+            self._database.executescript(f"PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; {_SCHEMA}")
         except sqlite3.Error as error:
             raise ExperimentError(f"{self.folder / TRIALS}: cannot be opened ({error})") from None
 
@@ -96,9 +97,14 @@ class Store:
             if any(path.iterdir()):
                 what = "holds an experiment already; continue it with --resume" if (path / SPECIFICATION).exists() else "is not empty"
                 raise ExperimentError(f"--out: '{path}' {what}, or name a new folder")
-            part = path / f"{SPECIFICATION}.part"
+            part = path / f"{SPECIFICATION}.{secrets.token_hex(4)}"
             part.write_text(specification.to_json(), encoding="utf-8")
-            part.replace(path / SPECIFICATION)
+            try:
+                os.link(part, path / SPECIFICATION)  # fails if another command has been faster
+            finally:
+                part.unlink()
+        except FileExistsError:
+            raise ExperimentError(f"--out: '{path}' holds an experiment already; continue it with --resume, or name a new folder") from None
         except OSError as error:
             raise ExperimentError(f"--out: cannot make '{path}' ({_why(error)})") from None
         return cls(path)
@@ -213,7 +219,7 @@ class Store:
         """
         done = bytearray(total)
         for (number,) in self._database.execute("SELECT number FROM trial"):
-            if number < total:
+            if isinstance(number, int) and 0 <= number < total:
                 done[number] = 1
         return (number for number in range(total) if not done[number])
 
@@ -231,8 +237,8 @@ class Store:
         """
         names = [column.name for column in self.columns[: -len(LAST)]]
         while found := self._read("WHERE number > ? ORDER BY number LIMIT ?", (after, CHUNK)):
-            for _, data, versions, wall_s, worker in found:
-                row = json.loads(data)
+            for number, data, versions, wall_s, worker in found:
+                row = self._row(number, data)
                 yield {**{name: row.get(name) for name in names}, "versions": versions, "wall_s": wall_s, "worker": worker}
             after = found[-1][0]
 
@@ -241,8 +247,25 @@ class Store:
         return next((row for row in self.rows(number - 1) if row["trial"] == number), None)
 
     def _read(self, where: str, values: Sequence[Any]) -> list[Any]:
-        with closing(self._database.execute(f"SELECT number, data, versions, wall_s, worker FROM trial {where}", values)) as cursor:
-            return cursor.fetchall()
+        try:
+            with closing(self._database.execute(f"SELECT number, data, versions, wall_s, worker FROM trial {where}", values)) as cursor:
+                return cursor.fetchall()
+        except sqlite3.Error as error:
+            raise ExperimentError(f"{self.folder / TRIALS}: is damaged ({error})") from None
+
+    def _row(self, number: Any, data: Any) -> Row:
+        """Returns a row.
+
+        Raises:
+            ExperimentError: If it is no JSON object.
+        """
+        try:
+            row = json.loads(data)
+        except (ValueError, TypeError, RecursionError):
+            row = None
+        if not isinstance(row, dict):
+            raise ExperimentError(f"{self.folder / TRIALS}: is damaged (the row of trial {number!r} is no JSON object)")
+        return cast("Row", row)
 
 
 def _type_of(value: Any) -> str:

@@ -22,7 +22,10 @@ from actr3d.printing import ModelOutput, printing_to
 from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.run import run_source
 from actr3d.runner.traceback_report import traceback_report
+from actr3d.values import escape_surrogates
 
+LARGEST = 2**63
+"""Whole numbers must be below this, which tables and databases can store."""
 PLAIN = (str, int, float, bool, type(None))
 """The types of measures."""
 
@@ -135,6 +138,12 @@ def _plain(name: str, value: Any) -> Any:
     item: Any = getattr(value, "item", None)
     if type(value) not in PLAIN and callable(item) and getattr(value, "ndim", None) == 0:  # a number of numpy
         value = item()
+    if isinstance(value, int) and not -LARGEST <= value < LARGEST:
+        raise ExperimentError(
+            f"measure '{name}': must be a whole number of at most 64 bits, or a float (got one of {value.bit_length()} bits)"
+        )
+    if isinstance(value, str) and not value.isascii() and escape_surrogates(value) != value:
+        raise ExperimentError(f"measure '{name}': must be a text of characters that can be stored (got {value!r})")
     if type(value) not in PLAIN:
         lists = "; of a list, give Design.measures a Measured with over=" if isinstance(value, (list, tuple)) else ""
         raise ExperimentError(f"measure '{name}': must be a number, text, True, False or None (got {value!r}){lists}")

@@ -19,6 +19,7 @@ import time
 from contextlib import suppress
 from typing import Any, BinaryIO
 
+from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Experiment, Specification
 from actr3d.experiment.trial import Row, run_trial
@@ -26,6 +27,8 @@ from actr3d.runner.traceback_report import traceback_report
 
 START = 600.0
 """The maximum time that a process may take to load an experiment [s]."""
+LOOK = 1.0
+"""The interval at which the process is checked [s]."""
 ATTEMPTS = 3
 """How often a trial is tried whose process ends without an answer: another program may have ended it."""
 
@@ -119,8 +122,13 @@ class TrialProcess:
         with selectors.DefaultSelector() as waiting:
             waiting.register(self._process.stdout, selectors.EVENT_READ)
             while not parts[-1].endswith(b"\n"):
-                if not waiting.select(max(0.0, deadline - time.monotonic())):
-                    raise TimeoutError
+                ended = self._process.poll() is not None  # a child of the model may keep the pipe open
+                if not waiting.select(min(LOOK, max(0.0, deadline - time.monotonic()))):
+                    if ended:
+                        return None
+                    if time.monotonic() >= deadline:
+                        raise TimeoutError
+                    continue
                 parts.append(os.read(self._process.stdout.fileno(), 1 << 16))
                 if not parts[-1]:
                     return None
@@ -166,8 +174,11 @@ def _answer(asked: _Questions, answers: BinaryIO) -> None:
                 experiment = Experiment(specification, helpers)
                 answers.write(b"{}\n")
                 described = 0
+                own = os.getpid()
                 while isinstance(question := asked.next(), int):
-                    row = run_trial(experiment, experiment.design.trial(question), helpers)
+                    row = _row_of(experiment, question, helpers)
+                    if os.getpid() != own:  # the model has forked, and this is its child
+                        os._exit(0)
                     news = experiment.about if len(experiment.about) > described else {}
                     described = len(experiment.about)
                     answers.write(json.dumps({"row": row, "about": news}, allow_nan=False).encode() + b"\n")
@@ -176,6 +187,14 @@ def _answer(asked: _Questions, answers: BinaryIO) -> None:
         except Exception as error:  # noqa: BLE001 - the client reports it, and ends this process
             answers.write(json.dumps({"failed": traceback_report(error).text.strip()}).encode() + b"\n")
             question = asked.next()
+
+
+def _row_of(experiment: Experiment, number: int, helpers: HelperTexts) -> Row:
+    """Returns what `run_trial` does; also for a trial that cannot even begin, because `derive` fails for its values."""
+    try:
+        return run_trial(experiment, experiment.design.trial(number), helpers)
+    except Exception as error:  # noqa: BLE001 - every error of a trial belongs in its row
+        return {"end": "error", "error": traceback_report(error).text.strip()}
 
 
 class _Questions:
@@ -200,7 +219,7 @@ class _Questions:
                 self._waiting.append(json.loads(line))
                 self._there.notify()
         shutil.rmtree(self._folder, ignore_errors=True)
-        os._exit(0)
+        os.killpg(0, signal.SIGKILL)  # this process, and those that its models have started
 
 
 if __name__ == "__main__":

@@ -102,7 +102,7 @@ def test_own_human_data_are_drawn_and_compared(walked: Path, tmp_path: Path) -> 
     try:
         fit = next(row for row in table(walked, "fit_to_people") if row["measure"] == "wall_angle_deg")
         assert fit["cells"] == "6"
-        assert "people.csv: 18 rows of trials of people" in page(walked)
+        assert "people.csv: 18 rows of trials of 6 people" in page(walked)
         assert ">people</text>" in (walked / "report/figures/rotation_by_aperture.svg").read_text(encoding="utf-8")
         assert "Human mean angles for each aperture are not available" not in page(walked)
     finally:

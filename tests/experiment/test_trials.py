@@ -9,7 +9,9 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -381,3 +383,98 @@ def test_nothing_of_a_trial_stays_alive() -> None:
             counts.append(alive())
     assert counts[1] > 0
     assert counts[1:] == [counts[1]] * 3
+
+
+@pytest.mark.parametrize(
+    ("end", "says"),
+    [
+        ("rt = 10**5000", "measure 'rt': must be a whole number of at most 64 bits, or a float"),
+        ("rt = 'a\\ud800'", "measure 'rt': must be a text of characters that can be stored"),
+    ],
+)
+def test_measures_that_no_table_can_hold_are_failures(tmp_path: Path, end: str, says: str) -> None:
+    path = write_experiment(tmp_path, model=f"{COUNTER}if n == 2:\n    {end}\n", factors='{"n": [1, 2]}', participants=1, trials=1)
+    rows = {row["n"]: row for row in rows_of(path)}
+    assert rows[1]["error"] is None
+    assert says in rows[2]["error"]
+
+
+def test_a_model_that_forks_answers_once(tmp_path: Path) -> None:
+    fork = "import os, time\nif os.fork() == 0:\n    time.sleep(0.05)\n    rt = -1\nelse:\n    rt = n\n"
+    path = write_experiment(tmp_path, model=f"{COUNTER}{fork}", participants=1, trials=6)
+    assert all(row["rt"] == row["n"] for row in rows_of(path))
+
+
+def test_a_trial_that_ends_itself_is_noticed_although_a_child_of_it_lives(tmp_path: Path) -> None:
+    child = "subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)'], close_fds=False)"
+    model = f"{COUNTER}import os, subprocess, sys\n{child}\nos._exit(3)\n"
+    path = write_experiment(tmp_path, model=model, factors='{"n": [1]}', participants=1, trials=1, limit=30)
+    (row,) = rows_of(path)
+    assert (row["end"], row["error"]) == ("crash", "the trial ended its own process with exit code 3")
+
+
+def test_a_trial_whose_values_cannot_be_derived_is_a_failure(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, participants=1, trials=1)
+    text, process = specify(str(path)).specification.to_json(), TrialProcess()
+    try:
+        assert "trial: must be a number from 0 to 2 (got 77)" in process.run(text, 77, 60)["error"]
+        assert process.run(text, 1, 60)["error"] is None
+    finally:
+        process.end()
+
+
+def test_a_trial_is_repeated_with_the_same_order_of_sets(tmp_path: Path) -> None:
+    model = COUNTER.replace("luck = model.random.random()", 'luck = "".join({"alpha", "beta", "gamma", "delta", "eps"})\nprint(luck)')
+    path = write_experiment(tmp_path, model=model, factors='{"n": [1]}', participants=1, trials=1)
+    out = tmp_path / "out"
+    for words in (
+        ("experiment", str(path), "--workers", "1", "--out", str(out)),
+        ("experiment", str(out), "--trial", "0", "--record", str(tmp_path / "again.rec")),
+        ("replay", str(tmp_path / "again.rec")),
+    ):
+        environment = {name: value for name, value in os.environ.items() if name != "PYTHONHASHSEED"}
+        done = subprocess.run([sys.executable, "-m", "actr3d", *words], env=environment, capture_output=True, text=True, timeout=200)
+        assert done.returncode == 0, done.stdout + done.stderr
+        if "--trial" in words:
+            with Store(out) as store:
+                row = store.row(0)
+            assert row is not None
+            assert row["luck"] in done.stdout
+
+
+def test_only_one_of_several_commands_makes_the_experiment_of_a_folder(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, participants=1, trials=1)
+    specifications = [specify(str(path), trials=number).specification for number in range(1, 9)]
+    for round_ in range(10):
+        out, made = tmp_path / f"out {round_}", list[int]()
+        ready = threading.Barrier(len(specifications))
+
+        def create(number: int, out: Path = out, made: list[int] = made, ready: threading.Barrier = ready) -> None:
+            ready.wait()
+            with suppress(ExperimentError):
+                Store.create(out, specifications[number]).close()
+                made.append(number)
+
+        threads = [threading.Thread(target=create, args=(number,)) for number in range(len(specifications))]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert len(made) == 1
+        with Store(out) as store:
+            assert store.specification == specifications[made[0]]
+
+
+@pytest.mark.parametrize(
+    "damage",
+    ["UPDATE trial SET data = '{bad' WHERE number = 1", "UPDATE trial SET data = '[]'", "ALTER TABLE trial DROP COLUMN versions"],
+)
+def test_a_damaged_table_is_named(tmp_path: Path, damage: str) -> None:
+    experiment = specify(str(write_experiment(tmp_path)))
+    with Store.create(tmp_path / "out", experiment.specification) as store:
+        store.add([Finished(row={"trial": n, "rt": 1.0, "error": None}, wall_s=1, worker="0") for n in range(3)], "v")
+    with closing(sqlite3.connect(tmp_path / "out" / "trials.sqlite")) as file:
+        file.execute(damage)
+        file.commit()
+    with Store(tmp_path / "out") as store, pytest.raises(ExperimentError, match=r"trials\.sqlite: is damaged"):
+        list(store.rows())

@@ -84,7 +84,8 @@ def human_section(parts: Sequence[Results], data: HumanData | None, why: str, be
     """Returns the section on human data: what there is, where it is from, and how well the model agrees with it."""
     if data is None or beside is None:
         return Section(title="Human data", parts=[why, "No human mean is invented: figures without people show the model only."])
-    kind = "published means" if data.published else "trials of people"
+    people = len({(row["group"], row["participant"]) for row in data.rows}) if not data.published else 0
+    kind = "published means" if data.published else f"trials of {people} {'person' if people == 1 else 'people'}"
     found: list[str | Table | Plot | Caution] = [f"{data.name}: {len(data.rows):,} rows of {kind}.", *(f"{note}" for note in data.notes)]
     if data.published:
         found += [f"Source: {source}" for source in data.sources]
