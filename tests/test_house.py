@@ -18,14 +18,15 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "configuration", "warnings", "values", "registry", "forks", "trace_kinds", "trace"}
+BASE = {"errors", "clock", "configuration", "warnings", "values", "registry", "forks", "weak_cache", "trace_kinds", "trace"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
 PARTS: dict[str, set[str]] = {
     "errors": set(),
     "clock": {"errors"},
-    "configuration": {"errors"},
+    "weak_cache": set(),
+    "configuration": {"errors", "weak_cache"},
     "parameter_schema": {"errors", "configuration", "values", "actr"},
     "warnings": {"errors"},
     "values": set(),

@@ -285,6 +285,9 @@ def test_other_versions_are_refused_unless_allowed(tmp_path: Path, capsys: pytes
     (folder / "experiment.json").write_text(text.replace(f'"mujoco": "{cluster_versions()["mujoco"]}"', '"mujoco": "1.2.3"'))
     assert main(["experiment", str(folder), "--resume"]) == 1
     assert "the trials so far were run with mujoco 1.2.3 (now" in capsys.readouterr().err
+    assert main(["experiment", str(folder), "--resume", "--any-version", "--workers", "1"]) == 0
+    with Store(folder) as store:
+        assert all(f"mujoco {cluster_versions()['mujoco']}" in row["versions"] for row in store.rows())
 
 
 def test_the_designs_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
