@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.base import Base
 from actr3d.world.joints import Joint
+from actr3d.world.kernel import deviate, settle
 from actr3d.world.physics import Physics
 
 Row = NDArray[np.float64]
@@ -64,9 +65,12 @@ class ActuatedDofs:
         """Difference between control and speed from which the servo applies its full force."""
         self.faces = base.faces
         """Heading of the base when the third number of its place is 0 [rad]."""
+        self._none = np.zeros(len(self.q), dtype=bool)
         self._farthest = farthest
         self.looped: NDArray[np.bool_] = _in_loop(model, members, self.v)
         """Those in a closed loop (both hands hold one load), which cannot all move independently."""
+        self.loops = bool(self.looped.any())
+        """Whether there are any of these."""
 
     @property
     def places(self) -> Row:
@@ -77,10 +81,6 @@ class ActuatedDofs:
     def speeds(self) -> Row:
         """Their speeds [m/s] [rad/s]."""
         return self.along_base(self._qvel[self.v])
-
-    def set_speeds(self, speeds: Row, which: NDArray[np.bool_]) -> None:
-        """Sets the speeds of some of them at once."""
-        self._qvel[self.v] = np.where(which, self.along_base(speeds, -1), self._qvel[self.v])
 
     @property
     def controls(self) -> Row:
@@ -96,11 +96,52 @@ class ActuatedDofs:
         self._ctrl[self.c[which]] = 0
         self._qvel[self.v[which]] = 0
 
-    def along_base(self, values: Row, way: int = 1) -> Row:
-        """Rotates the first two values, in place, from the world's axes to those of the base, or with -1 the other way."""
+    def deviations(self, held: Row, commanded: Row, duration: float, slight_way: float, slight_speed: float) -> Row | None:
+        """Compares them with what is commanded.
+
+        Args:
+            held: The places to hold; NaN where it is commanded to move.
+            commanded: The commanded speeds.
+            duration: The time in which no joint may pass its limit [s]; 0 if no joint moves.
+            slight_way: Deviation of a place that needs no correction [m] [rad].
+            slight_speed: Deviation of a speed that needs none [m/s] [rad/s].
+
+        Returns:
+            None if none needs a correction. Else, (3, n): their ways back to the held places, NaN where they are to move [m] [rad]; their
+            speeds beyond those that the servos keep; and the commanded speeds, or those that reach a limit just at the end [m/s] [rad/s].
+        """
+        results = np.empty((3, len(self.q)))
+        state, bounds = (self._qpos, self._qvel, self._ctrl), (self.lower, self.upper, duration, slight_way, slight_speed)
+        needed = deviate()(self.q, self.v, self.c, *state, self.base, *self._direction(), held, commanded, *bounds, results)
+        return results if needed else None
+
+    def settle(self, ways: Row, wanted: Row, time: float, most: float, slight_speed: float, *, loops: bool) -> None:
+        """Sets their speeds, at once, so that they return to the held places, and move as wanted where they are to move.
+
+        Small differences are left to the servo: a small lag is how it carries what turns.
+
+        Args:
+            ways: Their ways back; NaN where they are to move [m] [rad]. It is overwritten.
+            wanted: The wanted speeds [m/s] [rad/s]. It is overwritten.
+            time: Time constant of the return [s].
+            most: Its greatest speed [m/s] [rad/s].
+            slight_speed: Difference of a speed that is left to the servo [m/s] [rad/s].
+            loops: Whether joints in a closed loop may be set at once, too. Speeds that do not agree with its closing would throw the
+                base about; servos find some that do.
+        """
+        servos_only = self._none if loops else self.looped
+        corrections = ways, wanted, time, most, slight_speed, servos_only
+        settle()(self.v, self.c, self._qvel, self._ctrl, self.base, *self._direction(), *corrections)
+
+    def _direction(self) -> tuple[float, float]:
+        """Returns cosine and sine of the base's heading."""
+        heading = self._base.heading if self.base else 0.0
+        return math.cos(heading), math.sin(heading)
+
+    def along_base(self, values: Row) -> Row:
+        """Rotates the first two values, in place, from the world's axes to those of the base."""
         if self.base:
-            heading = self._base.heading
-            c, s = math.cos(heading), way * math.sin(heading)
+            c, s = self._direction()
             x, y = values.item(0), values.item(1)
             values[0], values[1] = c * x + s * y, c * y - s * x
         return values

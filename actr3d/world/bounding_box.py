@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from mujoco import MjData, MjModel, mjtGeom
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError
+from actr3d.world.kernel import widen
 
 Point = tuple[float, float, float]
+
+
+NOTHING = ((math.inf,) * 3, (-math.inf,) * 3)
+"""The least and greatest coordinates of a box around nothing."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +57,7 @@ class Extent:
 
     The extent of a shape from its centre along a unit vector u, given in its own frame, is its support function:
     sphere r; capsule r + h|uz|; ellipsoid |S u|; cylinder r sqrt(ux^2 + uy^2) + h|uz|; box sx|ux| + sy|uy| + sz|uz|.
-    One formula covers them: round + |E u| + B.|u|. The extent of a mesh or height field is that of its farthest vertex.
+    The extent of a mesh or height field is that of its farthest vertex.
 
     Args:
         model: The compiled scene.
@@ -61,8 +66,11 @@ class Extent:
     """
 
     def __init__(self, model: MjModel, data: MjData, geoms: NDArray[np.intp]) -> None:
-        self._model, self._data = model, data
-        self._geoms = _Shapes(self._model, geoms)
+        self._data = data
+        self._types, self._sizes = model.geom_type, model.geom_size
+        self._positions, self._rotations = data.geom_xpos, data.geom_xmat
+        self._model = model
+        self._plain, self._clouds = self._shapes(geoms)
 
     def box(self, origin: NDArray[np.float64], axes: NDArray[np.float64], also: Sequence[int] = ()) -> BoundingBox:
         """Returns the box around the geoms, and some more, in a frame at `origin` with `axes` (3, 3) as columns.
@@ -70,67 +78,36 @@ class Extent:
         Raises:
             WorldError: If there is no geom.
         """
-        lower, upper = self._geoms.reach(self._data, axes)
+        box = np.array(NOTHING)
+        self._widen(box, self._plain, self._clouds, origin, axes)
         if also:
-            low, high = _Shapes(self._model, np.array(also, dtype=np.intp)).reach(self._data, axes)
-            lower, upper = np.minimum(lower, low), np.maximum(upper, high)
-        if not np.isfinite(lower).all():
+            self._widen(box, *self._shapes(np.array(also, dtype=np.intp)), origin, axes)
+        (x, y, z), upper = box.tolist()
+        if not math.isfinite(x + y + z):
             raise WorldError("no visible or touchable geom has a bounding box here")
-        at = origin @ axes
-        return BoundingBox(lower=tuple((lower - at).tolist()), upper=tuple((upper - at).tolist()))
+        return BoundingBox(lower=(x, y, z), upper=tuple(upper))
 
-
-class _Shapes:
-    """The numbers of the formula of some geoms, (n, 3) each, and the vertices of meshes and height fields."""
-
-    def __init__(self, model: MjModel, geoms: NDArray[np.intp]) -> None:
-        there = [int(geom) for geom in geoms if _there(model, int(geom))]
+    def _shapes(self, geoms: NDArray[np.intp]) -> tuple[NDArray[np.intp], list[tuple[int, NDArray[np.float64]]]]:
+        """Returns those of some geoms that have a support function, and the others with their vertices."""
+        there = [geom for geom in geoms.tolist() if _there(self._model, geom)]
         clouds = {int(mjtGeom.mjGEOM_MESH), int(mjtGeom.mjGEOM_HFIELD), int(mjtGeom.mjGEOM_SDF)}
-        self._model = model
-        plain = np.array([geom for geom in there if model.geom_type[geom] not in clouds], dtype=np.intp)
-        self._some = len(plain) > 0
-        self._plain = together(plain)
-        self._clouds = [(geom, _vertices(model, geom)) for geom in there if model.geom_type[geom] in clouds]
-        self._sizes: bytes = b""
-        self._formula: tuple[Any, Any, Any] = (0, 0, 0)
+        plain = np.array([geom for geom in there if self._types[geom] not in clouds], dtype=np.intp)
+        return plain, [(geom, _vertices(self._model, geom)) for geom in there if self._types[geom] in clouds]
 
-    def reach(self, data: Any, axes: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Returns the least and greatest coordinates (3,) along axes, from the world's origin [m]."""
-        if self._some:
-            rounds, ellipses, boxes = self._numbers()
-            turned = data.geom_xmat[self._plain].reshape(-1, 3, 3).transpose(0, 2, 1) @ axes
-            far = rounds + np.sqrt(np.einsum("ij,ijk->ik", ellipses, turned * turned))
-            if boxes is not None:
-                far = far + np.einsum("ij,ijk->ik", boxes, np.abs(turned))
-            centres = data.geom_xpos[self._plain] @ axes
-            lower, upper = np.minimum.reduce(centres - far), np.maximum.reduce(centres + far)
-        else:
-            lower, upper = np.full(3, np.inf), np.full(3, -np.inf)
-        for geom, vertices in self._clouds:
-            points = vertices @ (data.geom_xmat[geom].reshape(3, 3).T @ axes) + data.geom_xpos[geom] @ axes
-            lower, upper = np.minimum(lower, points.min(axis=0)), np.maximum(upper, points.max(axis=0))
-        return lower, upper
-
-    def _numbers(self) -> tuple[Any, Any, Any]:
-        """Returns the numbers of the formula, None for B if all of it is 0; computes them again after a geom was resized."""
-        sizes = self._model.geom_size[self._plain]
-        if sizes.tobytes() != self._sizes:
-            self._sizes = sizes.tobytes()
-            rows = [_formula(int(kind), size) for kind, size in zip(self._model.geom_type[self._plain], sizes, strict=True)]
-            boxes = np.array([row[2] for row in rows])
-            self._formula = (
-                np.array([[row[0]] for row in rows]),
-                np.array([row[1] for row in rows]) ** 2,
-                boxes if boxes.any() else None,
-            )
-        return self._formula
-
-
-def together(numbers: NDArray[np.intp]) -> NDArray[np.intp] | slice:
-    """Returns numbers that follow one another as a slice, which selects rows without copying them; others as they are."""
-    if len(numbers) and (np.diff(numbers) == 1).all():
-        return slice(int(numbers[0]), int(numbers[-1]) + 1)
-    return numbers
+    def _widen(
+        self,
+        box: NDArray[np.float64],
+        plain: NDArray[np.intp],
+        clouds: list[tuple[int, NDArray[np.float64]]],
+        origin: NDArray[np.float64],
+        axes: NDArray[np.float64],
+    ) -> None:
+        widen()(plain, self._types, self._sizes, self._positions, self._rotations, origin, axes, box)
+        for geom, vertices in clouds:
+            rotation = self._rotations[geom].reshape(3, 3)
+            points = vertices @ (rotation.T @ axes) + (self._positions[geom] - origin) @ axes
+            np.minimum(box[0], points.min(axis=0), out=box[0])
+            np.maximum(box[1], points.max(axis=0), out=box[1])
 
 
 def _there(model: MjModel, geom: int) -> bool:
@@ -139,22 +116,6 @@ def _there(model: MjModel, geom: int) -> bool:
     alpha = model.geom_rgba[geom, 3] if material < 0 else model.mat_rgba[material, 3]
     touches = model.geom_contype[geom] or model.geom_conaffinity[geom]
     return bool(model.geom_type[geom] != int(mjtGeom.mjGEOM_PLANE) and (alpha > 0 or touches))
-
-
-def _formula(kind: int, size: NDArray[np.float64]) -> tuple[float, Point, Point]:
-    """Returns the round, E and B of a shape, from MuJoCo's sizes (half lengths)."""
-    x, y, z = (float(s) for s in size)
-    match kind:
-        case mjtGeom.mjGEOM_SPHERE:
-            return (x, (0, 0, 0), (0, 0, 0))
-        case mjtGeom.mjGEOM_CAPSULE:
-            return (x, (0, 0, 0), (0, 0, y))
-        case mjtGeom.mjGEOM_ELLIPSOID:
-            return (0, (x, y, z), (0, 0, 0))
-        case mjtGeom.mjGEOM_CYLINDER:
-            return (0, (x, x, 0), (0, 0, y))
-        case _:
-            return (0, (0, 0, 0), (x, y, z))
 
 
 def _vertices(model: MjModel, geom: int) -> NDArray[np.float64]:

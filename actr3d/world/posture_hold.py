@@ -226,11 +226,9 @@ class PostureHold:
             return self._steady.fastest
         if self._moves:
             self._follow_loop()
-        ways, off = self.held - self._dofs.places, self._dofs.speeds - self._dofs.controls
-        wanted = self._wanted(duration) if self._moves else self.commanded
-        # NaN stands for degrees of freedom that move; it does not count as a deviation.
-        if wanted is not self.commanded or (np.abs(ways) > SLIGHT_WAY).any() or (np.abs(off) > SLIGHT_SPEED).any():
-            self._correct(ways, off, wanted)
+        deviations = self._dofs.deviations(self.held, self.commanded, duration if self._moves else 0.0, SLIGHT_WAY, SLIGHT_SPEED)
+        if deviations is not None:
+            self._correct(*deviations)
         else:
             self._without_deviation()
             if self._steady is None and not (self._new or self._moves):
@@ -250,34 +248,23 @@ class PostureHold:
             self._end_correction()
 
     def _correct(self, ways: Row, off: Row, wanted: Row) -> None:
-        """Corrects deviations of position and speed."""
+        """Corrects deviations of position and speed; see `ActuatedDofs.deviations`."""
+        dofs = self._dofs
         self._pulls = True
         free = not self._struck and self._contacts.none()
         self.calm = free and (self.calm or float(np.abs(off[: self._rows]).max(initial=0.0)) <= SLIGHT_SPEED)
         self._struck = False
-        if not self.calm:
-            self._yield(ways)
-        time, most = UNHINDERED if self.calm else HINDERED
-        back = self._dofs.along_base(np.clip(ways / time, -most, most))
         if self.calm:
-            self._set(np.where(np.isfinite(back), back, wanted))
+            time, most = UNHINDERED
+            dofs.settle(ways, wanted, time, most, SLIGHT_SPEED, loops=not self._loop_moves())
         else:
-            self._push(back, wanted)
+            self._yield(ways)
+            self._push(ways, wanted)
 
-    def _set(self, wanted: Row) -> None:
-        """Sets the needed speeds of base and joints at once."""
-        dofs = self._dofs
-        dofs.set_controls(wanted)
-        # Small differences are left to the servo: a small lag is how it carries what turns.
-        wrong = np.abs(wanted - dofs.speeds) > SLIGHT_SPEED
-        wrong[: self._rows] = wrong[: self._rows].any()
-        if self._loop_moves():  # speeds that do not agree with its closing would throw the base about: its servos find some that do
-            wrong &= ~dofs.looped
-        dofs.set_speeds(wanted, wrong)
-
-    def _push(self, back: Row, wanted: Row) -> None:
+    def _push(self, ways: Row, wanted: Row) -> None:
         """Sets the servos to push towards the needed speeds: adds what the load has taken off a speed, up to the servos' limits."""
-        dofs = self._dofs
+        dofs, (time, most) = self._dofs, HINDERED
+        back = dofs.along_base(np.clip(ways / time, -most, most))
         speeds, band = dofs.speeds, dofs.band
         more = np.clip(dofs.controls - speeds + back - speeds, -band, band)
         dofs.set_controls(np.where(np.isfinite(back), speeds + more, wanted))
@@ -295,13 +282,7 @@ class PostureHold:
             self.held[stand] = self._dofs.places[stand]
 
     def _loop_moves(self) -> bool:
-        return bool(np.isnan(self.held[self._dofs.looped]).any())
-
-    def _wanted(self, duration: float) -> Row:
-        """Returns the commanded speeds; for joints that would pass a limit, the speed that reaches it just at the end."""
-        at = self._dofs.places
-        wanted = np.clip(self.commanded, (self._dofs.lower - at) / duration, (self._dofs.upper - at) / duration)
-        return self.commanded if (wanted == self.commanded).all() else wanted
+        return self._dofs.loops and bool(np.isnan(self.held[self._dofs.looped]).any())
 
     def _end_correction(self) -> None:
         """Stops what has returned to its place."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from actr3d.clock import seconds
 from actr3d.errors import WorldError
 from actr3d.world.body import Body
+from actr3d.world.kernel import fastest, near
 from actr3d.world.physics import Physics
 from actr3d.world.reach import radius
 
@@ -47,12 +48,12 @@ class Substepping:
         self._qvel = physics.mj_data.qvel
         self._reaches = np.vstack([np.zeros((1, model.nv)), *(body.reaches for body in bodies)])
         """By moving part and degree of freedom: the greatest way of its farthest point per unit of the degree of freedom [m]."""
-        self._farthest = self._reaches.max(axis=0)
-        """The same for the part that moves farthest."""
-        planar = [slice(body.base.v, body.base.v + 2) for body in bodies if body.base.planar]
-        free = [slice(body.base.v + n, body.base.v + n + 3) for body in bodies if body.base.free for n in (0, 3)]
-        self._together = planar + free
-        """Degrees of freedom whose speeds add as vectors do."""
+        self._together = np.ones(model.nv, dtype=np.intp)
+        """By degree of freedom: with how many that follow its speed adds as vectors do; 1 alone, 0 for those that follow."""
+        for body in bodies:
+            v = body.base.v
+            for first, count in [(v, 2)] if body.base.planar else [(v, 3), (v + 3, 3)] if body.base.free else []:
+                self._together[first : first + count] = [count] + [0] * (count - 1)
         self._others = [_others(body) for body in bodies]
         self._radii = [radius(model, body.root, body.touch_geoms) for body in bodies]
 
@@ -84,23 +85,19 @@ class Substepping:
                 finally:
                     if parts > 1:
                         model.opt.timestep = self._whole
+            self._physics.changed()
 
     def _prepare(self, count: int) -> bool:
         """Corrects the bodies for some steps; returns whether these need parts: a body may move farther than its stride in one of
         them, and something is near enough for a collision in any of them."""
-        self._physics.changed()
-        duration, fastest = count * self._whole, 0.0
+        duration, speed = count * self._whole, 0.0
         for hold in self._holds:
-            fastest = max(fastest, hold.before_step(duration))
+            speed = max(speed, hold.before_step(duration))
         held = self._held()
-        if not held and (fastest * self._whole <= STRIDE or self._bound() * self._whole <= STRIDE):
+        if not held and speed * self._whole <= STRIDE:
             return False
-        fastest = self._fastest(held)
-        return fastest * self._whole > STRIDE and self._near(held + fastest * duration)
-
-    def _bound(self) -> float:
-        """Returns a fast upper bound of the speed of any point of any body [m/s]; without held objects."""
-        return float(np.abs(self._qvel).dot(self._farthest))
+        speed = self._fastest(held)
+        return speed * self._whole > STRIDE and self._near(held + speed * duration)
 
     def _needed(self) -> int:
         """Returns the number of parts of the next step.
@@ -115,12 +112,7 @@ class Substepping:
 
     def _fastest(self, held: float) -> float:
         """Returns an upper bound of the speed of any point of any body, or of what it holds [m/s]."""
-        speeds = np.abs(self._qvel)
-        for together in self._together:
-            speeds[together.start] = math.hypot(*speeds[together].tolist())
-            speeds[together.start + 1 : together.stop] = 0
-        fastest = float((self._reaches @ speeds).max())
-        return fastest + held * float(speeds.sum()) if held else fastest
+        return fastest()(self._reaches, self._qvel, self._together, held)
 
     def _held(self) -> float:
         """Returns an upper bound of the extent of held objects beyond the hands [m]."""
@@ -130,12 +122,9 @@ class Substepping:
     def _near(self, beyond: float) -> bool:
         """Returns whether any other object is within a distance [m] beyond the reach of a body."""
         self._physics.refresh()
-        model, data = self._physics.mj_model, self._physics.mj_data
+        boxes, data = self._physics.mj_model.geom_aabb, self._physics.mj_data
         for body, others, far in zip(self._bodies, self._others, self._radii, strict=True):
-            from_it = data.xpos[body.root] - data.geom_xpos[others]
-            within = np.einsum("nij,ni->nj", data.geom_xmat[others].reshape(-1, 3, 3), from_it) - model.geom_aabb[others, :3]
-            gaps = np.maximum(np.abs(within) - model.geom_aabb[others, 3:], 0)
-            if (np.einsum("ij,ij->i", gaps, gaps) < (far + beyond) ** 2).any():
+            if near()(others, boxes, data.geom_xpos, data.geom_xmat, data.xpos[body.root], far + beyond):
                 return True
         return False
 

@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from actr3d import jit
 from actr3d.camera import CameraParameters, GeometricCamera
-from actr3d.camera.kernel import jit
 from actr3d.errors import CameraError, ConfigurationError, ModelWarning
 from tests.helpers.camera_scenes import compiled, mujoco, seen
 
@@ -278,7 +278,7 @@ def test_the_library_is_imported_without_the_camera() -> None:
 
 
 def test_code_that_cannot_be_kept_on_disk_runs_all_the_same(tmp_path: Path) -> None:
-    lines = ("from actr3d.camera.kernel.jit import kept", "add = kept(lambda a, b: a + b)", "print(add(1, 2), type(add._cache).__name__)")
+    lines = ("from actr3d.jit import kept", "add = kept(lambda a, b: a + b)", "print(add(1, 2), type(add._cache).__name__)")
     (tmp_path / "adding.py").write_text("\n".join(lines))
     for places, cache in (("InTreeCacheLocator", "FunctionCache"), ("ZipCacheLocator", "NullCache")):
         run = [sys.executable, str(tmp_path / "adding.py")]
@@ -287,8 +287,8 @@ def test_code_that_cannot_be_kept_on_disk_runs_all_the_same(tmp_path: Path) -> N
 
 
 def test_a_cache_that_cannot_be_read_any_more_is_not_read(tmp_path: Path) -> None:
-    lines = ["import sys", "from actr3d.camera.kernel import jit"]
-    lines += ["jit.sources_digest = lambda *folders: int(sys.argv[2])", "shape = __import__(sys.argv[1])"]
+    lines = ["import sys", "from actr3d import jit"]
+    lines += ["jit.sources_digest = lambda *sources: int(sys.argv[2])", "shape = __import__(sys.argv[1])"]
     lines += ["def first(size): return size.width", "print(jit.kept(first)(shape.Size(2)))"]
     (tmp_path / "sizes.py").write_text("\n".join(lines))
 

@@ -5,3 +5,8 @@ the right and upwards, and 1 is along the depth axis. A surface is drawn along t
 In this form, straight lines stay straight and convex shapes stay convex: flat faces are lines, balls and cylinders are conics.
 The visible parts are the upper envelope of all these curves, and its corners are roots of polynomials.
 """
+
+from pathlib import Path
+
+SOURCES = Path(__file__).parent
+"""The folder of these functions: what was compiled of them is compiled anew when one of its files changes."""

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from actr3d.camera.kernel.dtypes import NUMBER, Array
-from actr3d.camera.kernel.jit import compiled
+from actr3d.jit import compiled
 
 
 class ActiveRows(NamedTuple):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from actr3d.camera.kernel.dtypes import FAR_SIDE, LINE, NEAR_SIDE, SAME_DEPTH, Array, Record
-from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.pieces import nearness
 from actr3d.camera.kernel.roots import add_quartic_roots, add_roots
+from actr3d.jit import compiled
 
 
 @compiled

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.dtypes import NEGLIGIBLE, SLIVER, Array, Record, Records
-from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.pieces import nearness
 from actr3d.camera.kernel.screen import screen_part
+from actr3d.jit import compiled
 
 EDGES_AT_ONCE = 128
 

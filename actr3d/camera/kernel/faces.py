@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.dtypes import LINE, NEGLIGIBLE, Array, Record, Records
-from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.screen import first_row, last_row
+from actr3d.jit import compiled
 
 
 @compiled

@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 
 from actr3d.camera.kernel.dtypes import LINE, Record, Records
-from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.pieces import nearness, root_of
+from actr3d.jit import compiled
 
 HALVINGS = 5
 """The number of halvings in the search for the nearest point of a round piece."""

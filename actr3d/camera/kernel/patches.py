@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.dtypes import FAR_SIDE, LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record, Records
-from actr3d.camera.kernel.jit import compiled, zero
 from actr3d.camera.kernel.pieces import bound, nearness, sort_values, summit
 from actr3d.camera.kernel.roots import add_roots
+from actr3d.jit import compiled, zero
 
 SEEN, PASSED_BY, IN_PARTS = 1, 0, -1
 """The states of a patch on a row: one whole piece, no piece, or to be cut."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.dtypes import LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record, Records
-from actr3d.camera.kernel.jit import compiled
+from actr3d.jit import compiled
 
 
 @compiled

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.dtypes import Array
-from actr3d.camera.kernel.jit import compiled
+from actr3d.jit import compiled
 
 HFIELD_EXTRA_CORNERS = 4
 """The number of corners of a height field's base, stored after those of its surface and their projections at height 0."""

@@ -7,17 +7,18 @@ from collections.abc import Callable
 from functools import cache
 from typing import TypeAlias
 
+from actr3d.camera.kernel import SOURCES
 from actr3d.camera.kernel.active_rows import bring_up
 from actr3d.camera.kernel.dtypes import BACKGROUND, FAR_SIDE, Array, Record, Records
 from actr3d.camera.kernel.extents import finish
 from actr3d.camera.kernel.faces import add_face
-from actr3d.camera.kernel.jit import compiled, kept, zero
 from actr3d.camera.kernel.lower_envelope import Row, trace_row
 from actr3d.camera.kernel.nearest import find_nearest
 from actr3d.camera.kernel.patches import add_patch
 from actr3d.camera.kernel.pieces import bound
 from actr3d.camera.kernel.scene import EyeScene, Geoms, Topology, set_scene
 from actr3d.camera.kernel.screen import row_tangent
+from actr3d.jit import compiled, kept, zero
 
 MOST_PIECES_OF_A_PATCH = 10
 """Eight cuts leave at most five pieces on each side."""
@@ -33,7 +34,7 @@ def scan() -> Scan:
     topology, work arrays for the scene and for a row, the labels of objects, and the output array of extents. It returns the number
     of extents, or `-1 - geom` if the pose of a geom is not finite.
     """
-    return kept(_scan)
+    return kept(_scan, SOURCES)
 
 
 def _scan(

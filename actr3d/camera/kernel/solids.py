@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from actr3d.camera.kernel.dtypes import CAPSULE, CYLINDER, ELLIPSOID, PLANE, Array, Record, Records
-from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.screen import set_rows
+from actr3d.jit import compiled
 
 
 @compiled

@@ -11,7 +11,7 @@ import numpy as np
 from mujoco import MjData, MjModel
 from numpy.typing import NDArray
 
-from actr3d.world.bounding_box import Extent, together
+from actr3d.world.bounding_box import Extent
 from actr3d.world.scene_objects import Gap
 
 
@@ -31,8 +31,6 @@ class Clearance:
         c, s = math.cos(gap.heading), math.sin(gap.heading)
         self._axes = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
         self._middle = np.array([*gap.position, 0.0])
-        self._rows = together(geoms)
-        self._centres, self._radii = data.geom_xpos, model.geom_rbound
 
     def rooms(self, held: Sequence[int] = ()) -> tuple[float, float] | None:
         """Returns the smallest distances to the left and right segment [m]; None if no part of the body is between their faces.
@@ -40,16 +38,11 @@ class Clearance:
         Args:
             held: More geoms that count as the body's: held objects.
         """
-        geoms = np.append(self._geoms, np.array(held, dtype=np.intp)) if held else self._geoms
-        rows = geoms if held else self._rows
         half = self._gap.thickness / 2
-        past = (self._centres[rows] - self._middle).dot(self._axes[:, 0])
-        radii = self._radii[rows]
-        if np.minimum.reduce(past - radii) > half or np.maximum.reduce(past + radii) < -half:
-            return None
         box = self._extent.box(self._middle, self._axes, held)
         if box.upper[0] < -half or box.lower[0] > half:
             return None
+        geoms = np.append(self._geoms, np.array(held, dtype=np.intp)) if held else self._geoms
         left, right = (self._nearest(geoms, segment) for segment in self._gap.segments)
         return left, right
 

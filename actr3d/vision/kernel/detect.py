@@ -8,9 +8,10 @@ from functools import cache
 from pathlib import Path
 from typing import TypeAlias
 
+from actr3d.camera.kernel import SOURCES
 from actr3d.camera.kernel.dtypes import Array, Record, Records
-from actr3d.camera.kernel.jit import compiled, kept
 from actr3d.camera.kernel.screen import row_tangent, tangent_at
+from actr3d.jit import compiled, kept
 from actr3d.vision.kernel.gaps import find_gaps, link_gaps
 from actr3d.vision.kernel.openings import set_openings
 from actr3d.vision.kernel.surfaces import set_surfaces
@@ -27,7 +28,7 @@ def gaps() -> Gaps:
     opening from row to row, and room for points, gaps and openings. It returns the numbers of gaps and openings; those
     without room are not written.
     """
-    return kept(_gaps, Path(__file__).parent)
+    return kept(_gaps, SOURCES, Path(__file__).parent)
 
 
 @cache
@@ -35,7 +36,7 @@ def surfaces() -> Surfaces:
     """Returns the function that finds surfaces; it takes: the extents, an array of one optics, the eye's axes, a bearing,
     and room for points and surfaces. It returns the highest label; if there is no room for it, nothing is written.
     """
-    return kept(_surfaces, Path(__file__).parent)
+    return kept(_surfaces, SOURCES, Path(__file__).parent)
 
 
 def _gaps(

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from actr3d.camera.kernel.dtypes import Array, Record, Records
-from actr3d.camera.kernel.jit import compiled
 from actr3d.camera.kernel.screen import row_tangent
+from actr3d.jit import compiled
 
 NARROWEST = 1e-6
 """Fraction of the screen's width below which there is no gap: edges that touch."""

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from actr3d.camera.kernel.dtypes import Array, Record, Records
-from actr3d.camera.kernel.jit import compiled
+from actr3d.jit import compiled
 
 BESIDE = 0.35
 """Greatest distance behind a gap's edges of an object above or below that bounds it there [m]. Source: chosen, a wall's thickness."""

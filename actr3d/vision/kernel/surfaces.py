@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from actr3d.camera.kernel.dtypes import Array, Records
-from actr3d.camera.kernel.jit import compiled
+from actr3d.jit import compiled
 
 SURFACE = np.dtype(
     [

@@ -1,4 +1,4 @@
-"""Wrappers of numba's compiler with type annotations; type checkers see this package's functions as plain Python."""
+"""Wrappers of numba's compiler with type annotations; type checkers see compiled functions as plain Python."""
 
 from __future__ import annotations
 
@@ -23,28 +23,28 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     return _njit(no_cpython_wrapper=True, forceinline=True, **OPTIONS)(function)
 
 
-def kept(function: Callable[P, R], *folders: Path) -> Callable[P, R]:
+def kept(function: Callable[P, R], *sources: Path) -> Callable[P, R]:
     """Returns the function compiled, and cached on disk for the next process if a cache folder is writable.
 
     Numba's cache checks only the file of the function itself, cannot even be read where a module of the old code is gone, and is
     found by the function's name. So the name says of which sources it was compiled.
 
     Args:
-        function: A function that calls compiled functions.
-        folders: The folders of these functions' sources, beside this package.
+        function: A function that may call compiled functions.
+        sources: The files of the function and of those functions, or folders of such files.
     """
-    function.__qualname__ += f"-{sources_digest(*folders):x}"
+    function.__qualname__ += f"-{sources_digest(*sources):x}"
     try:
         return _njit(cache=True, **OPTIONS)(function)
     except RuntimeError:  # no writable cache folder
         return _njit(**OPTIONS)(function)
 
 
-def sources_digest(*folders: Path) -> int:
-    """Returns a digest of all files of this package, and of other folders whose functions use it."""
+def sources_digest(*sources: Path) -> int:
+    """Returns a digest of this file, and of other files and folders of files."""
     digest = sha256()
-    for folder in (Path(__file__).parent, *folders):
-        for path in sorted(folder.glob("*.py")):
+    for source in (Path(__file__), *sources):
+        for path in sorted(source.glob("*.py")) if source.is_dir() else (source,):
             digest.update(path.read_bytes())
     return int(digest.hexdigest()[:15], 16)
 

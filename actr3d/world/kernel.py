@@ -1,0 +1,215 @@
+"""Compiled functions for what is computed of a body in every tick, or in every physics step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from mujoco import mjtGeom
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[Any]
+
+SPHERE, CAPSULE, ELLIPSOID = int(mjtGeom.mjGEOM_SPHERE), int(mjtGeom.mjGEOM_CAPSULE), int(mjtGeom.mjGEOM_ELLIPSOID)
+CYLINDER = int(mjtGeom.mjGEOM_CYLINDER)
+
+
+def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Returns a function of this file compiled; loads the compiler, which takes half a second."""
+    from actr3d.jit import kept
+
+    return kept(function, Path(__file__))
+
+
+@cache
+def widen() -> Callable[[Floats, Floats, Floats, Floats, Floats, Floats, Floats, Floats], None]:
+    """Returns the function that widens a box until it encloses some geoms.
+
+    Its arguments are: the geoms (n,), the types (ngeom,), sizes, positions and rotations of all geoms as in MuJoCo, the frame's origin
+    (3,) and axes (3, 3) as columns, and the box (2, 3), least and greatest coordinates in that frame [m].
+    """
+    return _compiled(_widen)
+
+
+def _widen(
+    geoms: Floats, types: Floats, sizes: Floats, positions: Floats, rotations: Floats, origin: Floats, axes: Floats, box: Floats
+) -> None:
+    for geom in geoms:
+        kind, x, y, z = types[geom], sizes[geom, 0], sizes[geom, 1], sizes[geom, 2]
+        for axis in range(3):
+            u, v, w = axes[0, axis], axes[1, axis], axes[2, axis]
+            # The axis in the geom's frame.
+            a = abs(rotations[geom, 0] * u + rotations[geom, 3] * v + rotations[geom, 6] * w)
+            b = abs(rotations[geom, 1] * u + rotations[geom, 4] * v + rotations[geom, 7] * w)
+            c = abs(rotations[geom, 2] * u + rotations[geom, 5] * v + rotations[geom, 8] * w)
+            if kind == SPHERE:
+                far = x
+            elif kind == CAPSULE:
+                far = x + y * c
+            elif kind == ELLIPSOID:
+                far = math.sqrt((x * a) ** 2 + (y * b) ** 2 + (z * c) ** 2)
+            elif kind == CYLINDER:
+                far = x * math.sqrt(a * a + b * b) + y * c
+            else:
+                far = x * a + y * b + z * c
+            at = (positions[geom, 0] - origin[0]) * u + (positions[geom, 1] - origin[1]) * v + (positions[geom, 2] - origin[2]) * w
+            box[0, axis] = min(box[0, axis], at - far)
+            box[1, axis] = max(box[1, axis], at + far)
+
+
+@cache
+def near() -> Callable[[Floats, Floats, Floats, Floats, Floats, float], bool]:
+    """Returns the function that tells whether the box of any of some geoms is within a distance of a point.
+
+    Its arguments are: the geoms (n,), the boxes of all geoms as in MuJoCo (`geom_aabb`), their positions and rotations, the point (3,),
+    and the distance [m].
+    """
+    return _compiled(_near)
+
+
+def _near(geoms: Floats, boxes: Floats, positions: Floats, rotations: Floats, point: Floats, distance: float) -> bool:
+    for geom in geoms:
+        x, y, z = point[0] - positions[geom, 0], point[1] - positions[geom, 1], point[2] - positions[geom, 2]
+        gap = 0.0
+        for axis in range(3):
+            at = rotations[geom, axis] * x + rotations[geom, 3 + axis] * y + rotations[geom, 6 + axis] * z
+            beyond = abs(at - boxes[geom, axis]) - boxes[geom, 3 + axis]
+            if beyond > 0:
+                gap += beyond * beyond
+        if gap < distance * distance:
+            return True
+    return False
+
+
+@cache
+def fastest() -> Callable[[Floats, Floats, Floats, float], float]:
+    """Returns the function that computes an upper bound of the speed of any point of some bodies [m/s].
+
+    Its arguments are: by moving part and degree of freedom (n, nv) the greatest way of its farthest point per unit [m]; the speeds (nv,);
+    by degree of freedom (nv,), with how many that follow its speed adds as vectors do: 1 alone, 0 for those that follow; and the
+    reach of held objects [m].
+    """
+    return _compiled(_fastest)
+
+
+def _fastest(reaches: Floats, speeds: Floats, together: Floats, held: float) -> float:
+    most = 0.0
+    for part in range(reaches.shape[0]):
+        farthest = 0.0
+        for v in range(reaches.shape[1]):
+            if together[v] == 1:
+                farthest += (reaches[part, v] + held) * abs(speeds[v])
+            elif together[v] > 1:
+                squares = 0.0
+                for other in range(v, v + together[v]):
+                    squares += speeds[other] * speeds[other]
+                farthest += (reaches[part, v] + held) * math.sqrt(squares)
+        if not farthest <= most:  # NaN is not
+            most = farthest
+    return most
+
+
+@cache
+def deviate() -> Callable[..., bool]:
+    """Returns the function that compares degrees of freedom (n,) with what is commanded, and tells whether any needs a correction.
+
+    Its arguments are: their indices in `qpos`, `qvel` and `ctrl`; these three; the number of rows of the base, and cosine and sine of
+    its heading; the places to hold, NaN for what moves; the commanded speeds; the lower and upper limits; the duration of a tick, or 0 if
+    no joint moves [s]; the slight deviations of place and speed; and an array (3, n) for the results, see `ActuatedDofs.deviations`.
+    """
+    return _compiled(_deviate)
+
+
+def _deviate(
+    q: Floats,
+    v: Floats,
+    c: Floats,
+    qpos: Floats,
+    qvel: Floats,
+    ctrl: Floats,
+    base: int,
+    cosine: float,
+    sine: float,
+    held: Floats,
+    commanded: Floats,
+    lower: Floats,
+    upper: Floats,
+    duration: float,
+    slight_way: float,
+    slight_speed: float,
+    results: Floats,
+) -> bool:
+    ways, off, wanted = results[0], results[1], results[2]
+    found = False
+    for row in range(len(q)):
+        speed, keep = qvel[v[row]], commanded[row]
+        if base and row == 0:
+            speed = cosine * speed + sine * qvel[v[1]]
+        elif base and row == 1:
+            speed = cosine * speed - sine * qvel[v[0]]
+        if duration > 0:
+            keep = min(max(keep, (lower[row] - qpos[q[row]]) / duration), (upper[row] - qpos[q[row]]) / duration)
+        ways[row] = held[row] - qpos[q[row]]
+        off[row] = speed - ctrl[c[row]]
+        wanted[row] = keep
+        if keep != commanded[row] or abs(ways[row]) > slight_way or abs(off[row]) > slight_speed:  # NaN is no deviation
+            found = True
+    return found
+
+
+@cache
+def settle() -> Callable[..., None]:
+    """Returns the function that sets speeds and controls of degrees of freedom (n,) so that they return to what is commanded.
+
+    Its arguments are: their indices in `qvel` and `ctrl`; these two; the number of rows of the base, and cosine and sine of its heading;
+    the ways back, along the world's axes, NaN for what moves; the speeds to keep of what moves; the time constant [s] and the greatest
+    speed of corrections; the difference from which a speed is set at once; and those which only their servos change.
+    """
+    return _compiled(_settle)
+
+
+def _settle(
+    v: Floats,
+    c: Floats,
+    qvel: Floats,
+    ctrl: Floats,
+    base: int,
+    cosine: float,
+    sine: float,
+    ways: Floats,
+    wanted: Floats,
+    time: float,
+    most: float,
+    slight_speed: float,
+    servos_only: Floats,
+) -> None:
+    n = len(v)
+    for row in range(n):
+        if not math.isnan(ways[row]):
+            ways[row] = min(max(ways[row] / time, -most), most)
+    if base:
+        x, y = ways[0], ways[1]
+        ways[0], ways[1] = cosine * x + sine * y, cosine * y - sine * x
+    for row in range(n):
+        if math.isfinite(ways[row]):
+            wanted[row] = ways[row]
+        ctrl[c[row]] = wanted[row]
+    together = False
+    if base:
+        x, y = qvel[v[0]], qvel[v[1]]
+        forward, left = cosine * x + sine * y, cosine * y - sine * x
+        together = abs(wanted[0] - forward) > slight_speed or abs(wanted[1] - left) > slight_speed
+        for row in range(2, base):
+            together = together or abs(wanted[row] - qvel[v[row]]) > slight_speed
+    for row in range(n):
+        wrong = together if row < base else abs(wanted[row] - qvel[v[row]]) > slight_speed
+        if wrong and not servos_only[row]:
+            if base and row == 0:
+                qvel[v[0]] = cosine * wanted[0] - sine * wanted[1]
+            elif base and row == 1:
+                qvel[v[1]] = cosine * wanted[1] + sine * wanted[0]
+            else:
+                qvel[v[row]] = wanted[row]
