@@ -7,15 +7,17 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
 
-import numba
-
 P = ParamSpec("P")
 R = TypeVar("R")
 
 OPTIONS: Any = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_wrapper": True}
 """Division by zero gives infinity; no compiled function allocates memory, so that no references need to be counted."""
 
-_njit = cast("Any", numba).njit
+
+def _njit(**options: Any) -> Any:
+    import numba  # takes half a second
+
+    return cast("Any", numba).njit(**options)
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
@@ -47,9 +49,3 @@ def sources_digest(*sources: Path) -> int:
         for path in sorted(source.glob("*.py")) if source.is_dir() else (source,):
             digest.update(path.read_bytes())
     return int(digest.hexdigest()[:15], 16)
-
-
-@compiled
-def zero() -> int:
-    """Returns 0 as a variable: a constant argument would make numba compile every called function once more."""
-    return int(0.0)

@@ -45,7 +45,7 @@ PARTS: dict[str, set[str]] = {
     "simulation": BASE | BODILY | SENSES | {"recording", "printing"},
     "runner": BASE | BODILY | SENSES | RUNNING | {"printing", "parameter_schema"},
     "benchmark": {"registry"},
-    "experiment": BASE | BODILY | SENSES | RUNNING | {"parameter_schema", "printing", "runner", "benchmark"},
+    "experiment": BASE | {"jit"} | BODILY | SENSES | RUNNING | {"parameter_schema", "printing", "runner", "benchmark"},
     "bench": BASE | BODILY | SENSES | RUNNING | {"runner", "experiment", "benchmark"},
     "printing": set(),
     "output": {"printing"},

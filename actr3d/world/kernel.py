@@ -11,17 +11,12 @@ from typing import Any, TypeAlias
 from mujoco import mjtGeom
 from numpy.typing import NDArray
 
+from actr3d.jit import kept
+
 Floats: TypeAlias = NDArray[Any]
 
 SPHERE, CAPSULE, ELLIPSOID = int(mjtGeom.mjGEOM_SPHERE), int(mjtGeom.mjGEOM_CAPSULE), int(mjtGeom.mjGEOM_ELLIPSOID)
 CYLINDER = int(mjtGeom.mjGEOM_CYLINDER)
-
-
-def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Returns a function of this file compiled; loads the compiler, which takes half a second."""
-    from actr3d.jit import kept
-
-    return kept(function, Path(__file__))
 
 
 @cache
@@ -31,7 +26,7 @@ def widen() -> Callable[[Floats, Floats, Floats, Floats, Floats, Floats, Floats,
     Its arguments are: the geoms (n,), the types (ngeom,), sizes, positions and rotations of all geoms as in MuJoCo, the frame's origin
     (3,) and axes (3, 3) as columns, and the box (2, 3), least and greatest coordinates in that frame [m].
     """
-    return _compiled(_widen)
+    return kept(_widen, Path(__file__))
 
 
 def _widen(
@@ -67,7 +62,7 @@ def near() -> Callable[[Floats, Floats, Floats, Floats, Floats, float], bool]:
     Its arguments are: the geoms (n,), the boxes of all geoms as in MuJoCo (`geom_aabb`), their positions and rotations, the point (3,),
     and the distance [m].
     """
-    return _compiled(_near)
+    return kept(_near, Path(__file__))
 
 
 def _near(geoms: Floats, boxes: Floats, positions: Floats, rotations: Floats, point: Floats, distance: float) -> bool:
@@ -92,7 +87,7 @@ def fastest() -> Callable[[Floats, Floats, Floats, float], float]:
     by degree of freedom (nv,), with how many that follow its speed adds as vectors do: 1 alone, 0 for those that follow; and the
     reach of held objects [m].
     """
-    return _compiled(_fastest)
+    return kept(_fastest, Path(__file__))
 
 
 def _fastest(reaches: Floats, speeds: Floats, together: Floats, held: float) -> float:
@@ -120,7 +115,7 @@ def deviate() -> Callable[..., bool]:
     its heading; the places to hold, NaN for what moves; the commanded speeds; the lower and upper limits; the duration of a tick, or 0 if
     no joint moves [s]; the slight deviations of place and speed; and an array (3, n) for the results, see `ActuatedDofs.deviations`.
     """
-    return _compiled(_deviate)
+    return kept(_deviate, Path(__file__))
 
 
 def _deviate(
@@ -168,7 +163,7 @@ def settle() -> Callable[..., None]:
     the ways back, along the world's axes, NaN for what moves; the speeds to keep of what moves; the time constant [s] and the greatest
     speed of corrections; the difference from which a speed is set at once; and those which only their servos change.
     """
-    return _compiled(_settle)
+    return kept(_settle, Path(__file__))
 
 
 def _settle(

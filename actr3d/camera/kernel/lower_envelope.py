@@ -12,7 +12,8 @@ from actr3d.camera.kernel.dtypes import BACKGROUND, NEGLIGIBLE, NUMBER, PIECE, S
 from actr3d.camera.kernel.extents import EDGES_AT_ONCE, end_row, goes_on, without_sliver
 from actr3d.camera.kernel.nearest import STRETCHES, forget, note
 from actr3d.camera.kernel.pieces import nearness, sort_by_start, sort_values
-from actr3d.jit import compiled, zero
+from actr3d.camera.kernel.screen import zero
+from actr3d.jit import compiled
 
 MOST_CUTS = 400
 """The capacity of the stack of stretches; two pieces cross at most four times, so only rounding errors could come near it."""

@@ -7,7 +7,8 @@ import math
 from actr3d.camera.kernel.dtypes import FAR_SIDE, LINE, NEAR_SIDE, NEGLIGIBLE, Array, Record, Records
 from actr3d.camera.kernel.pieces import bound, nearness, sort_values, summit
 from actr3d.camera.kernel.roots import add_roots
-from actr3d.jit import compiled, zero
+from actr3d.camera.kernel.screen import zero
+from actr3d.jit import compiled
 
 SEEN, PASSED_BY, IN_PARTS = 1, 0, -1
 """The states of a patch on a row: one whole piece, no piece, or to be cut."""

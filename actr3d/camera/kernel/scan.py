@@ -17,8 +17,8 @@ from actr3d.camera.kernel.nearest import find_nearest
 from actr3d.camera.kernel.patches import add_patch
 from actr3d.camera.kernel.pieces import bound
 from actr3d.camera.kernel.scene import EyeScene, Geoms, Topology, set_scene
-from actr3d.camera.kernel.screen import row_tangent
-from actr3d.jit import compiled, kept, zero
+from actr3d.camera.kernel.screen import row_tangent, zero
+from actr3d.jit import compiled, kept
 
 MOST_PIECES_OF_A_PATCH = 10
 """Eight cuts leave at most five pieces on each side."""

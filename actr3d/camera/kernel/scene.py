@@ -12,9 +12,9 @@ from actr3d.camera.kernel.dtypes import BOX, HFIELD, MESH, NUMBER, OCCLUDER, PAT
 from actr3d.camera.kernel.faces import face_rows
 from actr3d.camera.kernel.occluders import LARGE, MOST_OCCLUDERS, hidden, offer
 from actr3d.camera.kernel.polyhedra import box_distance, hfield_reach, place_corners, set_box, set_hfield
-from actr3d.camera.kernel.screen import in_view
+from actr3d.camera.kernel.screen import in_view, zero
 from actr3d.camera.kernel.solids import add_patches, reach_of
-from actr3d.jit import compiled, zero
+from actr3d.jit import compiled
 
 
 class Geoms(NamedTuple):

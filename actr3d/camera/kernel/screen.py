@@ -90,3 +90,9 @@ def set_rows(patch: Record, place: Array, yy: float, yz: float, zz: float, optic
         patch.floor, patch.ceiling = min(patch.floor, floor), max(patch.ceiling, ceiling)
     else:
         patch.first_row, patch.last_row, patch.floor, patch.ceiling = first, last, floor, ceiling
+
+
+@compiled
+def zero() -> int:
+    """Returns 0 as a variable: a constant argument would make numba compile every called function once more."""
+    return int(0.0)

@@ -11,6 +11,7 @@ import numpy as np
 from mujoco import MjData, MjModel
 from numpy.typing import NDArray
 
+from actr3d.experiment.aperture.kernel import least_distances
 from actr3d.world.bounding_box import Extent
 from actr3d.world.scene_objects import Gap
 
@@ -49,8 +50,9 @@ class Clearance:
     def _nearest(self, geoms: NDArray[Any], segment: int) -> float:
         """Returns the smallest distance of any of some geoms to a segment [m]."""
         model, data = self._model, self._data
-        turned = (data.geom_xpos[geoms] - data.geom_xpos[segment]) @ data.geom_xmat[segment].reshape(3, 3)
-        least = np.linalg.norm(np.maximum(np.abs(turned) - model.geom_size[segment], 0), axis=1) - model.geom_rbound[geoms]
+        least = np.empty(len(geoms))
+        box = data.geom_xpos[segment], data.geom_xmat[segment], model.geom_size[segment]
+        least_distances()(geoms, data.geom_xpos, model.geom_rbound, *box, least)
         nearest = math.inf
         for number in np.argsort(least, kind="stable").tolist():
             if least[number] >= nearest:

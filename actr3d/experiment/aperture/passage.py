@@ -7,8 +7,11 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from actr3d.errors import WorldError, did_you_mean
 from actr3d.experiment.aperture.clearance import Clearance
+from actr3d.experiment.aperture.kernel import posture
 from actr3d.simulation.measure import measure
 from actr3d.world import World
 from actr3d.world.scene_objects import Aperture
@@ -119,8 +122,7 @@ class Passage:
         wall = next((part for part in world.scene.parts if isinstance(part, Aperture) and part.name == aperture), None)
         if wall is None:
             raise WorldError(f"no aperture '{aperture}' in this scene to measure a passage through")
-        self._wall = wall
-        self._ahead = math.cos(wall.heading), math.sin(wall.heading)
+        self._middle = *wall.position, math.cos(wall.heading), math.sin(wall.heading)
         model = world.mj_model
         joints = [f"{side}_shoulder_joint" for side in ("left", "right")]
         geoms = {self._body.geom_name(geom): geom for geom in self._body.geoms.tolist()}
@@ -129,7 +131,8 @@ class Passage:
         self._shoulders = [data.geom_xpos[geoms[name]] for name in joints]
         self._clearance = Clearance(model, data, self._body.geoms, wall.gap_in(model))
         hinges = {"stance_yaw": 1.0, "torso_yaw": 1.0, "left_shoulder_yaw": 0.5, "right_shoulder_yaw": 0.5}
-        self._hinges = [(joint.q, joint.v, hinges[name]) for name, joint in self._body.joints.items() if name in hinges]
+        turning = [(joint.q, joint.v, hinges[name]) for name, joint in self._body.joints.items() if name in hinges]
+        self._turning = np.array([row[:2] for row in turning], dtype=np.intp).reshape(-1, 2), np.array([row[2] for row in turning])
         x, y, _ = self._axis.tolist()
         self._start = x, y
         self._reach = 2.0 + wall.thickness
@@ -145,24 +148,16 @@ class Passage:
             del self._times[number:after], self._samples[number:after]
         if math.dist((x, y), self._start) >= SET_OUT:
             self._times.insert(number, end)
-            self._samples.insert(number, self._sample(x, y, end - ago, ago))
+            self._samples.insert(number, self._sample(end - ago, ago))
 
-    def _sample(self, x: float, y: float, time: float, ago: float) -> _Sample:
+    def _sample(self, time: float, ago: float) -> _Sample:
         """Returns the sample of a moment.
 
         Args:
-            x: The position of the body's axis [m].
-            y: The same.
             time: The time of the geometry [s].
             ago: By how much the joints are ahead of the geometry [s].
         """
-        forward, left = self._ahead
-        before = (self._wall.position[0] - x) * forward + (self._wall.position[1] - y) * left
-        (x1, y1, _), (x2, y2, _) = [shoulder.tolist() for shoulder in self._shoulders]
-        dx, dy = x1 - x2, y1 - y2
-        angle = math.atan2(abs(dx * forward + dy * left), abs(dy * forward - dx * left))
-        # The integrator has moved the joints on from the geometry, with these speeds.
-        logged = sum([share * (self._qpos.item(q) - ago * self._qvel.item(v)) for q, v, share in self._hinges])
+        before, angle, logged = posture()(self._axis, *self._shoulders, self._qpos, self._qvel, *self._turning, *self._middle, ago)
         touches = self._contacts.touches()
         force = max([touch.force for touch in touches], default=0.0)
         pairs = frozenset([(touch.part, touch.other) for touch in touches]) if touches else _NONE
