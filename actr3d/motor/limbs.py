@@ -97,9 +97,12 @@ class Limbs:
     def feel(self, positions: Mapping[str, float]) -> None:
         """Updates the felt positions of some joints [rad] or [m]."""
         self.felt.update(positions)
+        least, most = self.least, self.most
         for joint, position in positions.items():
-            self.least[joint] = min(position, self.least.get(joint, position))
-            self.most[joint] = max(position, self.most.get(joint, position))
+            if position < least.setdefault(joint, position):
+                least[joint] = position
+            if position > most.setdefault(joint, position):
+                most[joint] = position
 
     def freedom(self, joint: str) -> Freedom:
         """Returns the present knowledge of a joint.
@@ -204,5 +207,7 @@ TINY = 1e-9
 
 def on_grid(value: float, grid: float) -> float:
     """Returns the multiple of `grid` that is nearest to a value; as an int if it is one."""
-    near = round(round(value / grid) * grid, 9)
+    near = round(value / grid) * grid
+    if near != int(near):
+        near = round(near, 9)
     return int(near) if near == int(near) else near

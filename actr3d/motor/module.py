@@ -516,12 +516,11 @@ class Motor(WithParameters, Port):
         if schema is None:
             limbs.feel(dict(zip(joints, felt, strict=True)))
             schema = self._schema = BodySchema(limbs, self.angle_grid, self.size_grid, self.extreme_step)
+            for joint in joints:
+                self._become(limbs.shown_as[joint], schema.at[joint])
         new = schema.feel(joints, felt)
-        own = self.__dict__
-        for joint in joints:
-            name, at = limbs.shown_as[joint], schema.at[joint]
-            if own.get(name, _NOTHING) != at:
-                self._become(name, at)
+        for joint in new:
+            self._become(limbs.shown_as[joint], schema.at[joint])
         for name in ("width", "depth", "height"):
             noise = draw(0, self.size_noise) if self.size_noise else 0.0
             self._become(name, schema.size(getattr(reading, name) + noise))

@@ -48,18 +48,21 @@ class BodySchema:
         Returns:
             The joints whose positions are not between such others.
         """
+        between = self._between
         new: dict[str, float] = {}
         for joint, position in zip(joints, positions, strict=True):
-            least, most = self._between[joint]
+            least, most = between[joint]
             if not least <= position <= most:
                 new[joint] = position
         self._limbs.felt.update(zip(joints, positions, strict=True))
         self._limbs.feel(new)
         for joint, position in new.items():
-            shown, (least, most) = self.shown(joint, position), self._between[joint]
-            same = shown == self.at[joint]
-            self._between[joint] = (min(least, position), max(most, position)) if same else (position, position)
-            self.at[joint] = shown
+            shown = self.shown(joint, position)
+            if shown == self.at[joint]:
+                least, most = between[joint]
+                between[joint] = (position, most) if position < least else (least, position)
+            else:
+                between[joint], self.at[joint] = (position, position), shown
         return tuple(new)
 
     def shown(self, joint: str, position: float) -> float:
