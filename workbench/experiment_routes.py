@@ -44,9 +44,7 @@ class WantedDesign(PageMessage):
 
     design: Annotated[str, Field(min_length=1, max_length=500)]
     """The name of one of the library's, or `FILE:NAME`."""
-    values: dict[Identifier, Level | Annotated[list[Level], Field(min_length=1, max_length=200)]] = Field(
-        default_factory=dict, max_length=100
-    )
+    values: dict[Identifier, Level | Annotated[list[Level], Field(max_length=200)]] = Field(default_factory=dict, max_length=100)
     """New levels of factors, or values of other parameters."""
     participants: Count | None = None
     """The number of participants of each group; null for that of the design."""

@@ -10,7 +10,7 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import asdict, replace
 from pathlib import Path
 from types import FrameType
@@ -135,16 +135,22 @@ def run(
         ExperimentError: If the experiment cannot be set up, run or continued.
         Exception: Any error that the files of the design and of the model themselves raise.
     """
-    experiment, store = _opened(name, values, participants, trials, folder, resume=resume, any_version=any_version)
-    with store:
+    with ExitStack() as opened:
+        # Before the folder is made: a cluster may not answer.
+        cluster = None if scheduler is None else opened.enter_context(existing_cluster(scheduler))
+        experiment, store = _opened(name, values, participants, trials, folder, resume=resume, any_version=any_version)
+        opened.enter_context(store)
         total, begin, before = len(experiment.design), time.monotonic(), store.count
         facts = facts_of(experiment)
         store.write_facts({"event": "facts", **facts})
         out.event("facts", {**facts, "folder": str(store.folder)})
         out.line(f"[bold]{experiment.specification.name}[/bold]: {total:,} trials in '{store.folder}', {before:,} finished")
         if before < total:
-            cluster = local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler)
-            with _stopping() as stop, cluster as client, _progress(out, total) as show:
+            with (
+                _stopping() as stop,
+                local_cluster(workers or os.cpu_count() or 1) if cluster is None else nullcontext(cluster) as client,
+                _progress(out, total) as show,
+            ):
                 run_experiment(experiment, store, client, show=show, stop=stop)
             took, ran = time.monotonic() - begin, store.count - before
             out.line(f"{ran:,} trials in {took:,.0f} s ({ran / max(took, 1e-9):,.1f} a second)")

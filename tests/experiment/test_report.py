@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import re
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -189,6 +191,14 @@ def test_what_has_no_report_says_why(tmp_path: Path, capsys: Any) -> None:
     assert "all 12 trials failed; the first one with: ValueError: never" in capsys.readouterr().err
     assert main(["report", str(tmp_path)]) == 1
     assert "holds no experiment" in capsys.readouterr().err
+
+
+def test_reports_that_are_written_at_once_do_not_disturb_one_another(tmp_path: Path) -> None:
+    folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
+    with ProcessPoolExecutor(3, get_context("fork")) as pool:
+        assert set(pool.map(write_report, [folder] * 6)) == {folder / "report" / "index.html"}
+    assert {path.name for path in (folder / "report").iterdir()} == {"figures", "index.html", "tables"}
+    assert [path.name for path in folder.iterdir() if "report" in path.name] == ["report"]
 
 
 def test_a_folder_that_is_no_report_is_not_replaced(tmp_path: Path) -> None:

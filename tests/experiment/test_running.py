@@ -125,6 +125,14 @@ def test_no_scheduler_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
         pass
 
 
+def test_a_scheduler_that_does_not_answer_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    monkeypatch.setattr(cluster, "PATIENCE", 1.0)
+    out = tmp_path / "out"
+    assert main(["experiment", str(write_experiment(tmp_path)), "--out", str(out), "--scheduler", "tcp://127.0.0.1:9"]) == 1
+    assert "no scheduler answers" in capsys.readouterr().err
+    assert not out.exists()
+
+
 # -- processes that are ended
 
 

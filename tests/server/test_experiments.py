@@ -93,6 +93,8 @@ def test_a_design_is_checked_with_its_changes(workbench: Served) -> None:
     assert wrong.status_code == 422
     assert wrong.json()["error"].startswith("--set nn: Design: the model has no parameter 'nn'; did you mean 'n'?")
     assert workbench.post("/api/experiments", {"design": COUNTING, "values": {"nn": 3}}).json() == wrong.json()
+    empty = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"n": []}})
+    assert (empty.status_code, empty.json()["error"]) == (422, "--set n: Design.factors['n']: must have at least one level (got [])")
 
 
 def test_values_reach_the_design_as_they_are(workbench: Served) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-import shutil
+import errno
+import itertools
+import tempfile
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from actr3d.errors import ExperimentError
@@ -54,31 +57,44 @@ def write_report(folder: Path | str, *, human: Path | str | None = None, compare
 
 def _write(folder: Path, results: Results, sections: Sequence[Section]) -> Path:
     """Writes all files into a new folder, which then replaces the earlier report."""
-    final, part = folder / REPORT, folder / f"{REPORT}.part"
+    final = folder / REPORT
     try:
         if final.exists() and any(final.iterdir()) and not (final / PAGE).exists():
             raise ExperimentError(f"'{final}' is not a report; move it away")
-        shutil.rmtree(part, ignore_errors=True)
-        for inner in ("figures", "tables"):
-            (part / inner).mkdir(parents=True)
-        drawings: dict[str, str] = {}
-        for item in (item for section in sections for item in section.parts):
-            match item:
-                case Plot():
-                    drawings[item.name] = svg(item.figure)
-                    (part / "figures" / f"{item.name}.svg").write_text(drawings[item.name], encoding="utf-8")
-                    (part / "figures" / f"{item.name}.png").write_bytes(png(item.figure))
-                case Table():
-                    item.frame.to_csv(part / "tables" / f"{item.name}.csv", index=False, float_format=DIGITS, lineterminator="\n")
-                case _:
-                    pass
-        (part / PAGE).write_text(_page(results, sections, drawings), encoding="utf-8")
-        if final.exists():
-            shutil.rmtree(final)
-        part.replace(final)
+        with tempfile.TemporaryDirectory(prefix=f".{REPORT} ", dir=folder, ignore_cleanup_errors=True) as place:
+            part = Path(place) / "new"
+            for inner in ("figures", "tables"):
+                (part / inner).mkdir(parents=True)
+            drawings: dict[str, str] = {}
+            for item in (item for section in sections for item in section.parts):
+                match item:
+                    case Plot():
+                        drawings[item.name] = svg(item.figure)
+                        (part / "figures" / f"{item.name}.svg").write_text(drawings[item.name], encoding="utf-8")
+                        (part / "figures" / f"{item.name}.png").write_bytes(png(item.figure))
+                    case Table():
+                        item.frame.to_csv(part / "tables" / f"{item.name}.csv", index=False, float_format=DIGITS, lineterminator="\n")
+                    case _:
+                        pass
+            (part / PAGE).write_text(_page(results, sections, drawings), encoding="utf-8")
+            _replace(final, part, Path(place))
     except OSError as error:
         raise ExperimentError(f"'{final}': cannot write the report ({error.strerror or error})") from None
     return final / PAGE
+
+
+def _replace(final: Path, part: Path, place: Path) -> None:
+    """Puts a folder in the place of another, which is moved away; another process may do the same."""
+    for number in itertools.count():
+        with suppress(FileNotFoundError):
+            final.replace(place / f"earlier {number}")
+        try:
+            part.replace(final)
+        except OSError as error:
+            if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+                raise
+        else:
+            return
 
 
 def _page(results: Results, sections: Sequence[Section], drawings: dict[str, str]) -> str:
