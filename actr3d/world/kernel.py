@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from actr3d.jit import kept
 
-Floats: TypeAlias = NDArray[Any]
+Array: TypeAlias = NDArray[Any]
 
 SPHERE, CAPSULE, ELLIPSOID = int(mjtGeom.mjGEOM_SPHERE), int(mjtGeom.mjGEOM_CAPSULE), int(mjtGeom.mjGEOM_ELLIPSOID)
 CYLINDER = int(mjtGeom.mjGEOM_CYLINDER)
 
 
 @cache
-def widen() -> Callable[[Floats, Floats, Floats, Floats, Floats, Floats, Floats, Floats], None]:
+def widen() -> Callable[[Array, Array, Array, Array, Array, Array, Array, Array], None]:
     """Returns the function that widens a box until it encloses some geoms.
 
     Its arguments are: the geoms (n,), the types (ngeom,), sizes, positions and rotations of all geoms as in MuJoCo, the frame's origin
@@ -29,9 +29,7 @@ def widen() -> Callable[[Floats, Floats, Floats, Floats, Floats, Floats, Floats,
     return kept(_widen, Path(__file__))
 
 
-def _widen(
-    geoms: Floats, types: Floats, sizes: Floats, positions: Floats, rotations: Floats, origin: Floats, axes: Floats, box: Floats
-) -> None:
+def _widen(geoms: Array, types: Array, sizes: Array, positions: Array, rotations: Array, origin: Array, axes: Array, box: Array) -> None:
     for geom in geoms:
         kind, x, y, z = types[geom], sizes[geom, 0], sizes[geom, 1], sizes[geom, 2]
         for axis in range(3):
@@ -56,7 +54,7 @@ def _widen(
 
 
 @cache
-def near() -> Callable[[Floats, Floats, Floats, Floats, Floats, float], bool]:
+def near() -> Callable[[Array, Array, Array, Array, Array, float], bool]:
     """Returns the function that tells whether the box of any of some geoms is within a distance of a point.
 
     Its arguments are: the geoms (n,), the boxes of all geoms as in MuJoCo (`geom_aabb`), their positions and rotations, the point (3,),
@@ -65,7 +63,7 @@ def near() -> Callable[[Floats, Floats, Floats, Floats, Floats, float], bool]:
     return kept(_near, Path(__file__))
 
 
-def _near(geoms: Floats, boxes: Floats, positions: Floats, rotations: Floats, point: Floats, distance: float) -> bool:
+def _near(geoms: Array, boxes: Array, positions: Array, rotations: Array, point: Array, distance: float) -> bool:
     for geom in geoms:
         x, y, z = point[0] - positions[geom, 0], point[1] - positions[geom, 1], point[2] - positions[geom, 2]
         gap = 0.0
@@ -80,7 +78,7 @@ def _near(geoms: Floats, boxes: Floats, positions: Floats, rotations: Floats, po
 
 
 @cache
-def fastest() -> Callable[[Floats, Floats, Floats, float], float]:
+def fastest() -> Callable[[Array, Array, Array, float], float]:
     """Returns the function that computes an upper bound of the speed of any point of some bodies [m/s].
 
     Its arguments are: by moving part and degree of freedom (n, nv) the greatest way of its farthest point per unit [m]; the speeds (nv,);
@@ -90,7 +88,7 @@ def fastest() -> Callable[[Floats, Floats, Floats, float], float]:
     return kept(_fastest, Path(__file__))
 
 
-def _fastest(reaches: Floats, speeds: Floats, together: Floats, held: float) -> float:
+def _fastest(reaches: Array, speeds: Array, together: Array, held: float) -> float:
     most = 0.0
     for part in range(reaches.shape[0]):
         farthest = 0.0
@@ -119,23 +117,23 @@ def deviate() -> Callable[..., bool]:
 
 
 def _deviate(
-    q: Floats,
-    v: Floats,
-    c: Floats,
-    qpos: Floats,
-    qvel: Floats,
-    ctrl: Floats,
+    q: Array,
+    v: Array,
+    c: Array,
+    qpos: Array,
+    qvel: Array,
+    ctrl: Array,
     base: int,
     cosine: float,
     sine: float,
-    held: Floats,
-    commanded: Floats,
-    lower: Floats,
-    upper: Floats,
+    held: Array,
+    commanded: Array,
+    lower: Array,
+    upper: Array,
     duration: float,
     slight_way: float,
     slight_speed: float,
-    results: Floats,
+    results: Array,
 ) -> bool:
     ways, off, wanted = results[0], results[1], results[2]
     found = False
@@ -167,19 +165,19 @@ def settle() -> Callable[..., None]:
 
 
 def _settle(
-    v: Floats,
-    c: Floats,
-    qvel: Floats,
-    ctrl: Floats,
+    v: Array,
+    c: Array,
+    qvel: Array,
+    ctrl: Array,
     base: int,
     cosine: float,
     sine: float,
-    ways: Floats,
-    wanted: Floats,
+    ways: Array,
+    wanted: Array,
     time: float,
     most: float,
     slight_speed: float,
-    servos_only: Floats,
+    servos_only: Array,
 ) -> None:
     n = len(v)
     for row in range(n):

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from actr3d.jit import kept
-from actr3d.world.kernel import Floats
+from actr3d.world.kernel import Array
 
 
 @cache
@@ -24,13 +24,13 @@ def posture() -> Callable[..., tuple[float, float, float]]:
 
 
 def _posture(
-    axis: Floats,
-    left: Floats,
-    right: Floats,
-    qpos: Floats,
-    qvel: Floats,
-    joints: Floats,
-    shares: Floats,
+    axis: Array,
+    left: Array,
+    right: Array,
+    qpos: Array,
+    qvel: Array,
+    joints: Array,
+    shares: Array,
     wall_x: float,
     wall_y: float,
     ahead_x: float,
@@ -48,7 +48,7 @@ def _posture(
 
 
 @cache
-def least_distances() -> Callable[[Floats, Floats, Floats, Floats, Floats, Floats, Floats], None]:
+def least_distances() -> Callable[[Array, Array, Array, Array, Array, Array, Array], None]:
     """Returns the function that computes lower bounds of the distances of some geoms from a box [m].
 
     Its arguments are: the geoms (n,), the positions of all geoms and the radii of the balls around them; the position (3,), rotation (9,)
@@ -57,9 +57,7 @@ def least_distances() -> Callable[[Floats, Floats, Floats, Floats, Floats, Float
     return kept(_least_distances, Path(__file__))
 
 
-def _least_distances(
-    geoms: Floats, positions: Floats, radii: Floats, at: Floats, rotation: Floats, size: Floats, distances: Floats
-) -> None:
+def _least_distances(geoms: Array, positions: Array, radii: Array, at: Array, rotation: Array, size: Array, distances: Array) -> None:
     for number, geom in enumerate(geoms):
         x, y, z = positions[geom, 0] - at[0], positions[geom, 1] - at[1], positions[geom, 2] - at[2]
         squares = 0.0
