@@ -170,10 +170,18 @@ class _Run:
                 self._take(future, self._waiting.pop(future))
             if self._client.status not in ("running", "connecting"):
                 self._lost()
+            self._replace_workers()
         self._client.cancel(list(self._waiting))
 
     def _workers(self) -> int:
         return len(self._client.scheduler_info(n_workers=-1)["workers"])
+
+    def _replace_workers(self) -> None:
+        """Starts the workers again that the cluster of this computer has given up, because they took long to come back when they had
+        been ended; it would wait for ever without any."""
+        cluster = self._client.cluster
+        if cluster is not None and self._workers() < len(cluster.worker_spec):
+            cluster.scale(len(cluster.worker_spec))
 
     def _next_batches(self, numbers: Iterator[int]) -> Iterator[list[int]]:
         """Yields batches until each worker has enough of them."""

@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import dask.config
 import pytest
 
 from actr3d.cli import main
@@ -183,6 +184,23 @@ def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, kill
         finally:
             over.set()
             killer.join()
+    assert killed
+    assert found == reference(path, tmp_path / "whole")
+
+
+def test_workers_that_the_cluster_has_given_up_are_replaced(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, participants=2, trials=20, model=SLOW_MODEL)
+    killed: list[int] = []
+
+    def kill(progress: Progress) -> None:
+        if progress.done and not killed:
+            killed.extend(client.run(os.getpid).values())
+            for worker in killed:
+                os.kill(worker, signal.SIGKILL)
+
+    with dask.config.set({"distributed.deploy.lost-worker-timeout": "10 ms"}), local_cluster(1) as here:
+        client: Any = here
+        found = run_here(client, path, tmp_path / "out", show=kill)
     assert killed
     assert found == reference(path, tmp_path / "whole")
 
