@@ -126,7 +126,9 @@ async function begin() {
       problem = `The recording «${recording}» cannot be opened: ${error.message}`;
     }
   }
-  const wanted = [addressed("model"), sessionStorage.getItem("model"), ...FIRST];
+  const asked = addressed("model");
+  if (asked !== null && !paths.includes(asked)) problem ??= `There is no model «${asked}» in this folder; this is another one.`;
+  const wanted = [asked, sessionStorage.getItem("model"), ...FIRST];
   await choose(wanted.find((path) => paths.includes(path)) ?? paths[0]);
   if (problem !== null) complain(problem); // only now, because messages are cleared with the session shown before
 }

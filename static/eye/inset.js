@@ -1,6 +1,6 @@
-// The retina as a small picture over the 3D view; hidden while the tab Eye shows the large one.
+// The retina as a small picture over the 3D view; hidden while the tab Eye shows the large one, and at first in the view through the eye.
 
-import { html } from "../vendor/preact.js";
+import { html, signal } from "../vendor/preact.js";
 import { useAnswer } from "../parts/answer.js";
 import { Icon } from "../parts/icon.js";
 import { seeing } from "../panels/eye.js";
@@ -8,9 +8,11 @@ import { remembered } from "../local_storage.js";
 import { openTab } from "../open_tab.js";
 import { Retina } from "./retina.js";
 
-const open = remembered("retina", innerWidth >= 900);
+const overScene = remembered("retina", innerWidth >= 900);
+const overEyesView = signal(false); // there it would cover a part of the same picture
 
-export function RetinaInset() {
+export function RetinaInset({ through }) {
+  const open = through ? overEyesView : overScene;
   const body = seeing()[0];
   const shown = open.value && openTab.value !== "eye" && body !== undefined;
   const { answer } = useAnswer(shown ? { type: "view", body } : null, { live: true });

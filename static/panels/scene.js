@@ -125,6 +125,6 @@ export function Scene() {
   return html`<section id="scene" class="scene" aria-label="3D view">
     <iframe key=${address.current} ref=${frame} onLoad=${begin} title="3D view" src=${address.current} hidden=${!shown}></iframe>
     ${lacks ? html`<${Cover} text=${lacks[0]} awaited=${lacks[1]} />` : html`<${ViewBar} /><${Lag} frame=${frame} />`}
-    <${RetinaInset} />
+    <${RetinaInset} through=${view.value === "eye"} />
   </section>`;
 }

@@ -107,6 +107,11 @@ def test_the_eye_is_shown_small_and_large(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     inset = page.get_by_role("complementary", name="Retina")
     expect(inset).to_have_text(re.compile(r"\d+ extents in 100 rows"))
+    page.get_by_label("Camera", exact=True).select_option("eye")  # the whole view is what the eye sees
+    expect(inset).to_have_count(0)
+    page.get_by_role("button", name="Eye", exact=True).click()
+    expect(inset).to_be_visible()
+    page.get_by_label("Camera", exact=True).select_option("follow")
     inset.get_by_role("button", name="Larger").click()
     expect(inset).to_have_count(0)
     labels = page.locator(".eye tbody tr td:first-child")

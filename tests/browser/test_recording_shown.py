@@ -187,6 +187,15 @@ def in_frame(page: Page, address: str) -> None:
     expect(page.locator(".scene-cover")).to_have_count(0)
 
 
+def test_an_address_of_a_model_that_is_not_there_says_so(browser: Browser, workbench: Served) -> None:
+    with browser.new_context() as context:
+        page = context.new_page()
+        page.goto(f"{workbench.address}&model=nope.py")
+        open_tab(page, "Messages")
+        shows(page, "#log", "There is no model «nope.py» in this folder; this is another one.")
+        shows(page, "#status", "paused")
+
+
 def test_an_address_of_a_recording_that_is_gone_says_so_and_shows_a_model(browser: Browser, workbench: Served) -> None:
     with browser.new_context() as context:  # of its own: a browser always complains of what is not found
         page = context.new_page()
