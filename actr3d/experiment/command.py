@@ -285,6 +285,8 @@ def run_again(folder: str, number: int, recording: str, out: Output) -> int:
     if result is not None:
         out.line(str(result))
     out.line(f"trial {number} is recorded in '{recording}'")
+    if different := _other_versions(experiment.specification):
+        out.line(f"it may differ from its row: the experiment was begun with {', '.join(different)}")
     return 0
 
 
@@ -326,9 +328,14 @@ def _opened(
     return Experiment(there), store
 
 
-def _check_versions(there: Specification, *, any_version: bool) -> None:
+def _other_versions(there: Specification) -> list[str]:
+    """Returns the packages of an experiment that have other versions now, with both."""
     now = versions()
-    different = [f"{name} {text} (now {now.get(name, 'none')})" for name, text in there.versions.items() if now.get(name) != text]
+    return [f"{name} {text} (now {now.get(name, 'none')})" for name, text in there.versions.items() if now.get(name) != text]
+
+
+def _check_versions(there: Specification, *, any_version: bool) -> None:
+    different = _other_versions(there)
     if different and not any_version:
         raise ExperimentError(f"the trials so far were run with {', '.join(different)}; install these versions, or add --any-version")
 
