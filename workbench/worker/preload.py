@@ -6,5 +6,10 @@ import actr3d.runner.model_factory  # pyright: ignore[reportUnusedImport] # noqa
 from actr3d.camera import glance
 from actr3d.world import Floor, Mannequin, Scene, World
 
-# The first view compiles the camera or loads it from its cache.
-glance(World(Scene(parts=(Floor(), Mannequin(name="walker")))).bodies["walker"])
+world = World(Scene(parts=(Floor(), Mannequin(name="walker"))))
+walker = world.bodies["walker"]
+# The first view compiles the camera or loads it from its cache; so do the first steps what is computed in every tick.
+glance(walker)
+walker.get("proprioception")
+walker.set("joint", "torso_yaw", 8.0)
+world.step(10)
