@@ -111,7 +111,7 @@ class ExperimentCommand:
         return code
 
     def interrupt(self) -> None:
-        """Asks it to end in order, as Ctrl-C does; does so once, because a second time would break it off."""
+        """Asks it to end in order, as Ctrl-C does; only once, because a second time would break it off."""
         if not self._interrupted and self._process.returncode is None:
             self._interrupted = True
             with suppress(ProcessLookupError):

@@ -54,7 +54,7 @@ class TargetMean:
     """A mean that a model is compared with."""
 
     conditions: Mapping[str, Any]
-    """The group and the levels of factors; what is missing stands for all."""
+    """The group and the levels of factors; a missing one means all of them."""
     measure: str
     mean: float
 

@@ -55,7 +55,7 @@ def _widen(geoms: Array, types: Array, sizes: Array, positions: Array, rotations
 
 @cache
 def near() -> Callable[[Array, Array, Array, Array, Array, float], bool]:
-    """Returns the function that tells whether the box of any of some geoms is within a distance of a point.
+    """Returns the function that checks whether the box of any of some geoms is within a distance of a point.
 
     Its arguments are: the geoms (n,), the boxes of all geoms as in MuJoCo (`geom_aabb`), their positions and rotations, the point (3,),
     and the distance [m].
@@ -107,7 +107,7 @@ def _fastest(reaches: Array, speeds: Array, together: Array, held: float) -> flo
 
 @cache
 def deviate() -> Callable[..., bool]:
-    """Returns the function that compares degrees of freedom (n,) with what is commanded, and tells whether any needs a correction.
+    """Returns the function that compares degrees of freedom (n,) with what is commanded, and returns whether any needs a correction.
 
     Its arguments are: their indices in `qpos`, `qvel` and `ctrl`; these three; the number of rows of the base, and cosine and sine of
     its heading; the places to hold, NaN for what moves; the commanded speeds; the lower and upper limits; the duration of a tick, or 0 if

@@ -1,4 +1,4 @@
-"""Commands that let a run go on, or pause it."""
+"""Commands that continue a run, or pause it."""
 
 from __future__ import annotations
 

@@ -9,4 +9,4 @@ The visible parts are the upper envelope of all these curves, and its corners ar
 from pathlib import Path
 
 SOURCES = Path(__file__).parent
-"""The folder of these functions: what was compiled of them is compiled anew when one of its files changes."""
+"""The folder of these functions: what was compiled of them is compiled again when one of its files changes."""

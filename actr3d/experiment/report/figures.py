@@ -68,7 +68,7 @@ class Curve:
     """Values over x, with intervals."""
 
     label: str
-    """What its colour stands for, such as a group; empty for all groups together."""
+    """What its colour means, such as a group; empty for all groups together."""
     source: str
     """Whose values they are, such as `model` or `original ACT-R 3D`."""
     look: Look
