@@ -428,12 +428,14 @@ class Experiments:
             raise ExperimentRunError(problem)
 
     async def _work(self, arguments: Sequence[str]) -> str | None:
-        """Runs a command to its end; returns None, or its messages if it fails."""
+        """Runs a command to its end; returns None, or its messages if it fails, with paths inside the models folder."""
         command = await ExperimentCommand.start(arguments, self._made_root())
         try:
             async with asyncio.timeout(WORK_TIME):
                 code = await command.wait()
-            return None if code == 0 else command.problem or f"the command ended with exit code {code}"
+            if code == 0:
+                return None
+            return (command.problem or f"the command ended with exit code {code}").replace(f"{self._models.root}/", "")
         except TimeoutError:
             raise ExperimentRunError(f"it takes longer than {WORK_TIME:g} s") from None
         finally:

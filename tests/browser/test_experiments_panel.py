@@ -73,6 +73,7 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
     assert download.value.path().stat().st_size > 0
 
 
+@pytest.mark.slow
 def test_two_pages_see_an_experiment_stop_and_go_on(pages: Callable[..., Page], workbench: Served, design: str) -> None:
     wanted = {"design": design, "trials": 2000, "workers": 1}
     name = workbench.post("/api/experiments", wanted).json()["id"]
@@ -105,6 +106,7 @@ window.fetch = (what, how) => !String(what).includes("/means?") ? fetched(what, 
 }); }"""
 
 
+@pytest.mark.slow
 def test_a_figure_fills_in_although_its_means_take_longer_than_new_trials(
     pages: Callable[..., Page], workbench: Served, design: str
 ) -> None:

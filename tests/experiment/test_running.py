@@ -161,8 +161,9 @@ def test_no_row_changes_if_the_command_is_killed_at_any_moment(tmp_path: Path, k
     assert table(tmp_path / "out") == expected
 
 
-@pytest.mark.parametrize("kills", [3, pytest.param(20, marks=pytest.mark.slow)])
-def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, kills: int) -> None:
+@pytest.mark.slow
+def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path) -> None:
+    kills = 20
     path = write_experiment(tmp_path, participants=2, trials=20 * kills, model=SLOW_MODEL)
     dice = random.Random(kills)
     killed: list[int] = []
@@ -188,6 +189,7 @@ def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, kill
     assert found == reference(path, tmp_path / "whole")
 
 
+@pytest.mark.slow
 def test_workers_that_the_cluster_has_given_up_are_replaced(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, participants=2, trials=20, model=SLOW_MODEL)
     killed: list[int] = []
@@ -221,8 +223,9 @@ def a_cluster(port: int) -> Generator[Any]:
             process.wait()
 
 
-@pytest.mark.parametrize("kills", [1, pytest.param(6, marks=pytest.mark.slow)])
-def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, kills: int, unused_port: int) -> None:
+@pytest.mark.slow
+def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, unused_port: int) -> None:
+    kills = 6
     path = write_experiment(tmp_path, participants=2, trials=10 + 10 * kills, model=SLOW_MODEL)
     dice = random.Random(kills)
     command = [*COMMAND, str(path), "--out", str(tmp_path / "out"), "--resume", "--scheduler", f"tcp://127.0.0.1:{unused_port}"]

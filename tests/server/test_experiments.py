@@ -196,6 +196,7 @@ def test_no_more_than_two_run_at_once(workbench: Served) -> None:
         assert workbench.get(f"/api/experiments/{name}").status_code == 404
 
 
+@pytest.mark.slow
 def test_experiments_end_with_the_workbench_and_go_on_with_the_next(tmp_path: Path) -> None:
     folder = tmp_path / "models"
     folder.mkdir()
@@ -300,6 +301,19 @@ def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished:
     folder.symlink_to(folder.parent)
     assert workbench.get(f"{path}/index.html").status_code == 404
     folder.unlink()
+
+
+def test_errors_of_a_report_do_not_show_where_the_server_stores_it(workbench: Served, finished: str) -> None:
+    report = workbench.folder / ".workbench" / "experiments" / finished / "report"
+    kept = report.rename(report.with_name("kept")) if report.exists() else None
+    (report / "figures").mkdir(parents=True)
+    answer = workbench.post(f"/api/experiments/{finished}/report", {})
+    assert answer.status_code == 409
+    assert answer.json() == {"error": f"'.workbench/experiments/{finished}/report' is not a report; move it away"}
+    (report / "figures").rmdir()
+    report.rmdir()
+    if kept is not None:
+        kept.rename(report)
 
 
 @pytest.mark.parametrize(
