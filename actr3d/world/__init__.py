@@ -5,6 +5,7 @@ from actr3d.world.anatomy import BODY_KINDS
 from actr3d.world.bodies import Car, ImportedBody, Load, Mannequin
 from actr3d.world.body import Body, BodyState
 from actr3d.world.bounding_box import BoundingBox
+from actr3d.world.gait import Gait
 from actr3d.world.imported import Imported
 from actr3d.world.mesh import Mesh
 from actr3d.world.scene import Scene
@@ -18,6 +19,7 @@ __all__ = [
     "BoundingBox",
     "Car",
     "Floor",
+    "Gait",
     "Imported",
     "ImportedBody",
     "Load",

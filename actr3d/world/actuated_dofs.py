@@ -87,7 +87,7 @@ class ActuatedDofs:
         """The speeds that their servos are set to keep."""
         return self._ctrl[self.c]
 
-    def set_controls(self, speeds: Row | float | tuple[float, ...], rows: slice = slice(None)) -> None:
+    def set_controls(self, speeds: Row | float | tuple[float, ...], rows: slice | NDArray[np.intp] = slice(None)) -> None:
         """Sets the servos of some rows to keep other speeds."""
         self._ctrl[self.c[rows]] = speeds
 

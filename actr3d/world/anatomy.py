@@ -9,6 +9,7 @@ from annotated_types import Gt
 
 from actr3d.configuration import Configuration
 from actr3d.registry import Registry
+from actr3d.world.gait import Gait, LegPlan
 from actr3d.world.scene import Part
 
 
@@ -88,6 +89,9 @@ class Anatomy:
 
     shoulders: float | None = None
     """Width across its shoulders [m]; None for a body without shoulders."""
+
+    gait: tuple[Gait, LegPlan] | None = None
+    """How it walks, and the sizes of its legs; None for one that glides."""
 
 
 @runtime_checkable

@@ -20,6 +20,7 @@ from actr3d.world.bounding_box import BoundingBox, Extent
 from actr3d.world.command_registry import CommandRegistry, known, number
 from actr3d.world.contacts import BodyContacts, Touch
 from actr3d.world.frames import WORLD_FRAME, Frame, upright_frame
+from actr3d.world.gait import OWN, GaitCycle
 from actr3d.world.grasp import Hand, Held
 from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import MotionCommands
@@ -97,7 +98,9 @@ class Body:
         self.parts: tuple[str, ...] = tuple(self.part_name(int(member)) for member in np.flatnonzero(self.members))
         self._geom_names = {geom: self._geom_name(geom) for geom in self.geoms.tolist()}
         self.base = Base(physics, self.root, self.anatomy.prefix)
-        self.joints: dict[str, Joint] = {joint.name: joint for joint in self._joints()}
+        stepping = OWN if self.anatomy.gait is not None else ()
+        self.joints: dict[str, Joint] = {joint.name: joint for joint in self._joints() if joint.name not in stepping}
+        """By name, the joints that the agent can feel and move: those that only gait moves are left out."""
         self.controls: dict[str, slice] = self._controls()
         self.eye = self.anatomy.eye
         self.touch_geoms: NDArray[np.intp] = self._touch_geoms()
@@ -109,8 +112,11 @@ class Body:
         self.contacts = BodyContacts(physics, self.members, skin, tuple(self.hands.values()))
         self.reaches = reaches(model, self.members, self.touch_geoms)
         """By moving part and degree of freedom (n, nv): the greatest way of the part's farthest point per unit of it [m]."""
-        dofs = ActuatedDofs(physics, self.anatomy, self.base, self.joints.values(), self.members, self.reaches.max(axis=0, initial=0.0))
-        self.hold = PostureHold(physics, self.members, dofs, self.base, self.contacts)
+        dofs = ActuatedDofs(physics, self.anatomy, self.base, self._joints(), self.members, self.reaches.max(axis=0, initial=0.0))
+        cycle = None
+        if self.anatomy.gait is not None:
+            cycle = GaitCycle(*self.anatomy.gait, dofs.joints, (seed, *self.name.encode()))
+        self.hold = PostureHold(physics, self.members, dofs, self.base, self.contacts, cycle)
         self._driven = [(joint, self.hold.row(joint.name)) for joint in self.joints.values() if joint.driven]
         steering = self.anatomy.steering
         self.motion = MotionCommands(physics, self.root, self.base, self.joints, self.hold, steering, self.controls.get("brake"))

@@ -14,6 +14,7 @@ from actr3d.errors import WorldError
 from actr3d.world.actuated_dofs import ActuatedDofs, Row
 from actr3d.world.base import Base
 from actr3d.world.contacts import BodyContacts
+from actr3d.world.gait import GaitCycle
 from actr3d.world.joints import Joint
 from actr3d.world.physics import Physics
 
@@ -84,14 +85,25 @@ class PostureHold:
         dofs: The actuated degrees of freedom of the body.
         base: The base of the body.
         contacts: The contacts of the body.
+        gait: How it walks; None if it glides.
     """
 
-    def __init__(self, physics: Physics, members: NDArray[np.bool_], dofs: ActuatedDofs, base: Base, contacts: BodyContacts) -> None:
+    def __init__(
+        self,
+        physics: Physics,
+        members: NDArray[np.bool_],
+        dofs: ActuatedDofs,
+        base: Base,
+        contacts: BodyContacts,
+        gait: GaitCycle | None = None,
+    ) -> None:
         self._physics = physics
         self._members = members
         self._dofs = dofs
         self._base = base
         self._contacts = contacts
+        self._gait = gait
+        self._stance = None if gait is None else self._dofs.joints.get("stance_yaw")
         self._rows = dofs.base
         self.commanded: Row = np.zeros(len(dofs.q))
         """The commanded speeds of base and joints, in the rows of `ActuatedDofs`."""
@@ -226,7 +238,8 @@ class PostureHold:
             return self._steady.fastest
         if self._moves:
             self._follow_loop()
-        deviations = self._dofs.deviations(self.held, self.commanded, duration if self._moves else 0.0, SLIGHT_WAY, SLIGHT_SPEED)
+        held = self.held if self._gait is None else self._walk(self._gait, duration)
+        deviations = self._dofs.deviations(held, self.commanded, duration if self._moves else 0.0, SLIGHT_WAY, SLIGHT_SPEED)
         if deviations is not None:
             self._correct(*deviations)
         else:
@@ -235,6 +248,31 @@ class PostureHold:
                 self._steady = SteadyState(self._physics, self._dofs, self.commanded, self.held)
             self._new = False
         return math.inf
+
+    def _walk(self, gait: GaitCycle, duration: float) -> Row:
+        """Moves the places that standing joints hold as the gait does, for the next `duration` [s], and commands the speeds for it.
+
+        Returns:
+            The places to hold; NaN for what moves, also by the gait.
+        """
+        rows = gait.rows
+        standing = np.isfinite(self.held[rows])
+        forward, left, _ = self.base_command
+        stance = 0.0 if self._stance is None else float(self._dofs.places[self._stance])
+        added = gait.advance(forward, left, stance, standing, duration)
+        if added is None and not self.commanded[rows[standing]].any():
+            return self.held
+        self._forget_steady()
+        moved, held = rows[standing], self.held.copy()
+        if added is None:
+            self.commanded[moved] = 0.0
+        else:
+            self.held[moved] += added[standing]
+            self.commanded[moved] = (self.held[moved] - self._dofs.places[moved]) / duration
+            held[moved] = math.nan
+        self._moves = bool(self.commanded[self._rows :].any())
+        self._dofs.set_controls(self.commanded[moved], moved)
+        return held
 
     def after_part(self) -> None:
         """Notes whether anything touches the body in the physics step just made, which had contacts."""
@@ -286,7 +324,7 @@ class PostureHold:
 
     def _end_correction(self) -> None:
         """Stops what has returned to its place."""
-        self._dofs.rest(np.isfinite(self.held))
+        self._dofs.rest(np.isfinite(self.held) & (self.commanded == 0))
         self._pulls = False
 
     # -- the state
@@ -294,12 +332,15 @@ class PostureHold:
     def state(self) -> tuple[Any, ...]:
         """Returns the commands and the correction in progress as plain values."""
         held = (None if at != at else at for at in self.held.tolist())
-        return (tuple(self.commanded.tolist()), tuple(held), self.calm, self._struck, self._pulls)
+        gait = () if self._gait is None else (self._gait.state(),)
+        return (tuple(self.commanded.tolist()), tuple(held), self.calm, self._struck, self._pulls, *gait)
 
     def restore(self, state: tuple[Any, ...]) -> None:
         """Restores a state that `state` returned."""
         self._forget_steady()
-        commanded, held, self.calm, self._struck, self._pulls = state
+        commanded, held, self.calm, self._struck, self._pulls, *gait = state
+        if self._gait is not None:
+            self._gait.restore(*gait)
         self.commanded = np.array(commanded, dtype=np.float64)
         self.held = np.array([math.nan if at is None else at for at in held], dtype=np.float64)
         self._moves = bool(self.commanded[self._rows :].any())

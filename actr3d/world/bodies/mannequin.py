@@ -1,4 +1,4 @@
-"""The mannequin: a person's size and joints, walking on legs that do not step."""
+"""The mannequin: a person's size and joints, which walks on stepping legs or glides."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from actr3d.world.anatomy import Anatomy, NamedMovement, body_kind
 from actr3d.world.bodies.load import Load
 from actr3d.world.bodies.mannequin_limits import FASTEST_JOINT, FASTEST_TURN, FASTEST_WALK, limits_of, strength_of
 from actr3d.world.bodies.planar_base import add_planar_base
+from actr3d.world.gait import OWN, Gait, LegPlan
 from actr3d.world.scene_objects import WALL_SOLREF, Colour, Length, Name
 from actr3d.world.velocity_servo import add_servo
 
@@ -29,8 +30,13 @@ HINGED = (
 )
 """The segments with three hinges."""
 
-LEG, FOOT = 0.161, 0.0145
-"""Masses of a leg with its foot, and of the foot, as fractions of the whole."""
+LEG, FOOT, SHANK, HIPS = 0.161, 0.0145, 0.0465, 0.01
+"""Masses of a leg with its foot, of the foot, of the shank, and of the part of a stepping leg that does not swing,
+as fractions of the whole. Source of the last one: chosen."""
+
+HIP, KNEE, ANKLE, FEET, HEEL = 0.53, 0.285, 0.039, 0.152, 0.04
+"""Heights of the joints of a leg, length of the foot, and the part of it behind the ankle, as fractions of the height. Source of the last
+one: chosen."""
 
 CLEARANCE = 0.005
 """Gap between the legs and the floor [m], so that gliding meets no friction."""
@@ -49,7 +55,7 @@ SHOULDER, UPPER_ARM = 0.818, 0.186 / 0.44
 """Height of the shoulder joints as a fraction of the height, and length of the upper arm as a fraction of the arm."""
 
 Point = tuple[float, float, float]
-_AXES = {"yaw": (0, 0, 1), "pitch": (0, 1, 0), "roll": (1, 0, 0)}
+_AXES = {"yaw": (0, 0, 1), "pitch": (0, 1, 0), "roll": (1, 0, 0), "sway": (0, 1, 0), "bob": (0, 0, 1)}
 
 ARM = tuple(f"upper_arm_{hinge}" for hinge in ("yaw", "pitch", "roll"))
 
@@ -71,9 +77,10 @@ Source: the names are those of the original ACT-R 3D; their definition for shoul
 class Mannequin(Configuration):
     """A person: legs, pelvis, torso, shoulders, arms, head and eye, joined by three hinges each (yaw, pitch, roll).
 
-    The legs glide over the floor at a set speed and stop dead; obstacles stop them. It stands facing its heading
-    with hanging arms, or holding its load. Its parts are `legs`, `pelvis`, `torso`, `left_shoulder`, `left_upper_arm` (with
-    forearm and hand), the same on the right, `head`, `eye` and `load`; its joints `torso_yaw`, `torso_pitch` and so on.
+    It moves over the floor at a set speed and stops dead; obstacles stop it. With a `gait` it steps and sways, otherwise its legs
+    glide. It stands facing its heading with hanging arms, or holding its load. Its parts are `legs`, `pelvis`, `torso`,
+    `left_shoulder`, `left_upper_arm` (with forearm and hand), the same on the right, `head`, `eye` and `load`; its joints
+    `torso_yaw`, `torso_pitch` and so on.
 
     Source of proportions: Drillis & Contini (1966), as given by Winter (2009), in fractions of the height; of masses:
     Dempster (1955), as given there.
@@ -114,6 +121,10 @@ class Mannequin(Configuration):
     sideways: bool = False
     """Whether hips and legs, with all that they carry, can turn relative to the walking direction, as in walking sideways: adds the
     joint `stance_yaw` of the part `stance`. Otherwise the legs face the walking direction."""
+
+    gait: Gait | None = None
+    """How it walks; None: its legs are stiff and glide. With a gait, the part `stance` carries all but the feet's place on the ground,
+    and the legs are `left_thigh`, `left_shank` and `left_foot`, the same on the right; no command moves these."""
 
     load: Load | None = None
     """The load in both hands in front of it; None for hanging arms."""
@@ -166,10 +177,18 @@ class Mannequin(Configuration):
         return SHOULDER * self.height - self.arms * UPPER_ARM
 
     @property
+    def legs(self) -> LegPlan:
+        """Sizes of its legs."""
+        tall, r = self.height, ANKLE * self.height / 2
+        heel, toe = HEEL * tall - r, (FEET - HEEL) * tall - r
+        return LegPlan(thigh=(HIP - KNEE) * tall, shank=(KNEE - ANKLE) * tall, ankle=r, heel=heel, toe=toe, height=tall)
+
+    @property
     def joints(self) -> tuple[tuple[str, str], ...]:
         """All joints: the segment and the hinge."""
         stance = (("stance", "yaw"),) if self.sideways else ()
-        return (*stance, *((segment, hinge) for segment in HINGED for hinge in HINGES))
+        walking = tuple(tuple(joint.rsplit("_", 1)) for joint in OWN) if self.gait is not None else ()
+        return (*walking, *stance, *((segment, hinge) for segment in HINGED for hinge in HINGES))
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds all segments, joints and servos, and the welds by which its hands hold objects."""
@@ -192,6 +211,7 @@ class Mannequin(Configuration):
             movements=MOVEMENTS,
             hands=tuple(f"{prefix}{side}_hand" for side in SIDES),
             shoulders=self.shoulder_width,
+            gait=None if self.gait is None else (self.gait, self.legs),
         )
 
 
@@ -243,30 +263,55 @@ class _Builder:
         """Adds the legs, and returns the part that has them: the base, or a part that turns on it."""
         person, tall = self.person, self.person.height
         part, mass = "legs", LEG
-        if person.sideways:
+        if person.sideways or person.gait is not None:
             base, _ = self.bodies["legs"]
             feet = 2 * FOOT * person.mass
             base.explicitinertial, base.mass, base.inertia = True, feet, [feet * person.depth**2] * 3
             part, mass = "stance", LEG - FOOT
-            self._segment(part, "legs", (0, 0, 0), ("yaw",))
+            self._segment(
+                part, "legs", (0, 0, 0), (*(("sway", "bob") if person.gait is not None else ()), *(("yaw",) if person.sideways else ()))
+            )
         thick = min(0.046 * tall, person.depth / 2)
+        if person.gait is not None:
+            hips, _ = self.bodies[part]
+            weight = 2 * HIPS * person.mass
+            hips.explicitinertial, hips.mass, hips.inertia, hips.ipos = True, weight, [weight * person.depth**2] * 3, [0, 0, HIP * tall]
+            for side, sign in zip(SIDES, (1, -1), strict=True):
+                self._walking_leg(part, side, sign * min(0.0955 * tall, person.shoulder_width / 2) - sign * thick, thick)
+            return part
         for side, sign in zip(SIDES, (1, -1), strict=True):
             y = sign * min(0.0955 * tall, person.shoulder_width / 2) - sign * thick
             self._capsule(part, f"{side}_leg", (0, y, CLEARANCE + thick), (0, y, 0.53 * tall), thick, mass)
         return part
 
+    def _walking_leg(self, part: str, side: str, y: float, thick: float) -> None:
+        """Adds a leg that steps: thigh, shank and foot. The foot touches obstacles, but not the ground: gait keeps it there."""
+        tall = self.person.height
+        hip, knee, ankle = ((0.0, y, CLEARANCE + height * tall) for height in (HIP, KNEE, ANKLE))
+        thigh, shank, foot = (f"{side}_{name}" for name in ("thigh", "shank", "foot"))
+        self._segment(thigh, part, hip, ("pitch", "roll"))
+        self._capsule(thigh, thigh, hip, knee, thick, LEG - HIPS - SHANK - FOOT)
+        self._segment(shank, thigh, knee, ("pitch",))
+        self._capsule(shank, shank, knee, ankle, 0.7 * thick, SHANK)
+        self._segment(foot, shank, ankle, ("pitch",))
+        legs = self.person.legs
+        heel, toe = (-legs.heel, y, CLEARANCE + legs.ankle), (legs.toe, y, CLEARANCE + legs.ankle)
+        self._capsule(foot, foot, heel, toe, legs.ankle, FOOT / 10)  # the rest of its mass is the base's
+        for segment in (shank, foot):
+            self.mj_spec.add_exclude(bodyname1="world", bodyname2=self._name(segment))
+
     def _segment(self, part: str, parent: str, joint: Point, hinges: tuple[str, ...] = HINGES) -> None:
-        """Adds a body on hinges at one point, given in the world's frame of a body at the origin that faces along x."""
+        """Adds a body on joints at one point, given in the world's frame of a body at the origin that faces along x."""
         on, at = self.bodies[parent]
         body = on.add_body(name=self._name(part), pos=[a - b for a, b in zip(joint, at, strict=True)], gravcomp=1)
-        for hinge, limits in zip(hinges, limits_of(part), strict=True):
+        for hinge in hinges:
             body.add_joint(
                 name=self._name(f"{part}_{hinge}"),
-                type=mjtJoint.mjJNT_HINGE,
+                type=mjtJoint.mjJNT_HINGE if hinge in HINGES else mjtJoint.mjJNT_SLIDE,
                 axis=_AXES[hinge],
-                range=limits,
+                range=limits_of(part, hinge),
                 limited=True,
-                armature=strength_of(part) / BRISKNESS,
+                armature=strength_of(part) / BRISKNESS if hinge in HINGES else 0.0,
                 solref_limit=WALL_SOLREF,
                 solimp_limit=[0.999, 0.9999, 0.001, 0.5, 2],
             )
@@ -371,7 +416,7 @@ class _Builder:
             add_servo(self.mj_spec, self._name(name), base, force, gear)
         for segment, hinge in self.person.joints:
             joint = self._name(f"{segment}_{hinge}")
-            add_servo(self.mj_spec, joint, joint, strength_of(segment))
+            add_servo(self.mj_spec, joint, joint, strength_of(segment) if hinge in HINGES else self.person.push)
         for side in SIDES:
             arm = self._name(f"{side}_upper_arm")
             hand = self.mj_spec.add_equality(name=self._name(f"{side}_hand"), type=mjtEq.mjEQ_WELD, objtype=mjtObj.mjOBJ_BODY, name1=arm)
