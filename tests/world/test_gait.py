@@ -102,7 +102,7 @@ def test_steps_vary_as_much_as_they_should() -> None:
 
 
 def test_a_seed_gives_the_same_steps_and_another_one_others() -> None:
-    runs = []
+    runs: list[bytes] = []
     for seed in (1, 1, 2):
         world = walker(Gait(), seed=seed)
         world.bodies["p"].set("walk", 1.3)

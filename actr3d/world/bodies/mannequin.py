@@ -187,8 +187,8 @@ class Mannequin(Configuration):
     def joints(self) -> tuple[tuple[str, str], ...]:
         """All joints: the segment and the hinge."""
         stance = (("stance", "yaw"),) if self.sideways else ()
-        walking = tuple(tuple(joint.rsplit("_", 1)) for joint in OWN) if self.gait is not None else ()
-        return (*walking, *stance, *((segment, hinge) for segment in HINGED for hinge in HINGES))
+        own = [joint.rpartition("_") for joint in OWN] if self.gait is not None else []
+        return (*((segment, joint) for segment, _, joint in own), *stance, *((segment, hinge) for segment in HINGED for hinge in HINGES))
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds all segments, joints and servos, and the welds by which its hands hold objects."""
