@@ -167,7 +167,7 @@ class Motor(WithParameters, Port):
         self._command(partial(self._walk, number(speed, "walk: speed")), "walk", speed=speed)
 
     def turn(self, angle: Any = None, speed: Any = None) -> None:
-        """Turns the whole body, also while it walks.
+        """Turns the whole body, also while it walks; while it turns without an end, it changes the speed.
 
         Args:
             angle: The angle [degrees, left is positive]; None until `stop`.
@@ -194,16 +194,23 @@ class Motor(WithParameters, Port):
         walk = self._under_way.get("walk")
         if speed == 0:
             self._halt(["walk"] if walk else [], place)
-        elif isinstance(walk, Walk) and walk.begun:
-            self._under_way["walk"] = Walk(speed, place)
-            self._launch("walk", self._under_way["walk"])
         else:
-            self._begin({"walk": Walk(speed, place)})
+            self._begin_or_change("walk", Walk(speed, place), change=walk is not None and walk.begun)
 
     def _turn(self, angle: float | None, rate: float, place: str) -> None:
         self._need("walk")
         self._known().possible("turn", rate, 1, radians(1))
-        self._begin({"turn": Turn(angle, rate, place)})
+        turn = self._under_way.get("turn")
+        endless = isinstance(turn, Turn) and turn.begun and turn.rest is None and angle is None
+        self._begin_or_change("turn", Turn(angle, rate, place), change=endless)
+
+    def _begin_or_change(self, key: str, movement: Movement, *, change: bool) -> None:
+        """Begins a movement of the legs, or replaces the one in progress."""
+        if change:
+            self._under_way[key] = movement
+            self._launch(key, movement)
+        else:
+            self._begin({key: movement})
 
     def _stop(self, groups: Sequence[Any], place: str) -> None:
         plan = self._known().plan

@@ -160,6 +160,22 @@ def test_walking_faster_or_stopping_the_legs_leaves_a_turn_and_limbs_alone() -> 
     assert angle(simulation, "torso_yaw") == near(80, abs=0.05)
 
 
+def test_a_turn_without_an_end_changes_its_speed_while_it_walks() -> None:
+    simulation, motor = moving()
+    motor.walk(1.0)
+    motor.turn(speed=20)
+    simulation.step(50)
+    motor.turn(speed=-40)
+    simulation.step(50)
+    assert motor.refusal is None
+    assert motor.walking
+    assert motor.turning
+    heading = math.degrees(simulation.world.bodies["walker"].base.place[2])
+    assert heading == near(10 - 20, abs=0.7)
+    motor.turn(30)
+    assert motor.refusal == "busy", "one by an angle waits for its end"
+
+
 def test_it_turns_until_told_to_stop() -> None:
     simulation, motor = moving()
     motor.turn(speed=-50)
