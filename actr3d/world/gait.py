@@ -23,13 +23,19 @@ Row = NDArray[np.float64]
 SIDES = ("left", "right")
 SWAY, BOB = "stance_sway", "stance_bob"
 """The joints of the whole upper body relative to the walking direction: to the left, and up [m]."""
-LEG = ("thigh_pitch", "thigh_roll", "shank_pitch", "foot_pitch")
+LEG = ("thigh_yaw", "thigh_pitch", "thigh_roll", "shank_pitch", "foot_pitch")
 """The joints of a leg."""
+ASIDE = math.radians(45)
+"""Greatest turn of a thigh against the hips, which keeps the feet along the way while the body turns [rad]. Source: rotation of the hip,
+American Academy of Orthopaedic Surgeons; beyond it, the leg swings sideways."""
 OWN = (SWAY, BOB, *(f"{side}_{joint}" for side in SIDES for joint in LEG))
 """The joints that only gait moves."""
 SHARED = ("pelvis_yaw", "torso_yaw", "head_yaw", "left_upper_arm_pitch", "right_upper_arm_pitch")
 """The joints that the agent moves too: gait moves them about the place where they were commanded to stand."""
 
+THIGHS = tuple(OWN.index(f"{side}_thigh_yaw") for side in SIDES)
+TINY = 1e-12
+"""Less than any joint that gait moves differs from its place [rad] [m]."""
 STILL = 0.05
 """Speed below which a body does not step [m/s]. Source: chosen for this library."""
 PHASES = 100
@@ -149,24 +155,31 @@ class GaitCycle:
         """
         speed = math.hypot(forward, left)
         walks = speed >= STILL
-        if not walks and self._size == 0 and not self._added.any():
+        if walks or self._size:
+            wanted = self._stride(speed, duration)
+        else:
+            wanted = np.zeros(len((*OWN, *SHARED)))
             self._phase = 0.0
             self._steps += self._steps % 2  # it starts with the same foot
-            return None
-        wanted = self._offsets(speed, math.atan2(left, forward) - stance, duration) if walks or self._size else np.zeros(len(self.rows))
-        most = self._fastest * duration
+        direction = (math.atan2(left, forward) if walks else 0.0) - stance
+        turn = max(-ASIDE, min(ASIDE, direction))
+        c, s = math.cos(direction - turn), math.sin(direction - turn)
+        for yaw in THIGHS:
+            swing = wanted[yaw + 1]
+            wanted[yaw : yaw + 3] = turn, -swing * c, swing * s
+        missing = wanted[self._columns] - self._added
         self._added[~standing] = 0.0
-        added = np.where(standing, np.clip(wanted - self._added, -most, most), 0.0)
+        if not walks and self._size == 0 and float(np.abs(missing[standing]).max(initial=0.0)) < TINY:
+            return None
+        most = self._fastest * duration
+        added = np.where(standing, np.clip(missing, -most, most), 0.0)
         self._added += added
-        if not walks and self._size == 0 and float(np.abs(self._added).max()) < 1e-12:
-            self._added[:] = 0.0
         return added
 
-    def _offsets(self, speed: float, direction: float, duration: float) -> Row:
-        """Advances the stride, and returns the offset of each joint."""
+    def _stride(self, speed: float, duration: float) -> Row:
+        """Advances the stride, and returns the offset of each joint of `OWN` and `SHARED`; of thighs, as a pitch along the way."""
         gait = self._gait
-        walks = speed >= STILL
-        if walks:
+        if speed >= STILL:
             rate = gait.steps_per_second(speed) / (1 + gait.timing * self._random(self._steps)[0])
             self._phase += rate / 2 * duration
             if self._phase * 2 >= (self._steps % 2) + 1:
@@ -185,11 +198,7 @@ class GaitCycle:
         into = 2 * self._phase - self._steps % 2
         ease = into * into * (3 - 2 * into)
         offsets[0] += gait.wander * ((1 - ease) * self._random(self._steps)[1] + ease * self._random(self._steps + 1)[1])
-        c, s = math.cos(direction), math.sin(direction)
-        for first in (2, 6):  # the thighs swing along the way
-            swing = offsets[first]
-            offsets[first], offsets[first + 1] = -swing * c, swing * s
-        return offsets[self._columns] * (self._size * self._size * (3 - 2 * self._size))
+        return offsets * (self._size * self._size * (3 - 2 * self._size))
 
     def _random(self, step: int) -> tuple[float, float]:
         """Returns the two standard normal numbers of a step."""
@@ -218,7 +227,8 @@ def _pattern(gait: Gait, legs: LegPlan, speed: float) -> Row:
     low = np.full(PHASES, math.inf)
     for side, start in zip(SIDES, (0.0, 0.5), strict=True):
         hip, knee, ankle = (scale * _curve(curve, phases - start) for curve in (HIP, KNEE, ANKLE))
-        columns[f"{side}_thigh_pitch"], columns[f"{side}_thigh_roll"] = hip, np.zeros(PHASES)  # both are set along the way
+        columns[f"{side}_thigh_pitch"] = hip
+        columns[f"{side}_thigh_yaw"] = columns[f"{side}_thigh_roll"] = np.zeros(PHASES)
         columns[f"{side}_shank_pitch"], columns[f"{side}_foot_pitch"] = knee, -ankle
         low = np.minimum(low, _lowest(legs, hip, knee, ankle))
         columns[f"{side}_upper_arm_pitch"] = -gait.arms * min(1.0, scale) * np.cos(2 * np.pi * (phases - start - 0.5))

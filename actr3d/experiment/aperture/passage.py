@@ -45,6 +45,8 @@ class PassageResult:
     """Number of contacts of a part of the body with an object."""
     max_force_n: float
     """Greatest force of a contact [N]."""
+    impulse_n_s: float
+    """The forces of all contacts, summed over time [N s]: how much of a movement they took."""
     clearance_left_m: float | None
     """Smallest distance between any part of the body and the left segment of the wall, while a part of the body was between its
     faces [m]; None if none was."""
@@ -90,6 +92,9 @@ class _Sample(NamedTuple):
     """To the left and right segment [m], while in the doorway."""
     touches: frozenset[tuple[str, str]]
     force: float
+    """Greatest force of a contact [N]."""
+    impulse: float
+    """Of all contacts in this step [N s]."""
 
 
 @measure
@@ -159,10 +164,10 @@ class Passage:
         """
         before, angle, logged = posture()(self._axis, *self._shoulders, self._qpos, self._qvel, *self._turning, *self._middle, ago)
         touches = self._contacts.touches()
-        force = max([touch.force for touch in touches], default=0.0)
+        forces = [touch.force for touch in touches]
         pairs = frozenset([(touch.part, touch.other) for touch in touches]) if touches else _NONE
         room = self._clearance.rooms(self._contacts.held()) if abs(before) < self._reach else None
-        return _Sample(time, before, angle, logged, room, pairs, force)
+        return _Sample(time, before, angle, logged, room, pairs, max(forces, default=0.0), sum(forces) * ago)
 
     def result(self, *, over: bool) -> PassageResult:
         """Returns the result up to now."""
@@ -187,6 +192,7 @@ class Passage:
             onset_time_s=round(onset.time, 3) if onset else None,
             contacts=touches,
             max_force_n=round(max((sample.force for sample in samples), default=0.0), 1),
+            impulse_n_s=round(math.fsum(sample.impulse for sample in samples), 2),
             clearance_left_m=round(min(left for left, _ in rooms), 4) if rooms else None,
             clearance_right_m=round(min(right for _, right in rooms), 4) if rooms else None,
             speed_m_s=round(way / walked, 3) if walked else None,

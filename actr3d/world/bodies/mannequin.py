@@ -289,7 +289,7 @@ class _Builder:
         tall = self.person.height
         hip, knee, ankle = ((0.0, y, CLEARANCE + height * tall) for height in (HIP, KNEE, ANKLE))
         thigh, shank, foot = (f"{side}_{name}" for name in ("thigh", "shank", "foot"))
-        self._segment(thigh, part, hip, ("pitch", "roll"))
+        self._segment(thigh, part, hip, ("yaw", "pitch", "roll"))
         self._capsule(thigh, thigh, hip, knee, thick, LEG - HIPS - SHANK - FOOT)
         self._segment(shank, thigh, knee, ("pitch",))
         self._capsule(shank, shank, knee, ankle, 0.7 * thick, SHANK)

@@ -19,7 +19,7 @@ LIMITS: dict[str, dict[str, Range]] = {
     "eye": {"yaw": _degrees(-55, 55), "pitch": _degrees(-45, 45), "roll": _degrees(-10, 10)},
     "shoulder": {"yaw": _degrees(-20, 20), "pitch": _degrees(-30, 30), "roll": _degrees(-10, 45)},
     "upper_arm": {"yaw": _degrees(-90, 70), "pitch": _degrees(-180, 60), "roll": _degrees(-30, 180)},
-    "thigh": {"pitch": _degrees(-120, 45), "roll": _degrees(-60, 60)},
+    "thigh": {"yaw": _degrees(-50, 50), "pitch": _degrees(-120, 45), "roll": _degrees(-60, 60)},
     "shank": {"pitch": _degrees(-5, 150)},
     "foot": {"pitch": _degrees(-45, 60)},
 }
