@@ -90,7 +90,8 @@ class Person(ACTR):
     def near(b_goal="do:walk", b_course="steer:yes"):
         if self.door is not None and self.door[0] < self.onset:
             if self.planned:
-                motor.rotate("stance", "yaw", self.planned, self.planned / self.turn_time)
+                motor.rotate("stance", "yaw", 0.45 * self.planned, 0.45 * self.planned / self.turn_time)
+                motor.rotate("torso", "yaw", 0.55 * self.planned, 0.55 * self.planned / self.turn_time)
                 motor.rotate("head", "yaw", -self.planned * 60 / 80, 200)
             b_goal.set("do:pass")
 

@@ -33,6 +33,7 @@ OWN = (SWAY, BOB, *(f"{side}_{joint}" for side in SIDES for joint in LEG))
 SHARED = ("pelvis_yaw", "torso_yaw", "head_yaw", "left_upper_arm_pitch", "right_upper_arm_pitch")
 """The joints that the agent moves too: gait moves them about the place where they were commanded to stand."""
 
+ARMS = [(*OWN, *SHARED).index(f"{side}_upper_arm_pitch") for side in SIDES]
 THIGHS = tuple(OWN.index(f"{side}_thigh_yaw") for side in SIDES)
 TINY = 1e-12
 """Less than any joint that gait moves differs from its place [rad] [m]."""
@@ -83,7 +84,8 @@ class Gait(Configuration):
     (2010), Gait Posture 31: with speed the pelvis turns less with the thorax and more against it."""
 
     arms: Annotated[float, Ge(0), Le(1)] = math.radians(15)
-    """Swing of each arm, forward and back, against the leg of its side [rad]. Source: an arc of about 30 degrees (Perry 1992)."""
+    """Swing of each arm, forward and back, against the leg of its side [rad]. Source: an arc of about 30 degrees (Perry 1992). It falls
+    with the square of the cosine of the shoulders' turn, our assumption: who is turned sideways does not swing the arms aside."""
 
     def steps_per_second(self, speed: float) -> float:
         """Returns the step frequency at a speed [m/s]."""
@@ -143,13 +145,14 @@ class GaitCycle:
         self._size = 0.0
         """Of the movements: 0 standing, 1 walking; it changes during the first and last step."""
 
-    def advance(self, forward: float, left: float, stance: float, standing: NDArray[np.bool_], duration: float) -> Row | None:
+    def advance(self, forward: float, left: float, stance: float, torso: float, standing: NDArray[np.bool_], duration: float) -> Row | None:
         """Returns what the coming tick adds to the places of its joints (n,); None if the body stands.
 
         Args:
             forward: The commanded speed of the base [m/s].
             left: The same, to the left [m/s].
-            stance: The angle of the legs to the direction in which the base faces [rad].
+            stance: The angle of the hips to the direction in which the base faces [rad].
+            torso: The angle of the torso to the hips [rad].
             standing: (n,) the joints that no other command moves.
             duration: The length of the tick [s].
         """
@@ -167,6 +170,7 @@ class GaitCycle:
         for yaw in THIGHS:
             swing = wanted[yaw + 1]
             wanted[yaw : yaw + 3] = turn, -swing * c, swing * s
+        wanted[ARMS] *= max(0.0, math.cos(stance + torso)) ** 2
         missing = wanted[self._columns] - self._added
         self._added[~standing] = 0.0
         if not walks and self._size == 0 and float(np.abs(missing[standing]).max(initial=0.0)) < TINY:

@@ -103,7 +103,7 @@ class PostureHold:
         self._base = base
         self._contacts = contacts
         self._gait = gait
-        self._stance = None if gait is None else self._dofs.joints.get("stance_yaw")
+        self._trunk = [self._dofs.joints.get(joint) for joint in ("stance_yaw", "torso_yaw")]
         self._rows = dofs.base
         self.commanded: Row = np.zeros(len(dofs.q))
         """The commanded speeds of base and joints, in the rows of `ActuatedDofs`."""
@@ -258,8 +258,9 @@ class PostureHold:
         rows = gait.rows
         standing = np.isfinite(self.held[rows])
         forward, left, _ = self.base_command
-        stance = 0.0 if self._stance is None else float(self._dofs.places[self._stance])
-        added = gait.advance(forward, left, stance, standing, duration)
+        places = self._dofs.places
+        stance, torso = (0.0 if row is None else float(places[row]) for row in self._trunk)
+        added = gait.advance(forward, left, stance, torso, standing, duration)
         if added is None and not self.commanded[rows[standing]].any():
             return self.held
         self._forget_steady()
@@ -268,7 +269,7 @@ class PostureHold:
             self.commanded[moved] = 0.0
         else:
             self.held[moved] += added[standing]
-            self.commanded[moved] = (self.held[moved] - self._dofs.places[moved]) / duration
+            self.commanded[moved] = (self.held[moved] - places[moved]) / duration
             held[moved] = math.nan
         self._moves = bool(self.commanded[self._rows :].any())
         self._dofs.set_controls(self.commanded[moved], moved)
