@@ -13,9 +13,11 @@ The work is one planning unit (SGOMS) with four unit tasks:
 4. *Squeeze*: an obstacle interrupts the walk. The walker turns its shoulders at a constant speed until vision finds an opening that
    is wider than its felt width by a margin. Then it walks on, passes, and turns back (*leave*).
 
-The two variants
-----------------
-The `human` variant (the default) looks before it turns. It turns only if the opening is narrower than 1.30 times its width. The turn
+The three variants
+------------------
+The `predictive` variant is described in predictive_walker.py: no margin, ratio or judgement is put into it.
+
+The `descriptive` variant (the default) looks before it turns. It turns only if the opening is narrower than 1.30 times its width. The turn
 starts 1.6 s before the wall; hips and legs turn with the shoulders, until there is as much room on the sides as a person has who need
 not turn: 0.30 of the shoulder width. The faster it walks, the faster it turns. The size of its body is proportional to its shoulder
 width.
@@ -26,8 +28,8 @@ each answer of vision, and continues if no opening was found. So it turns by 17.
 every 175 ms. The original's means are at these angles, and a fast walker turns less because it has time for fewer pieces. It turns by
 about 18 degrees before any doorway. Two things are inferred from these means: the turn in pieces, and the depth of the trunk.
 
-Both variants keep looking until the edges of the doorway are beside them. If the doorway becomes narrower they turn again, or stop;
-the `human` variant stands still while it turns if it is near. A change less than 0.3 s before they arrive is noticed too late.
+These two keep looking until the edges of the doorway are beside them. If the doorway becomes narrower they turn again, or stop;
+the `descriptive` variant stands still while it turns if it is near. A change less than 0.3 s before they arrive is noticed too late.
 
 What to expect
 --------------
@@ -46,7 +48,8 @@ What to try
 - `variant = "replication", aperture = 0.7`: the original model turns even here.
 - `margin = 0, noise = 0.05`: a careless walker with poor eyes.
 - `bar = 0.6, aperture = 0.6`: a walker with a bar in both hands.
-- `aside = 0.3`: a start that is not in line with the doorway. This walker cannot steer: it walks into the wall.
+- `start_aside = 0.3`: a start that is not in line with the doorway. This walker cannot steer: it walks into the wall. The
+  `predictive` one can.
 - Or move the slider of the aperture while the walker is on its way.
 """
 
@@ -54,6 +57,7 @@ from dataclasses import dataclass
 from math import radians
 from typing import Annotated, Literal
 
+import predictive_walker
 from annotated_types import Ge, Gt, Le
 
 from actr3d.actr import *
@@ -96,8 +100,9 @@ DOOR = "feature:opening height:>1.5 depth:>0.5"
 class Parameters(Configuration):
     """The parameters of the model."""
 
-    variant: Literal["human", "replication"] = "human"
-    """The walker: a model of people, or a replication of the original ACT-R 3D's model."""
+    variant: Literal["predictive", "descriptive", "replication"] = "descriptive"
+    """The walker: one whose behaviour follows from gait, perception and experience; one that is told what people do; or a replication
+    of the original ACT-R 3D's model."""
 
     aperture: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.5
     """The free width of the doorway [m]. Source: Warren & Whang (1987) used 0.35 to 0.70."""
@@ -127,11 +132,29 @@ class Parameters(Configuration):
     bar: Annotated[float, Ge(0.1), Le(2)] | None = None
     """The length of a bar that the walker holds crosswise in front of it [m]; None: empty hands."""
 
-    aside: Annotated[float, Ge(-1), Le(1)] = 0.0
+    start_aside: Annotated[float, Ge(-1), Le(1)] = 0.0
     """How far to the left of the middle of the doorway the walker starts [m]."""
 
-    off: Annotated[float, Ge(-20), Le(20)] = 0.0
+    start_heading: Annotated[float, Ge(-20), Le(20)] = 0.0
     """The walking direction at the start [degrees]; 0 is straight ahead, positive to the left."""
+
+    contact_cost: Annotated[float, Ge(0), Le(1000)] = predictive_walker.CONTACT_COST
+    """Of the predictive walker: the cost of an impact of 1 J, in units of the effort of 1 J."""
+
+    perceptual_noise: Annotated[float, Ge(0), Le(10)] = predictive_walker.PERCEPTUAL_NOISE
+    """Of the predictive walker: factor of all noise of what it sees and feels."""
+
+    memory_noise: Annotated[float, Ge(0), Le(2)] = predictive_walker.MEMORY_NOISE
+    """Of the predictive walker: noise of the activation of memories."""
+
+    gait: bool = True
+    """Of the predictive walker: whether it steps and sways, now and in its memories; the others glide."""
+
+    memories: Annotated[int, Ge(0), Le(1000)] = predictive_walker.MEMORIES
+    """Of the predictive walker: the number of passages that it remembers."""
+
+    impact: Literal["energy", "any"] = "energy"
+    """Of the predictive walker: whether the cost of a contact grows with its energy, or is the same for any."""
 
 
 class Wait(Model):
@@ -503,8 +526,8 @@ class Replication(Walker):
         return (TIGHT if fits else 1 + self.margin) * width
 
 
-class Human(Walker):
-    """A model of people.
+class Descriptive(Walker):
+    """A walker that is told what people do.
 
     It keeps the same margin in any posture, a fraction of its shoulder width. Three of its numbers are not measured: when it reacts,
     how fast it turns, and how far it continues to turn. Because of the last two it turns more when it walks faster.
@@ -566,10 +589,10 @@ def body_of(parameters: Parameters) -> Mannequin:
     """Returns the body of the walker."""
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
-    common = {"name": "walker", "shoulder_width": width, "position": (0.0, p.aside), "heading": radians(p.off)}
+    common = {"name": "walker", "shoulder_width": width, "position": (0.0, p.start_aside), "heading": radians(p.start_heading)}
     if p.bar is not None:
         common["load"] = Load(shape="bar", size=(p.bar, BAR))
-    if p.variant == "human":
+    if p.variant == "descriptive":
         return Mannequin(height=width / SHOULDERS, depth=CHEST * width, sideways=True, **common)
     return Mannequin(height=HEIGHT, trunk="box", depth=TRUNK, **common)
 
@@ -579,8 +602,8 @@ def agent_of(parameters: Parameters) -> Walker:
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
     given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise, "only_judges": p.task == "judge", "judged": None}
-    if p.variant == "human":
-        agent = Human(margin=0.30 if p.margin is None else p.margin, shoulder_width=width, **given)
+    if p.variant == "descriptive":
+        agent = Descriptive(margin=0.30 if p.margin is None else p.margin, shoulder_width=width, **given)
     else:
         agent = Replication(margin=0.139 if p.margin is None else p.margin, radius=RADIUS * width, **given)
     agent.pace.wanted = agent.pace.kept = p.speed
@@ -588,8 +611,19 @@ def agent_of(parameters: Parameters) -> Walker:
     return agent
 
 
+def predictive(parameters: Parameters) -> predictive_walker.Parameters:
+    """Returns the parameters of the predictive walker."""
+    p = parameters
+    width, speed = p.shoulder_width or WIDTHS[p.group], p.speed or SPEEDS[p.group, p.condition]
+    own = {name: getattr(p, name) for name in ("aperture", "contact_cost", "perceptual_noise", "memory_noise", "gait", "memories", "impact", "task", "bar")}
+    start = {"start_aside": p.start_aside, "start_heading": p.start_heading}
+    return predictive_walker.Parameters(shoulder_width=width, speed=speed, **own, **start)
+
+
 def build(parameters: Parameters) -> Simulation:
     """Puts a walker 7 m before a doorway."""
+    if parameters.variant == "predictive":
+        return predictive_walker.build(predictive(parameters))
     scene = Scene(parts=(Floor(), Aperture(width=parameters.aperture), body_of(parameters)))
     simulation = Simulation(scene, {"walker": lambda: agent_of(parameters)})
     simulation.measure(Passage("walker"))

@@ -1,41 +1,161 @@
-"""A person walks through a doorway, and decides from experience how far to turn the shoulders."""
+"""A person walks through a doorway, and decides from experience how far to turn the shoulders.
 
-import csv
+No ratio, margin or judgement is put in. The walker has passed doorways before: it remembers, for hundreds of passages, how much wider
+than its body the doorway looked, how fast it walked, and what came of it: nothing, a brush, or a hit, and how hard. For each turn of
+its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by blending its memories what the
+passage will cost. It chooses the turn whose effort and expected impact are cheapest together.
+
+The body walks with a gait (`actr3d.world.Gait`): it sways, and its steps vary. So it needs more room than its width, and the less room
+it has the more often it touches the wall. The eyes see the doorway with noise, less when it is near; and the felt width has noise.
+
+Three parallel systems:
+
+- *Steering* (a production of 50 ms for each look and each turn) walks to the middle of the doorway by the law of Fajen & Warren (2003).
+- *Planning* imagines one turn after the other, and keeps the cheapest. It goes on until two steps before the doorway.
+- *Walking* turns the shoulders during these two steps, and turns them back behind the doorway.
+
+What to expect
+--------------
+- `aperture = 0.5`: turns by 20 to 50 degrees.
+- `aperture = 0.8`: walks straight through.
+- `aperture = 0.25`: declines.
+
+What to try
+-----------
+- `aperture = 0.5, speed = 1.8`: a fast walker.
+- `start_aside = 1.0, start_heading = 20.0`: steers to the middle of the doorway.
+- `contact_cost = 10.0`: fears to touch the wall.
+- `gait = False`: does not sway; its experience is still that of a body that does.
+"""
+
 from dataclasses import dataclass
-from math import exp, hypot, radians, sqrt
-from pathlib import Path
+from math import atan2, cos, degrees, exp, radians, sin, sqrt
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
 
 from actr3d.actr import *
 from actr3d.configuration import Configuration, Live
-from actr3d.experiment.aperture import Passage
+from actr3d.experiment.aperture import Passage, experiences
 from actr3d.motor import Motor
 from actr3d.simulation import Simulation
 from actr3d.vision import Vision
-from actr3d.world import Aperture, Floor, Gait, Mannequin, Scene
+from actr3d.world import Aperture, Floor, Gait, Load, Mannequin, Scene
 
-DAMPING, GOAL, NEARER, LEAST = 3.25, 7.50, 0.40, 0.40
-WALK_RATIO = Gait().walk_ratio
-DOOR = "feature:opening height:>1.5 depth:>0.5"
+CONTACT_COST, PERCEPTUAL_NOISE, MEMORY_NOISE = 3.0, 1.0, 0.1
+"""The free parameters."""
+DAMPING, ATTRACTION, NEARNESS, LEAST = 3.25, 7.50, 0.40, 0.40
+"""The walker turns towards its goal with the acceleration -b φ' - k (φ - ψ) (exp(-c1 d) + c2); b [1/s], k [1/s²], c1 [1/m], c2.
+Source: Fajen & Warren (2003), J Exp Psychol Hum Percept Perform 29 (docs/human-data.md)."""
+HEADING_NOISE = 0.02
+"""Random changes of the speed of turning: its standard deviation after one second [rad/s]. Source: chosen for this model."""
+SLOWEST = 0.01
+"""Turns slower than this are not made [rad/s]. Source: chosen for this model."""
+STEPS = 2.0
+"""How many steps before the doorway the shoulders begin to turn. Source: people look about two steps ahead (Patla & Vickers 2003); that
+they turn then is our assumption."""
+TURNING = 1.5
+"""In how many steps they turn: half a step before the doorway they are turned. Source: chosen for this model."""
+LEAST_TURN = 30.0
+"""The shoulders turn as fast as if they turned by this angle, or faster [degrees]. Source: chosen for this model."""
 TURNS = tuple(range(0, 81, 10))
+"""The turns that it imagines [degrees]."""
+HEAD = 0.75
+"""The part of a turn by which the head turns back against the shoulders; the eyes do the rest. Source: chosen from the neck's range."""
+HIPS = 0.45
+"""The part of a turn that the hips make; the torso makes the rest. Source: chosen from the ranges of both, about 45 and 55 degrees."""
+INERTIA = 1.5
+"""Moment of inertia of a turning person about the vertical [kg m²]. Source: chosen, of the order of a standing adult's."""
+MASS = 75.0
+"""[kg]. Source: the mannequin's."""
+ROOM, PACE, ANGLE = 0.02, 0.3, 5.0
+"""Differences of room [m], speed [m/s] and angle [degrees] at which the similarity of two memories is -1. Source: chosen for this model."""
+DISTANCE_NOISE, EDGE_NOISE, WIDTH_NOISE = 0.02, 0.002, 0.005
+"""Standard deviations, for `perceptual_noise = 1`: of seen distances, as a fraction; of the seen directions of edges [rad]; of the felt width [m].
+Source: chosen for this model; distances of a few metres are discriminated to some percent."""
+PAUSE = 0.4
+"""Time between two plans [s]. Source: chosen for this model."""
+MEMORIES = 150
+"""Number of passages that a walker remembers. Source: chosen for this model."""
+ANY = 10.0
+"""Cost of any contact where its energy does not count [J]. Source: chosen for this model."""
+DOOR = "feature:opening height:>1.5 depth:>0.5"
+"""Openings that one can walk through [m]."""
+FIELD = 2.6
+"""The width of the field of view [rad]. Source: chosen for this model."""
+BEHIND = 0.8
+"""How far behind the doorway it turns back [m]. Source: chosen for this model."""
+HEIGHT, CHEST = 1 / 0.259, 0.563
+"""Height, and depth of the chest, in shoulder widths. Source: Drillis & Contini (1966); ANSUR II (2012)."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters(Configuration):
+    """The parameters of the model."""
+
     aperture: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.5
+    """The free width of the doorway [m]."""
+
     shoulder_width: Annotated[float, Ge(0.3), Le(0.7)] = 0.404
+    """The shoulder width [m]. Source: the small group of Warren & Whang (1987)."""
+
     speed: Annotated[float, Ge(0.3), Le(3)] = 1.29
-    noise: Annotated[float, Ge(0), Le(10)] = 1.0
+    """The walking speed [m/s]. Source: Warren & Whang (1987), small group."""
+
+    contact_cost: Annotated[float, Ge(0), Le(1000)] = CONTACT_COST
+    """The cost of an impact of 1 J, in units of the effort of 1 J. A free parameter."""
+
+    perceptual_noise: Annotated[float, Ge(0), Le(10)] = PERCEPTUAL_NOISE
+    """Factor of all noise of what it sees and feels. A free parameter."""
+
+    memory_noise: Annotated[float, Ge(0), Le(2)] = MEMORY_NOISE
+    """Noise of the activation of memories. A free parameter."""
+
     turn: Annotated[float, Ge(0), Le(80)] | None = None
+    """The turn that it makes whatever it expects [degrees]; None: it decides. Used to make experiences."""
+
+    task: Literal["walk", "judge"] = "walk"
+    """What the walker does: walks through the doorway, or only judges whether it could pass without turning."""
+
+    bar: Annotated[float, Ge(0.1), Le(2)] | None = None
+    """The length of a bar that the walker holds crosswise in front of it [m]; None: empty hands."""
+
     start_aside: Annotated[float, Ge(-1), Le(1)] = 0.0
+    """How far to the left of the middle of the doorway the walker starts [m]."""
+
     start_heading: Annotated[float, Ge(-20), Le(20)] = 0.0
+    """The walking direction at the start [degrees]; 0 is straight ahead, positive to the left."""
+
     gait: bool = True
+    """Whether it steps and sways, now and in its memories; otherwise it glides."""
+
+    memories: Annotated[int, Ge(0), Le(1000)] = MEMORIES
+    """The number of passages that it remembers, drawn at random from those that were simulated."""
+
+    impact: Literal["energy", "any"] = "energy"
+    """What the cost of a contact grows with: its energy; or nothing, each costs as much as an impact of 10 J."""
+
+
+class Similar(Partial):
+    """Numbers are the more similar the nearer they are: the similarity is -1 at a difference that is given for each slot."""
+
+    def match(self, key, a, b):
+        return -self.strength * abs(float(a) - float(b)) / self.scales[key]
+
+
+class Wait(Model):
+    """A timer: `state` is «over» some time after `go`."""
+
+    state = "idle"
+
+    def go(self, seconds):
+        self.state = "on"
+        yield seconds
+        self.state = "over"
 
 
 class Steering(ACTR):
-    """Walks to the middle of the opening that it sees (Fajen & Warren 2003)."""
+    """Walks to the middle of the doorway that it sees."""
 
     production_time = 0.05
 
@@ -43,72 +163,238 @@ class Steering(ACTR):
         vision.request(DOOR)
 
     def steer(b_course="steer:yes", b_visual="feature:opening distance:?far direction:?left width:?wide"):
-        self.parent.sees(float(far), float(left), float(wide))
         b_visual.clear()
+        self.parent.sees(float(far), float(left), float(wide))
+
+    def straight_on(b_course="steer:yes", vision="busy:False error:True"):
+        """The edges of the doorway are beside the walker."""
+        self.parent.keep_course()
+
+
+class Planning(ACTR):
+    """Imagines turns of the shoulders, one after the other, and keeps the cheapest; some time later it begins again.
+
+    It ends when the effort of a larger turn alone would cost more than the cheapest so far.
+    """
+
+    production_time = 0.05
+
+    def begin(b_imagined=None, b_door="width:?wide", pause="state:!on"):
+        self.cheapest = None
+        b_imagined.set(f"turn:{TURNS[0] if self.parent.always is None else self.parent.always} door:{wide} state:new")
+
+    def imagine(b_imagined="turn:?turn state:new"):
+        DM.request(f"torso_yaw:{self.parent.side * (1 - HIPS) * float(turn):.2f} width:? middle:?")
+        b_imagined.modify(state="felt")
+
+    def expect(b_imagined="state:felt turn:?turn door:?door", b_DM="width:?width middle:?middle"):
+        b_DM.clear()
+        if self.parent.always is not None:
+            self.decide(f"turn:{turn} width:{width} middle:{middle} cost:0 free:1 passed:1")
+            b_imagined.clear()
+            pause.go(PAUSE)
+            return
+        experience.request(f"event:passage room:{float(door) - float(width):.3f} speed:{self.parent.speed:.2f} energy:? free:? passed:?")
+        b_imagined.set(f"turn:{turn} door:{door} width:{width} middle:{middle} state:expected")
+
+    def know_nothing(b_imagined="state:expected turn:?turn width:?width middle:?middle", experience="error:True"):
+        self.decide(f"turn:{TURNS[0]} width:{width} middle:{middle} cost:0 free:1 passed:1")
+        b_imagined.clear()
+        pause.go(PAUSE)
+
+    def compare(b_imagined="state:expected turn:?turn door:?door width:?width middle:?middle", b_experience="energy:?energy free:?free passed:?passed"):
+        b_experience.clear()
+        expected = float(energy) if self.parent.impact == "energy" else ANY * (1 - float(free))
+        cost = self.parent.effort(float(turn)) + self.parent.contact_cost * expected
+        if self.cheapest is None or cost < self.cheapest[0]:
+            self.cheapest = cost, f"turn:{turn} width:{width} middle:{middle} cost:{cost:.3f} free:{float(free):.3f} passed:{float(passed):.3f}"
+        further = [other for other in TURNS if other > float(turn) and self.parent.effort(other) < self.cheapest[0]]
+        if further:
+            b_imagined.set(f"turn:{further[0]} door:{door} state:new")
+        else:
+            self.decide(self.cheapest[1])
+            b_imagined.clear()
+            pause.go(PAUSE)
+
+
+    def decide(self, plan):
+        """Keeps a plan: its turn is made near the doorway, and the walker steers so that the middle of its body will be in the middle."""
+        self.parent.b_plan.set(plan)
+        self.parent.middle = float(self.parent.b_plan["middle"])
 
 
 class Person(ACTR):
+    """Feels how wide it is in each posture, then walks through the doorway."""
+
     production_time = 0.05
     b_goal = Buffer()
     b_course = Buffer()
     b_visual = Buffer()
+    b_door = Buffer()
+    b_imagined = Buffer()
     b_plan = Buffer()
     b_DM = Buffer()
-    DM = Memory(b_DM, latency=0)
-    vision = Vision(b_visual, delay=0.05, horizontal_fov=2.6)
-    motor = Motor(memory=DM, size_grid=0.001, extreme_step=8)
+    DM = Memory(b_DM, latency=0, threshold=None)
+    nearest = Similar(DM)
+    b_experience = Buffer()
+    experience = BlendingMemory(b_experience, latency=0, threshold=None)
+    activation_noise = DMNoise(experience, noise=0.1)
+    alike = Similar(experience)
+    vision = Vision(b_visual, delay=0.05, horizontal_fov=FIELD)
+    motor = Motor(memory=DM, size_grid=0.001, extreme_step=4)
+    way = Wait()
+    pause = Wait()
     steering = Steering()
+    planning = Planning()
 
     def init():
-        self.door = None
-        self.rate = 0.0
-        self.seen_at = 0.0
-        b_goal.set("do:walk")
+        nearest.scales = {"torso_yaw": ANGLE}
+        alike.scales = {"room": ROOM, "speed": PACE}
+        experience.temperature = 1.0
+        activation_noise.noise = memory_noise
+        vision.distance_noise, vision.edge_noise = noise * DISTANCE_NOISE, noise * EDGE_NOISE
+        motor.size_noise = noise * WIDTH_NOISE
+        known = experiences(walks=walks) if always is None else ()
+        for passage in self.random.sample(known, min(memories, len(known))):
+            experience.add("event:passage " + " ".join(f"{slot}:{value}" for slot, value in passage.items()))
+        self.side = self.random.choice([1, -1])
+        self.rate, self.seen_at, self.turned, self.middle = 0.0, None, 0, 0.0
+        b_goal.set("do:feel")
+
+    # -- the body schema
+
+    def turn_out(b_goal="do:feel", motor="busy:False"):
+        self.turn_shoulders(TURNS[-1], 1.0)
+        b_goal.set("do:return")
+
+    def turn_in(b_goal="do:return", motor="busy:False"):
+        self.turn_shoulders(0, 1.0)
+        b_goal.set("do:look")
+
+    def turn_shoulders(self, angle, seconds):
+        """Turns the shoulders to an angle [degrees], in a time [s]; head and eyes keep their direction."""
+        motor = self.motor
+        rate = max(abs(angle - self.turned), LEAST_TURN) / seconds
+        for part, share in (("stance", HIPS), ("torso", 1 - HIPS), ("head", -HEAD), ("eye", HEAD - 1)):
+            motor.rotate(part, "yaw", self.side * share * angle, abs(share) * rate)
+        self.turned = angle
+
+    # -- judging
+
+    def look(b_goal="do:look", motor="busy:False"):
+        vision.request(DOOR)
+        b_goal.set("do:judge" if self.only_judges else "do:start")
+
+    def cannot_see(b_goal="do:!feel", vision="error:True", b_course=None, b_door=None):
+        print(f"{self.now():.2f} s: sees no doorway")
+        self.judged = "not at all"
+        self.stop()
+
+    def remember_passages(b_goal="do:judge", b_visual="feature:opening width:?wide", motor="width:?width"):
+        """Has it passed such a doorway without touching it, at whatever speed?"""
+        b_visual.clear()
+        experience.request(f"event:passage room:{float(wide) - float(width):.3f} free:?")
+        b_goal.set("do:say")
+
+    def say(b_goal="do:say", b_experience="free:?free"):
+        self.judged = "as it is" if float(free) > 0.5 else "turned"
+        print(f"{self.now():.2f} s: can pass {self.judged}")
+        self.stop()
+
+    # -- walking
+
+    def set_out(b_goal="do:start", b_visual="feature:opening distance:?far width:?wide"):
+        b_visual.clear()
+        b_door.set(f"far:{far} width:{wide}")
         b_course.set("steer:yes")
+        b_goal.set("do:walk")
         motor.walk(self.speed)
 
     def sees(self, far, left, wide):
-        """Steers to the middle of an opening at a distance [m] and a direction to the left [degrees]."""
-        self.door = far, wide
-        if far < self.onset / 2:  # the last step
-            self.b_course.set("steer:no")
-            self.motor.turn(speed=1e-3)
-            return
+        """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees]; keeps its course in the last step."""
+        self.b_door.set(f"far:{far} width:{wide}")
         now = self.now()
-        elapsed = min(now - self.seen_at, 0.2) if self.seen_at else 0.1
+        elapsed = 0.1 if self.seen_at is None else min(now - self.seen_at, 0.3)
         self.seen_at = now
-        pull = GOAL * radians(left) * (exp(-NEARER * far) + LEAST)
-        self.rate += (pull - DAMPING * self.rate) * elapsed + self.random.gauss(0, self.sway_of_heading * sqrt(elapsed))
-        if abs(self.rate) > 1e-3:
-            self.motor.turn(speed=self.rate * 57.29578)
+        if far < self.step:
+            self.keep_course()
+            return
+        aside = atan2(far * sin(radians(left)) - self.middle, far * cos(radians(left)))
+        pull = ATTRACTION * aside * (exp(-NEARNESS * far) + LEAST)
+        self.rate += (pull - DAMPING * self.rate) * elapsed + self.random.gauss(0, HEADING_NOISE * sqrt(elapsed))
+        self.head(self.rate)
 
-    def straight_on(b_course="steer:yes", vision="busy:False error:True"):
-        """The edges of the doorway are out of sight."""
-        b_course.set("steer:no")
-        motor.turn(speed=1e-3)
+    def keep_course(self):
+        self.b_course.set("steer:no")
+        self.head(0.0)
 
-    def near(b_goal="do:walk", b_course="steer:yes"):
-        if self.door is not None and self.door[0] < self.onset:
-            if self.planned:
-                motor.rotate("stance", "yaw", 0.45 * self.planned, 0.45 * self.planned / self.turn_time)
-                motor.rotate("torso", "yaw", 0.55 * self.planned, 0.55 * self.planned / self.turn_time)
-                motor.rotate("head", "yaw", -self.planned * 60 / 80, 200)
-            b_goal.set("do:pass")
+    def head(self, rate):
+        """Turns the walking direction at a speed [rad/s]."""
+        self.motor.turn(speed=degrees(rate) if abs(rate) > SLOWEST else 0)
+
+    def effort(self, turn):
+        """Returns the work of turning the shoulders by an angle [degrees], there and back [J]: each time they start and stop."""
+        return 2 * INERTIA * (radians(turn) / self.turning_time) ** 2
+
+    def turn(b_goal="do:walk", b_door="far:?far width:?wide", b_plan="turn:?turn width:?width passed:?passed", b_course="steer:yes"):
+        if float(far) < STEPS * self.step:
+            self.committed = {"room": round(float(wide) - float(width), 4), "speed": self.speed}
+            b_goal.set("do:decline" if float(passed) <= 0.5 else f"do:turn turn:{turn}")
+
+    def decline(b_goal="do:decline"):
+        print(f"{self.now():.2f} s: cannot pass")
+        self.judged = "not at all"
+        motor.stop()
+        self.stop()
+
+    def turn_now(b_goal="do:turn turn:?turn", b_door="far:?far"):
+        print(f"{self.now():.2f} s: turns by {turn} degrees")
+        self.judged = "turned" if float(turn) else "as it is"
+        self.chosen = float(turn)
+        self.turn_shoulders(float(turn), self.turning_time)
+        way.go((float(far) + BEHIND) / self.speed)
+        b_goal.set("do:pass")
+
+    def leave(b_goal="do:pass", way="state:over"):
+        motor.stop()
+        self.turn_shoulders(0, 1.0)
+        b_goal.set("do:stand")
+
+    def stand(b_goal="do:stand", motor="busy:False"):
+        print(f"{self.now():.2f} s: is through")
+        self.stop()
+
+    def be_held(b_goal="do:!stand", motor="legs_end:blocked walking:False"):
+        print(f"{self.now():.2f} s: something is in the way")
+        motor.stop()
+        self.stop()
+
+
+def person(parameters: Parameters) -> Person:
+    """Returns an agent."""
+    p = parameters
+    frequency = Gait().steps_per_second(p.speed)
+    given = {"speed": p.speed, "step": p.speed / frequency, "turning_time": TURNING / frequency, "always": p.turn, "noise": p.perceptual_noise}
+    return Person(
+        **given, contact_cost=p.contact_cost, memory_noise=p.memory_noise, memories=p.memories, impact=p.impact, walks=p.gait, only_judges=p.task == "judge", judged=None, chosen=None, committed=None
+    )
 
 
 def build(parameters: Parameters) -> Simulation:
+    """Puts a walker 7 m before a doorway."""
     p = parameters
-    body = Mannequin(name="walker", shoulder_width=p.shoulder_width, height=p.shoulder_width / 0.259, depth=0.563 * p.shoulder_width, sideways=True, gait=Gait() if p.gait else None, position=(0, p.start_aside), heading=radians(p.start_heading))
-    scene = Scene(parts=(Floor(), Aperture(width=p.aperture), body))
-    def agent():
-        a = Person()
-        a.speed = p.speed
-        a.planned = p.turn or 0.0
-        f = sqrt(60 * p.speed / WALK_RATIO) / 60
-        a.onset = 2 * p.speed / f
-        a.turn_time = 1.5 / f
-        a.sway_of_heading = 0.02
-        return a
-    s = Simulation(scene, {"walker": agent})
-    s.measure(Passage("walker"))
-    return s
+    width = p.shoulder_width
+    body = Mannequin(
+        name="walker",
+        shoulder_width=width,
+        height=HEIGHT * width,
+        depth=CHEST * width,
+        sideways=True,
+        gait=Gait() if p.gait else None,
+        load=None if p.bar is None else Load(shape="bar", size=(p.bar, 0.03)),
+        position=(0.0, p.start_aside),
+        heading=radians(p.start_heading),
+    )
+    simulation = Simulation(Scene(parts=(Floor(), Aperture(width=p.aperture), body)), {"walker": lambda: person(p)})
+    simulation.measure(Passage("walker"))
+    return simulation

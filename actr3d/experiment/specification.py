@@ -242,7 +242,7 @@ def _source_of(path: Path) -> Source:
     """Returns the text of a file; the folder of one of the library's own files is not part of its name."""
     own = path.parent in (library_models(), *map(Path, designs.__path__))
     text = read_source(path)
-    return Source(file=path.name if own else str(path), text=text, helpers={} if own else modules_beside(path.parent, text))
+    return Source(file=path.name if own else str(path), text=text, helpers=modules_beside(path.parent, text))
 
 
 def modules_beside(folder: Path, text: str) -> dict[str, tuple[str, str]]:

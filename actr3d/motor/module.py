@@ -26,6 +26,9 @@ from actr3d.world.sensors.proprioception import Proprioception
 HUGE = 1e9
 """Upper bound of every parameter."""
 
+SIZES = ("width", "depth", "height", "middle")
+"""What is felt of the size of the body."""
+
 FEELING = "the motor module's own feeling"
 """Replaces the modeller's line in errors of the module's own requests."""
 
@@ -41,7 +44,8 @@ class Motor(WithParameters, Port):
     A group carries out one movement at a time; the legs walk and turn in parallel.
 
     Productions match `busy`, and `<group>_busy` of each muscle group; `error` after a refused command, and `refusal`,
-    «busy» or «limit»; `walking` and `turning`; felt values, `<joint>_angle` [degrees], `width`, `depth` and `height` [m].
+    «busy» or «limit»; `walking` and `turning`; felt values, `<joint>_angle` [degrees], `width`, `depth` and `height` [m],
+    and `middle`, how far the middle of that width is to the left of the base [m].
     Unknown names and invalid values raise errors.
 
     The module learns what the body consists of in the first tick; earlier commands begin 10 ms after the start. While
@@ -61,7 +65,7 @@ class Motor(WithParameters, Port):
         extreme_step: Distance beyond its former extreme at which a moving joint's posture is stored [degrees]; None
             for never. Source: chosen; about the ten samples to each side that the original took.
         angle_noise: The standard deviation of felt angles [degrees].
-        size_noise: The standard deviation of felt width, depth and height [m].
+        size_noise: The standard deviation of felt width, depth, height and middle [m].
         patience: Time without progress after which a movement ends as «blocked» [s]; None for never. Detection takes
             at most three times as long. Source: chosen.
         preparation: Preparation time of a command [s]. Source: 0 as in the original; ACT-R prepares 0.05 s for each feature
@@ -108,6 +112,7 @@ class Motor(WithParameters, Port):
         self.width: float | None = None
         self.depth: float | None = None
         self.height: float | None = None
+        self.middle: float | None = None
         for name, given, kind in (("buffer", buffer, Buffer), ("memory", memory, Memory)):
             if given is not None and not isinstance(given, kind):
                 raise ParameterError(f"Motor.{name}: must be a {kind.__name__}, or None (got {given!r})")
@@ -171,13 +176,14 @@ class Motor(WithParameters, Port):
 
         Args:
             angle: The angle [degrees, left is positive]; None until `stop`.
-            speed: Speed [degrees/s]; without an angle, negative turns to the right.
+            speed: Speed [degrees/s]; without an angle, negative turns to the right, and 0 ends the turn.
 
         Raises:
             WorldError: If a value is not a number, or the body cannot walk.
         """
         by = None if angle is None else radians(number(angle, "turn: angle"))
-        rate = radians(self._speed("turn", speed, by is not None))
+        ends = by is None and speed is not None and number(speed, "turn: speed") == 0
+        rate = 0.0 if ends else radians(self._speed("turn", speed, by is not None))
         self._command(partial(self._turn, by, rate), "turn", angle=angle, speed=speed)
 
     def stop(self, *groups: Any) -> None:
@@ -201,6 +207,9 @@ class Motor(WithParameters, Port):
         self._need("walk")
         self._known().possible("turn", rate, 1, radians(1))
         turn = self._under_way.get("turn")
+        if rate == 0:
+            self._halt(["turn"] if turn else [], place)
+            return
         endless = isinstance(turn, Turn) and turn.begun and turn.rest is None and angle is None
         self._begin_or_change("turn", Turn(angle, rate, place), change=endless)
 
@@ -528,7 +537,7 @@ class Motor(WithParameters, Port):
         new = schema.feel(joints, felt)
         for joint in new:
             self._become(limbs.shown_as[joint], schema.at[joint])
-        for name in ("width", "depth", "height"):
+        for name in SIZES:
             noise = draw(0, self.size_noise) if self.size_noise else 0.0
             self._become(name, schema.size(getattr(reading, name) + noise))
         further = schema.extremes(new)
@@ -559,7 +568,7 @@ class Motor(WithParameters, Port):
         """Puts the present posture into the buffer and into declarative memory."""
         schema = self._schema
         assert schema is not None
-        posture = schema.posture(name, end, joint, {"width": self.width, "depth": self.depth, "height": self.height})
+        posture = schema.posture(name, end, joint, {name: getattr(self, name) for name in SIZES})
         if self._memory is not None:
             collect(self._memory, Chunk(posture))
         if self._buffer is not None:

@@ -1,4 +1,4 @@
-"""The body schema: postures with the width, depth and height felt in them, as chunks for declarative memory."""
+"""The body schema: postures with the size felt in them, as chunks for declarative memory."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class BodySchema:
             name: The movement that led here, or another name.
             end: How the movement ended.
             joint: The joint that moved: the slot `extreme` shows whether this is its extreme.
-            box: The felt width, depth and height.
+            box: The felt width, depth, height and middle.
         """
         limbs = self._limbs
         at = self.at

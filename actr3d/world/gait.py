@@ -171,13 +171,13 @@ class GaitCycle:
             swing = wanted[yaw + 1]
             wanted[yaw : yaw + 3] = turn, -swing * c, swing * s
         wanted[ARMS] *= max(0.0, math.cos(stance + torso)) ** 2
-        missing = wanted[self._columns] - self._added
-        self._added[~standing] = 0.0
-        if not walks and self._size == 0 and float(np.abs(missing[standing]).max(initial=0.0)) < TINY:
+        added = wanted[self._columns] - self._added
+        if not walks and self._size == 0 and float(np.abs(added[standing]).max(initial=0.0)) < TINY:
             return None
         most = self._fastest * duration
-        added = np.where(standing, np.clip(missing, -most, most), 0.0)
+        added = np.minimum(np.maximum(added, -most), most)
         self._added += added
+        self._added[~standing] = added[~standing] = 0.0
         return added
 
     def _stride(self, speed: float, duration: float) -> Row:

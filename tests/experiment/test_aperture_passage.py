@@ -120,7 +120,9 @@ def test_it_judges_that_it_can_pass_as_it_is_from_a_ratio_of_116_on(model: Any, 
     assert said in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("variant", "aperture"), [("human", 0.05), ("human", 0.25), ("replication", 0.05), ("replication", 0.34)])
+@pytest.mark.parametrize(
+    ("variant", "aperture"), [("descriptive", 0.05), ("descriptive", 0.25), ("replication", 0.05), ("replication", 0.34)]
+)
 def test_it_declines_what_it_cannot_fit(model: Any, variant: str, aperture: float, capsys: Any) -> None:
     simulation = built(model, variant=variant, aperture=aperture)
     report = simulation.run()
@@ -147,7 +149,7 @@ def test_what_it_knows_of_its_width_it_has_learned(model: Any) -> None:
 # -- a doorway that changes
 
 
-@pytest.mark.parametrize("variant", ["human", "replication"])
+@pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_a_doorway_that_shrinks_on_the_way_is_turned_for(model: Any, variant: str) -> None:
     simulation = built(model, variant=variant, aperture=0.7)
     simulation.run(8)
@@ -158,7 +160,7 @@ def test_a_doorway_that_shrinks_on_the_way_is_turned_for(model: Any, variant: st
     assert result.wall_angle_deg > (passed(model, variant=variant, aperture=0.7).wall_angle_deg or 0) + 15
 
 
-@pytest.mark.parametrize("variant", ["human", "replication"])
+@pytest.mark.parametrize("variant", ["descriptive", "replication"])
 @pytest.mark.parametrize("until", [8.0, 9.0, 9.6])
 def test_a_doorway_that_becomes_too_narrow_is_stopped_before(model: Any, variant: str, until: float) -> None:
     simulation = built(model, variant=variant, aperture=0.6)
@@ -227,7 +229,7 @@ def test_who_is_to_walk_faster_close_before_it_still_turns_in_time(model: Any, a
     assert (simulation.result().outcome, simulation.result().contacts) == ("passed", 0)
 
 
-@pytest.mark.parametrize("variant", ["human", "replication"])
+@pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_a_speed_may_change_while_it_turns_back(model: Any, variant: str) -> None:
     simulation = built(model, variant=variant, aperture=0.45)
     simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.place[0] > 8.3)
@@ -296,7 +298,7 @@ def scene_with(model: Any, names: tuple[str, str, str], variant: str, width: flo
     return simulation
 
 
-@pytest.mark.parametrize("variant", ["human", "replication"])
+@pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_renaming_every_object_changes_no_byte(model: Any, variant: str) -> None:
     plain, renamed = scene_with(model, ("floor", "aperture", "walker"), variant), scene_with(model, ("a", "zebra", "mouse"), variant)
     plain.run()
@@ -310,7 +312,7 @@ def test_renaming_every_object_changes_no_byte(model: Any, variant: str) -> None
 
 
 @pytest.mark.daily(1)
-@pytest.mark.parametrize("variant", ["human", "replication"])
+@pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_a_seed_gives_the_same_bytes_however_it_is_run(model: Any, variant: str) -> None:
     straight, stepped, wandering = (scene_with(model, ("floor", "aperture", "walker"), variant) for _ in range(3))
     straight.run()
@@ -334,7 +336,7 @@ def test_another_seed_is_another_trial(model: Any) -> None:
 
 
 @pytest.mark.daily(1)
-@pytest.mark.parametrize("variant", ["human", "replication"])
+@pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_it_is_recorded_and_replayed(variant: str, tmp_path: Path, capsys: Any) -> None:
     recording = tmp_path / "run"
     assert main(["run", str(FILE), "--variant", variant, "--aperture", "0.45", "--seed", "1", "--record", str(recording)]) == 0
@@ -379,7 +381,7 @@ def test_who_declines_ends_with_0(capsys: Any) -> None:
         (["--speed", "50"], "Parameters.speed: must be <= 3 (got 50.0)"),
         (["--speed", "1e-9"], "Parameters.speed: must be >= 0.1 (got 1e-09)"),
         (["--group", "medium"], "Parameters.group: must be one of 'small', 'large' (got 'medium')"),
-        (["--variant", "humann"], "must be one of 'human', 'replication' (got 'humann'); did you mean 'human'?"),
+        (["--variant", "descriptiv"], "must be one of 'descriptive', 'replication' (got 'descriptiv'); did you mean 'descriptive'?"),
         (["--shoulder-width", "4"], "Parameters.shoulder_width: must be <= 0.7 (got 4.0)"),
         (["--apertur", "0.4"], "no option '--apertur'; did you mean '--aperture'?"),
     ],
@@ -392,7 +394,7 @@ def test_impossible_parameters_are_told_in_one_line(words: list[str], message: s
 
 
 def test_noticing_that_a_doorway_shrinks_interrupts_again(model: Any) -> None:
-    scene = scene_with(model, ("floor", "aperture", "walker"), "human", 0.7)
+    scene = scene_with(model, ("floor", "aperture", "walker"), "descriptive", 0.7)
     scene.run(9.5)
     assert scene.trace is not None
     responses = [event for event in scene.trace.select("planning_unit") if event.data["name"] == "squeeze"]
@@ -408,7 +410,7 @@ def test_noticing_that_a_doorway_shrinks_interrupts_again(model: Any) -> None:
 
 
 @pytest.mark.daily(2)
-@pytest.mark.parametrize("variant", ["human", "replication"])
+@pytest.mark.parametrize("variant", ["descriptive", "replication"])
 @pytest.mark.parametrize(("first", "then"), [(None, 0.6), (0.8, 1.7), (0.8, None)])
 def test_who_is_to_walk_at_another_speed_does_on_the_way(model: Any, variant: str, first: float | None, then: float | None) -> None:
     simulation = built(model, variant=variant, aperture=0.45, speed=first)
@@ -444,7 +446,7 @@ def test_a_speed_taken_back_before_it_walks_is_that_of_its_condition(model: Any)
 
 @pytest.mark.slow
 def test_a_run_in_which_the_speed_changed_goes_back_and_on_with_the_same_bytes(model: Any) -> None:
-    straight, wandering = (scene_with(model, ("floor", "aperture", "walker"), "human") for _ in range(2))
+    straight, wandering = (scene_with(model, ("floor", "aperture", "walker"), "descriptive") for _ in range(2))
     for simulation in (straight, wandering):
         simulation.run(7)
         simulation.command("parameter", "walker.pace.wanted", 0.8)

@@ -28,7 +28,7 @@ def test_the_originals_means_are_there() -> None:
 
 
 def test_agents_have_the_mean_and_deviation_of_their_group() -> None:
-    for variant, group, sd in (("human", "small", 0.02), ("human", "large", 0.007), ("replication", "small", 0.007)):
+    for variant, group, sd in (("descriptive", "small", 0.02), ("descriptive", "large", 0.007), ("replication", "small", 0.007)):
         trials = [WalkerTrial(variant=variant, group=group, condition="normal", aperture=0.5, agent=n, number=0) for n in range(5)]
         shoulders = [trial.shoulders for trial in trials]
         assert mean(shoulders) == pytest.approx(GROUPS[group][0], abs=1e-4)
@@ -36,7 +36,7 @@ def test_agents_have_the_mean_and_deviation_of_their_group() -> None:
 
 
 def test_an_experiment_shares_its_trials_among_agents() -> None:
-    trials = experiment("human", 12)
+    trials = experiment("descriptive", 12)
     assert len(trials) == 28 * 12
     assert len({trial.seed for trial in trials}) == len(trials)
     cell = [trial for trial in trials if (trial.group, trial.condition, trial.aperture) == ("small", "fast", 0.45)]
@@ -44,7 +44,7 @@ def test_an_experiment_shares_its_trials_among_agents() -> None:
 
 
 def test_a_trial_is_a_run_of_the_model() -> None:
-    trial = WalkerTrial(variant="human", group="large", condition="fast", aperture=0.5, agent=2, number=0)
+    trial = WalkerTrial(variant="descriptive", group="large", condition="fast", aperture=0.5, agent=2, number=0)
     once, again = run_trial(trial), run_trial(trial)
     assert (once.result, once.said) == (again.result, again.said)
     assert once.result.outcome == "passed"
@@ -97,7 +97,7 @@ def good(trial: WalkerTrial) -> PassageResult:
 
 
 def outcomes(of: Callable[[WalkerTrial], PassageResult]) -> list[Outcome]:
-    return [Outcome(trial=trial, result=of(trial), said="", cost=0.3) for trial in experiment("human", 10)]
+    return [Outcome(trial=trial, result=of(trial), said="", cost=0.3) for trial in experiment("descriptive", 10)]
 
 
 def findings(of: Callable[[WalkerTrial], PassageResult]) -> Findings:
@@ -173,7 +173,7 @@ def test_it_prints_all_cells_and_constraints(rise: float, code: int, monkeypatch
 
     def run(trials: list[WalkerTrial], *, judging: bool = False) -> list[Outcome]:
         def result(trial: WalkerTrial) -> PassageResult:
-            if trial.variant == "human":
+            if trial.variant == "descriptive":
                 return good(trial)
             angle = original[trial.group, trial.condition, trial.aperture] + rise
             return replace(good(trial), logged_angle_deg=angle)
@@ -187,8 +187,10 @@ def test_it_prints_all_cells_and_constraints(rise: float, code: int, monkeypatch
     assert f"root mean square difference {rise:.2f} degrees" in told
     assert f"{57.69 + rise:.1f} (57.7)" in told
     assert told.count("\nmet ") == 8
-    turned = {(trial.group, trial.condition, trial.aperture) for trial in experiment("human", 5) if (good(trial).wall_angle_deg or 0) > 5}
-    assert told.split("human: angle")[1].count(" (7.0)") == len(turned)
+    turned = {
+        (trial.group, trial.condition, trial.aperture) for trial in experiment("descriptive", 5) if (good(trial).wall_angle_deg or 0) > 5
+    }
+    assert told.split("descriptive: angle")[1].count(" (7.0)") == len(turned)
     assert "mean margin of agents that turned 6.9 cm left and 7.1 cm right at 40, 6.9 cm left and 7.1 cm right at 45" in told
     assert "5 trials a cell; a trial takes 300 ms of one processor for 11.0 s simulated" in told
     assert main(["bench", "aperture", "--trials", "5", "--json"]) == code
@@ -225,7 +227,7 @@ def test_trials_that_fail_are_told_and_count(monkeypatch: pytest.MonkeyPatch, ca
     assert main(["bench", "aperture", "--trials", "5"]) == 1
     told = capsys.readouterr().out
     assert "replication: did not pass, or touched the wall:\n  large fast 40 cm: 2 of 5 (stopped, touched the wall)\n" in told
-    assert "human: did not pass, or touched the wall: none\n" in told
+    assert "descriptive: did not pass, or touched the wall: none\n" in told
     assert "MISSED  1 trials never reached the wall" in told
     assert "root mean square difference 0.00 degrees" in told
     assert main(["bench", "aperture", "--trials", "5", "--json"]) == 1

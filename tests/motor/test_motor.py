@@ -174,6 +174,11 @@ def test_a_turn_without_an_end_changes_its_speed_while_it_walks() -> None:
     assert heading == near(10 - 20, abs=0.7)
     motor.turn(30)
     assert motor.refusal == "busy", "one by an angle waits for its end"
+    motor.turn(speed=0)
+    simulation.step(5)
+    assert motor.walking
+    assert not motor.turning
+    assert motor.legs_end == "stopped"
 
 
 def test_it_turns_until_told_to_stop() -> None:
@@ -540,7 +545,7 @@ def test_nothing_is_asked_while_nothing_moves() -> None:
     answers = [event for event in simulation.trace or () if event.kind == "answer"]
     assert [event.data["word"] for event in answers] == ["anatomy", "proprioception"]
     # Where all joints stand, the recorded physics tells; here it would be most of all that is traced.
-    assert answers[1].data["value"].keys() == {"moving", "speed", "walking", "turning", "width", "depth", "height"}
+    assert answers[1].data["value"].keys() == {"moving", "speed", "walking", "turning", "width", "depth", "height", "middle"}
     motor.rotate_torso(12)
     simulation.step(50)
     answers = [event for event in simulation.trace or () if event.kind == "answer"]

@@ -92,7 +92,7 @@ def test_turning_the_whole_body_does_not_change_the_felt_size() -> None:
 
 def test_a_posture_is_stored_at_the_start_and_where_movements_end() -> None:
     simulation, motor = moving(extreme_step=None)
-    start = {"posture": "start", "end": "felt", "extreme": "none", "width": 0.444, "depth": 0.25, "height": 1.745}
+    start = {"posture": "start", "end": "felt", "extreme": "none", "width": 0.444, "depth": 0.25, "height": 1.745, "middle": 0}
     assert postures(motor) == [{**dict.fromkeys(NAMED, 0), **start}]
     motor.rotate_torso(30)
     until(simulation, lambda: not motor.busy)

@@ -183,7 +183,7 @@ def test_every_answer_is_that_of_its_moment_for_a_model_that_looks_in_many_ways(
 
 
 @pytest.mark.daily(1)
-@pytest.mark.parametrize("variant", ["human", "replication"])
+@pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_every_answer_is_that_of_its_moment_for_a_walk_to_a_doorway(variant: str) -> None:
     source = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
     with shown_of(source, 1, variant=variant, aperture=0.45) as shown:
@@ -259,7 +259,7 @@ def test_every_answer_is_that_of_its_moment_for_all_tutorial_models(desk: Desk, 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
-@pytest.mark.parametrize("variant", ["human", "replication"])
+@pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_every_answer_is_that_of_its_moment_in_whole_runs(variant: str, seed: int) -> None:
     source = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
     with shown_of(source, seed, variant=variant, aperture=0.4 + 0.15 * seed) as shown:

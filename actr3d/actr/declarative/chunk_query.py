@@ -150,6 +150,49 @@ class PlainSearch:
         return all(as_text(chunk[slot]) != as_text(chunk[plan.unknown[name]]) for slot, name in plan.differ)
 
 
+class SimilarSearch(PlainSearch):
+    """A search that names plain slots only, without negations, in which similar values may match.
+
+    Args:
+        plan: The tests.
+        bound: The values of the bound variables.
+        partial: Computes the penalties of mismatches.
+    """
+
+    __slots__ = ()
+
+    def __init__(self, plan: _Plan, bound: Mapping[str, Any], partial: Partial) -> None:
+        super().__init__(plan, bound)
+        self.partial = partial
+
+    def among(self, store: ChunkStore) -> list[Chunk]:
+        """Returns the chunks that match, in the order in which they were added; sets their `penalty`."""
+        found: list[Chunk] = store
+        for slot in [*(slot for slot, _ in self.equal), *self._plan.present]:
+            holders = store.with_slot(slot)
+            if len(holders) < len(found):
+                found = holders
+        return [chunk for chunk in found if self._fits(chunk)]
+
+    def _fits(self, chunk: Chunk) -> bool:
+        if any(slot not in chunk for slot in self._plan.present):
+            return False
+        penalty = 0.0
+        match = self.partial.match
+        for slot, text in self.equal:
+            value = chunk.get(slot, _NOTHING)
+            if value is _NOTHING:
+                return False
+            held = value if type(value) is str else as_text(value)
+            if held != text:
+                try:
+                    penalty += match(slot, text, held)
+                except (AttributeError, TypeError, KeyError):  # a modeller's own `match` may not know the values
+                    return False
+        chunk.penalty = penalty
+        return True
+
+
 def _with_values(tests: Sequence[tuple[Slot, str, bool]], bound: Mapping[str, Any]) -> list[tuple[Slot, str]]:
     """Returns slots and texts, with variables replaced by their values."""
     found: list[tuple[Slot, str]] = []
@@ -211,9 +254,13 @@ def search_for(pattern: object, bound: Mapping[str, Any] | None, partial: Partia
     Raises:
         PatternException: If a text is not a pattern.
     """
-    if partial is None and type(pattern) is str:
+    if type(pattern) is str:
         variables = _variables(pattern)
         if variables is not None:
             known = tuple([name for name in variables if name in bound]) if bound else ()
-            return PlainSearch(_plan(pattern, known), bound or {})
+            plan = _plan(pattern, known)
+            if partial is None:
+                return PlainSearch(plan, bound or {})
+            if not plan.more:
+                return SimilarSearch(plan, bound or {}, partial)
     return PatternSearch(pattern, bound, partial)

@@ -47,8 +47,8 @@ NEEDED = (
     "contacts",
     "outcome",
     "bar",
-    "aside",
-    "off",
+    "start_aside",
+    "start_heading",
 )
 """The columns that a `Passing` is made of."""
 SIDES_DIFFER = 0.001
@@ -75,7 +75,7 @@ def passings_of(results: Results) -> list[Passing]:
                 contacts=int(row["contacts"] or 0),
                 passed=row["outcome"] == "passed",
                 bar=row.get("bar"),
-                straight=not row.get("aside") and not row.get("off"),
+                straight=not row.get("start_aside") and not row.get("start_heading"),
             )
         )
     return found
@@ -161,7 +161,9 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
         parts.append(
             f"Mean boundary {mean:.3f} (95 % interval over participants {low:.3f} to {high:.3f}); of all judgements {of_all.value:.3f}."
         )
-    parts.append("The boundary of the human variant is a parameter of the model (1.16): only its spread follows from the noise of vision.")
+    parts.append(
+        "The boundary of the descriptive variant is a parameter of the model (1.16): only its spread follows from the noise of vision."
+    )
     return [
         Section(title="Constraints on a model of people", parts=[_constraints(constraints)]),
         Section(title="Judged passability", parts=parts),

@@ -1,4 +1,4 @@
-"""`actr3d bench aperture`: compares the walker's replication with the original's means, and its human variant with human data."""
+"""`actr3d bench aperture`: compares the walker's replication with the original's means, and its descriptive variant with human data."""
 
 from __future__ import annotations
 
@@ -57,20 +57,20 @@ def root_mean_square(found: dict[Any, float], original: dict[Any, float]) -> flo
 
 
 def judgements(trials: int) -> list[WalkerTrial]:
-    """Returns trials of the human variant of which only the judgement is used."""
-    agents = [replace(trial, aperture=0.0) for trial in experiment("human", min(trials, 10), [0.0])]
+    """Returns trials of the descriptive variant of which only the judgement is used."""
+    agents = [replace(trial, aperture=0.0) for trial in experiment("descriptive", min(trials, 10), [0.0])]
     return [replace(trial, aperture=ratio * trial.shoulders) for trial in agents for ratio in JUDGED]
 
 
 def measure(trials: int) -> dict[str, Any]:
     """Runs all trials and returns the measurements; plain values."""
     start = time.perf_counter()
-    replication, human = (run_trials(experiment(variant, trials)) for variant in ("replication", "human"))
+    replication, descriptive = (run_trials(experiment(variant, trials)) for variant in ("replication", "descriptive"))
     judged = run_trials(judgements(trials), judging=True)
     spent = time.perf_counter() - start
     boundary = critical_ratio((outcome.trial.ratio, "as it is" not in outcome.said) for outcome in judged)
     original, found = original_means(), cells(replication)
-    findings = Findings(outcome.passing for outcome in human)
+    findings = Findings(outcome.passing for outcome in descriptive)
     constraints = findings.all(boundary=math.nan if boundary is None else boundary.value)
     return {
         "trials": trials,
@@ -78,18 +78,18 @@ def measure(trials: int) -> dict[str, Any]:
             {"group": g, "condition": c, "aperture": a, "angle": round(found.get((g, c, a), math.nan), 2), "original": original[g, c, a]}
             for g, c, a in original
         ],
-        "unfinished": unfinished(replication) + unfinished(human),
-        "failures": {"replication": failures(replication), "human": failures(human)},
+        "unfinished": unfinished(replication) + unfinished(descriptive),
+        "failures": {"replication": failures(replication), "descriptive": failures(descriptive)},
         "rmse": round(root_mean_square(found, original), 3),
-        "human": [
+        "descriptive": [
             {"group": g, "condition": c, "aperture": a, "angle": round(findings.mean(g, c, a), 2), "margin": findings.margin(g, c, a)}
             for g in GROUPS
             for c in CONDITIONS
             for a in APERTURES
         ],
         "constraints": [asdict(constraint) for constraint in constraints if constraint.number != BARS],
-        "ms_a_trial": round(1000 * mean(outcome.cost for outcome in (*replication, *human)), 1),
-        "simulated_s_a_trial": round(mean(outcome.result.time_s for outcome in (*replication, *human)), 2),
+        "ms_a_trial": round(1000 * mean(outcome.cost for outcome in (*replication, *descriptive)), 1),
+        "simulated_s_a_trial": round(mean(outcome.result.time_s for outcome in (*replication, *descriptive)), 2),
         "took_s": round(spent, 1),
     }
 
@@ -118,7 +118,11 @@ def main(*, json_output: bool, trials: int = TRIALS) -> int:
     holds = "holds" if measured["rmse"] <= BAR else "MISSED"
     print(f"{holds}  root mean square difference {measured['rmse']:.2f} degrees (at most {BAR:g}; we aim at {AIM:g})\n")
     print(
-        "\n".join(_table("human: angle at the wall [degrees], mean (margin of those that turned [cm])", measured["human"], "margin", 100))
+        "\n".join(
+            _table(
+                "descriptive: angle at the wall [degrees], mean (margin of those that turned [cm])", measured["descriptive"], "margin", 100
+            )
+        )
     )
     for constraint in constraints:
         print(f"{'met    ' if constraint.met else 'NOT MET'}  {constraint.number}  {constraint.says}: {constraint.found}")

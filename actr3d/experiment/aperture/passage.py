@@ -38,7 +38,8 @@ class PassageResult:
     """The sum of the joint angles of torso and clavicle at that moment [degrees], logged by the original model (docs/human-data.md); plus
     that of the stance, if the body has one."""
     onset_distance_m: float | None
-    """Distance from the wall at which the shoulders began to turn [m]; None if they did not."""
+    """Distance from the wall at which the shoulders began to turn to their greatest angle [m]; None if they did not. Before that, they may
+    have turned to and fro, as in walking."""
     onset_time_s: float | None
     """The time at which they began to turn [s]; None if they did not."""
     contacts: int
@@ -174,7 +175,7 @@ class Passage:
         now = float(self._world.mj_data.time)
         samples = self._samples[: bisect_right(self._times, now + TINY)]
         at_wall = next((sample for sample in samples if sample.before <= 0), None)
-        onset = next((sample for sample in samples if sample.angle >= TURNED), None)
+        onset = _onset(samples)
         rooms = [sample.room for sample in samples if sample.room is not None]
         touches, before = 0, frozenset[tuple[str, str]]()
         for sample in samples:
@@ -198,6 +199,17 @@ class Passage:
             speed_m_s=round(way / walked, 3) if walked else None,
             time_s=round(now, 3),
         )
+
+
+def _onset(samples: list[_Sample]) -> _Sample | None:
+    """Returns the sample from which on the shoulders are turned until their greatest angle; None if they never are."""
+    angles = [sample.angle for sample in samples]
+    number = angles.index(max(angles)) if angles else -1
+    if number < 0 or angles[number] < TURNED:
+        return None
+    while number and angles[number - 1] >= TURNED:
+        number -= 1
+    return samples[number]
 
 
 def _outcome(last: _Sample | None, over: bool) -> Literal["passed", "declined", "stopped"]:

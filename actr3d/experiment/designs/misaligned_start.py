@@ -11,7 +11,7 @@ def misaligned_start() -> Design:
     """
     return Design(
         model="aperture_passage.py",
-        factors={"aside": (0.0, 0.1, 0.25, 0.5), "off": (0.0, 5.0, 10.0), "aperture": (0.5, 0.7)},
+        factors={"start_aside": (0.0, 0.1, 0.25, 0.5), "start_heading": (0.0, 5.0, 10.0), "aperture": (0.5, 0.7)},
         groups={"adults": Group(participants=5, parameters={"shoulder_width": Normal(mean=0.404, sd=0.02, low=0.3, high=0.6)})},
         trials=5,
     )

@@ -26,7 +26,7 @@ def judgement(simulation: Any) -> dict[str, Any]:
 def passability_judgement() -> Design:
     """Judging from a distance whether one could pass without turning (Warren & Whang 1987, the static «can you pass?»).
 
-    What was put in: the judged ratio of the `human` variant, 1.16, is its parameter; only its spread comes from the noise of vision.
+    What was put in: the judged ratio of the `descriptive` variant, 1.16, is its parameter; only its spread comes from the noise of vision.
     """
     groups = {
         name: Group(participants=5, parameters={"group": name, "shoulder_width": Normal(mean=mean, sd=sd, low=0.3, high=0.7)})

@@ -42,6 +42,8 @@ class Proprioception:
     """Of that box, front to back [m]."""
     height: float
     """Of that box [m]."""
+    middle: float
+    """How far the middle of that box is to the left of the base [m]: a bar in front of a turned body is beside it."""
 
     def with_noise(self, sd: Any, random: Any) -> Proprioception:
         """Raises an error: a motor module needs these numbers to know when a movement is over, and has its own parameters for noise.
@@ -64,7 +66,8 @@ def proprioception(body: Body) -> Proprioception:
     """Senses at once the positions of all joints, what still moves, and width, depth and height of the body in this posture."""
     positions: list[float] = body.physics.mj_data.qpos.tolist()
     walks = body.anatomy.push is not None
-    depth, width, height = body.bounding_box("body").size
+    box = body.bounding_box("body")
+    depth, width, height = box.size
     return Proprioception(
         positions=tuple([positions[joint.q] for joint in body.joints.values()]),
         moving=body.moving(),
@@ -74,4 +77,5 @@ def proprioception(body: Body) -> Proprioception:
         width=width,
         depth=depth,
         height=height,
+        middle=(box.lower[1] + box.upper[1]) / 2,
     )

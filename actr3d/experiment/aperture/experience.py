@@ -1,0 +1,62 @@
+"""What a walker remembers of passages: how much room it had, how fast it walked, and what came of it."""
+
+from __future__ import annotations
+
+import csv
+import sys
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+from actr3d.experiment.aperture.passage import PassageResult
+from actr3d.experiment.store import Store
+
+FILE = Path(__file__).with_name("experience.csv")
+SLOTS = ("room", "speed", "energy", "free", "passed")
+COLUMNS = ("gait", *SLOTS)
+MASS = 75.0
+"""Of the walker [kg]. Source: the mannequin's."""
+
+
+def passage_remembered(committed: Mapping[str, float] | None, result: PassageResult) -> dict[str, float]:
+    """Returns the memory of a passage.
+
+    The energy of an impact is that of a body which the impulse of all contacts could stop, J² / 2m, and at most that of the walk.
+
+    Args:
+        committed: What the walker saw and did: `room` [m] and `speed` [m/s]; None if it came to no decision.
+        result: What came of it.
+    """
+    if committed is None:
+        raise ValueError("the walker did not come to the doorway")
+    moving = MASS * committed["speed"] ** 2 / 2
+    energy = min(result.impulse_n_s**2 / (2 * MASS), moving)
+    passed = result.outcome == "passed"
+    return {"room": committed["room"], "energy": round(energy, 2), "free": float(passed and result.contacts == 0), "passed": float(passed)}
+
+
+@cache
+def experiences(*, walks: bool = True) -> tuple[dict[str, float], ...]:
+    """Returns the memories of simulated passages, of a body that walks or of one that glides.
+
+    By slot: `room` [m], `speed` [m/s], `energy` [J], `free` (nothing was touched) and `passed`, 1 or 0.
+
+    Source: the rows of the design `doorway_practice`; see `experience.csv`.
+    """
+    with FILE.open(encoding="utf-8") as file:
+        return tuple({slot: float(row[slot]) for slot in SLOTS} for row in csv.DictReader(file) if row["gait"] == str(walks))
+
+
+def _write(folders: list[str]) -> None:
+    """Writes the file of experiences from the rows of experiments."""
+    with FILE.open("w", encoding="utf-8", newline="") as file:
+        rows = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
+        rows.writeheader()
+        for folder in folders:
+            with Store(Path(folder)) as store:
+                gait = {"gait": store.specification.values.get("gait", True)}
+                rows.writerows({**gait, **row, "speed": round(row["speed"], 3)} for row in store.rows() if row["error"] is None)
+
+
+if __name__ == "__main__":
+    _write(sys.argv[1:])

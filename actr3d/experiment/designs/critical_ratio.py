@@ -1,0 +1,35 @@
+"""The point at which people begin to turn their shoulders (Warren & Whang 1987)."""
+
+from typing import Any
+
+from actr3d.experiment.design import Design, Group, Measured, Normal, design
+from actr3d.experiment.designs.passability_judgement import aperture_of
+
+CRITICAL = 1.30
+"""The ratio of aperture to shoulder width below which people turn. Source: Warren & Whang (1987)."""
+
+
+@design
+def critical_ratio() -> Design:
+    """Walking through doorways of 1.30 shoulder widths, at normal speed: half of the passages should be turned.
+
+    That is the definition of the critical ratio. The free parameter of the `predictive` walker is fitted to this one number.
+    """
+    small = {"group": "small", "shoulder_width": Normal(mean=0.404, sd=0.02, low=0.3, high=0.7)}
+    return Design(
+        model="aperture_passage.py",
+        factors={"ratio": (CRITICAL,)},
+        groups={"small": Group(participants=20, parameters=small)},
+        settings={"variant": "predictive"},
+        derive=aperture_of,
+        results=decision,
+        measures=[Measured(name="turned", meaning="Whether the walker chose to turn its shoulders.")],
+        trials=5,
+        human="critical_ratio",
+    )
+
+
+def decision(simulation: Any) -> dict[str, Any]:
+    """Returns what the walker chose; None if it did not come to the doorway."""
+    chosen = simulation.agents["walker"].chosen
+    return {"turned": None if chosen is None else float(chosen > 0)}

@@ -1,0 +1,145 @@
+"""The predictive walker: steering, experience and decision; nothing of what people do is written into it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.actr.loading import load_text
+from actr3d.experiment.aperture import PassageResult, experiences
+from actr3d.experiment.aperture.experience import MASS, passage_remembered
+from actr3d.experiment.specification import specify
+from actr3d.experiment.trial import run_trial
+from actr3d.simulation import Simulation
+
+FILE = Path(__file__).parents[2] / "models" / "predictive_walker.py"
+
+
+@pytest.fixture(scope="module")
+def model() -> Any:
+    return load_text(FILE.read_text(encoding="utf-8"), str(FILE))
+
+
+def walked(model: Any, seed: int = 1, **given: Any) -> tuple[PassageResult, Any]:
+    """Returns the result of a walk, and the agent."""
+    with RunLimits(seed=seed):
+        simulation: Simulation = model.build(model.Parameters(**given))
+        simulation.run()
+    return simulation.result(), simulation.agents["walker"]
+
+
+# -- steering
+
+
+@pytest.mark.daily(3)
+@pytest.mark.parametrize("heading", [-20.0, 0.0, 20.0])
+@pytest.mark.parametrize("aside", [-1.0, -0.5, 0.0, 0.5, 1.0])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_it_steers_through_a_doorway_from_any_start_and_touches_nothing(model: Any, aside: float, heading: float, seed: int) -> None:
+    result, walker = walked(model, seed, aperture=0.8, start_aside=aside, start_heading=heading)
+    assert result.outcome == "passed"
+    assert result.contacts == 0
+    assert walker.chosen == 0
+    assert min(result.clearance_left_m, result.clearance_right_m) > 0.08, "it passes near the middle"
+
+
+def test_without_gait_it_steers_as_well(model: Any) -> None:
+    result, _ = walked(model, aperture=0.8, start_aside=0.5, gait=False)
+    assert (result.outcome, result.contacts) == ("passed", 0)
+
+
+# -- deciding
+
+
+def chosen(model: Any, seeds: int = 4, **given: Any) -> float:
+    """Returns the mean turn that it chooses [degrees]."""
+    return sum(walked(model, seed, **given)[1].chosen for seed in range(seeds)) / seeds
+
+
+def test_it_turns_the_more_the_narrower_the_doorway_is_and_not_at_all_if_it_is_wide(model: Any) -> None:
+    narrow, narrower = chosen(model, aperture=0.45), chosen(model, aperture=0.38)
+    assert chosen(model, 2, aperture=0.7) == 0
+    assert narrow > 20
+    assert narrower > narrow + 8
+
+
+def test_it_turns_more_if_it_fears_contacts_and_not_if_they_cost_nothing(model: Any) -> None:
+    assert chosen(model, 2, aperture=0.45, contact_cost=0.0) == 0
+    assert chosen(model, aperture=0.52, contact_cost=100.0) > chosen(model, aperture=0.52, contact_cost=1.0) + 10
+
+
+def test_a_larger_body_turns_more(model: Any) -> None:
+    assert chosen(model, aperture=0.5, shoulder_width=0.484) > chosen(model, aperture=0.5, shoulder_width=0.404) + 8
+
+
+def test_a_bar_is_part_of_the_body_that_it_feels(model: Any) -> None:
+    assert chosen(model, 2, aperture=0.6) < 10
+    assert chosen(model, 2, aperture=0.6, bar=0.7) > 25
+
+
+def test_what_it_expects_to_hit_in_any_posture_it_declines(model: Any, capsys: Any) -> None:
+    result, walker = walked(model, aperture=0.25)
+    assert walker.judged == "not at all"
+    assert result.contacts == 0
+    assert "cannot pass" in capsys.readouterr().out
+
+
+def test_it_judges_from_experience_whether_it_can_pass_as_it_is(model: Any) -> None:
+    judged = {aperture: walked(model, task="judge", aperture=aperture)[1].judged for aperture in (0.38, 0.6)}
+    assert judged == {0.38: "turned", 0.6: "as it is"}
+
+
+def test_a_turn_that_is_given_is_made(model: Any) -> None:
+    result, walker = walked(model, aperture=0.9, turn=40.0)
+    assert walker.chosen == 40
+    assert result.wall_angle_deg == pytest.approx(40, abs=8)
+    assert walker.committed["room"] == pytest.approx(0.9 - 0.34, abs=0.08)
+
+
+def test_the_same_seed_gives_the_same_walk(model: Any) -> None:
+    assert walked(model, 5, aperture=0.5)[0] == walked(model, 5, aperture=0.5)[0]
+    assert walked(model, 5, aperture=0.5)[0] != walked(model, 6, aperture=0.5)[0]
+
+
+# -- experience
+
+
+def test_experiences_are_of_all_rooms_and_the_less_room_the_more_contacts() -> None:
+    known = experiences()
+    assert len(known) > 1000
+    free = [
+        sum(one["free"] for one in known if low <= one["room"] < low + 0.05) / sum(1 for one in known if low <= one["room"] < low + 0.05)
+        for low in (-0.05, 0.0, 0.05, 0.1, 0.15)
+    ]
+    assert free == sorted(free)
+    assert free[0] < 0.2
+    assert free[-1] > 0.95
+    fast = [one["energy"] for one in known if one["room"] < -0.05 and one["speed"] > 1.5]
+    slow = [one["energy"] for one in known if one["room"] < -0.05 and one["speed"] < 1.2]
+    assert sum(fast) / len(fast) > 1.5 * sum(slow) / len(slow)
+
+
+def test_the_energy_of_an_impact_is_at_most_that_of_the_walk() -> None:
+    with pytest.raises(ValueError, match="did not come to the doorway"):
+        passage_remembered(None, result_with(0.0, 0))
+    committed = {"room": 0.01, "speed": 2.0}
+    assert passage_remembered(committed, result_with(0.0, 0)) == {"room": 0.01, "energy": 0.0, "free": 1.0}
+    assert passage_remembered(committed, result_with(30.0, 2)) == {"room": 0.01, "energy": 30**2 / 2 / MASS, "free": 0.0}
+    assert passage_remembered(committed, result_with(900.0, 9))["energy"] == MASS * 2.0**2 / 2
+
+
+def result_with(impulse: float, contacts: int) -> PassageResult:
+    numbers = dict.fromkeys(("peak_angle_deg", "wall_angle_deg", "logged_angle_deg", "onset_distance_m", "onset_time_s", "speed_m_s"), 0.0)
+    rooms = {"clearance_left_m": 0.0, "clearance_right_m": 0.0}
+    return PassageResult(outcome="passed", contacts=contacts, max_force_n=0.0, impulse_n_s=impulse, time_s=1.0, **numbers, **rooms)
+
+
+def test_an_experiment_runs_it_with_the_module_beside_the_model() -> None:
+    experiment = specify("warren_whang_1987", values={"variant": "predictive"})
+    with experiment.specification.sealed() as helpers:
+        row = run_trial(experiment, experiment.design.trial(0), helpers)
+    assert row["error"] is None
+    assert row["outcome"] in ("passed", "stopped")
