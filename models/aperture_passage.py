@@ -57,7 +57,6 @@ from dataclasses import dataclass
 from math import radians
 from typing import Annotated, Literal
 
-import predictive_walker
 from annotated_types import Ge, Gt, Le
 
 from actr3d.actr import *
@@ -138,23 +137,24 @@ class Parameters(Configuration):
     start_heading: Annotated[float, Ge(-20), Le(20)] = 0.0
     """The walking direction at the start [degrees]; 0 is straight ahead, positive to the left."""
 
-    contact_cost: Annotated[float, Ge(0), Le(1000)] = predictive_walker.CONTACT_COST
-    """Of the predictive walker: the cost of an impact of 1 J, in units of the effort of 1 J."""
+    contact_cost: Annotated[float, Ge(0), Le(1000)] | None = None
+    """Of the predictive walker: the cost of an impact of 1 J, in units of the effort of 1 J. None here and below: the value in
+    predictive_walker.py."""
 
-    perceptual_noise: Annotated[float, Ge(0), Le(10)] = predictive_walker.PERCEPTUAL_NOISE
+    perceptual_noise: Annotated[float, Ge(0), Le(10)] | None = None
     """Of the predictive walker: factor of all noise of what it sees and feels."""
 
-    memory_noise: Annotated[float, Ge(0), Le(2)] = predictive_walker.MEMORY_NOISE
+    memory_noise: Annotated[float, Ge(0), Le(2)] | None = None
     """Of the predictive walker: noise of the activation of memories."""
 
-    gait: bool = True
-    """Of the predictive walker: whether it steps and sways, now and in its memories; the others glide."""
-
-    memories: Annotated[int, Ge(0), Le(1000)] = predictive_walker.MEMORIES
+    memories: Annotated[int, Ge(0), Le(1000)] | None = None
     """Of the predictive walker: the number of passages that it remembers."""
 
     impact: Literal["energy", "any"] = "energy"
     """Of the predictive walker: whether the cost of a contact grows with its energy, or is the same for any."""
+
+    gait: bool = True
+    """Of the predictive walker: whether it steps and sways, now and in its memories; the others glide."""
 
 
 class Wait(Model):
@@ -611,19 +611,22 @@ def agent_of(parameters: Parameters) -> Walker:
     return agent
 
 
-def predictive(parameters: Parameters) -> predictive_walker.Parameters:
-    """Returns the parameters of the predictive walker."""
+def predictive(parameters: Parameters) -> Simulation:
+    """Builds the predictive walker, whose file is beside this one."""
+    import predictive_walker
+
     p = parameters
-    width, speed = p.shoulder_width or WIDTHS[p.group], p.speed or SPEEDS[p.group, p.condition]
-    own = {name: getattr(p, name) for name in ("aperture", "contact_cost", "perceptual_noise", "memory_noise", "gait", "memories", "impact", "task", "bar")}
-    start = {"start_aside": p.start_aside, "start_heading": p.start_heading}
-    return predictive_walker.Parameters(shoulder_width=width, speed=speed, **own, **start)
+    common = ("aperture", "task", "bar", "start_aside", "start_heading")
+    own = ("contact_cost", "perceptual_noise", "memory_noise", "memories", "impact", "gait")
+    values = {name: getattr(p, name) for name in (*common, *own) if getattr(p, name) is not None}
+    values |= {"shoulder_width": p.shoulder_width or WIDTHS[p.group], "speed": p.speed or SPEEDS[p.group, p.condition]}
+    return predictive_walker.build(predictive_walker.Parameters(**values))
 
 
 def build(parameters: Parameters) -> Simulation:
     """Puts a walker 7 m before a doorway."""
     if parameters.variant == "predictive":
-        return predictive_walker.build(predictive(parameters))
+        return predictive(parameters)
     scene = Scene(parts=(Floor(), Aperture(width=parameters.aperture), body_of(parameters)))
     simulation = Simulation(scene, {"walker": lambda: agent_of(parameters)})
     simulation.measure(Passage("walker"))

@@ -17,6 +17,7 @@ from tests.helpers.commands import run_command
 NAMES = model_names()
 TUTORIAL = [name for name in NAMES if name.startswith("tutorial/")]
 NOISY = {
+    "predictive_walker",
     "aperture_passage",
     "aperture_passage@replication",
     "fan_effect",
