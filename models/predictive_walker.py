@@ -180,7 +180,7 @@ class Planning(ACTR):
 
     production_time = 0.05
 
-    def begin(b_imagined=None, b_door="width:?wide", pause="state:!on"):
+    def begin(b_goal="do:walk", b_imagined=None, b_door="width:?wide", pause="state:!on"):
         self.cheapest = None
         b_imagined.set(f"turn:{TURNS[0] if self.parent.always is None else self.parent.always} door:{wide} state:new")
 
@@ -309,14 +309,14 @@ class Person(ACTR):
 
     def set_out(b_goal="do:start", b_visual="feature:opening distance:?far width:?wide"):
         b_visual.clear()
-        b_door.set(f"far:{far} width:{wide}")
+        b_door.set(f"far:{far} width:{wide} near:False")
         b_course.set("steer:yes")
         b_goal.set("do:walk")
         motor.walk(self.speed)
 
     def sees(self, far, left, wide):
         """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees]; keeps its course in the last step."""
-        self.b_door.set(f"far:{far} width:{wide}")
+        self.b_door.set(f"far:{far} width:{wide} near:{far < STEPS * self.step}")
         now = self.now()
         elapsed = 0.1 if self.seen_at is None else min(now - self.seen_at, 0.3)
         self.seen_at = now
@@ -340,10 +340,9 @@ class Person(ACTR):
         """Returns the work of turning the shoulders by an angle [degrees], there and back [J]: each time they start and stop."""
         return 2 * INERTIA * (radians(turn) / self.turning_time) ** 2
 
-    def turn(b_goal="do:walk", b_door="far:?far width:?wide", b_plan="turn:?turn width:?width passed:?passed", b_course="steer:yes"):
-        if float(far) < STEPS * self.step:
-            self.committed = {"room": round(float(wide) - float(width), 4), "speed": self.speed}
-            b_goal.set("do:decline" if float(passed) <= 0.5 else f"do:turn turn:{turn}")
+    def commit(b_goal="do:walk", b_door="width:?wide near:True", b_plan="turn:?turn width:?width passed:?passed"):
+        self.committed = {"room": round(float(wide) - float(width), 4), "speed": self.speed}
+        b_goal.set("do:decline" if float(passed) <= 0.5 else f"do:turn turn:{turn}")
 
     def decline(b_goal="do:decline"):
         print(f"{self.now():.2f} s: cannot pass")
@@ -351,7 +350,7 @@ class Person(ACTR):
         motor.stop()
         self.stop()
 
-    def turn_now(b_goal="do:turn turn:?turn", b_door="far:?far"):
+    def turn(b_goal="do:turn turn:?turn", b_door="far:?far"):
         print(f"{self.now():.2f} s: turns by {turn} degrees")
         self.judged = "turned" if float(turn) else "as it is"
         self.chosen = float(turn)
