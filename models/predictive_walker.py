@@ -18,7 +18,7 @@ What to expect
 --------------
 - `aperture = 0.5`: turns by 20 to 50 degrees.
 - `aperture = 0.8`: walks straight through.
-- `aperture = 0.25`: declines.
+- `aperture = 0.2`: declines.
 
 What to try
 -----------

@@ -89,6 +89,7 @@ def good(trial: WalkerTrial) -> PassageResult:
         onset_time_s=9.0 if angle else None,
         contacts=0,
         max_force_n=0.0,
+        impulse_n_s=0.0,
         clearance_left_m=0.069,
         clearance_right_m=0.071,
         speed_m_s=1.3,

@@ -50,7 +50,7 @@ def experiences(*, walks: bool = True) -> tuple[dict[str, float], ...]:
 def _write(folders: list[str]) -> None:
     """Writes the file of experiences from the rows of experiments."""
     with FILE.open("w", encoding="utf-8", newline="") as file:
-        rows = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
+        rows: csv.DictWriter[str] = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
         rows.writeheader()
         for folder in folders:
             with Store(Path(folder)) as store:
