@@ -217,6 +217,7 @@ RUN = """async () => {
 """Tells which run is shown; null until it has said where it stands."""
 
 
+@pytest.mark.slow
 def test_after_a_click_the_keys_belong_to_the_page_and_after_a_key_to_what_has_the_focus(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     shows(page, "#status", "at its start")

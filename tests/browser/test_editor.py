@@ -203,6 +203,7 @@ def test_a_file_that_changes_on_disk_is_never_written_over_unseen(pages: Callabl
     assert "again = 1" in path.read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_a_file_chosen_before_the_next_picture_stays_chosen(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
     written("soon.py", "a = 1\n")
     page = pages("counting.py")

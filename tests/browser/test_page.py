@@ -98,6 +98,7 @@ def test_an_error_is_shown_as_text_and_mended(page: Page, workbench: Served) -> 
     shows(page, "#events", "mended")
 
 
+@pytest.mark.slow
 def test_an_endless_loop_is_stopped(page: Page, workbench: Served) -> None:
     (workbench.folder / "loop.py").write_text("x = 1\nwhile True:\n    x += 1\n", encoding="utf-8")
     page.reload()

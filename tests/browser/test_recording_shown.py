@@ -69,6 +69,7 @@ def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, work
     expect(page).to_have_url(re.compile(r"/\?model=doorway\.py$"))
 
 
+@pytest.mark.slow
 def test_the_page_fits_its_window_whatever_a_recording_is_called(pages: Pages, workbench: Served) -> None:
     name = "of-a-walker-" + "x" * 108
     assert workbench.post(f"/api/recordings/{recorded(workbench, 'doorway.py')}/rename", {"to": name}).status_code == 200

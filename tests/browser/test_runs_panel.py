@@ -85,7 +85,7 @@ def test_runs_are_listed_sorted_searched_and_listed_again_when_one_ends(page: Pa
     expect(present).to_contain_text("the model called stop()")
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("chosen", [False, True])
 def test_a_small_window_lists_several_runs(page: Page, recordings: Path, two: list[str], chosen: bool) -> None:
     open_tab(page, "Runs")
@@ -160,6 +160,7 @@ def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, work
     assert not any((recordings / f"{name}.sqlite").exists() for name in spare)
 
 
+@pytest.mark.slow
 def test_several_downloads_at_once_arrive_whole_and_one_that_fails_is_told(
     pages: Callable[..., Page], workbench: Served, recordings: Path, two: list[str]
 ) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.helpers.page import choose, open_tab, shows
@@ -45,6 +46,7 @@ def says(page: Page, text: str, panels: tuple[str, ...]) -> None:
         expect(page.locator(f"#panel-{title.lower()} p.empty").first).to_contain_text(text)
 
 
+@pytest.mark.slow
 def test_all_panels_say_the_same_of_the_state_of_the_run_and_what_to_do(pages: Callable[..., Page], workbench: Served) -> None:
     for name, text in MODELS.items():
         (workbench.folder / name).write_text(text, encoding="utf-8")

@@ -107,7 +107,7 @@ def drawing(page: Page) -> dict[str, Any]:
     )
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["0.00", "1.96", "2.00", "3.50"])
 def test_labels_of_the_ruler_and_the_playhead_never_overlap(ended: Page, time: str) -> None:
     page = ended

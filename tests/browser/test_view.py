@@ -463,6 +463,7 @@ def test_from_above_there_is_no_perspective_and_each_browser_has_a_view_of_its_o
         assert not any(overlap(one, other) for one, other in combinations(boxes, 2)), far
 
 
+@pytest.mark.slow
 def test_keys_work_after_a_click_into_the_3d_view_and_do_nothing_in_a_field_of_text(page: Page) -> None:
     frame = frame_of(page)
     page.get_by_label("Speed", exact=True).select_option("1 x")

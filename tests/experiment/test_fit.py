@@ -72,6 +72,7 @@ def fit_of(tmp_path: Path, client: Any, *ranges: str, **options: Any) -> Fit:
     return Fit(f"{tmp_path / 'line.py'}:line", parsed, means((1, 2, 3, 4, 5)), tmp_path / "fit", client, **options)
 
 
+@pytest.mark.slow
 def test_held_out_designs_are_run_with_the_values_of_each_fit(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client, "slope=0..3")
     path = tmp_path / "line.py"

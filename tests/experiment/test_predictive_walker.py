@@ -34,7 +34,7 @@ def walked(model: Any, seed: int = 1, **given: Any) -> tuple[PassageResult, Any]
 # -- steering
 
 
-@pytest.mark.daily(3)
+@pytest.mark.daily(2)
 @pytest.mark.parametrize("heading", [-20.0, 0.0, 20.0])
 @pytest.mark.parametrize("aside", [-1.0, -0.5, 0.0, 0.5, 1.0])
 @pytest.mark.parametrize("seed", [1, 2, 3])

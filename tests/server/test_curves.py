@@ -41,6 +41,7 @@ def least(values: list[float | None]) -> float:
     return min(value for value in values if value is not None)
 
 
+@pytest.mark.slow
 def test_curves_of_a_passage_agree_with_its_result_live_and_recorded(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.45})
     result = ended(talk)["result"]

@@ -172,6 +172,7 @@ def test_a_copy_that_cannot_be_written_is_told(desk: Desk, tmp_path: Path) -> No
     assert page.body == b'{"error":"it cannot be read or written: File too large"}'
 
 
+@pytest.mark.slow
 def test_a_disk_that_was_full_leaves_no_broken_bytecode(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Python 3.11 leaves half a file of bytecode on a full disk, and fails whenever it reads it again."""
     monkeypatch.setenv("PYTHONPYCACHEPREFIX", str(tmp_path / "bytecode"))
@@ -202,6 +203,7 @@ def test_a_program_without_simulations_has_no_states_to_take(desk: Desk, tmp_pat
     assert b'"states": 0' in desk.ask(tmp_path, "/api/recordings/m").body
 
 
+@pytest.mark.slow
 def test_all_forms_at_once_and_again_and_again_are_whole(desk: Desk, tmp_path: Path) -> None:
     """Eight clients, and others who ask for something else meanwhile."""
     talk = desk.begin(tmp_path, APERTURE, record=True)

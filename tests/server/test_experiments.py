@@ -158,6 +158,7 @@ def test_failed_trials_are_rows_with_their_errors(workbench: Served) -> None:
     assert workbench.post(f"/api/experiments/{name}/trial", {"number": 0}).status_code == 200  # it shows how far the trial came
 
 
+@pytest.mark.slow
 def test_an_experiment_is_stopped_and_continued_while_sessions_go_on(workbench: Served) -> None:
     name = started(workbench, "slow/counting_design.py:counting")
     assert workbench.post(f"/api/experiments/{name}/resume").json()["error"] == "this experiment runs already"
@@ -184,6 +185,7 @@ def test_an_experiment_is_stopped_and_continued_while_sessions_go_on(workbench: 
     awaited(workbench, name, "stopped")
 
 
+@pytest.mark.slow
 def test_no_more_than_two_run_at_once(workbench: Served) -> None:
     names = [started(workbench, "slow/counting_design.py:counting") for _ in range(2)]
     refused = workbench.post("/api/experiments", {"design": COUNTING})
@@ -216,6 +218,7 @@ def test_experiments_end_with_the_workbench_and_go_on_with_the_next(tmp_path: Pa
         awaited(second, name, "running", done=now["done"] + 1)
 
 
+@pytest.mark.slow
 def test_an_experiment_whose_process_is_killed_says_so_and_can_be_continued(workbench: Served) -> None:
     name = started(workbench, "slow/counting_design.py:counting")
     awaited(workbench, name, "running", done=1)

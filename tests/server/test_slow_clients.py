@@ -103,6 +103,7 @@ async def talk(listening: socket.socket) -> list[bytes]:
     return heard[::3]
 
 
+@pytest.mark.slow
 def test_who_does_not_say_what_is_wanted_is_sent_away_and_nobody_else(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workbench_server, "REQUEST_TIME", SHORT)
     monkeypatch.setattr(auth, "BODY_TIME", SHORT)
