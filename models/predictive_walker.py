@@ -8,9 +8,10 @@ passage will cost. It chooses the turn whose effort and expected impact are chea
 The body walks with a gait (`actr3d.world.Gait`): it sways, and its steps vary. So it needs more room than its width, and the less room
 it has the more often it touches the wall. The eyes see the doorway with noise, less when it is near; and the felt width has noise.
 
-Three parallel systems:
+Four parallel systems:
 
 - *Steering* (a production of 50 ms for each look and each turn) walks to the middle of the doorway by the law of Fajen & Warren (2003).
+- *Avoiding* notices objects that are nearer than the doorway; the same law turns away from them.
 - *Planning* imagines one turn after the other, and keeps the cheapest. It goes on until two steps before the doorway.
 - *Walking* turns the shoulders during these two steps, and turns them back behind the doorway.
 
@@ -24,6 +25,7 @@ What to try
 -----------
 - `aperture = 0.5, speed = 1.8`: a fast walker.
 - `start_aside = 1.0, start_heading = 20.0`: steers to the middle of the doorway.
+- `scene = "pillar", aperture = 1.0`: walks round a pillar; `scene = "two doorways", aperture = 1.0`: chooses one of two.
 - `contact_cost = 10.0`: fears to touch the wall.
 - `gait = False`: does not sway; its experience is still that of a body that does.
 """
@@ -40,7 +42,7 @@ from actr3d.experiment.aperture import Passage, experiences
 from actr3d.motor import Motor
 from actr3d.simulation import Simulation
 from actr3d.vision import Vision
-from actr3d.world import Aperture, Floor, Gait, Load, Mannequin, Scene
+from actr3d.world import Aperture, Floor, Gait, Load, Mannequin, Scene, Wall
 
 CONTACT_COST, PERCEPTUAL_NOISE, MEMORY_NOISE = 1.9, 1.0, 0.1
 """The cost of contacts is the one free parameter: fitted with `actr3d fit` so that half of the passages at 1.30 shoulder widths are turned
@@ -48,6 +50,16 @@ CONTACT_COST, PERCEPTUAL_NOISE, MEMORY_NOISE = 1.9, 1.0, 0.1
 DAMPING, ATTRACTION, NEARNESS, LEAST = 3.25, 7.50, 0.40, 0.40
 """The walker turns towards its goal with the acceleration -b φ' - k (φ - ψ) (exp(-c1 d) + c2); b [1/s], k [1/s²], c1 [1/m], c2.
 Source: Fajen & Warren (2003), J Exp Psychol Hum Percept Perform 29 (docs/human-data.md)."""
+REPULSION, NARROWNESS, REACH = 198.0, 6.5, 0.8
+"""It turns away from obstacles with the acceleration k (φ - ψ) exp(-c3 |φ - ψ|) exp(-c4 d); k [1/s²], c3 [1/rad], c4 [1/m].
+Source: Fajen & Warren (2003)."""
+NOTICE, DOORWAY, FORGET = 4.0, 0.5, 0.5
+"""Objects count as obstacles up to this distance [m], if they are nearer than the doorway by at least the second number [m], and this long
+after they were last noticed [s]. Source: 3.8 m, the protective zone of Hackney & Cinelli (docs/human-data.md); the others chosen."""
+GLANCE = 20.0
+"""How far from where it was it looks for the doorway, to each side [degrees]. Source: chosen for this model."""
+BETWEEN = 3.2
+"""The distance between the middles of two doorways [m]. Source: chosen for this model."""
 HEADING_NOISE = 0.02
 """Random changes of the speed of turning: its standard deviation after one second [rad/s]. Source: chosen for this model."""
 SLOWEST = 0.01
@@ -95,7 +107,7 @@ class Parameters(Configuration):
     """The parameters of the model."""
 
     aperture: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.5
-    """The free width of the doorway [m]."""
+    """The free width of the doorway [m], or of each of two."""
 
     shoulder_width: Annotated[float, Ge(0.3), Le(0.7)] = 0.404
     """The shoulder width [m]. Source: the small group of Warren & Whang (1987)."""
@@ -126,6 +138,9 @@ class Parameters(Configuration):
 
     start_heading: Annotated[float, Ge(-20), Le(20)] = 0.0
     """The walking direction at the start [degrees]; 0 is straight ahead, positive to the left."""
+
+    scene: Literal["doorway", "pillar", "two doorways"] = "doorway"
+    """What is before the walker: a doorway; the same with a pillar on the way; or two doorways side by side."""
 
     gait: bool = True
     """Whether it steps and sways, now and in its memories; otherwise it glides."""
@@ -160,16 +175,36 @@ class Steering(ACTR):
 
     production_time = 0.05
 
-    def look(b_course="steer:yes", vision="busy:False", b_visual=None):
-        vision.request(DOOR)
+    def look(b_course="steer:yes", vision="busy:False error:False", b_visual=None):
+        """Looks where the doorway was: of two, it keeps to the one that it has chosen."""
+        vision.request(DOOR, direction=f">{self.parent.ahead - GLANCE:.1f} <{self.parent.ahead + GLANCE:.1f}")
 
     def steer(b_course="steer:yes", b_visual="feature:opening distance:?far direction:?left width:?wide"):
         b_visual.clear()
         self.parent.sees(float(far), float(left), float(wide))
 
-    def straight_on(b_course="steer:yes", vision="busy:False error:True"):
-        """The edges of the doorway are beside the walker."""
-        self.parent.keep_course()
+    def look_around(b_course="steer:yes", vision="busy:False error:True"):
+        """It is not where it was: it is elsewhere, or its edges are beside the walker."""
+        if self.parent.looks_around:
+            self.parent.keep_course()
+        else:
+            self.parent.looks_around = True
+            vision.request(DOOR)
+
+
+class Avoiding(ACTR):
+    """Notices objects that are nearer than the doorway, one after the other."""
+
+    production_time = 0.05
+
+    def look(b_course="steer:yes", periphery="busy:False", b_obstacle=None, b_door="far:?far"):
+        nearer = min(NOTICE, float(far) - DOORWAY)
+        if nearer > 0:
+            periphery.request("feature:obstacle", distance=f"<{nearer:.2f}")
+
+    def avoid(b_obstacle="feature:obstacle distance:?far leftmost:?left rightmost:?right"):
+        b_obstacle.clear()
+        self.parent.obstacle = float(far), radians(float(left) + float(right)) / 2, self.now()
 
 
 class Planning(ACTR):
@@ -245,10 +280,13 @@ class Person(ACTR):
     activation_noise = DMNoise(experience, noise=0.1)
     alike = Similar(experience)
     vision = Vision(b_visual, delay=0.05, horizontal_fov=FIELD)
+    b_obstacle = Buffer()
+    periphery = Vision(b_obstacle, delay=0.05, horizontal_fov=FIELD)
     motor = Motor(memory=DM, size_grid=0.001, extreme_step=4)
     way = Wait()
     pause = Wait()
     steering = Steering()
+    avoiding = Avoiding()
     planning = Planning()
 
     def init():
@@ -262,7 +300,7 @@ class Person(ACTR):
         for passage in self.random.sample(known, min(memories, len(known))):
             experience.add("event:passage " + " ".join(f"{slot}:{value}" for slot, value in passage.items()))
         self.side = self.random.choice([1, -1])
-        self.rate, self.seen_at, self.turned, self.middle = 0.0, None, 0, 0.0
+        self.rate, self.seen_at, self.turned, self.middle, self.obstacle = 0.0, None, 0, 0.0, None
         b_goal.set("do:feel")
 
     # -- the body schema
@@ -307,7 +345,8 @@ class Person(ACTR):
 
     # -- walking
 
-    def set_out(b_goal="do:start", b_visual="feature:opening distance:?far width:?wide"):
+    def set_out(b_goal="do:start", b_visual="feature:opening distance:?far width:?wide direction:?left"):
+        self.ahead, self.looks_around = float(left), False
         b_visual.clear()
         b_door.set(f"far:{far} width:{wide} near:False")
         b_course.set("steer:yes")
@@ -324,7 +363,11 @@ class Person(ACTR):
             self.keep_course()
             return
         aside = atan2(far * sin(radians(left)) - self.middle, far * cos(radians(left)))
+        self.ahead, self.looks_around = left, False
         pull = ATTRACTION * aside * (exp(-NEARNESS * far) + LEAST)
+        if self.obstacle is not None and now - self.obstacle[2] < FORGET:
+            distance, direction, _ = self.obstacle
+            pull -= REPULSION * direction * exp(-NARROWNESS * abs(direction)) * exp(-REACH * distance)
         self.rate += (pull - DAMPING * self.rate) * elapsed + self.random.gauss(0, HEADING_NOISE * sqrt(elapsed))
         self.head(self.rate)
 
@@ -384,7 +427,7 @@ def person(parameters: Parameters) -> Person:
 
 
 def build(parameters: Parameters) -> Simulation:
-    """Puts a walker 7 m before a doorway."""
+    """Puts a walker 7 m before a doorway, or before two, or a pillar between."""
     p = parameters
     width = p.shoulder_width
     body = Mannequin(
@@ -398,6 +441,14 @@ def build(parameters: Parameters) -> Simulation:
         position=(0.0, p.start_aside),
         heading=radians(p.start_heading),
     )
-    simulation = Simulation(Scene(parts=(Floor(), Aperture(width=p.aperture), body)), {"walker": lambda: person(p)})
-    simulation.measure(Passage("walker"))
+    parts = [Aperture(width=p.aperture)]
+    if p.scene == "pillar":
+        parts.append(Wall(name="pillar", start=(4.0, -0.15), end=(4.0, 0.15), thickness=0.3))
+    elif p.scene == "two doorways":
+        beside = BETWEEN / 2
+        doorways = {"aperture": beside, "second": -beside}
+        parts = [Aperture(name=name, width=p.aperture, position=(7.0, y), segment=beside - p.aperture / 2) for name, y in doorways.items()]
+    simulation = Simulation(Scene(parts=(Floor(), *parts, body)), {"walker": lambda: person(p)})
+    if p.scene != "two doorways":
+        simulation.measure(Passage("walker"))
     return simulation

@@ -53,6 +53,23 @@ def test_without_gait_it_steers_as_well(model: Any) -> None:
     assert (result.outcome, result.contacts) == ("passed", 0)
 
 
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.slow)])
+def test_it_walks_round_a_pillar_and_through_the_doorway_behind_it(model: Any, seed: int) -> None:
+    result, _ = walked(model, seed, aperture=1.2, scene="pillar")
+    assert (result.outcome, result.contacts) == ("passed", 0)
+
+
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.slow)])
+def test_of_two_doorways_it_passes_one(model: Any, seed: int) -> None:
+    with RunLimits(seed=seed):
+        simulation = model.build(model.Parameters(aperture=0.9, scene="two doorways"))
+        simulation.run()
+    x, y, _ = simulation.world.bodies["walker"].base.place
+    assert x > 7.3
+    assert abs(abs(y) - 1.6) < 0.2
+    assert not simulation.world.bodies["walker"].get("contacts")
+
+
 # -- deciding
 
 
