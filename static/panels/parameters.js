@@ -3,7 +3,7 @@
 import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { change } from "../bar/branch.js";
 import { seedProblem } from "../bar/seed.js";
-import { boundsText, read, written } from "../parameters/values.js";
+import { boundsText, rangeOf, read, written } from "../parameters/values.js";
 import { call, isLeft, order } from "../server.js";
 import { runStatus } from "../run_status.js";
 import { complain, session, state } from "../store.js";
@@ -125,6 +125,14 @@ function Control({ parameter, id, text, problem }) {
   return html`<input ...${shared} value=${text} placeholder=${optional ? "as the model says" : ""} inputmode=${takes === "text" ? "text" : "decimal"} spellcheck=${false} autocomplete="off" onInput=${(event) => write(parameter, event.currentTarget.value, false)} onChange=${change} />`;
 }
 
+/** A slider beside the field of a number that has both bounds. */
+function Slider({ parameter, text }) {
+  const range = rangeOf(parameter);
+  if (range === null || !Number.isFinite(Number(text)) || text === "") return null;
+  const take = (whole) => (event) => write(parameter, event.currentTarget.value, whole);
+  return html`<input type="range" ...${range} value=${text} aria-label="slider of ${parameter.name}" onInput=${take(false)} onChange=${take(true)} />`;
+}
+
 function Field({ parameter }) {
   const { name, unit, help, live } = parameter;
   const id = `parameter-${name}`;
@@ -134,7 +142,7 @@ function Field({ parameter }) {
   const changed = draft !== undefined && !problem && read(parameter, draft).value !== inForce(parameter);
   return html`<div class="parameter ${changed ? "waits" : ""}">
     <label for=${id}>${name}</label>
-    <span class="control"><${Control} parameter=${parameter} id=${id} text=${text} problem=${problem} />${unit ? html`<span class="quiet">${unit}</span>` : null}</span>
+    <span class="control"><${Control} parameter=${parameter} id=${id} text=${text} problem=${problem} /><${Slider} parameter=${parameter} text=${text} />${unit ? html`<span class="quiet">${unit}</span>` : null}</span>
     <span class="mark">${live ? html`<span class="badge" title="Acts on the run that goes on, and is recorded">live</span>` : changed ? html`<span class="badge" title="In force with the next run">next run</span>` : null}</span>
     <p id="${id}-help" class="help">
       ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}${help} <span class="bounds">${[boundsText(parameter), parameter.default === null ? "" : `default ${written(parameter.default)}`].filter(Boolean).join(" · ")}</span>

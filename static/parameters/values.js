@@ -17,6 +17,15 @@ export function boundsText({ above, least, below, most, optional }) {
   return parts.filter(Boolean).join(", ");
 }
 
+/** Returns the range of a slider for a number with both bounds, {min, max, step}; null for other parameters. */
+export function rangeOf({ takes, above, least, below, most }) {
+  const [low, high] = [least ?? above, most ?? below];
+  if ((takes !== "number" && takes !== "whole number") || low === null || high === null || !(high > low)) return null;
+  const fine = 10 ** Math.floor(Math.log10((high - low) / 100));
+  const step = takes === "whole number" ? Math.max(1, Math.round(fine)) : fine;
+  return { min: least ?? low + step, max: most ?? high - step, step };
+}
+
 /** Parses the text of a field: {value}, or {problem} with a description of valid values. */
 export function read(parameter, text) {
   const { takes, optional } = parameter;
