@@ -245,7 +245,7 @@ def _source_of(path: Path) -> Source:
     return Source(file=path.name if own else str(path), text=text, helpers=modules_beside(path.parent, text))
 
 
-def modules_beside(folder: Path, text: str) -> dict[str, tuple[str, str]]:
+def modules_beside(folder: Path, text: str) -> dict[str, list[str]]:
     """Returns the modules of a folder that a text imports anywhere in it, directly or through others.
 
     Args:
@@ -255,7 +255,7 @@ def modules_beside(folder: Path, text: str) -> dict[str, tuple[str, str]]:
     Returns:
         By name, the file relative to the folder and its text, as in `HelperTexts.loaded`. A package is returned whole.
     """
-    found: dict[str, tuple[str, str]] = {}
+    found: dict[str, list[str]] = {}
     waiting = [text]
     while waiting:
         for root in _imported_roots(waiting.pop()):
@@ -265,7 +265,7 @@ def modules_beside(folder: Path, text: str) -> dict[str, tuple[str, str]]:
                 if path.is_file():
                     inside = path.relative_to(folder)
                     name = ".".join(inside.with_suffix("").parts).removesuffix(".__init__")
-                    found[name] = inside.as_posix(), read_source(path)
+                    found[name] = [inside.as_posix(), read_source(path)]  # a list, as JSON returns it
                     waiting.append(found[name][1])
     return found
 

@@ -354,7 +354,7 @@ def test_it_is_recorded_and_replayed(variant: str, tmp_path: Path, capsys: Any) 
 
 RESULT = [
     *("event", "outcome", "peak_angle_deg", "wall_angle_deg", "logged_angle_deg", "onset_distance_m", "onset_time_s", "contacts"),
-    *("max_force_n", "clearance_left_m", "clearance_right_m", "speed_m_s", "time_s"),
+    *("max_force_n", "impulse_n_s", "clearance_left_m", "clearance_right_m", "speed_m_s", "time_s"),
 ]
 
 
@@ -381,7 +381,10 @@ def test_who_declines_ends_with_0(capsys: Any) -> None:
         (["--speed", "50"], "Parameters.speed: must be <= 3 (got 50.0)"),
         (["--speed", "1e-9"], "Parameters.speed: must be >= 0.1 (got 1e-09)"),
         (["--group", "medium"], "Parameters.group: must be one of 'small', 'large' (got 'medium')"),
-        (["--variant", "descriptiv"], "must be one of 'descriptive', 'replication' (got 'descriptiv'); did you mean 'descriptive'?"),
+        (
+            ["--variant", "descriptiv"],
+            "must be one of 'predictive', 'descriptive', 'replication' (got 'descriptiv'); did you mean 'descriptive'?",
+        ),
         (["--shoulder-width", "4"], "Parameters.shoulder_width: must be <= 0.7 (got 4.0)"),
         (["--apertur", "0.4"], "no option '--apertur'; did you mean '--aperture'?"),
     ],
