@@ -53,9 +53,10 @@ Source: Fajen & Warren (2003), J Exp Psychol Hum Percept Perform 29 (docs/human-
 REPULSION, NARROWNESS, REACH = 198.0, 6.5, 0.8
 """It turns away from obstacles with the acceleration k (φ - ψ) exp(-c3 |φ - ψ|) exp(-c4 d); k [1/s²], c3 [1/rad], c4 [1/m].
 Source: Fajen & Warren (2003)."""
-NOTICE, DOORWAY, FORGET = 4.0, 0.5, 0.5
+NOTICE, DOORWAY, FORGET = 4.0, 1.0, 0.5
 """Objects count as obstacles up to this distance [m], if they are nearer than the doorway by at least the second number [m], and this long
-after they were last noticed [s]. Source: 3.8 m, the protective zone of Hackney & Cinelli (docs/human-data.md); the others chosen."""
+after they were last noticed [s]. Source: 3.8 m, the protective zone of Hackney & Cinelli (docs/human-data.md); the others chosen, the
+second so that a fast walker does not take the wall, seen half a second after the doorway, for something before it."""
 GLANCE = 20.0
 """How far from where it was it looks for the doorway, to each side [degrees]. Source: chosen for this model."""
 BETWEEN = 3.2
@@ -67,8 +68,9 @@ SLOWEST = 0.01
 STEPS = 2.0
 """How many steps before the doorway the shoulders begin to turn. Source: people look about two steps ahead (Patla & Vickers 2003); that
 they turn then is our assumption."""
-TURNING = 1.5
-"""In how many steps they turn: half a step before the doorway they are turned. Source: chosen for this model."""
+TURNING = 1.0
+"""In how many steps they turn. With the time that it takes to see and to decide, they are turned about half a step before the doorway.
+Source: chosen for this model."""
 LEAST_TURN = 30.0
 """The shoulders turn as fast as if they turned by this angle, or faster [degrees]. Source: chosen for this model."""
 TURNS = tuple(range(0, 81, 10))
