@@ -53,12 +53,13 @@ Source: Fajen & Warren (2003), J Exp Psychol Hum Percept Perform 29 (docs/human-
 REPULSION, NARROWNESS, REACH = 198.0, 6.5, 0.8
 """It turns away from obstacles with the acceleration k (φ - ψ) exp(-c3 |φ - ψ|) exp(-c4 d); k [1/s²], c3 [1/rad], c4 [1/m].
 Source: Fajen & Warren (2003)."""
-NOTICE, DOORWAY, FORGET = 4.0, 1.0, 0.5
-"""Objects count as obstacles up to this distance [m], if they are nearer than the doorway by at least the second number [m], and this long
-after they were last noticed [s]. Source: 3.8 m, the protective zone of Hackney & Cinelli (docs/human-data.md); the others chosen, the
-second so that a fast walker does not take the wall, seen half a second after the doorway, for something before it."""
-GLANCE = 20.0
-"""How far from where it was it looks for the doorway, to each side [degrees]. Source: chosen for this model."""
+NOTICE, BEFORE, LAG, FORGET = 4.0, 0.15, 0.5, 0.5
+"""Objects count as obstacles up to this distance [m], if they are nearer than the doorway by more than the second number [m] and the way
+that it walks in the third [s], as it sees one after the other; and this long after they were last noticed [s]. Source: 3.8 m, the
+protective zone of Hackney & Cinelli (docs/human-data.md); the others chosen."""
+GLANCE, BEYOND, SAME = 20.0, 0.5, 0.8
+"""How far from where it was it looks for the doorway: to each side [degrees], and beyond it [m]; and how much of its width it must have
+to be the same. Source: chosen for this model."""
 BETWEEN = 3.2
 """The distance between the middles of two doorways [m]. Source: chosen for this model."""
 HEADING_NOISE = 0.02
@@ -88,6 +89,10 @@ ROOM, PACE, ANGLE = 0.02, 0.3, 5.0
 DISTANCE_NOISE, EDGE_NOISE, WIDTH_NOISE = 0.02, 0.002, 0.005
 """Standard deviations, for `perceptual_noise = 1`: of seen distances, as a fraction; of seen directions of edges [rad]; of felt widths [m].
 Source: chosen for this model; distances of a few metres are discriminated to some percent."""
+YIELD = 3.0
+"""At how many steps before the doorway it waits if somebody else is nearer to it. Source: chosen for this model."""
+PATIENCE = (0.5, 3.0)
+"""How long it waits for somebody who does not come, at least and at most [s]. Source: chosen for this model."""
 PAUSE = 0.4
 """Time between two plans [s]. Source: chosen for this model."""
 MEMORIES = 150
@@ -179,19 +184,24 @@ class Steering(ACTR):
 
     def look(b_course="steer:yes", vision="busy:False error:False", b_visual=None):
         """Looks where the doorway was: of two, it keeps to the one that it has chosen."""
-        vision.request(DOOR, direction=f">{self.parent.ahead - GLANCE:.1f} <{self.parent.ahead + GLANCE:.1f}")
+        ahead = self.parent.ahead
+        vision.request(DOOR, direction=f">{ahead - GLANCE:.1f} <{ahead + GLANCE:.1f}", **self.parent.same_doorway())
 
-    def steer(b_course="steer:yes", b_visual="feature:opening distance:?far direction:?left width:?wide"):
+    def steer(b_course="steer:yes", b_visual="feature:opening distance:?far direction:?left width:?wide depth:?deep"):
         b_visual.clear()
-        self.parent.sees(float(far), float(left), float(wide))
+        self.parent.sees(float(far), float(left), float(wide), float(deep))
 
-    def look_around(b_course="steer:yes", vision="busy:False error:True"):
-        """It is not where it was: it is elsewhere, or its edges are beside the walker."""
-        if self.parent.looks_around:
+    def look_around(b_course="steer:yes", vision="busy:False error:True", b_door="near:?near"):
+        """It is not where it was: it is elsewhere, or somebody is in it, or its edges are beside the walker."""
+        if not self.parent.looks_around:
+            self.parent.looks_around = True
+            vision.request(DOOR, **self.parent.same_doorway())
+        elif near == "True" and b_goal["do"] != "wait":
             self.parent.keep_course()
         else:
-            self.parent.looks_around = True
-            vision.request(DOOR)
+            b_door.modify(free="taken")
+            self.parent.taken = self.now()
+            vision.request(DOOR, **self.parent.same_doorway())
 
 
 class Avoiding(ACTR):
@@ -200,7 +210,8 @@ class Avoiding(ACTR):
     production_time = 0.05
 
     def look(b_course="steer:yes", periphery="busy:False", b_obstacle=None, b_door="far:?far"):
-        nearer = min(NOTICE, float(far) - DOORWAY)
+        way = 0 if b_goal["do"] == "wait" else LAG * self.parent.speed
+        nearer = min(NOTICE, float(far) - BEFORE - way)
         if nearer > 0:
             periphery.request("feature:obstacle", distance=f"<{nearer:.2f}")
 
@@ -287,6 +298,7 @@ class Person(ACTR):
     motor = Motor(memory=DM, size_grid=0.001, extreme_step=4)
     way = Wait()
     pause = Wait()
+    patience = Wait()
     steering = Steering()
     avoiding = Avoiding()
     planning = Planning()
@@ -302,7 +314,7 @@ class Person(ACTR):
         for passage in self.random.sample(known, min(memories, len(known))):
             experience.add("event:passage " + " ".join(f"{slot}:{value}" for slot, value in passage.items()))
         self.side = self.random.choice([1, -1])
-        self.rate, self.seen_at, self.turned, self.middle, self.obstacle = 0.0, None, 0, 0.0, None
+        self.rate, self.seen_at, self.turned, self.middle, self.obstacle, self.taken = 0.0, None, 0, 0.0, None, 0.0
         b_goal.set("do:feel")
 
     # -- the body schema
@@ -350,15 +362,24 @@ class Person(ACTR):
     def set_out(b_goal="do:start", b_visual="feature:opening distance:?far width:?wide direction:?left"):
         self.ahead, self.looks_around = float(left), False
         b_visual.clear()
-        b_door.set(f"far:{far} width:{wide} near:False")
+        b_door.set(f"far:{far} width:{wide} near:False free:True")
         b_course.set("steer:yes")
         b_goal.set("do:walk")
         motor.walk(self.speed)
 
-    def sees(self, far, left, wide):
-        """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees]; keeps its course in the last step."""
-        self.b_door.set(f"far:{far} width:{wide} near:{far < STEPS * self.step}")
+    def sees(self, far, left, wide, deep):
+        """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees]; keeps its course in the last step.
+
+        A near doorway is free if nothing is before it, and nothing behind it is as near to it as the walker.
+        """
         now = self.now()
+        obstructed = self.obstacle is not None and now - self.obstacle[2] < FORGET
+        free = far > YIELD * self.step or (deep > far and not obstructed)
+        if not free:
+            self.taken = now
+        elif self.b_goal["do"] == "wait":
+            free = now - self.taken > FORGET
+        self.b_door.set(f"far:{far} width:{wide} near:{far < STEPS * self.step} free:{free}")
         elapsed = 0.1 if self.seen_at is None else min(now - self.seen_at, 0.3)
         self.seen_at = now
         if far < self.step:
@@ -367,11 +388,16 @@ class Person(ACTR):
         aside = atan2(far * sin(radians(left)) - self.middle, far * cos(radians(left)))
         self.ahead, self.looks_around = left, False
         pull = ATTRACTION * aside * (exp(-NEARNESS * far) + LEAST)
-        if self.obstacle is not None and now - self.obstacle[2] < FORGET:
+        if obstructed:
             distance, direction, _ = self.obstacle
             pull -= REPULSION * direction * exp(-NARROWNESS * abs(direction)) * exp(-REACH * distance)
         self.rate += (pull - DAMPING * self.rate) * elapsed + self.random.gauss(0, HEADING_NOISE * sqrt(elapsed))
         self.head(self.rate)
+
+    def same_doorway(self):
+        """Returns what an opening must be to be the doorway that it saw before: as wide, and no farther."""
+        far, wide = float(self.b_door["far"]), float(self.b_door["width"])
+        return {"distance": f"<{far + BEYOND:.2f}", "width": f">{SAME * wide:.3f}"}
 
     def keep_course(self):
         self.b_course.set("steer:no")
@@ -385,7 +411,26 @@ class Person(ACTR):
         """Returns the work of turning the shoulders by an angle [degrees], there and back [J]: each time they start and stop."""
         return 2 * INERTIA * (radians(turn) / self.turning_time) ** 2
 
-    def commit(b_goal="do:walk", b_door="width:?wide near:True", b_plan="turn:?turn width:?width passed:?passed"):
+    def wait(b_goal="do:walk", b_door="free:!True"):
+        """Lets somebody else go first, but not for ever."""
+        print(f"{self.now():.2f} s: waits")
+        motor.stop()
+        patience.go(self.random.uniform(*PATIENCE))
+        b_goal.set("do:wait")
+
+    def go_on(b_goal="do:wait", b_door="free:True"):
+        self.walk_on()
+
+    def lose_patience(b_goal="do:wait", b_door="free:False", patience="state:over"):
+        """Goes first, if the other one does not."""
+        b_door.modify(free=True)
+        self.walk_on()
+
+    def walk_on(self):
+        self.b_goal.set("do:walk")
+        self.motor.walk(self.speed)
+
+    def commit(b_goal="do:walk", b_door="width:?wide near:True free:True", b_plan="turn:?turn width:?width passed:?passed"):
         self.committed = {"room": round(float(wide) - float(width), 4), "speed": self.speed}
         b_goal.set("do:decline" if float(passed) <= 0.5 else f"do:turn turn:{turn}")
 

@@ -11,7 +11,7 @@ def doorway_practice() -> Design:
     """Walking through doorways with turns that are not chosen: what the `predictive` walker remembers of passages.
 
     Bodies, speeds and doorways are random. `python -m actr3d.experiment.aperture.experience FOLDER ...` makes the file of
-    experiences that is shipped, from this design and from the same with `--set gait=false`.
+    experiences that is shipped, from this design and from the same with `--set gait=False`.
     """
     drawn = {
         "shoulder_width": Uniform(low=0.36, high=0.52),

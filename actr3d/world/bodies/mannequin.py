@@ -266,7 +266,7 @@ class _Builder:
         if person.sideways or person.gait is not None:
             base, _ = self.bodies["legs"]
             feet = 2 * FOOT * person.mass
-            base.explicitinertial, base.mass, base.inertia = True, feet, [feet * person.depth**2] * 3
+            base.explicitinertial, base.mass, base.inertia, base.ipos = True, feet, [feet * person.depth**2] * 3, [0, 0, 0]
             part, mass = "stance", LEG - FOOT
             self._segment(
                 part, "legs", (0, 0, 0), (*(("sway", "bob") if person.gait is not None else ()), *(("yaw",) if person.sideways else ()))
