@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.base import Base
 from actr3d.world.joints import Joint
-from actr3d.world.kernel import deviate, settle
+from actr3d.world.kernel import carry, deviate, settle
 from actr3d.world.physics import Physics
 
 Row = NDArray[np.float64]
@@ -61,6 +61,7 @@ class ActuatedDofs:
         """Their indices in MuJoCo's `qpos`, `qvel` and `ctrl`."""
         self.lower = np.array([-math.inf] * self.base + [joint.lower for joint in joints])
         self.upper = np.array([math.inf] * self.base + [joint.upper for joint in joints])
+        self._still = np.zeros(len(self.q))
         self.band: Row = model.actuator_forcerange[servos, 1] / model.actuator_gainprm[servos, 0]
         """Difference between control and speed from which the servo applies its full force."""
         self.faces = base.faces
@@ -77,6 +78,10 @@ class ActuatedDofs:
         """Their positions [m] [rad]."""
         return self._qpos[self.q]
 
+    def place(self, row: int) -> float:
+        """Returns the position in one row [m] [rad]."""
+        return float(self._qpos[self.q[row]])
+
     @property
     def speeds(self) -> Row:
         """Their speeds [m/s] [rad/s]."""
@@ -90,6 +95,24 @@ class ActuatedDofs:
     def set_controls(self, speeds: Row | float | tuple[float, ...], rows: slice | NDArray[np.intp] = slice(None)) -> None:
         """Sets the servos of some rows to keep other speeds."""
         self._ctrl[self.c[rows]] = speeds
+
+    def carry(self, rows: NDArray[np.intp], changes: Row | None, held: Row, commanded: Row, loose: Row, duration: float) -> bool:
+        """Moves the places that some rows hold, and commands the speeds for it, in place; what does not hold a place keeps its command.
+
+        Args:
+            rows: The rows (k,).
+            changes: By how much each place moves in a time (k,) [m] [rad]; None: what moves stops.
+            held: The places to hold; NaN where it is commanded to move.
+            commanded: The commanded speeds.
+            loose: Becomes NaN where a place moves.
+            duration: The time [s].
+
+        Returns:
+            Whether anything moves or has stopped.
+        """
+        moves = changes is not None
+        state = self.q, self.c, self._qpos, self._ctrl
+        return carry()(rows, changes if moves else self._still[: len(rows)], moves, *state, held, commanded, loose, duration)
 
     def rest(self, which: NDArray[np.bool_]) -> None:
         """Stops some of them at once."""

@@ -17,6 +17,7 @@ from numpy.random import PCG64, Generator, SeedSequence
 from numpy.typing import NDArray
 
 from actr3d.configuration import Configuration
+from actr3d.world.kernel import ROLES, stride_changes
 
 Row = NDArray[np.float64]
 
@@ -33,14 +34,14 @@ OWN = (SWAY, BOB, *(f"{side}_{joint}" for side in SIDES for joint in LEG))
 SHARED = ("pelvis_yaw", "torso_yaw", "head_yaw", "left_upper_arm_pitch", "right_upper_arm_pitch")
 """The joints that the agent moves too: gait moves them about the place where they were commanded to stand."""
 
-ARMS = [(*OWN, *SHARED).index(f"{side}_upper_arm_pitch") for side in SIDES]
-THIGHS = tuple(OWN.index(f"{side}_thigh_yaw") for side in SIDES)
 TINY = 1e-12
 """Less than any joint that gait moves differs from its place [rad] [m]."""
 STILL = 0.05
 """Speed below which a body does not step [m/s]. Source: chosen for this library."""
 PHASES = 100
 """Number of phases of a stride in the stored pattern."""
+_ROLES = np.array([ROLES.get(name.removeprefix("left_").removeprefix("right_"), 0) for name in (*OWN, *SHARED)])
+_STANDING = np.zeros((PHASES, len(_ROLES)))
 FASTEST = {SWAY: 1.0, BOB: 1.0}
 """Greatest speed of gait's slides [m/s]."""
 FASTEST_HINGE = 12.0
@@ -138,6 +139,8 @@ class GaitCycle:
         self._drawn: dict[int, tuple[float, float]] = {}
         self._added = np.zeros(len(names))
         """What it has added to each joint's place [rad] [m]."""
+        self._changes = np.zeros(len(names))
+        """What it adds in this tick [rad] [m]."""
         self._phase = 0.0
         """Of the stride: 0 at the left heel's strike, 0.5 at the right one's."""
         self._steps = 0
@@ -145,7 +148,7 @@ class GaitCycle:
         self._size = 0.0
         """Of the movements: 0 standing, 1 walking; it changes during the first and last step."""
 
-    def advance(self, forward: float, left: float, stance: float, torso: float, standing: NDArray[np.bool_], duration: float) -> Row | None:
+    def advance(self, forward: float, left: float, stance: float, torso: float, held: Row, duration: float) -> Row | None:
         """Returns what the coming tick adds to the places of its joints (n,); None if the body stands.
 
         Args:
@@ -153,35 +156,30 @@ class GaitCycle:
             left: The same, to the left [m/s].
             stance: The angle of the hips to the direction in which the base faces [rad].
             torso: The angle of the torso to the hips [rad].
-            standing: (n,) the joints that no other command moves.
+            held: The places that joints hold, by row; NaN where another command moves them.
             duration: The length of the tick [s].
         """
         speed = math.hypot(forward, left)
-        walks = speed >= STILL
+        walks, wander = speed >= STILL, 0.0
         if walks or self._size:
-            wanted = self._stride(speed, duration)
+            wander = self._stride(speed, duration)
         else:
-            wanted = np.zeros(len((*OWN, *SHARED)))
             self._phase = 0.0
             self._steps += self._steps % 2  # it starts with the same foot
         direction = (math.atan2(left, forward) if walks else 0.0) - stance
         turn = max(-ASIDE, min(ASIDE, direction))
-        c, s = math.cos(direction - turn), math.sin(direction - turn)
-        for yaw in THIGHS:
-            swing = wanted[yaw + 1]
-            wanted[yaw : yaw + 3] = turn, -swing * c, swing * s
-        wanted[ARMS] *= max(0.0, math.cos(stance + torso)) ** 2
-        added = wanted[self._columns] - self._added
-        if not walks and self._size == 0 and float(np.abs(added[standing]).max(initial=0.0)) < TINY:
+        arms = max(0.0, math.cos(stance + torso)) ** 2
+        pattern = _STANDING if self._pattern is None else self._pattern[1]
+        size = self._size * self._size * (3 - 2 * self._size)
+        stride = (pattern, self._phase, wander, size, turn, direction - turn, arms)
+        greatest = stride_changes()(*stride, self._columns, _ROLES, self.rows, held, self._fastest, duration, self._added, self._changes)
+        if not walks and self._size == 0 and greatest < TINY:
             return None
-        most = self._fastest * duration
-        added = np.minimum(np.maximum(added, -most), most)
-        self._added += added
-        self._added[~standing] = added[~standing] = 0.0
-        return added
+        self._added += self._changes
+        return self._changes
 
-    def _stride(self, speed: float, duration: float) -> Row:
-        """Advances the stride, and returns the offset of each joint of `OWN` and `SHARED`; of thighs, as a pitch along the way."""
+    def _stride(self, speed: float, duration: float) -> float:
+        """Advances the stride; returns how far the body is to the left of its usual way because its steps vary [m]."""
         gait = self._gait
         if speed >= STILL:
             rate = gait.steps_per_second(speed) / (1 + gait.timing * self._random(self._steps)[0])
@@ -194,15 +192,9 @@ class GaitCycle:
             self._size = min(1.0, self._size + rate * duration)
         else:
             self._size = max(0.0, self._size - 2 * duration)
-        assert self._pattern is not None
-        pattern = self._pattern[1]
-        at = self._phase * PHASES
-        first, part = int(at) % PHASES, at - math.floor(at)
-        offsets = (1 - part) * pattern[first] + part * pattern[(first + 1) % PHASES]
         into = 2 * self._phase - self._steps % 2
         ease = into * into * (3 - 2 * into)
-        offsets[0] += gait.wander * ((1 - ease) * self._random(self._steps)[1] + ease * self._random(self._steps + 1)[1])
-        return offsets * (self._size * self._size * (3 - 2 * self._size))
+        return gait.wander * ((1 - ease) * self._random(self._steps)[1] + ease * self._random(self._steps + 1)[1])
 
     def _random(self, step: int) -> tuple[float, float]:
         """Returns the two standard normal numbers of a step."""

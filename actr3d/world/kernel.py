@@ -206,3 +206,106 @@ def _settle(
                 qvel[v[1]] = cosine * wanted[1] + sine * wanted[0]
             else:
                 qvel[v[row]] = wanted[row]
+
+
+ROLES = {"thigh_yaw": 1, "thigh_pitch": 2, "thigh_roll": 3, "upper_arm_pitch": 4, "stance_sway": 5}
+"""How the pattern of a stride becomes the movement of a joint; the pattern itself for all others, role 0."""
+
+
+@cache
+def stride_changes() -> Callable[..., float]:
+    """Returns the function that computes by how much gait moves its joints in a tick.
+
+    Its arguments are: the pattern of a stride (phases, columns) [rad] [m] and its phase, from 0 to 1; how far the body is to the left [m];
+    the size of the movements, 0 to 1; by what angle the thighs turn to the side, and in which direction from there they swing [rad];
+    the share of the arms' swing; (n,) the joints' columns; the role of each column; (n,) the joints' rows; the places held in each row,
+    NaN where another command moves it; (n,) the greatest speed of each joint, and the duration of the tick [s]; (n,) what was added to
+    each joint's place before, which becomes 0 where another command moves it; and room for the changes (n,). It returns the greatest
+    wanted change.
+    """
+    return kept(_stride_changes, Path(__file__))
+
+
+def _stride_changes(
+    pattern: Array,
+    phase: float,
+    wander: float,
+    size: float,
+    turn: float,
+    aside: float,
+    arms: float,
+    columns: Array,
+    roles: Array,
+    rows: Array,
+    held: Array,
+    fastest: Array,
+    duration: float,
+    added: Array,
+    changes: Array,
+) -> float:
+    phases = len(pattern)
+    at = phase * phases
+    first, part = int(at) % phases, at - math.floor(at)
+    following = (first + 1) % phases
+    cosine, sine = math.cos(aside), math.sin(aside)
+    greatest = 0.0
+    for number, column in enumerate(columns):
+        role = roles[column]
+        source = column - 1 if role == 3 else column
+        wanted = (1 - part) * pattern[first, source] + part * pattern[following, source]
+        if role == 5:
+            wanted += wander
+        wanted *= size
+        if role == 1:
+            wanted = turn
+        elif role == 2:
+            wanted = -wanted * cosine
+        elif role == 3:
+            wanted *= sine
+        elif role == 4:
+            wanted *= arms
+        if math.isnan(held[rows[number]]):
+            added[number] = changes[number] = 0.0
+        else:
+            change = wanted - added[number]
+            greatest = max(greatest, abs(change))
+            most = fastest[number] * duration
+            changes[number] = min(max(change, -most), most)
+    return greatest
+
+
+@cache
+def carry() -> Callable[..., bool]:
+    """Returns the function that moves held places, and commands the speeds for it; see `ActuatedDofs.carry`."""
+    return kept(_carry, Path(__file__))
+
+
+def _carry(
+    rows: Array,
+    changes: Array,
+    moves: bool,
+    q: Array,
+    c: Array,
+    qpos: Array,
+    ctrl: Array,
+    held: Array,
+    commanded: Array,
+    loose: Array,
+    duration: float,
+) -> bool:
+    changed = moves
+    for number, row in enumerate(rows):
+        if math.isnan(held[row]):
+            continue
+        if moves:
+            held[row] += changes[number]
+            commanded[row] = (held[row] - qpos[q[row]]) / duration
+            loose[row] = math.nan
+        elif commanded[row] != 0:
+            commanded[row] = 0.0
+            changed = True
+    if changed:
+        for row in rows:
+            if not math.isnan(held[row]):
+                ctrl[c[row]] = commanded[row]
+    return changed

@@ -255,24 +255,14 @@ class PostureHold:
         Returns:
             The places to hold; NaN for what moves, also by the gait.
         """
-        rows = gait.rows
-        standing = np.isfinite(self.held[rows])
+        dofs = self._dofs
         forward, left, _ = self.base_command
-        places = self._dofs.places
-        stance, torso = (0.0 if row is None else float(places[row]) for row in self._trunk)
-        added = gait.advance(forward, left, stance, torso, standing, duration)
-        if added is None and not self.commanded[rows[standing]].any():
-            return self.held
-        self._forget_steady()
-        moved, held = rows[standing], self.held.copy()
-        if added is None:
-            self.commanded[moved] = 0.0
-        else:
-            self.held[moved] += added[standing]
-            self.commanded[moved] = (self.held[moved] - places[moved]) / duration
-            held[moved] = math.nan
-        self._moves = bool(self.commanded[self._rows :].any())
-        self._dofs.set_controls(self.commanded[moved], moved)
+        stance, torso = (0.0 if row is None else dofs.place(row) for row in self._trunk)
+        changes = gait.advance(forward, left, stance, torso, self.held, duration)
+        held = self.held.copy()
+        if dofs.carry(gait.rows, changes, self.held, self.commanded, held, duration):
+            self._forget_steady()
+            self._moves = bool(self.commanded[self._rows :].any())
         return held
 
     def after_part(self) -> None:

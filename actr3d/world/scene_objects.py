@@ -127,6 +127,9 @@ class Aperture(Configuration):
     heading: float = 0.0
     """The direction in which one walks through it [rad], 0 along x."""
 
+    closing: Annotated[float, Ge(0)] = 0.0
+    """How fast it closes from the start on, unless something in it holds it open [m/s]."""
+
     segment: Length = 2.5
     """Length of each wall segment [m]. Segments keep their length and slide when the width changes."""
 

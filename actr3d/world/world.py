@@ -86,6 +86,7 @@ class World:
         self.owners = self.physics.owners
         """By geom: the name of the object that it belongs to; a geom of the world itself has its own name."""
         self._apertures = {part.name: part for part in scene.parts if isinstance(part, Aperture)}
+        self._closing = [part for part in self._apertures.values() if part.closing]
         described = [part for part in scene.parts if isinstance(part, Embodied)]
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
@@ -118,6 +119,9 @@ class World:
         """
         if not isinstance(steps, int) or steps < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
             raise WorldError(f"World.step: must be a whole number of steps, >= 0 (got {steps!r})")
+        for aperture in self._closing:
+            closer = self.aperture_width(aperture.name) - aperture.closing * steps * self.scene.timestep
+            self._slide(aperture.name, max(0.0, closer))
         commands = [body.motion for body in self.bodies.values() if body.motion]
         feeling = [body for body in self.bodies.values() if body.touched is not None]
         parts = self._with_commands(steps, commands) if commands else self._substepping.steps(steps)
@@ -210,15 +214,21 @@ class World:
             ConfigurationError: If the width is not a number of at least 0.
         """
         aperture = replace(self._aperture(name), width=width)
+        inside = self._slide(name, aperture.width)
+        if inside:
+            raise WorldError(f"aperture '{name}' cannot be {aperture.width:g} m wide now: {', '.join(inside)} would be inside its walls")
+
+    def _slide(self, name: str, width: float) -> list[str]:
+        """Sets the free width of an aperture, unless objects would be inside its walls: then it returns their names."""
         sides = [self._mocap(f"{name}_{side}") for side in ("left", "right")]
         before, depths = self.mj_data.mocap_pos[sides].copy(), self._pressed_by(sides)
-        self.mj_data.mocap_pos[sides] = list(aperture.segment_positions(aperture.width).values())
+        self.mj_data.mocap_pos[sides] = list(self._aperture(name).segment_positions(width).values())
         self.changed()
-        deep = {other: depth for other, depth in self._pressed_by(sides).items() if depth > max(PRESSED, depths.get(other, 0))}
-        if deep:
+        inside = [other for other, depth in self._pressed_by(sides).items() if depth > max(PRESSED, depths.get(other, 0))]
+        if inside:
             self.mj_data.mocap_pos[sides] = before
             self.changed()
-            raise WorldError(f"aperture '{name}' cannot be {aperture.width:g} m wide now: {', '.join(deep)} would be inside its walls")
+        return inside
 
     def _pressed_by(self, mocaps: list[int]) -> dict[str, float]:
         """Returns by name the depth of some mocap bodies in each object that can move [m]."""

@@ -70,6 +70,25 @@ def test_of_two_doorways_it_passes_one(model: Any, seed: int) -> None:
     assert not simulation.world.bodies["walker"].get("contacts")
 
 
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.slow)])
+def test_of_two_people_one_waits_while_the_other_passes_the_doorway(model: Any, capsys: Any, seed: int) -> None:
+    with RunLimits(seed=seed, until=60):
+        simulation = model.build(model.Parameters(aperture=0.8, scene="two people"))
+        simulation.run()
+    told = capsys.readouterr().out.splitlines()
+    assert told[-1].endswith("is through")
+    first = told[-1].split()[2]
+    other = {"walker": "other", "other": "walker"}[first]
+    assert any(f"{other} waits" in line for line in told)
+    place = {name: body.base.place[0] - 7 for name, body in simulation.world.bodies.items()}
+    assert place["walker"] * place["other"] > 0, f"the one that waited has not passed: {place}"
+
+
+def test_it_turns_before_a_doorway_that_closes(model: Any) -> None:
+    assert walked(model, 1, aperture=0.9)[1].chosen == 0
+    assert walked(model, 1, aperture=0.9, closing=0.065)[1].chosen > 20
+
+
 # -- deciding
 
 

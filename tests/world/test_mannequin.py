@@ -6,11 +6,12 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import mujoco
 import numpy as np
 import pytest
 
 from actr3d.errors import Actr3dError
-from actr3d.world import Body, Floor, Load, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Body, Floor, Gait, Load, Loose, Mannequin, Scene, Wall, World
 from tests.helpers.small_agents import near
 
 SEGMENTS = (
@@ -89,6 +90,20 @@ def test_it_turns_hips_and_legs_with_the_trunk_and_goes_on_the_same_way() -> Non
 def test_it_weighs_the_same_with_legs_that_turn() -> None:
     (ahead, _), (sideways, _) = living(), living(sideways=True)
     assert sideways.mj_model.body("walker").subtreemass == near(ahead.mj_model.body("walker").subtreemass)
+
+
+@pytest.mark.parametrize("gait", [None, Gait()])
+@pytest.mark.parametrize("position", [(0.0, 1.0), (14.0, -3.0)])
+def test_wherever_it_starts_it_has_the_same_inertia(gait: Gait | None, position: tuple[float, float]) -> None:
+    def inertia(position: tuple[float, float]) -> Any:
+        world, _ = living(sideways=True, gait=gait, position=position)
+        world.solve()
+        unit, product = np.zeros(world.mj_model.nv), np.zeros(world.mj_model.nv)
+        unit[world.mj_model.joint("walker_heading").dofadr] = 1
+        mujoco.mj_mulM(world.mj_model, world.mj_data, product, unit)
+        return product
+
+    assert inertia(position) == near(inertia((0.0, 0.0)), abs=1e-9)
 
 
 @pytest.mark.parametrize("sideways", [False, True])

@@ -170,3 +170,29 @@ def test_an_aperture_narrowed_bit_by_bit_squeezes_out_or_stops_at_who_stands_in_
     pose = world.bodies["walker"].get("pose")
     assert abs(pose.x) < 3
     assert abs(pose.y) < 0.5
+
+
+def test_a_closing_aperture_closes_at_its_speed_the_same_after_a_restore() -> None:
+    world = World(Scene(parts=(Floor(), Aperture(width=0.8, closing=0.1))))
+    world.step(500)
+    assert world.aperture_width() == near(0.7, abs=1e-9)
+    before = world.state()
+    for _ in range(400):
+        world.step(5)
+    assert world.aperture_width() == near(0.3, abs=1e-9)
+    after = world.state().mj_state.tobytes()
+    world.restore(before)
+    for _ in range(400):
+        world.step(5)
+    assert world.state().mj_state.tobytes() == after
+    world.step(5000)
+    assert world.aperture_width() == near(0, abs=1e-9)
+
+
+def test_a_closing_aperture_is_held_open_by_what_lies_in_it() -> None:
+    box = Loose(name="box", size=(0.3, 0.3, 0.3), position=(0.0, 0.0, 0.15))
+    world = World(Scene(parts=(Floor(), Aperture(position=(0.0, 0.0), width=0.4, closing=0.1), box)))
+    for _ in range(500):
+        world.step(5)
+        assert np.abs(world.mj_data.qvel).max() < 10
+    assert 0.28 < world.aperture_width() < 0.3

@@ -33,16 +33,22 @@ class Clearance:
         self._axes = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
         self._middle = np.array([*gap.position, 0.0])
 
-    def rooms(self, held: Sequence[int] = ()) -> tuple[float, float] | None:
-        """Returns the smallest distances to the left and right segment [m]; None if no part of the body is between their faces.
+    def before(self, held: Sequence[int] = ()) -> float:
+        """Returns the distance of the body from the space between the wall's faces [m]; 0 or less if a part of it is there.
 
         Args:
             held: More geoms that count as the body's: held objects.
         """
         half = self._gap.thickness / 2
         box = self._extent.box(self._middle, self._axes, held)
-        if box.upper[0] < -half or box.lower[0] > half:
-            return None
+        return max(box.lower[0] - half, -half - box.upper[0])
+
+    def rooms(self, held: Sequence[int] = ()) -> tuple[float, float] | None:
+        """Returns the smallest distances to the left and right segment [m]; None if no part of the body is between their faces."""
+        return None if self.before(held) > 0 else self.within(held)
+
+    def within(self, held: Sequence[int] = ()) -> tuple[float, float]:
+        """Returns the smallest distances to the left and right segment [m]."""
         geoms = np.append(self._geoms, np.array(held, dtype=np.intp)) if held else self._geoms
         left, right = (self._nearest(geoms, segment) for segment in self._gap.segments)
         return left, right

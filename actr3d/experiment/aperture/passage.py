@@ -18,6 +18,8 @@ from actr3d.world.scene_objects import Aperture
 
 SET_OUT = 0.05
 """Distance from the start after which a body has set out [m]. Source: chosen for this library."""
+FASTEST = 20.0
+"""No part of a body moves faster than this [m/s]. Source: chosen; a swinging arm reaches a few metres a second."""
 TINY = 1e-9
 """Less than any physics step [s]."""
 TURNED = math.radians(1)
@@ -142,6 +144,7 @@ class Passage:
         x, y, _ = self._axis.tolist()
         self._start = x, y
         self._reach = 2.0 + wall.thickness
+        self._away = math.inf, math.inf
 
     def look(self) -> None:
         """Stores a sample of a physics step, once the body has set out; it replaces earlier samples of that time."""
@@ -167,8 +170,20 @@ class Passage:
         touches = self._contacts.touches()
         forces = [touch.force for touch in touches]
         pairs = frozenset([(touch.part, touch.other) for touch in touches]) if touches else _NONE
-        room = self._clearance.rooms(self._contacts.held()) if abs(before) < self._reach else None
+        room = self._room(time) if abs(before) < self._reach else None
         return _Sample(time, before, angle, logged, room, pairs, max(forces, default=0.0), sum(forces) * ago)
+
+    def _room(self, time: float) -> tuple[float, float] | None:
+        """Returns the distances to the wall on both sides [m]; None if no part of the body is in the doorway, or could be there yet."""
+        left, back = self._away
+        if left <= time < back:
+            return None
+        held = self._contacts.held()
+        before = self._clearance.before(held)
+        if before <= 0:
+            return self._clearance.within(held)
+        self._away = time, time + before / FASTEST
+        return None
 
     def result(self, *, over: bool) -> PassageResult:
         """Returns the result up to now."""
