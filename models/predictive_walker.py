@@ -48,9 +48,11 @@ from actr3d.simulation import Simulation
 from actr3d.vision import Vision
 from actr3d.world import Aperture, Floor, Gait, Load, Mannequin, Scene, Wall
 
-CONTACT_COST, PERCEPTUAL_NOISE, MEMORY_NOISE = 5.75, 1.0, 0.1
-"""The cost of contacts is the one free parameter: fitted with `actr3d fit` so that half of the passages at 1.30 shoulder widths are turned
-(design `critical_ratio`; docs/results.md). Both factors of noise were chosen for this model, before any result was seen."""
+CONTACT_COST = 5.75
+"""The one free parameter: fitted with `actr3d fit critical_ratio`, so that half of the passages at 1.30 shoulder widths are turned."""
+PERCEPTUAL_NOISE, MEMORY_NOISE = 1.0, 0.1
+"""The factor of the noise of what it sees and feels, and the noise of the activation of memories. Source: chosen for this model, before
+any result was seen."""
 DAMPING, ATTRACTION, NEARNESS, LEAST = 3.25, 7.50, 0.40, 0.40
 """The walker turns towards its goal with the acceleration -b φ' - k (φ - ψ) (exp(-c1 d) + c2); b [1/s], k [1/s²], c1 [1/m], c2.
 Source: Fajen & Warren (2003), J Exp Psychol Hum Percept Perform 29 (docs/human-data.md)."""
@@ -79,15 +81,13 @@ Source: chosen for this model."""
 LEAST_TURN = 30.0
 """The shoulders turn as fast as if they turned by this angle, or faster [degrees]. Source: chosen for this model."""
 TURNS = tuple(range(0, 81, 10))
-"""The turns that it imagines [degrees]."""
+"""The turns that it imagines [degrees]. Source: chosen for this model."""
 HEAD = 0.75
 """The part of a turn by which the head turns back against the shoulders; the eyes do the rest. Source: chosen from the neck's range."""
 HIPS = 0.45
 """The part of a turn that the hips make; the torso makes the rest. Source: chosen from the ranges of both, about 45 and 55 degrees."""
 INERTIA = 1.5
 """Moment of inertia of a turning person about the vertical [kg m²]. Source: chosen, of the order of a standing adult's."""
-MASS = 75.0
-"""[kg]. Source: the mannequin's."""
 ROOM, PACE, ANGLE = 0.02, 0.3, 5.0
 """Differences of room [m], speed [m/s] and angle [degrees] at which the similarity of two memories is -1. Source: chosen for this model."""
 DISTANCE_NOISE, EDGE_NOISE, WIDTH_NOISE = 0.02, 0.002, 0.005
@@ -104,7 +104,7 @@ MEMORIES = 150
 ANY = 10.0
 """Cost of any contact where its energy does not count [J]. Source: chosen for this model."""
 DOOR = "feature:opening height:>1.5 depth:>0.5"
-"""Openings that one can walk through [m]."""
+"""Openings that one can walk through [m]. Source: chosen for this model."""
 FIELD = 2.6
 """The width of the field of view [rad]. Source: chosen for this model."""
 BEHIND = 0.8

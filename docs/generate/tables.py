@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import inspect
 import io
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import pairwise
+from pathlib import Path
 from typing import Any
 from unittest import mock
 
@@ -23,6 +26,7 @@ from actr3d.world.command_registry import BodyFunction
 
 ROBOT = """<mujoco><worldbody><body name="base"><joint name="slide" type="slide"/><geom size="0.1"/><site name="eye"/></body></worldbody>
   <actuator><motor name="pull" joint="slide"/></actuator></mujoco>"""
+WALKER = Path(__file__).parents[2] / "models" / "predictive_walker.py"
 COMMANDS = {"actr3d": actr3d.cli.main, "workbench": workbench.cli.main}
 TABLES: dict[str, Callable[[], str]] = {}
 
@@ -121,3 +125,21 @@ def trace_kinds() -> str:
     """Returns the table of all kinds of trace events."""
     rows = [(_code(name), kind.level, kind.source, kind.data, kind.meaning) for name, kind in KINDS.items()]
     return _rows(("Kind", "Level", "Source", "Data", "Meaning"), rows)
+
+
+@_registered
+def numbers_of_the_walker() -> str:
+    """Returns the table of all constants of the predictive walker: which are fitted, published or chosen, as their docstrings say."""
+    rows: list[Sequence[str]] = []
+    for node, text in pairwise(ast.parse(WALKER.read_text(encoding="utf-8")).body):
+        match node, text:
+            case ast.Assign(targets=[target], value=value), ast.Expr(value=ast.Constant(value=str(said))):
+                kind = "fitted" if "fitted with" in said else "chosen" if "chosen" in said else "published"
+                names, numbers = (
+                    ast.unparse(part).strip("()") if isinstance(part, ast.Tuple) else ast.unparse(part) for part in (target, value)
+                )
+                rows.append((kind, _code(names), _code(numbers), " ".join(said.split())))
+            case _:
+                pass
+    rows.sort(key=lambda row: ("fitted", "published", "chosen").index(row[0]))
+    return _rows(("Kind", "Names", "Values", "Meaning"), rows)

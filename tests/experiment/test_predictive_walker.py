@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -144,6 +146,20 @@ def test_a_turn_that_is_given_is_made(model: Any) -> None:
 def test_the_same_seed_gives_the_same_walk(model: Any) -> None:
     assert walked(model, 5, aperture=0.5)[0] == walked(model, 5, aperture=0.5)[0]
     assert walked(model, 5, aperture=0.5)[0] != walked(model, 6, aperture=0.5)[0]
+
+
+def test_one_number_is_fitted_and_all_others_say_where_they_are_from() -> None:
+    body = ast.parse(FILE.read_text(encoding="utf-8")).body
+    said: dict[str, str] = {}
+    for node, text in pairwise(body):
+        if isinstance(node, ast.Assign):
+            match text:
+                case ast.Expr(value=ast.Constant(value=str(words))):
+                    said[ast.unparse(node.targets[0])] = words
+                case _:
+                    pytest.fail(f"{ast.unparse(node)}: nothing is said about it")
+    assert [names for names, words in said.items() if "fitted" in words] == ["CONTACT_COST"]
+    assert all("Source:" in words for names, words in said.items() if names != "CONTACT_COST"), said
 
 
 # -- experience
