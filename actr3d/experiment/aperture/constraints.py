@@ -86,7 +86,7 @@ class Findings:
                 self._people[one.group, one.condition, one.participant][self.level(one)].append(one.angle)
                 self._trials[one.group, one.condition, one.participant].append(one)
             if (sides := margin(one)) is not None:
-                self._margins[one.group, one.condition, self.level(one)].append(mean(sides))
+                self._margins[one.group, one.condition, self.level(one)].append(min(sides))
         self._shoulders = {(one.group, one.participant): one.shoulders for one in self.plain}
         self.groups = list(dict.fromkeys(one.group for one in self.plain))
         self.conditions = list(dict.fromkeys(one.condition for one in self.plain))
@@ -107,7 +107,7 @@ class Findings:
         return mean(mean(angles) for angles in found if angles)
 
     def margin(self, group: str, condition: str, level: float) -> float | None:
-        """Returns the mean margin of both sides of the walkers in a cell that turned [m]; None if none did."""
+        """Returns the mean margin on the narrower side, of the walkers in a cell that turned [m]; None if none did."""
         margins = self._margins.get((group, condition, level))
         return mean(margins) if margins else None
 
