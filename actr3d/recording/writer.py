@@ -371,4 +371,8 @@ def _events_text(events: list[TraceEvent]) -> str:
 
 
 def _one_by_one(events: list[TraceEvent]) -> str:
-    return plain_to_json([[event.time_us, event.source, event.kind, json.loads(event.to_json())["data"]] for event in events])
+    return f"[{', '.join(plain_to_json(event, _converted) for event in events)}]"
+
+
+def _converted(event: TraceEvent) -> str:
+    return plain_to_json([event.time_us, event.source, event.kind, json.loads(event.to_json())["data"]])

@@ -27,12 +27,14 @@ def plain_answer(answer: Any) -> Any:
     if hasattr(answer, "summary"):
         return plain_answer(answer.summary())
     if is_dataclass(answer):
-        return {name: plain_answer(getattr(answer, name)) for name in _traced_fields(kind)}
+        values = [(name, getattr(answer, name)) for name in _traced_fields(kind)]
+        return {name: value if type(value) in PLAIN_TYPES else plain_answer(value) for name, value in values}
     if isinstance(answer, Mapping):
         items = cast("Mapping[Any, Any]", answer).items()
         return {key if isinstance(key, str) else str(plain_answer(key)): plain_answer(value) for key, value in items}
     if isinstance(answer, (list, tuple)):
-        return [plain_answer(value) for value in cast("Sequence[Any]", answer)]
+        values = cast("Sequence[Any]", answer)
+        return list(values) if PLAIN_TYPES.issuperset(map(type, values)) else [plain_answer(value) for value in values]
     return answer.tolist() if hasattr(answer, "tolist") else repr(answer)
 
 
