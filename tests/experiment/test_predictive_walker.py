@@ -13,7 +13,7 @@ from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.experiment.aperture import PassageResult, experiences
 from actr3d.experiment.aperture.experience import MASS, passage_remembered
-from actr3d.experiment.specification import specify
+from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.trial import run_trial
 from actr3d.simulation import Simulation
 
@@ -178,6 +178,18 @@ def test_experiences_are_of_all_rooms_and_the_less_room_the_more_contacts() -> N
     fast = [one["energy"] for one in known if one["room"] < -0.05 and one["speed"] > 1.5]
     slow = [one["energy"] for one in known if one["room"] < -0.05 and one["speed"] < 1.2]
     assert sum(fast) / len(fast) > 1.5 * sum(slow) / len(slow)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("walks", [True, False])
+def test_the_shipped_experiences_are_those_of_their_design(walks: bool) -> None:
+    specification = specify("doorway_practice", values={"gait": walks}).specification
+    with specification.sealed() as helpers:
+        experiment = Experiment(specification, helpers)
+        rows = [run_trial(experiment, experiment.design.trial(number), helpers) for number in range(4)]
+    assert all(row["error"] is None for row in rows)
+    made = [{slot: row[slot] for slot in ("room", "energy", "free", "passed")} for row in rows]
+    assert made == [{slot: one[slot] for slot in made[0]} for one in experiences(walks=walks)[:4]]
 
 
 def test_the_energy_of_an_impact_is_at_most_that_of_the_walk() -> None:

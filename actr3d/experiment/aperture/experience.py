@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import csv
-import sys
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
 from actr3d.experiment.aperture.passage import PassageResult
-from actr3d.experiment.store import Store
 
 FILE = Path(__file__).with_name("experience.csv")
 SLOTS = ("room", "speed", "energy", "free", "passed")
@@ -45,18 +43,3 @@ def experiences(*, walks: bool = True) -> tuple[dict[str, float], ...]:
     """
     with FILE.open(encoding="utf-8") as file:
         return tuple({slot: float(row[slot]) for slot in SLOTS} for row in csv.DictReader(file) if row["gait"] == str(walks))
-
-
-def _write(folders: list[str]) -> None:
-    """Writes the file of experiences from the rows of experiments."""
-    with FILE.open("w", encoding="utf-8", newline="") as file:
-        rows: csv.DictWriter[str] = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
-        rows.writeheader()
-        for folder in folders:
-            with Store(Path(folder)) as store:
-                gait = {"gait": store.specification.values.get("gait", True)}
-                rows.writerows({**gait, **row, "speed": round(row["speed"], 3)} for row in store.rows() if row["error"] is None)
-
-
-if __name__ == "__main__":
-    _write(sys.argv[1:])

@@ -10,7 +10,7 @@ from actr3d.experiment.design import Design, Group, Measured, Uniform, design
 def doorway_practice() -> Design:
     """Walking through doorways with turns that are not chosen: what the `predictive` walker remembers of passages.
 
-    Bodies, speeds and doorways are random. `python -m actr3d.experiment.aperture.experience FOLDER ...` makes the file of
+    Bodies, speeds and doorways are random. `python -m actr3d.experiment.aperture FOLDER ...` makes the file of
     experiences that is shipped, from this design and from the same with `--set gait=False`.
     """
     drawn = {
