@@ -279,9 +279,10 @@ class Planning(ACTR):
             pause.go(PAUSE)
 
     def decide(self, plan):
-        """Keeps a plan: its turn is made near the doorway, and the walker steers so that the middle of its body will be in the middle."""
-        self.parent.b_plan.set(plan)
-        self.parent.middle = float(self.parent.b_plan["middle"])
+        """Keeps a plan, unless it has come too late: the walker steers so that the middle of its turned body will be in the middle."""
+        if self.parent.b_goal["do"] == "walk":
+            self.parent.b_plan.set(plan)
+            self.parent.middle = float(self.parent.b_plan["middle"])
 
 
 class Person(ACTR):

@@ -163,9 +163,6 @@ class GaitCycle:
         walks, wander = speed >= STILL, 0.0
         if walks or self._size:
             wander = self._stride(speed, duration)
-        else:
-            self._phase = 0.0
-            self._steps += self._steps % 2  # it starts with the same foot
         direction = (math.atan2(left, forward) if walks else 0.0) - stance
         turn = max(-ASIDE, min(ASIDE, direction))
         arms = max(0.0, math.cos(stance + torso)) ** 2
@@ -182,6 +179,8 @@ class GaitCycle:
         """Advances the stride; returns how far the body is to the left of its usual way because its steps vary [m]."""
         gait = self._gait
         if speed >= STILL:
+            if self._size == 0:
+                self._start()
             rate = gait.steps_per_second(speed) / (1 + gait.timing * self._random(self._steps)[0])
             self._phase += rate / 2 * duration
             if self._phase * 2 >= (self._steps % 2) + 1:
@@ -195,6 +194,12 @@ class GaitCycle:
         into = 2 * self._phase - self._steps % 2
         ease = into * into * (3 - 2 * into)
         return gait.wander * ((1 - ease) * self._random(self._steps)[1] + ease * self._random(self._steps + 1)[1])
+
+    def _start(self) -> None:
+        """Begins to walk with either foot."""
+        self._steps += self._steps % 2
+        foot = int(self._random(self._steps)[0] > 0)
+        self._steps, self._phase = self._steps + foot, foot / 2
 
     def _random(self, step: int) -> tuple[float, float]:
         """Returns the two standard normal numbers of a step."""

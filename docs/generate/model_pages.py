@@ -16,7 +16,7 @@ import run_picture
 ROOT = Path(__file__).parents[2]
 MODELS = ROOT / "models"
 GOLDEN = ROOT / "tests" / "golden"
-SCREENSHOTS = {"aperture_passage": "workbench.png", "doorway": "doorway.png"}
+SCREENSHOTS = {"aperture_passage": "workbench.png", "doorway": "doorway.png", "predictive_walker": "predictive_walker.png"}
 """By model, a picture of its run in the workbench; `docs/screenshot.py` takes them."""
 LONGEST_OUTPUT = 40
 
