@@ -110,9 +110,12 @@ class Parameter:
 
 
 def literal(text: str) -> Any:
-    """Returns the value of a Python literal: a number, text, tuple, True, False or None; any other text is returned unchanged."""
+    """Returns the value of a Python literal: a number, text, tuple, True, False or None; any other text is returned unchanged.
+
+    True and False may be written in small letters, too.
+    """
     try:
-        return ast.literal_eval(text)
+        return ast.literal_eval(text.capitalize() if text in ("true", "false") else text)
     except (ValueError, SyntaxError):
         return text
 
