@@ -122,7 +122,9 @@ def test_settings_know_texts(lamp: Any) -> None:
     assert read_settings(["name=5", "power=5", "other=5"], parameters_of(lamp.Parameters)) == {"name": "5", "power": 5, "other": 5}
 
 
-@pytest.mark.parametrize(("text", "value"), [("true", True), ("False", False), ("false", False), ("None", None), ("no", "no"), ("0.5", 0.5)])
+@pytest.mark.parametrize(
+    ("text", "value"), [("true", True), ("False", False), ("false", False), ("None", None), ("no", "no"), ("0.5", 0.5)]
+)
 def test_settings_of_unknown_parameters_are_python_literals(text: str, value: Any) -> None:
     assert read_settings([f"lit={text}"], ()) == {"lit": value}
 
