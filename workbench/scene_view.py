@@ -26,6 +26,7 @@ from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, Moments, heade
 from workbench.worker.messages import Facts, State
 
 if TYPE_CHECKING:
+    from workbench.page_commands.command import PageCommand
     from workbench.session import Session
 
 
@@ -121,7 +122,7 @@ class SceneView:
             with self._server.atomic():
                 self._server.scene.reset()
                 self._moments.begin()
-                self._scene = _Drawn(self._server, self._moments, facts, self._look, self._panel_for)
+                self._scene = _Drawn(self._server, self._moments, facts, self._look, self._panel_for, self._said)
 
     def _panel_for(self, apertures: dict[str, tuple[int, int]]) -> Panel:
         """Returns the panel: the one of the previous run if it has the same apertures, otherwise a new one."""
@@ -147,8 +148,8 @@ class SceneView:
     def _wake(self, _: Any) -> None:
         self._loop.call_soon_threadsafe(self._changed.set)
 
-    def _said(self, command: Any) -> None:
-        """Sends a command from the panel to the session, which runs in another thread."""
+    def _said(self, command: PageCommand) -> None:
+        """Sends a command from the panel or an overlay to the session, which runs in another thread."""
 
         def notify() -> None:
             self._session.run_task(self._session.carry_out(command, "3D view"))
@@ -165,10 +166,17 @@ class _Drawn:
         facts: The facts of the run; it has a scene.
         look: Which overlays are shown.
         panel: Returns viser's own panel for the given apertures.
+        send: Sends a user's command to the session.
     """
 
     def __init__(
-        self, server: Any, moments: Moments, facts: Facts, look: ViewSettings, panel: Callable[[dict[str, tuple[int, int]]], Panel]
+        self,
+        server: Any,
+        moments: Moments,
+        facts: Facts,
+        look: ViewSettings,
+        panel: Callable[[dict[str, tuple[int, int]]], Panel],
+        send: Callable[[PageCommand], None],
     ) -> None:
         import msgspec
         from mjviser import ViserMujocoScene
@@ -183,7 +191,7 @@ class _Drawn:
         self._scene.camera_tracking_enabled = False  # it would shift the world
         self._scene.set_refresh_handler(lambda: None)  # so that its own threads read no data
         server.scene.configure_environment_map(hdri=None)  # it takes much of the drawing time without a graphics card
-        drawn = Drawn(server, self._scene, self._model, world)
+        drawn = Drawn(server, self._scene, self._model, world, send)
         self._overlays: dict[str, Overlay] = {name: overlay(drawn) for name, overlay in OVERLAYS.items()}
         for name, shown in self._overlays.items():
             shown.show(name in look.shown)

@@ -28,6 +28,7 @@ export class SceneCamera {
       usual.call(camera);
       if (this.flat) this.flatten();
     };
+    this.straightenRays();
     this.actions = this.controls.constructor.ACTION;
     for (const kind of ["controlstart", "control"]) this.controls.addEventListener(kind, () => (this.touched = true));
     camera.up.copy(this.toThree([0, 0, 1], true));
@@ -114,6 +115,19 @@ export class SceneCamera {
     const wide = high * camera.aspect;
     camera.projectionMatrix.makeOrthographic(-wide, wide, high, -high, -DEEP, DEEP, camera.coordinateSystem, camera.reversedDepth);
     camera.projectionMatrixInverse.copy(camera.projectionMatrix).invert();
+  }
+
+  /** Makes the rays from the pointer parallel where the picture has no perspective: they find what is dragged. */
+  straightenRays() {
+    const { raycaster } = this.root.__r3f.root.getState();
+    const usual = raycaster.setFromCamera;
+    raycaster.setFromCamera = (place, camera) => {
+      usual.call(raycaster, place, camera);
+      if (!this.flat || camera !== this.camera) return;
+      const { origin, direction } = raycaster.ray;
+      direction.set(0, 0, -1).transformDirection(camera.matrixWorld);
+      origin.set(place.x, place.y, 0.5).unproject(camera).addScaledVector(direction, -2 * DEEP);
+    };
   }
 
   /** Returns the position of a world point in the picture: x and y from 0 to 1, from the left and from the top, and its depth [m]. */

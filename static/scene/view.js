@@ -8,7 +8,7 @@ import { Captions } from "./captions.js";
 import { VIEWS } from "./stage.js";
 
 const { scene: given } = window;
-const HIDDEN = ["/overlays/frustum"]; // not drawn in the view through the eye
+const HIDDEN = ["/overlays/frustum", "/overlays/handles"]; // not drawn in the view through the eye
 
 /** Returns viser's own objects, once there is a scene and data for it. */
 async function ready() {

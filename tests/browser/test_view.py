@@ -416,6 +416,44 @@ def test_a_wall_between_the_camera_and_the_body_is_cut_away_around_the_body(page
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("view", ["follow", "top"])
+def test_a_body_is_dragged_elsewhere_by_its_handle(pages: Callable[..., Page], view: str) -> None:
+    page = pages()
+    frame = frame_of(page)
+    page.get_by_label("Camera").select_option(view)
+    until(page, lambda: look(page, frame)["view"] == view)
+    page.get_by_role("button", name="Overlays").click()
+    page.get_by_label("handles to move bodies").check()
+    page.get_by_role("button", name="Overlays").click()
+    until(page, lambda: frame.evaluate("() => '/overlays/handles/0' in window.__viserMutable.nodeRefFromName"))
+    drawn(page)
+    box = page.locator("#scene iframe").bounding_box()
+    assert box is not None
+
+    def at(x: float, y: float) -> tuple[float, float]:
+        place = frame.evaluate("(place) => window.scene.camera.at(place)", [x, y, 0.02])
+        return box["x"] + place["x"] * box["width"], box["y"] + place["y"] * box["height"]
+
+    begin, end = at(0.25, 0.25), at(0.25, 1.0)  # the square between the arrows
+    page.mouse.move(*begin)
+    drawn(page)
+    page.mouse.down()
+    for part in (0.3, 0.6, 1):
+        page.mouse.move(*(one + part * (other - one) for one, other in zip(begin, end, strict=True)))
+        drawn(page)
+    page.mouse.up()
+    until(page, lambda: abs(frame.evaluate("() => window.scene.facts.now.body[1]") - 0.75) < 0.1)
+    commands = """async () => {
+      const { events } = await import("/static/store.js");
+      return events.value.list.filter(([, , kind]) => kind === "command").map((event) => event[3]);
+    }"""
+    (command,) = page.evaluate(commands)
+    assert command["command"] == "teleport"
+    assert command["data"]["body"] == "walker"
+    assert command["data"]["values"][1] == pytest.approx(0.75, abs=0.1)
+
+
+@pytest.mark.slow
 def test_from_above_there_is_no_perspective_and_each_browser_has_a_view_of_its_own(pages: Callable[..., Page]) -> None:
     page = pages()
     frame = frame_of(page)

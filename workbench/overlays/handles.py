@@ -1,0 +1,79 @@
+"""Shows handles with which a user moves bodies by hand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from mujoco import MjData
+
+from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
+from workbench.page_commands.changes import SimulationCommand
+
+SIZE = 0.8
+"""Length of a handle's arrows [m]."""
+ABOVE = 0.02
+"""Height of the handles above the ground [m]."""
+
+
+@overlay("handles", "handles to move bodies")
+class Handles(Overlay):
+    """Shows arrows and an arc at the feet of each body that can be moved: dragging them puts the body elsewhere, or turns it.
+
+    A body moves when its handle is released. It is a command of the user like any other: recorded, and undone by going back.
+    """
+
+    def __init__(self, drawn: Drawn) -> None:
+        self._server, self._send = drawn.server, drawn.send
+        self._handles: dict[str, Any] = {}
+        self._held: set[str] = set()
+
+    @staticmethod
+    def data(observed: Observed) -> dict[str, Any]:
+        """Returns the position [m] and heading [rad] of each body that can be moved: (x, y, heading)."""
+        from actr3d.world.actuators import ACTUATORS
+        from actr3d.world.sensors import SENSORS
+
+        bodies = observed.simulation.world.bodies
+        poses = {name: SENSORS["pose"](body) for name, body in bodies.items() if ACTUATORS["teleport"].available(body)}
+        return {name: [pose.x, pose.y, pose.heading] for name, pose in poses.items()}
+
+    def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
+        """Draws the handles at the bodies; one that is being dragged stays where it is."""
+        for name, (x, y, heading) in (drawn or {}).items():
+            handle = self._handles.get(name) or self._add(name)
+            if name not in self._held:
+                handle.position = (x, y, ABOVE)
+                handle.wxyz = (math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2))
+        self.switch()
+
+    def _add(self, name: str) -> Any:
+        """Adds the handle of a body."""
+        handle = self._server.scene.add_transform_controls(
+            f"/overlays/handles/{len(self._handles)}", scale=SIZE, active_axes=(True, True, False), depth_test=False, visible=False
+        )
+        hold: Callable[[Any], None] = partial(self._hold, name)
+        release: Callable[[Any], None] = partial(self._release, name)
+        handle.on_drag_start(hold)
+        handle.on_drag_end(release)
+        self._handles[name] = handle
+        return handle
+
+    def _hold(self, name: str, _: Any) -> None:
+        self._held.add(name)
+
+    def _release(self, name: str, event: Any) -> None:
+        """Moves a body to where its handle was released."""
+        self._held.discard(name)
+        x, y, _ = (float(value) for value in event.target.position)
+        w, _, _, z = (float(value) for value in event.target.wxyz)
+        values = (round(x, 3), round(y, 3), round(2 * math.atan2(z, w), 4))
+        self._send(SimulationCommand(word="teleport", values=values, body=name))
+
+    def switch(self) -> None:
+        """Shows or hides the handles."""
+        for handle in self._handles.values():
+            if handle.visible != self.visible:
+                handle.visible = self.visible
