@@ -34,7 +34,9 @@ export function valueAt(times, values, time) {
 /** Returns a round range that contains the values of some curves. */
 export function rangeOf(series) {
   let [least, most] = [Infinity, -Infinity];
-  for (const { values } of series) {
+  for (const { values, range } of series) {
+    if (range) [least, most] = [Math.min(least, range[0]), Math.max(most, range[1])];
+    if (range) continue;
     for (const value of values) {
       if (value === null || Number.isNaN(value)) continue;
       if (value < least) least = value;
@@ -47,16 +49,17 @@ export function rangeOf(series) {
 }
 
 /** Returns a curve as points in a box; if several values share a pixel, its minimum and maximum. */
-function pointsOf(times, values, span, box, yOf) {
+function pointsOf({ times, values, steps, slope }, span, box, yOf, until) {
   const scale = box.width / (span.to - span.from);
-  const [begin, end] = [Math.max(0, firstFrom(times, span.from) - 1), Math.min(times.length, firstFrom(times, span.to) + 1)];
+  const [begin, beyond] = [Math.max(0, firstFrom(times, span.from) - 1), Math.min(times.length, firstFrom(times, span.to) + 1)];
   const points = [];
-  const dense = end - begin > 3 * box.width;
+  const dense = beyond - begin > 3 * box.width;
   let [pixel, least, most, last] = [null, 0, 0, null];
   const flush = () => last !== null && points.push(pixel, yOf(least), pixel, yOf(most), pixel, yOf(last));
-  for (let n = begin; n < end; n += 1) {
+  for (let n = begin; n < beyond; n += 1) {
     const x = box.x + (times[n] - span.from) * scale;
     const value = values[n];
+    if (steps && !dense && n > begin && values[n - 1] !== null) points.push(x, yOf(values[n - 1]));
     if (value === null || value === undefined) {
       flush();
       [pixel, last] = [null, null];
@@ -69,6 +72,10 @@ function pointsOf(times, values, span, box, yOf) {
     }
   }
   flush();
+  const end = times.length - 1;
+  if (slope !== undefined && end >= 0 && values[end] !== null && until > times[end]) {
+    points.push(box.x + (until - span.from) * scale, yOf(values[end] + slope * (until - times[end])));
+  }
   return withDots(points);
 }
 
@@ -95,12 +102,14 @@ function scaleOf(least, most, room) {
  *
  * @param surface The surface to draw on.
  * @param box {x, y, width, height} of the curves; the scale is left of it.
- * @param series [{name, unit, values, times?, colour?, dash?}]
+ * @param series [{name, unit, values, times?, colour?, dash?, steps?, slope?}]: with `steps`, each value holds until the next one; with
+ *   `slope`, the last value goes on until `until`, and changes by it in a second.
  * @param times The times of the series without their own [s].
  * @param span {from, to}: the times from the left to the right edge [s].
  * @param range [least, most]: the values from the lower to the upper edge.
+ * @param until The end of curves that go on [s].
  */
-export function drawCurves(surface, box, { series, times, span, range }) {
+export function drawCurves(surface, box, { series, times, span, range, until }) {
   const [least, most] = range;
   const yOf = (value) => box.y + box.height - ((value - least) / (most - least)) * box.height;
   for (const value of scaleOf(least, most, Math.max(1, Math.floor(box.height / 11)))) {
@@ -109,8 +118,8 @@ export function drawCurves(surface, box, { series, times, span, range }) {
     if (y > box.y + 4) surface.text(numberText(value).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""), box.x - 5, y, "quiet", { size: 10, anchor: "end" });
   }
   surface.within(box.x, box.y, box.width, box.height, () => {
-    series.forEach(({ values, times: own, colour, dash }, n) => {
-      const points = pointsOf(own ?? times, values, span, box, yOf);
+    series.forEach(({ colour, dash, ...curve }, n) => {
+      const points = pointsOf({ times, ...curve }, span, box, yOf, until);
       surface.line(points, colour ?? seriesColour(n), { width: 1.5, dash: dash ?? [] });
     });
   });

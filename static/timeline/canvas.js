@@ -5,7 +5,7 @@ import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
 import { timeText } from "../parts/ticks.js";
 import { events, running, state } from "../store.js";
 import { dark } from "../theme.js";
-import { curvesVersion, names, plots } from "./curves.js";
+import { chosen, names, plots } from "./curves.js";
 import { drawAxis, drawTimeline, placeOf, secondsPerPixel, timeOf } from "./draw.js";
 import { begin, partAt, press, turn } from "./pointer.js";
 import { Painter } from "./painter.js";
@@ -94,11 +94,11 @@ function attend(stage) {
     effect(() => settle(present.value, furthest.value, running.value)),
     effect(() => place(stage)),
     effect(() => {
-      for (const one of [dark, span, size, scroll, filter, hidden, column, plots, names]) one.value;
+      for (const one of [dark, span, size, scroll, filter, hidden, column, chosen, names]) one.value;
       painter.ask();
     }),
     effect(() => {
-      for (const one of [lanesVersion, curvesVersion, furthest]) one.value;
+      for (const one of [lanesVersion, plots, furthest]) one.value;
       painter.ask(running.value);
     }),
   ];

@@ -1,24 +1,36 @@
 // The menu for the plotted curves.
 
-import { html } from "../vendor/preact.js";
-import { choose, chosen, names, titleOf } from "./curves.js";
+import { html, useSignal } from "../vendor/preact.js";
+import { counted } from "../parts/count.js";
+import { chosen, names, plot, plotUsual, titleOf } from "./curves.js";
+
+const MOST = 40; // the maximum number of curves shown of one list: the others are found by their names
+
+function Group({ title, curves, all }) {
+  const units = [...new Set(curves.map(({ unit }) => unit))].filter(Boolean).join(", ");
+  return html`<fieldset>
+    <legend>${title} ${units ? html`<span class="quiet">[${units}]</span>` : null}</legend>
+    ${curves.slice(0, all ? curves.length : MOST).map(
+      ({ name }) => html`<label key=${name} title=${name}>
+        <input type="checkbox" checked=${chosen.value.includes(name)} onChange=${(event) => plot(name, event.currentTarget.checked)} />
+        <span>${name}</span>
+      </label>`,
+    )}
+    ${!all && curves.length > MOST ? html`<p class="quiet">${counted(curves.length - MOST, "other")}: filter by name</p>` : null}
+  </fieldset>`;
+}
 
 export function CurveChoice() {
-  const groups = new Map();
-  for (const curve of names.value) groups.set(curve.group, [...(groups.get(curve.group) ?? []), curve]);
-  const set = (name, on) => choose(on ? [...chosen.value, name] : chosen.value.filter((one) => one !== name));
+  const sought = useSignal("");
+  const wanted = sought.value.trim().toLowerCase();
+  const found = names.value.filter(({ name, group, of }) => `${of ?? titleOf(group)} ${name}`.toLowerCase().includes(wanted));
+  const groups = Map.groupBy(found, ({ group, of }) => of ?? titleOf(group));
   return html`<div class="curve-choice">
-    ${[...groups].map(
-      ([group, curves]) => html`<fieldset key=${group}>
-        <legend>${titleOf(group)} <span class="quiet">[${[...new Set(curves.map(({ unit }) => unit))].join(", ")}]</span></legend>
-        ${curves.map(
-          ({ name }) => html`<label key=${name} title=${name}>
-            <input type="checkbox" checked=${chosen.value.includes(name)} onChange=${(event) => set(name, event.currentTarget.checked)} />
-            <span>${name}</span>
-          </label>`,
-        )}
-      </fieldset>`,
-    )}
-    <p><button onClick=${() => choose(null)}>The usual ones</button></p>
+    <p class="curve-tools">
+      <input type="search" aria-label="Filter curves" placeholder="Filter" value=${sought.value} onInput=${(event) => (sought.value = event.currentTarget.value)} />
+      <button onClick=${plotUsual}>The usual ones</button>
+    </p>
+    ${[...groups].map(([title, curves]) => html`<${Group} key=${title} title=${title} curves=${curves} all=${groups.size === 1} />`)}
+    ${groups.size === 0 ? html`<p class="empty">No curve has this in its name.</p>` : null}
   </div>`;
 }

@@ -1,11 +1,13 @@
-// The curves that are plotted below the lanes. While the run is active, its newest stretch is requested, coarsely if it is fast; what
-// was omitted is requested when it pauses: first the visible stretch, then the rest, until each tick is known.
+// The curves that are plotted below the lanes: those of bodies, which the server computes, and the numbers of events. While the run is
+// active, the newest stretch of the former is requested, coarsely if it is fast; what was omitted is requested when it pauses: first the
+// visible stretch, then the rest, until each tick is known.
 
 import { computed, effect, signal } from "../vendor/preact.js";
 import { remembered } from "../local_storage.js";
 import { isLeft, say } from "../server.js";
 import { alive, complain, hurried, running, session, way } from "../store.js";
 import { firstFrom, rangeOf } from "../parts/curve.js";
+import { lanes, lanesVersion } from "./record.js";
 import { furthest } from "./seek.js";
 import { span } from "./view.js";
 
@@ -14,14 +16,18 @@ const AT_ONCE = 150; // the number of moments per request while it is active
 const OVERVIEW = 1500; // the number of moments for a whole run of which nothing is known yet
 const PIECE = 1000; // the number of ticks per request when paused: longer stretches would delay commands
 
-/** All curves there are: [{name, unit, group}]. */
-export const names = signal([]);
+/** The curves of bodies: [{name, unit, group}]. */
+const ofBodies = signal([]);
+/** How many curves of numbers there are. */
+const numberCount = computed(() => (lanesVersion.value, lanes.numbers.curves.size));
+/** All curves there are: [{name, unit, group, of?}]; `of` is the list in which a curve is offered, if it is not its group. */
+export const names = computed(() => (numberCount.value, [...ofBodies.value, ...lanes.numbers.curves.values()]));
 /** Counts the changes of what is known. */
 export const curvesVersion = signal(0);
 /** The known data: moments [s], ascending, values by name, and the stretches [from, to] of which every moment is known. */
 export const known = { times: [], values: new Map(), whole: [] };
 
-const GROUPS = ["joint", "speed", "clearance", "contact", "place", "joint speed"]; // in the order in which they are plotted
+const GROUPS = ["joint", "speed", "clearance", "contact", "place", "joint speed", "learned utility", "utility", "activation"]; // in the order in which they are plotted
 const TITLES = { joint: "joints", contact: "contact force", "joint speed": "joint speeds" };
 
 /** The title of a group of curves. */
@@ -29,13 +35,15 @@ export function titleOf(group) {
   return TITLES[group] ?? group;
 }
 
+const USUAL = ["speed", "clearance", "learned utility"]; // the groups that are plotted until the user chooses
+
 const kept = remembered("timeline curves", { names: null });
 
 function usual(all) {
   const joints = all.filter(({ group }) => group === "joint");
   const turns = joints.filter(({ name }) => /(stance|torso)_yaw$/.test(name)); // for people: hips and shoulders
   const plotted = turns.length > 0 ? turns : joints.slice(0, 1);
-  return all.filter((curve) => plotted.includes(curve) || curve.group === "speed" || curve.group === "clearance").map(({ name }) => name);
+  return all.filter((curve) => plotted.includes(curve) || USUAL.includes(curve.group)).map(({ name }) => name);
 }
 
 /** The names of the plotted curves. */
@@ -45,31 +53,59 @@ export const chosen = computed(() => {
   return wanted && (wanted.length > 0 || kept.value.names.length === 0) ? wanted : usual(names.value);
 });
 
-/** Chooses the plotted curves; null for the default. */
-export function choose(list) {
-  kept.value = { names: list };
+/** Plots a curve, or no longer. */
+export function plot(name, on) {
+  const others = (kept.value.names ?? chosen.value).filter((other) => other !== name);
+  kept.value = { names: on ? [...others, name] : others };
 }
 
-/** The plots: [{title, unit, series}], one for each group with chosen curves. */
-export const plots = computed(() => {
+/** Plots the usual curves. */
+export function plotUsual() {
+  kept.value = { names: null };
+}
+
+/** The heading of a plot, with its unit if it has one. */
+export function headingOf({ title, unit }) {
+  return unit ? `${title} [${unit}]` : title;
+}
+
+const plotsOfBodies = computed(() => {
   curvesVersion.value;
+  return plotsOf(ofBodies.value, ({ name, unit }) => ({ name, unit, times: known.times, values: known.values.get(name) ?? [] }));
+});
+
+/** The same for numbers of events, which are drawn again with each event. */
+const plotsOfNumbers = computed(() => {
+  lanesVersion.value;
+  const until = furthest.value;
+  return plotsOf(lanes.numbers.curves.values(), (curve) => ({ ...curve, range: curve.rangeUntil(until) }));
+});
+
+/** Returns one plot for each group and unit of chosen curves. */
+function plotsOf(curves, seriesOf) {
+  const wanted = new Set(chosen.value);
   const made = new Map();
-  for (const { name, unit, group } of names.value) {
-    if (!chosen.value.includes(name)) continue;
+  for (const curve of curves) {
+    const { name, unit, group } = curve;
+    if (!wanted.has(name)) continue;
     const key = `${group} [${unit}]`;
     if (!made.has(key)) made.set(key, { title: titleOf(group), group, unit, series: [] });
-    made.get(key).series.push({ name, unit, values: known.values.get(name) ?? [] });
+    made.get(key).series.push(seriesOf(curve));
   }
+  return [...made.values()].map((plot) => ({ ...plot, range: rangeOf(plot.series) }));
+}
+
+/** The plots: [{title, unit, series, range}], one for each group with chosen curves. */
+export const plots = computed(() => {
   const order = ({ group }) => (GROUPS.includes(group) ? GROUPS.indexOf(group) : GROUPS.length);
-  const sorted = [...made.values()].sort((one, other) => order(one) - order(other));
-  return sorted.map((plot) => ({ ...plot, times: known.times, range: rangeOf(plot.series) }));
+  return [...plotsOfBodies.value, ...plotsOfNumbers.value].sort((one, other) => order(one) - order(other));
 });
 
 /** The times of contact with the body: bands, from the known moments. */
 export const contacts = computed(() => {
   curvesVersion.value;
   const bands = [];
-  for (const { name, group } of names.value) {
+  for (const { name, group } of ofBodies.value) {
     if (group !== "contact") continue;
     let open = null;
     let hardest = 0;
@@ -174,16 +210,16 @@ async function askOnce() {
     forget(`${whose} `);
     const answer = world ? await say({ type: "curves", names: [] }) : { names: [] };
     if (!whose.startsWith(`${way.peek()} `)) return true;
-    names.value = answer.names;
+    ofBodies.value = answer.names;
   }
-  const list = names.peek().map(({ name, group }) => (group === "contact" || chosen.peek().includes(name) ? name : null)).filter(Boolean);
+  const list = ofBodies.peek().map(({ name, group }) => (group === "contact" || chosen.peek().includes(name) ? name : null)).filter(Boolean);
   const key = `${whose} ${JSON.stringify(list)}`;
   if (asked !== key) forget(key);
   const stretch = list.length > 0 ? next() : null;
   if (!stretch) return false;
   const answer = await say({ type: "curves", names: list, first: Math.max(0, stretch.from - near()), last: stretch.to + near(), most: stretch.most });
   if (asked !== key || !whose.startsWith(`${way.peek()} `)) return true;
-  if (answer.names.length !== names.peek().length) names.value = answer.names; // another world was added
+  if (answer.names.length !== ofBodies.peek().length) ofBodies.value = answer.names; // another world was added
   put(list, stretch, answer);
   return known.times.length > 0;
 }
@@ -193,5 +229,5 @@ document.addEventListener("visibilitychange", () => alive.peek() && ask());
 effect(() => {
   for (const one of [furthest, running, chosen, session, way, span]) one.value;
   if (alive.value) ask();
-  else if (!session.value && names.peek().length > 0) names.value = [];
+  else if (!session.value && ofBodies.peek().length > 0) ofBodies.value = [];
 });

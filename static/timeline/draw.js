@@ -3,6 +3,7 @@
 import { drawCurves, drawTimes, seriesColour } from "../parts/curve.js";
 import { cut, cutBefore } from "../parts/surface.js";
 import { session } from "../store.js";
+import { headingOf } from "./curves.js";
 import { bandText } from "./lanes.js";
 import { firstWhere } from "./search.js";
 import { AXIS, MARGIN } from "./rows.js";
@@ -122,7 +123,7 @@ function drawMark(surface, band, x, next, y, height) {
 function drawPlotRow(surface, plot, y, height, scene) {
   const { column, width } = scene;
   const room = column - SCALE - 8;
-  surface.text(cut(`${plot.title} [${plot.unit}]`, room), 8, y + 10, "text", { bold: true });
+  surface.text(cut(headingOf(plot), room), 8, y + 10, "text", { bold: true });
   const lines = Math.floor((height - 18) / 13);
   const shown = plot.series.length > lines ? lines - 1 : lines;
   plot.series.slice(0, shown).forEach(({ name }, n) => {
@@ -131,14 +132,14 @@ function drawPlotRow(surface, plot, y, height, scene) {
     surface.text(cutBefore(shortName(name, plot), room - 12, { size: 10 }), 20, at, "quiet", { size: 10 });
   });
   if (plot.series.length > lines) surface.text(`and ${plot.series.length - shown} more`, 20, y + 25 + 13 * shown, "quiet", { size: 10 });
-  drawCurves(surface, { x: column, y: y + 5, width: width - column, height: height - 9 }, { ...plot, span: wholeSpan(scene) });
+  drawCurves(surface, { x: column, y: y + 5, width: width - column, height: height - 9 }, { ...plot, span: wholeSpan(scene), until: scene.end });
 }
 
 /** Returns the name of a curve without redundant parts: the only body's name, and the plot's title. */
 function shortName(name, { title, series }) {
   const bodies = Object.keys(session.peek()?.world?.bodies ?? {});
-  const body = bodies.length === 1 && /^[_ ]/.test(name.slice(bodies[0].length)) && name.startsWith(bodies[0]) ? bodies[0] : "";
+  const body = bodies.length === 1 && /^[_ .]/.test(name.slice(bodies[0].length)) && name.startsWith(bodies[0]) ? bodies[0] : "";
   const rest = name.slice(body ? body.length + 1 : 0);
-  const short = rest.startsWith(title) ? rest.slice(title.length).trim() : rest;
+  const short = rest.startsWith(title) ? rest.slice(title.length).trim() : rest.replace(`.${title}`, "");
   return short || (series.length === 1 && body) || rest;
 }

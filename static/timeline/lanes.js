@@ -1,9 +1,10 @@
-// Lanes made of a run's events as they arrive: a row for each thing with states, with a band for each state.
+// Lanes made of a run's events as they arrive: a row for each thing with states, with a band for each state; and curves of their numbers.
 
 import { chunkText } from "../parts/chunk.js";
 import { Widths } from "./commands.js";
 import { firstWhere } from "./search.js";
 import { TAKERS } from "./lane_builders.js";
+import { Numbers } from "./numbers.js";
 
 /**
  * @typedef Band
@@ -104,6 +105,7 @@ export class Lanes {
     this.clocks = new Map();
     this.asked = new Map();
     this.widths = new Widths();
+    this.numbers = new Numbers();
     this.now = 0;
     this.begin = null;
   }
@@ -140,11 +142,13 @@ export class Lanes {
     const now = this.now / 1e6;
     this.begin ??= now;
     TAKERS[kind]?.(this, now, source, data, event);
+    this.numbers.take(now, source, kind, data);
   }
 
   /** Removes what was over before a time [s]. */
   forget(time) {
     this.begin = time;
+    this.numbers.forget(time);
     for (const lane of this.lanes.values()) lane.bands.splice(0, lane.firstAfter(time));
   }
 }

@@ -1,11 +1,11 @@
-// Saves the timeline, or one of its plots, as PNG or SVG.
+// Saves the timeline, or one of its plots, as PNG or SVG, and the values of curves as CSV.
 
 import { html, signal } from "../vendor/preact.js";
-import { drawCurves, drawLegend, drawTimes } from "../parts/curve.js";
+import { drawCurves, drawLegend, drawTimes, valueAt } from "../parts/curve.js";
 import { dialog } from "../parts/dialog.js";
-import { savePicture } from "../parts/picture.js";
+import { saveFile, savePicture } from "../parts/picture.js";
 import { session } from "../store.js";
-import { plots } from "./curves.js";
+import { headingOf, plots } from "./curves.js";
 import { drawTimeline } from "./draw.js";
 import { scene } from "./canvas.js";
 
@@ -24,35 +24,43 @@ function ofTimeline() {
 }
 
 function ofPlot(plot) {
-  const { span } = scene();
+  const { span, end } = scene();
   const box = { x: LEFT, y: 22, width: WIDE - LEFT - 8, height: HIGH - 42 };
   const draw = (surface) => {
     drawLegend(surface, LEFT, 8, WIDE - LEFT, plot.series);
     drawTimes(surface, box, span, { y: box.y + box.height });
-    drawCurves(surface, box, { ...plot, span });
+    drawCurves(surface, box, { ...plot, span, until: end });
   };
-  return { width: WIDE, height: HIGH, title: `${plot.title} [${plot.unit}]: ${runText()}`, draw };
+  return { width: WIDE, height: HIGH, title: `${headingOf(plot)}: ${runText()}`, draw };
+}
+
+/** Returns curves as the text of a CSV file: a column of times, and one for each curve, with units. */
+export function csvText(curves) {
+  const quoted = (text) => `"${text.replaceAll('"', '""')}"`;
+  const times = [...new Set(curves.flatMap((curve) => curve.times))].sort((one, other) => one - other);
+  const heads = ["time [s]", ...curves.map(({ name, unit }) => headingOf({ title: name, unit }))];
+  const rows = times.map((time) => [time, ...curves.map((curve) => valueAt(curve.times, curve.values, time) ?? "")].join(","));
+  return `${[heads.map(quoted).join(","), ...rows].join("\n")}\n`;
 }
 
 /** Asks what to save, and saves it. */
 export async function savePictures() {
   which.value = "";
+  const offered = plots.peek();
   const body = html`<label class="field">
     Of what
     <select value=${which.value} onChange=${(event) => (which.value = event.currentTarget.value)}>
-      <option value="">the timeline: all rows that are shown, from edge to edge</option>
-      ${plots.peek().map(({ title, unit }) => html`<option value="${title} [${unit}]">the plot of ${title} [${unit}]</option>`)}
+      <option value="">the timeline: all rows that are shown, from edge to edge; as CSV, all curves of the whole run</option>
+      ${offered.map((plot, n) => html`<option key=${n} value=${n}>the plot of ${headingOf(plot)}</option>`)}
     </select>
   </label>`;
-  const kind = await dialog({
-    title: "Keep a picture",
-    body,
-    actions: [{ text: "Cancel", value: null }, { text: "SVG", value: "svg" }, { text: "PNG", value: "png", kind: "primary" }],
-  });
+  const kinds = [{ text: "SVG", value: "svg" }, { text: "PNG", value: "png", kind: "primary" }];
+  if (offered.length > 0) kinds.unshift({ text: "CSV", value: "csv" });
+  const kind = await dialog({ title: "Keep a picture or its values", body, actions: [{ text: "Cancel", value: null }, ...kinds] });
   if (!kind) return;
-  const plot = plots.peek().find(({ title, unit }) => `${title} [${unit}]` === which.peek());
-  const picture = plot ? ofPlot(plot) : ofTimeline();
+  const plot = which.peek() === "" ? null : offered[Number(which.peek())];
   const { model, seed } = session.peek();
   const name = [model.replace(/\.py$/, ""), `seed ${seed}`, plot ? plot.title : "timeline"].join(" ");
-  savePicture({ ...picture, name }, kind);
+  if (kind === "csv") saveFile(`${name}.csv`, new Blob([csvText((plot ? [plot] : offered).flatMap(({ series }) => series))], { type: "text/csv" }));
+  else savePicture({ ...(plot ? ofPlot(plot) : ofTimeline()), name }, kind);
 }

@@ -35,8 +35,8 @@ function OfRow({ at }) {
 
 function OfPlot({ plot, time }) {
   return html`<p><b>${plot.title}</b> <span class="number quiet">at ${timeText(time)}</span></p>
-    ${plot.series.map(({ name, unit, values }, n) => {
-      const value = numberText(valueAt(plot.times, values, time));
+    ${plot.series.map(({ name, unit, times, values }, n) => {
+      const value = numberText(valueAt(times, values, time));
       return html`<p key=${name} class="number"><span class="swatch" style=${{ background: `var(--${seriesColour(n)})` }}></span>${name} ${value} ${unit}</p>`;
     })}`;
 }

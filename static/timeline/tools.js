@@ -71,7 +71,7 @@ export function Tools() {
       <button class="bare" title="Show more (Shift Z, wheel)" aria-label="Zoom out" onClick=${() => near(STEP)}>−</button>
       <button class="bare" aria-pressed=${mode.value === "fit"} title="Show all of the run (F)" onClick=${fit}>Fit</button>
     </div>
-    <button class="bare" disabled=${!session.value} title="Keep the timeline or a plot as a picture" aria-label="Keep a picture" onClick=${savePictures}><${Icon} name="download" /></button>
+    <button class="bare" disabled=${!session.value} title="Keep the timeline or a plot as a picture, or its values as CSV" aria-label="Keep a picture" onClick=${savePictures}><${Icon} name="download" /></button>
     <${ManualLink} page="timeline" title="Timeline" />
   </div>`;
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from collections.abc import Callable, Iterator
 from itertools import pairwise
@@ -286,8 +287,12 @@ def test_pictures(ended: Page, tmp_path: Path) -> None:
     assert any("doorway.py" in str(word) and "seed" in str(word) for word in words)
     assert {"0 s", "printed", "eye", "goal", "speed [m/s]"} <= set(words)
     assert not re.search(r"href|url\((?!#)|var\(|light-dark", text)
-    plot = kept("SVG", "speed [m/s]")
+    plot = kept("SVG", "the plot of speed [m/s]")
     assert {"walker speed", "0 s"} <= {node.text for node in ElementTree.fromstring(plot.read_text(encoding="utf-8")).iter()}
+    rows = list(csv.reader(kept("CSV", "the plot of speed [m/s]").read_text(encoding="utf-8").splitlines()))
+    assert rows[0] == ["time [s]", "walker speed [m/s]"]
+    assert float(rows[-1][0]) > 6
+    assert max(float(speed) for _, speed in rows[1:] if speed) > 1
     png = kept("PNG").read_bytes()
     assert png.startswith(b"\x89PNG\r\n")
     assert len(png) > 20_000
@@ -437,3 +442,60 @@ RUNS = """async () => {
 
 def test_what_a_buffer_holds_is_drawn_while_its_run_goes_on(page: Page) -> None:
     assert page.evaluate(RUNS) == [[[0, 4], [6, None]], [[4, 6]]]
+
+
+COUNTS = """
+from actr3d.actr import *
+
+
+class Counting(ACTR):
+    goal = Buffer()
+    b_memory = Buffer()
+    memory = Memory(b_memory, latency=0.5, threshold=None)
+
+    def init():
+        for number in range(9):
+            memory.add(f"from:{number} to:{number + 1}")
+        goal.set("count at:0 until:4")
+
+    def ask(goal="count at:?at until:!?at", b_memory=None, memory="busy:False"):
+        memory.request(f"from:{at} to:?")
+
+    def step(goal="count at:?at", b_memory="from:?at to:?to"):
+        b_memory.clear()
+        goal.modify(at=to)
+
+
+model = Counting()
+model.run()
+"""
+
+
+def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "counts.py").write_text(COUNTS, encoding="utf-8")
+    page = pages("counts.py", height=1000)
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.wait_for_function("async () => (await import('/static/store.js')).state.value?.status === 'ended'", polling=50)
+    page.get_by_role("button", name="Curves …").click()
+    choice = page.get_by_role("dialog")
+    for name in ("goal.at", "memory latency", "memory busy"):
+        choice.get_by_label("Filter curves").fill(name)
+        choice.get_by_label(name, exact=True).check()
+    page.keyboard.press("Escape")
+    found = page.evaluate(
+        """async () => {
+          const { csvText } = await import("/static/timeline/pictures.js");
+          const { plots } = await import("/static/timeline/curves.js");
+          const { lanes } = await import("/static/timeline/record.js");
+          const busy = plots.value.find(({ title }) => title === "time busy").series[0];
+          const csv = plots.value.filter(({ title }) => title === "at").map(({ series }) => csvText(series));
+          return { csv, busy: busy.values.at(-1), end: lanes.now / 1e6 };
+        }"""
+    )
+    rows = list(csv.reader(found["csv"][0].splitlines()))
+    assert rows[0] == ["time [s]", "goal.at"]
+    assert [float(value) for _, value in rows[1:]] == [0, 1, 2, 3, 4]
+    assert 0 < found["busy"] < found["end"]
+    tips = list(told(page, 0.99))
+    assert any("goal.at 4" in text for text in tips), tips
+    assert any("memory latency" in text and " s" in text for text in tips), tips
