@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from itertools import pairwise
+from math import radians
 from pathlib import Path
 from typing import Any
 
@@ -141,6 +142,50 @@ def test_a_turn_that_is_given_is_made(model: Any) -> None:
     assert walker.chosen == 40
     assert result.wall_angle_deg == pytest.approx(40, abs=8)
     assert walker.committed["room"] == pytest.approx(0.9 - 0.34, abs=0.08)
+
+
+def test_it_shows_its_plan_with_the_costs_that_it_expects_of_each_turn(model: Any) -> None:
+    with RunLimits(seed=1):
+        simulation: Simulation = model.build(model.Parameters(aperture=0.45))
+        simulation.run(0.5)
+        walker = simulation.agents["walker"]
+        assert walker.planned() is None
+        simulation.run(5)
+        plan = walker.planned()
+        assert walker.b_goal["do"] == "walk"
+        turn = sum(abs(plan.posture[joint]) for joint in ("stance_yaw", "torso_yaw"))
+        assert turn == pytest.approx(float(walker.b_plan["turn"]))
+        assert turn > 0
+        assert plan.text.startswith(f"turn by {turn:.0f}°: cost ")
+        assert walker.costs[turn] == min(walker.costs.values()) == pytest.approx(float(walker.b_plan["cost"]), abs=1e-3)
+        assert next(iter(walker.costs)) == 0
+        simulation.run()
+    assert walker.planned() is None
+    assert set(plan.posture) <= simulation.world.bodies["walker"].joints.keys()
+
+
+def test_going_back_and_on_gives_the_same_bytes(model: Any) -> None:
+    with RunLimits(seed=1):
+        simulation: Simulation = model.build(model.Parameters(aperture=0.45, start_aside=0.3))
+        simulation.run()
+    end, state, result = simulation.time, simulation.world.state_bytes(), simulation.result()
+    simulation.seek(5.0)
+    assert simulation.world.state_bytes() != state
+    simulation.seek(end)
+    assert simulation.world.state_bytes() == state
+    assert simulation.result() == result
+
+
+def test_a_start_moved_by_hand_is_as_good_as_one_that_is_given(model: Any) -> None:
+    given, _ = walked(model, aperture=0.8, start_aside=0.6, start_heading=10.0)
+    with RunLimits(seed=1):
+        simulation: Simulation = model.build(model.Parameters(aperture=0.8))
+        simulation.command("teleport", 0.0, 0.6, radians(10.0), body="walker")
+        simulation.run()
+    moved = simulation.result()
+    assert (moved.outcome, moved.contacts) == (given.outcome, given.contacts) == ("passed", 0)
+    assert moved.speed_m_s == pytest.approx(given.speed_m_s, abs=0.01)
+    assert moved.clearance_left_m == pytest.approx(given.clearance_left_m, abs=0.01)
 
 
 def test_the_same_seed_gives_the_same_walk(model: Any) -> None:
