@@ -207,6 +207,14 @@ def test_one_number_is_fitted_and_all_others_say_where_they_are_from() -> None:
     assert all("Source:" in words for names, words in said.items() if names != "CONTACT_COST"), said
 
 
+def test_no_number_of_the_walker_is_without_a_name() -> None:
+    """Within its classes there are only 0, 1, 2, and a number of digits, 4."""
+    tree = ast.parse(FILE.read_text(encoding="utf-8"))
+    classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.name != "Parameters"]
+    within = {(of.name, node.value) for of in classes for node in ast.walk(of) if isinstance(node, ast.Constant)}
+    assert {value for _, value in within if type(value) in (int, float)} == {0, 1, 2, 4}
+
+
 # -- experience
 
 
