@@ -31,6 +31,8 @@ What to try
 - `closing = 0.06, aperture = 0.9`: the doorway closes while it walks there. It turns for the width that it sees when it decides.
 - `contact_cost = 10.0`: fears to touch the wall.
 - `gait = False`: glides, and so did all the bodies of its experience.
+- In the 3D view, the label above the walker has the turn that it plans and the cost that it expects of each; the overlay «handles» moves its
+  start.
 """
 
 from dataclasses import dataclass, replace

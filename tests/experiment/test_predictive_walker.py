@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from itertools import pairwise
 from math import radians
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from actr3d.actr.kernel.run_limits import RunLimits
@@ -18,7 +20,9 @@ from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.trial import run_trial
 from actr3d.simulation import Simulation
 
-FILE = Path(__file__).parents[2] / "models" / "predictive_walker.py"
+ROOT = Path(__file__).parents[2]
+FILE = ROOT / "models" / "predictive_walker.py"
+SENSITIVITY = ROOT / "docs" / "sensitivity.py"
 
 
 @pytest.fixture(scope="module")
@@ -213,6 +217,43 @@ def test_no_number_of_the_walker_is_without_a_name() -> None:
     classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.name != "Parameters"]
     within = {(of.name, node.value) for of in classes for node in ast.walk(of) if isinstance(node, ast.Constant)}
     assert {value for _, value in within if type(value) in (int, float)} == {0, 1, 2, 4}
+
+
+# -- how much the chosen numbers matter (docs/sensitivity.py)
+
+
+@pytest.fixture(scope="module")
+def sensitivity() -> Any:
+    return load_text(SENSITIVITY.read_text(encoding="utf-8"), str(SENSITIVITY))
+
+
+def test_the_decision_alone_is_that_of_the_model(model: Any, sensitivity: Any) -> None:
+    ratio = np.array([0.45 / 0.404])
+    alone = sensitivity.Deciding().turns_before(0.404, ratio, speed=1.29).mean()
+    assert chosen(model, 6, aperture=0.45) == pytest.approx(alone, abs=6)
+
+
+def test_the_room_that_it_wants_follows_from_what_counts_as_similar_more_than_from_the_fitted_cost(sensitivity: Any) -> None:
+    usual = sensitivity.Deciding()
+    assert usual.critical_ratio() == pytest.approx(1.30, abs=0.02)
+    by_room = replace(usual, room=0.04).critical_ratio() - replace(usual, room=0.01).critical_ratio()
+    by_cost = (
+        replace(usual, contact_cost=2 * usual.contact_cost).critical_ratio()
+        - replace(usual, contact_cost=usual.contact_cost / 2).critical_ratio()
+    )
+    assert by_room > 3 * by_cost > 0
+    assert replace(usual, walks=False).critical_ratio() < usual.critical_ratio() - 0.02
+
+
+def test_the_effort_of_turning_makes_fast_walkers_turn_less_and_the_impact_would_make_them_turn_more(sensitivity: Any) -> None:
+    for _, *cell in sensitivity.CELLS:
+        both, effort, impact = sensitivity.effect_of_speed(*cell)
+        assert effort < both < 0 < impact
+
+
+@pytest.mark.slow
+def test_the_manual_shows_how_much_the_numbers_matter(sensitivity: Any) -> None:
+    assert sensitivity.report() in (SENSITIVITY.parent / "results.md").read_text(encoding="utf-8")
 
 
 # -- experience
