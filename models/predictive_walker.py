@@ -31,7 +31,7 @@ What to try
 - `closing = 0.06, aperture = 0.9`: the doorway closes while it walks there. It turns for the width that it sees when it decides.
 - `contact_cost = 10.0`: fears to touch the wall.
 - `gait = False`: glides, and so did all the bodies of its experience.
-- In the 3D view, the label above the walker has the turn that it plans and the cost that it expects of each; the overlay «handles» moves its
+- In the 3D view, the label above the walker has the turn that it plans, and the costs that it expects of turns; the overlay «handles» moves its
   start.
 """
 
@@ -366,15 +366,16 @@ class Person(ACTR):
 
     def planned(self):
         """Returns what the workbench shows of its plan: the turned body until it turns, and the expected costs until it is through."""
-        if self.b_goal["do"] not in ("walk", "wait", "turn", "pass") or not self.costs:
+        if not self.b_goal or self.b_goal["do"] not in ("walk", "wait", "turn", "pass") or not self.costs:
             return None
         turn = float(self.b_plan["turn"])
         effort, cost = round(self.effort(turn), 1), round(float(self.b_plan["cost"]), 1)
-        chosen = f"turn by {turn:.0f}°: cost {cost:.1f} = effort {effort:.1f} + contacts {cost - effort:.1f}"
-        costs = "   ".join(f"{other:.0f}°: {value:.1f}" for other, value in self.costs.items())
+        (none, straight), *others = self.costs.items()
+        costs = "   ".join(f"{other:.0f}°: {value:.0f}" for other, value in [(none, straight), *others[-4:]])
+        text = f"turn by {turn:.0f}°: cost {cost:.1f} = effort {effort:.1f} + contacts {cost - effort:.1f}\n{costs}"
         if turn == 0 or self.b_goal["do"] in ("turn", "pass"):
-            return Plan(text=f"{chosen}\n{costs}")
-        return Plan(text=f"{chosen}\n{costs}", posture={f"{part}_yaw": self.side * share * turn for part, share in SHARES.items()})
+            return Plan(text=text)
+        return Plan(text=text, posture={f"{part}_yaw": self.side * share * turn for part, share in SHARES.items()})
 
     # -- judging
 

@@ -151,8 +151,9 @@ def test_a_turn_that_is_given_is_made(model: Any) -> None:
 def test_it_shows_its_plan_with_the_costs_that_it_expects_of_each_turn(model: Any) -> None:
     with RunLimits(seed=1):
         simulation: Simulation = model.build(model.Parameters(aperture=0.45))
-        simulation.run(0.5)
         walker = simulation.agents["walker"]
+        assert walker.planned() is None, "before the first tick"
+        simulation.run(0.5)
         assert walker.planned() is None
         simulation.run(5)
         plan = walker.planned()
@@ -212,7 +213,7 @@ def test_one_number_is_fitted_and_all_others_say_where_they_are_from() -> None:
 
 
 def test_no_number_of_the_walker_is_without_a_name() -> None:
-    """Within its classes there are only 0, 1, 2, and a number of digits, 4."""
+    """Within its classes there are only 0, 1, 2, and 4: the digits of a number, and the costs in a label."""
     tree = ast.parse(FILE.read_text(encoding="utf-8"))
     classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.name != "Parameters"]
     within = {(of.name, node.value) for of in classes for node in ast.walk(of) if isinstance(node, ast.Constant)}
