@@ -26,7 +26,8 @@ What to try
 -----------
 - `aperture = 0.5, speed = 1.8`: a fast walker.
 - `start_aside = 1.0, start_heading = 20.0`: steers to the middle of the doorway.
-- `scene = "pillar", aperture = 1.0`: walks round a pillar; `scene = "two doorways", aperture = 1.0`: chooses one of two.
+- `scene = "pillar", aperture = 1.0`: begins to walk round a pillar, and waits there, because it does not see the doorway behind it.
+- `scene = "two doorways", aperture = 1.0`: chooses one of two.
 - `scene = "two people", aperture = 0.8`: somebody comes from the other side; one of the two lets the other go first.
 - `closing = 0.06, aperture = 0.9`: the doorway closes while it walks there. It turns for the width that it sees when it decides.
 - `contact_cost = 10.0`: fears to touch the wall.
