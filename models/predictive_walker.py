@@ -29,7 +29,7 @@ What to try
 - `scene = "pillar", aperture = 1.0`: begins to walk round a pillar, and waits there, because it does not see the doorway behind it.
 - `scene = "two doorways", aperture = 1.0`: chooses one of two.
 - `scene = "two people", aperture = 0.8`: somebody comes from the other side; one of the two lets the other go first.
-- `closing = 0.06, aperture = 0.9`: the doorway closes while it walks there. It turns for the width that it sees when it decides.
+- `closing = 0.065, aperture = 0.9`: the doorway closes while it walks there. It turns for a width that it saw before it decided.
 - `contact_cost = 10.0`: fears to touch the wall.
 - `gait = False`: glides, and so did all the bodies of its experience.
 - In the 3D view, the label above the walker has the turn that it plans, and the costs that it expects of turns; the overlay «handles» moves its
