@@ -50,7 +50,7 @@ SHOTS = (
     Shot(name="workbench.png", model="aperture_passage.py", settings={"aperture": 0.45}, time=10.2, tab="productions"),
     Shot(name="doorway.png", model="doorway.py", settings={"width": 0.5}, time=5.6, tab="buffers"),
     Shot(
-        name="predictive_walker.png", model="predictive_walker.py", settings={"aperture": 0.45, "start_aside": 0.5}, time=7.4, tab="buffers"
+        name="predictive_walker.png", model="predictive_walker.py", settings={"aperture": 0.45, "start_aside": 0.5}, time=6.5, tab="buffers"
     ),
 )
 

@@ -51,6 +51,13 @@ What to try
 - `start_aside = 0.3`: a start that is not in line with the doorway. This walker cannot steer: it walks into the wall. The
   `predictive` one can.
 - Or move the slider of the aperture while the walker is on its way.
+
+The `predictive` variant without one of its parts:
+
+- `variant = "predictive", gait = False`: no steps and no sway, now and in its memories.
+- `variant = "predictive", perceptual_noise = 0.0`: exact eyes, and an exactly felt width.
+- `variant = "predictive", impact = "any"`: each contact costs the same, whatever its energy.
+- `variant = "predictive", memories = 0`: no experience.
 """
 
 from dataclasses import dataclass

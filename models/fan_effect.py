@@ -57,10 +57,24 @@ from actr3d.actr import *
 # Three people and six places with one fact each, three and three with two, three and two with three: one fact for each person in each
 # combination of fans.
 FACTS = (
-    "hippie park", "lawyer bank", "sailor cave",
-    "captain park", "captain tower", "baker park", "baker bank", "painter harbour", "painter mill",
-    "doctor church", "doctor harbour", "doctor forest", "farmer church", "farmer castle", "farmer cellar",
-    "singer church", "singer castle", "singer lake",
+    "hippie park",
+    "lawyer bank",
+    "sailor cave",
+    "captain park",
+    "captain tower",
+    "baker park",
+    "baker bank",
+    "painter harbour",
+    "painter mill",
+    "doctor church",
+    "doctor harbour",
+    "doctor forest",
+    "farmer church",
+    "farmer castle",
+    "farmer cellar",
+    "singer church",
+    "singer castle",
+    "singer lake",
 )
 
 

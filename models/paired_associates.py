@@ -60,8 +60,26 @@ key_time = 0.357
 from actr3d.actr import *
 
 NOUNS = (
-    "apple", "basket", "cloud", "desk", "engine", "feather", "glove", "hammer", "island", "jacket",
-    "kettle", "ladder", "mirror", "needle", "orange", "pillow", "queen", "river", "saddle", "table",
+    "apple",
+    "basket",
+    "cloud",
+    "desk",
+    "engine",
+    "feather",
+    "glove",
+    "hammer",
+    "island",
+    "jacket",
+    "kettle",
+    "ladder",
+    "mirror",
+    "needle",
+    "orange",
+    "pillow",
+    "queen",
+    "river",
+    "saddle",
+    "table",
 )
 # Each digit belongs to two nouns.
 DIGITS = {noun: number % 10 for number, noun in enumerate(NOUNS[:pairs])}

@@ -26,11 +26,14 @@ What to try
 -----------
 - `aperture = 0.5, speed = 1.8`: a fast walker.
 - `start_aside = 1.0, start_heading = 20.0`: steers to the middle of the doorway.
-- `scene = "pillar", aperture = 1.0`: walks round a pillar; `scene = "two doorways", aperture = 1.0`: chooses one of two.
+- `scene = "pillar", aperture = 1.0`: begins to walk round a pillar, and waits there, because it does not see the doorway behind it.
+- `scene = "two doorways", aperture = 1.0`: chooses one of two.
 - `scene = "two people", aperture = 0.8`: somebody comes from the other side; one of the two lets the other go first.
-- `closing = 0.06, aperture = 0.9`: the doorway closes while it walks there. It turns for the width that it sees when it decides.
+- `closing = 0.065, aperture = 0.9`: the doorway closes while it walks there. It turns for a width that it saw before it decided.
 - `contact_cost = 10.0`: fears to touch the wall.
 - `gait = False`: glides, and so did all the bodies of its experience.
+- In the 3D view, the label above the walker has the turn that it plans, and the costs that it expects of turns; the overlay «handles» moves its
+  start.
 """
 
 from dataclasses import dataclass, replace
@@ -43,7 +46,7 @@ from annotated_types import Ge, Gt, Le
 from actr3d.actr import *
 from actr3d.configuration import Configuration, Live
 from actr3d.experiment.aperture import Passage, experiences
-from actr3d.motor import Motor
+from actr3d.motor import Motor, Plan
 from actr3d.simulation import Simulation
 from actr3d.vision import Vision
 from actr3d.world import Aperture, Floor, Gait, Load, Mannequin, Scene, Wall
@@ -59,10 +62,12 @@ Source: Fajen & Warren (2003), J Exp Psychol Hum Percept Perform 29 (docs/human-
 REPULSION, NARROWNESS, REACH = 198.0, 6.5, 0.8
 """It turns away from obstacles with the acceleration k (φ - ψ) exp(-c3 |φ - ψ|) exp(-c4 d); k [1/s²], c3 [1/rad], c4 [1/m].
 Source: Fajen & Warren (2003)."""
-NOTICE, BEFORE, LAG, FORGET = 4.0, 0.15, 0.5, 0.5
-"""Objects count as obstacles up to this distance [m], if they are nearer than the doorway by more than the second number [m] and the way
-that it walks in the third [s], as it sees one after the other; and this long after they were last noticed [s]. Source: 3.8 m, the
-protective zone of Hackney & Cinelli (docs/human-data.md); the others chosen."""
+NOTICE = 4.0
+"""Objects count as obstacles up to this distance [m]. Source: chosen, about the protective zone of 3.8 m that Hackney & Cinelli found
+(docs/human-data.md)."""
+BEFORE, LAG, FORGET = 0.15, 0.5, 0.5
+"""Obstacles are nearer than the doorway by more than the first number [m] and the way that it walks in the second [s], as it sees one
+after the other; and count this long after they were last noticed [s]. Source: chosen for this model."""
 GLANCE, BEYOND, SAME = 20.0, 0.5, 0.8
 """How far from where it was it looks for the doorway: to each side [degrees], and beyond it [m]; and how much of its width it must have
 to be the same. Source: chosen for this model."""
@@ -73,8 +78,8 @@ HEADING_NOISE = 0.02
 SLOWEST = 0.01
 """Turns slower than this are not made [rad/s]. Source: chosen for this model."""
 STEPS = 2.0
-"""How many steps before the doorway the shoulders begin to turn. Source: people look about two steps ahead (Patla & Vickers 2003); that
-they turn then is our assumption."""
+"""How many steps before the doorway the shoulders begin to turn. Source: chosen, because people look about two steps ahead (Patla & Vickers
+2003); that they turn then is our assumption."""
 TURNING = 1.0
 """In how many steps they turn. With the time that it takes to see and to decide, they are turned about half a step before the doorway.
 Source: chosen for this model."""
@@ -86,14 +91,27 @@ HEAD = 0.75
 """The part of a turn by which the head turns back against the shoulders; the eyes do the rest. Source: chosen from the neck's range."""
 HIPS = 0.45
 """The part of a turn that the hips make; the torso makes the rest. Source: chosen from the ranges of both, about 45 and 55 degrees."""
+SHARES = {"stance": HIPS, "torso": 1 - HIPS, "head": -HEAD, "eye": HEAD - 1}
+"""How a turn is shared: the head turns back with the eyes, so that it looks where it walks. Source: follows from the two numbers above."""
 INERTIA = 1.5
 """Moment of inertia of a turning person about the vertical [kg m²]. Source: chosen, of the order of a standing adult's."""
-ROOM, PACE, ANGLE = 0.02, 0.3, 5.0
-"""Differences of room [m], speed [m/s] and angle [degrees] at which the similarity of two memories is -1. Source: chosen for this model."""
+ROOM, PACE, ANGLE, TEMPERATURE = 0.02, 0.3, 5.0, 1.0
+"""Differences of room [m], speed [m/s] and angle [degrees] at which the similarity of two memories is -1; and the temperature of blending.
+The first one decides how much room it wants more than any other number (docs/results.md). Source: chosen for this model."""
+LIKELY = 0.5
+"""What it expects with a greater probability, it counts on. Source: chosen, as anything else would be a bias."""
 DISTANCE_NOISE, EDGE_NOISE, WIDTH_NOISE = 0.02, 0.002, 0.005
 """Standard deviations, for `perceptual_noise = 1`: of seen distances, as a fraction; of seen directions of edges [rad]; of felt widths [m].
 Source: chosen for this model. They have no bias, as people's have none up to 15 m (Fukusima, Loomis & Da Silva 1997, J Exp Psychol Hum
 Percept Perform 23); no Weber fraction of people for doorways at such distances was at hand."""
+CYCLE = 0.05
+"""Time of a production, and of a search of vision [s]. Source: productions of ACT-R; the search as in the original (docs/human-data.md)."""
+FEELING = 1.0
+"""In what time it turns out and back to feel its width, and back behind the doorway [s]. Source: chosen for this model."""
+GRAIN, FELT = 0.001, 4.0
+"""How finely it feels its width [m], and after what change of its angles it does again [degrees]. Source: chosen for this model."""
+FIRST, LONGEST = 0.1, 0.3
+"""The time that the first look at the doorway counts for in steering, and the longest that any does [s]. Source: chosen for this model."""
 YIELD = 3.0
 """At how many steps before the doorway it waits if somebody else is nearer to it. Source: chosen for this model."""
 PATIENCE = (0.5, 3.0)
@@ -189,7 +207,7 @@ class Wait(Model):
 class Steering(ACTR):
     """Walks to the middle of the doorway that it sees."""
 
-    production_time = 0.05
+    production_time = CYCLE
 
     def look(b_course="steer:yes", vision="busy:False error:False", b_visual=None):
         """Looks where the doorway was: of two, it keeps to the one that it has chosen."""
@@ -216,7 +234,7 @@ class Steering(ACTR):
 class Avoiding(ACTR):
     """Notices objects that are nearer than the doorway, one after the other."""
 
-    production_time = 0.05
+    production_time = CYCLE
 
     def look(b_course="steer:yes", periphery="busy:False", b_obstacle=None, b_door="far:?far"):
         way = 0 if b_goal["do"] == "wait" else LAG * self.parent.speed
@@ -235,10 +253,10 @@ class Planning(ACTR):
     It ends when the effort of a larger turn alone would cost more than the cheapest so far.
     """
 
-    production_time = 0.05
+    production_time = CYCLE
 
     def begin(b_goal="do:walk", b_imagined=None, b_door="width:?wide", pause="state:!on"):
-        self.cheapest = None
+        self.cheapest, self.costs = None, {}
         b_imagined.set(f"turn:{TURNS[0] if self.parent.always is None else self.parent.always} door:{wide} state:new")
 
     def imagine(b_imagined="turn:?turn state:new"):
@@ -267,6 +285,7 @@ class Planning(ACTR):
         b_experience.clear()
         expected = float(energy) if self.parent.impact == "energy" else ANY * (1 - float(free))
         cost = self.parent.effort(float(turn)) + self.parent.contact_cost * expected
+        self.costs[float(turn)] = cost
         if self.cheapest is None or cost < self.cheapest[0]:
             felt, outcome = f"turn:{turn} width:{width} middle:{middle}", f"free:{float(free):.3f} passed:{float(passed):.3f}"
             self.cheapest = cost, f"{felt} cost:{cost:.3f} {outcome}"
@@ -282,13 +301,14 @@ class Planning(ACTR):
         """Keeps a plan, unless it has come too late: the walker steers so that the middle of its turned body will be in the middle."""
         if self.parent.b_goal["do"] == "walk":
             self.parent.b_plan.set(plan)
+            self.parent.costs = self.costs
             self.parent.middle = float(self.parent.b_plan["middle"])
 
 
 class Person(ACTR):
     """Feels how wide it is in each posture, then walks through the doorway."""
 
-    production_time = 0.05
+    production_time = CYCLE
     b_goal = Buffer()
     b_course = Buffer()
     b_visual = Buffer()
@@ -300,12 +320,12 @@ class Person(ACTR):
     nearest = Similar(DM)
     b_experience = Buffer()
     experience = BlendingMemory(b_experience, latency=0, threshold=None)
-    activation_noise = DMNoise(experience, noise=0.1)
+    activation_noise = DMNoise(experience, noise=MEMORY_NOISE)
     alike = Similar(experience)
-    vision = Vision(b_visual, delay=0.05, horizontal_fov=FIELD)
+    vision = Vision(b_visual, delay=CYCLE, horizontal_fov=FIELD)
     b_obstacle = Buffer()
-    periphery = Vision(b_obstacle, delay=0.05, horizontal_fov=FIELD)
-    motor = Motor(memory=DM, size_grid=0.001, extreme_step=4)
+    periphery = Vision(b_obstacle, delay=CYCLE, horizontal_fov=FIELD)
+    motor = Motor(memory=DM, size_grid=GRAIN, extreme_step=FELT)
     way = Wait()
     pause = Wait()
     patience = Wait()
@@ -316,7 +336,7 @@ class Person(ACTR):
     def init():
         nearest.scales = {"torso_yaw": ANGLE}
         alike.scales = {"room": ROOM, "speed": PACE}
-        experience.temperature = 1.0
+        experience.temperature = TEMPERATURE
         activation_noise.noise = memory_noise
         vision.distance_noise, vision.edge_noise = noise * DISTANCE_NOISE, noise * EDGE_NOISE
         motor.size_noise = noise * WIDTH_NOISE
@@ -325,25 +345,38 @@ class Person(ACTR):
             experience.add("event:passage " + " ".join(f"{slot}:{value}" for slot, value in passage.items()))
         self.side = self.random.choice([1, -1])
         self.rate, self.seen_at, self.turned, self.middle, self.obstacle, self.taken = 0.0, None, 0, 0.0, None, 0.0
+        self.costs = {}
         b_goal.set("do:feel")
 
     # -- the body schema
 
     def turn_out(b_goal="do:feel", motor="busy:False"):
-        self.turn_shoulders(TURNS[-1], 1.0)
+        self.turn_shoulders(TURNS[-1], FEELING)
         b_goal.set("do:return")
 
     def turn_in(b_goal="do:return", motor="busy:False"):
-        self.turn_shoulders(0, 1.0)
+        self.turn_shoulders(0, FEELING)
         b_goal.set("do:look")
 
     def turn_shoulders(self, angle, seconds):
         """Turns the shoulders to an angle [degrees], in a time [s]; head and eyes keep their direction."""
-        motor = self.motor
         rate = max(abs(angle - self.turned), LEAST_TURN) / seconds
-        for part, share in (("stance", HIPS), ("torso", 1 - HIPS), ("head", -HEAD), ("eye", HEAD - 1)):
-            motor.rotate(part, "yaw", self.side * share * angle, abs(share) * rate)
+        for part, share in SHARES.items():
+            self.motor.rotate(part, "yaw", self.side * share * angle, abs(share) * rate)
         self.turned = angle
+
+    def planned(self):
+        """Returns what the workbench shows of its plan: the turned body until it turns, and the expected costs until it is through."""
+        if not self.b_goal or self.b_goal["do"] not in ("walk", "wait", "turn", "pass") or not self.costs:
+            return None
+        turn = float(self.b_plan["turn"])
+        effort, cost = round(self.effort(turn), 1), round(float(self.b_plan["cost"]), 1)
+        (none, straight), *others = self.costs.items()
+        costs = "   ".join(f"{other:.0f}°: {value:.0f}" for other, value in [(none, straight), *others[-4:]])
+        text = f"turn by {turn:.0f}°: cost {cost:.1f} = effort {effort:.1f} + contacts {cost - effort:.1f}\n{costs}"
+        if turn == 0 or self.b_goal["do"] in ("turn", "pass"):
+            return Plan(text=text)
+        return Plan(text=text, posture={f"{part}_yaw": self.side * share * turn for part, share in SHARES.items()})
 
     # -- judging
 
@@ -363,7 +396,7 @@ class Person(ACTR):
         b_goal.set("do:say")
 
     def say(b_goal="do:say", b_experience="free:?free"):
-        self.judged = "as it is" if float(free) > 0.5 else "turned"
+        self.judged = "as it is" if float(free) > LIKELY else "turned"
         print(f"{self.now():.2f} s: {self.who}can pass {self.judged}")
         self.stop()
 
@@ -390,7 +423,7 @@ class Person(ACTR):
         elif self.b_goal["do"] == "wait":
             free = now - self.taken > FORGET
         self.b_door.set(f"far:{far} width:{wide} near:{far < STEPS * self.step} free:{free}")
-        elapsed = 0.1 if self.seen_at is None else min(now - self.seen_at, 0.3)
+        elapsed = FIRST if self.seen_at is None else min(now - self.seen_at, LONGEST)
         self.seen_at = now
         if far < self.step:
             self.keep_course()
@@ -442,7 +475,7 @@ class Person(ACTR):
 
     def commit(b_goal="do:walk", b_door="width:?wide near:True free:True", b_plan="turn:?turn width:?width passed:?passed"):
         self.committed = {"room": round(float(wide) - float(width), 4), "speed": self.speed}
-        b_goal.set("do:decline" if float(passed) <= 0.5 else f"do:turn turn:{turn}")
+        b_goal.set("do:decline" if float(passed) <= LIKELY else f"do:turn turn:{turn}")
 
     def decline(b_goal="do:decline"):
         print(f"{self.now():.2f} s: {self.who}cannot pass")
@@ -460,7 +493,7 @@ class Person(ACTR):
 
     def leave(b_goal="do:pass", way="state:over"):
         motor.stop()
-        self.turn_shoulders(0, 1.0)
+        self.turn_shoulders(0, FEELING)
         b_goal.set("do:stand")
 
     def stand(b_goal="do:stand", motor="busy:False"):

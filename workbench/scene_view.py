@@ -17,7 +17,6 @@ from actr3d.world.compiled import loaded
 from workbench.backdrop import Outlines, Shades, lay_grounds, light
 from workbench.curves import INTEGRATION
 from workbench.overlays import OVERLAYS, Drawn, Overlay
-from workbench.overlays.features import Features
 from workbench.overlays.frustum import Frustum
 from workbench.scene_framing import SceneFraming
 from workbench.view_settings import ViewSettings
@@ -239,15 +238,14 @@ class _Drawn:
         if not np.isfinite(self.data.xpos).all():
             return  # physics has diverged: keep the last valid state
         self._outlines.draw(self.data)
-        eyes, features = self._overlays["frustum"], self._overlays["features"]
+        eyes = self._overlays["frustum"]
         assert isinstance(eyes, Frustum)
-        assert isinstance(features, Features)
         now = {
             "moment": self._moments.next(),
             "body": self._stage.base(self.data).round(5).tolist(),
             "eye": eyes.eye(self.data),
             "heads": eyes.heads(self.data),
             "shade": self._shades.quads(self.data),
-            "labels": features.labels if features.visible else [],
+            "labels": [label for overlay in self._overlays.values() if overlay.visible for label in overlay.labels],
         }
         send_scene_data(self._server, "now", now)

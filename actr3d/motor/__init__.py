@@ -2,5 +2,6 @@
 
 from actr3d.motor.limbs import BodyPart, Freedom
 from actr3d.motor.module import Motor
+from actr3d.motor.plan import Plan
 
-__all__ = ["BodyPart", "Freedom", "Motor"]
+__all__ = ["BodyPart", "Freedom", "Motor", "Plan"]

@@ -35,17 +35,20 @@ SHARED = ("pelvis_yaw", "torso_yaw", "head_yaw", "left_upper_arm_pitch", "right_
 """The joints that the agent moves too: gait moves them about the place where they were commanded to stand."""
 
 TINY = 1e-12
-"""Less than any joint that gait moves differs from its place [rad] [m]."""
+"""Less than any joint that gait moves differs from its place [rad] [m]. Source: chosen; it is numerical."""
 STILL = 0.05
 """Speed below which a body does not step [m/s]. Source: chosen for this library."""
 PHASES = 100
-"""Number of phases of a stride in the stored pattern."""
+"""Number of phases of a stride in the stored pattern. Source: chosen; it is numerical."""
 _ROLES = np.array([ROLES.get(name.removeprefix("left_").removeprefix("right_"), 0) for name in (*OWN, *SHARED)])
 _STANDING = np.zeros((PHASES, len(_ROLES)))
 FASTEST = {SWAY: 1.0, BOB: 1.0}
-"""Greatest speed of gait's slides [m/s]."""
+"""Greatest speed of gait's slides [m/s]. Source: chosen, faster than any gait."""
 FASTEST_HINGE = 12.0
-"""Greatest speed of gait's hinges [rad/s], reached only when a joint returns to gait after another command."""
+"""Greatest speed of gait's hinges [rad/s], reached only when a joint returns to gait after another command. Source: chosen, faster than any
+gait."""
+HALT = 0.5
+"""In what time the movements end after the base has stopped [s]. Source: chosen for this library, about one step."""
 
 HIP = (19, 18, 16, 14, 10, 7, 3, -1, -5, -8, -10, -10, -6, 1, 9, 15, 19, 22, 22, 20)
 KNEE = (4, 10, 16, 18, 17, 13, 10, 7, 6, 8, 13, 23, 38, 53, 61, 62, 54, 39, 20, 6)
@@ -55,6 +58,16 @@ cadence in Winter (2009), read to a few degrees from memory of the figure."""
 NORMAL_STEP = 0.41
 """Step length of those curves as a fraction of the height. Source: chosen; about 0.72 m at 1.75 m, normal walking of adults. For other
 step lengths all angles are scaled."""
+LARGEST_SCALE = 1.3
+"""The greatest factor of these angles. Source: chosen, so that the legs of a very fast walker do not cross."""
+SWAYS = ((0.7, 1.6), (0.07, 0.04))
+"""Speeds [m/s], and the lateral excursion at each, from side to side [m]; it is linear between them, and constant beyond. Source:
+Orendurff et al. (2004), J Rehabil Res Dev 41."""
+SWAYS_AT = 0.3
+"""The phase of the stride at which the body is farthest over the left leg. Source: chosen, the middle of that leg's stance."""
+PELVIS_AT = ((0.5, 1.5), (0.15, 0.4))
+"""Speeds [m/s], and the phase of the stride at which the pelvis is turned farthest to the left at each; the thorax is at 0. Source: chosen;
+that the pelvis changes from turning with the thorax to turning against it is from Huang et al. (2010), Gait Posture 31."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +80,7 @@ class Gait(Configuration):
 
     sway: Annotated[float, Ge(0), Le(3)] = 1.0
     """Factor of the lateral excursion of the body, which is 7 cm from side to side at 0.7 m/s and falls to 4 cm at 1.6 m/s.
-    Source: Orendurff et al. (2004), J Rehabil Res Dev 41, of the centre of mass; that shoulders move as it does is our assumption."""
+    Source: Orendurff et al. (2004), J Rehabil Res Dev 41, of the centre of mass; that shoulders move as it does was assumed."""
 
     wander: Annotated[float, Ge(0), Le(0.1)] = 0.011
     """The standard deviation of the body's lateral position from step to step [m]. Source: steps vary in width by 2.2 cm (1.5 % of the
@@ -75,18 +88,18 @@ class Gait(Configuration):
     feet by 1.1 cm."""
 
     timing: Annotated[float, Ge(0), Le(0.2)] = 0.015
-    """The standard deviation of the duration of a step, as a fraction of it. Source: Collins & Kuo (2013)."""
+    """The standard deviation of the duration of a step, as a fraction of it. Source: that of the step length at a given speed (Collins &
+    Kuo 2013, PLoS ONE 8), as the speed of the base is constant."""
 
     pelvis: Annotated[float, Ge(0), Le(0.3)] = math.radians(4)
-    """Rotation of the pelvis to each side [rad]. Source: a few degrees (docs/human-data.md); the number was chosen."""
+    """Rotation of the pelvis to each side [rad]. Source: chosen; people's is a few degrees (docs/human-data.md)."""
 
     thorax: Annotated[float, Ge(0), Le(0.3)] = math.radians(4)
-    """Rotation of the thorax to each side, against the leg of that side [rad]. Source: as for the pelvis; its phase after Huang et al.
-    (2010), Gait Posture 31: with speed the pelvis turns less with the thorax and more against it."""
+    """Rotation of the thorax to each side, against the leg of that side [rad]. Source: chosen, as that of the pelvis."""
 
     arms: Annotated[float, Ge(0), Le(1)] = math.radians(15)
-    """Swing of each arm, forward and back, against the leg of its side [rad]. Source: an arc of about 30 degrees (Perry 1992). It falls
-    with the square of the cosine of the shoulders' turn, our assumption: who is turned sideways does not swing the arms aside."""
+    """Swing of each arm, forward and back, against the leg of its side [rad]. Source: an arc of about 30 degrees (Perry 1992). That it
+    falls with the square of the cosine of the shoulders' turn was assumed: a walker turned sideways does not swing its arms aside."""
 
     def steps_per_second(self, speed: float) -> float:
         """Returns the step frequency at a speed [m/s]."""
@@ -98,7 +111,7 @@ class Gait(Configuration):
 
     def excursion(self, speed: float) -> float:
         """Returns the lateral excursion at a speed [m/s], from side to side [m]."""
-        return self.sway * float(np.interp(speed, (0.7, 1.6), (0.07, 0.04)))
+        return self.sway * float(np.interp(speed, *SWAYS))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,7 +203,7 @@ class GaitCycle:
                 self._pattern = speed, _pattern(gait, self._legs, speed)
             self._size = min(1.0, self._size + rate * duration)
         else:
-            self._size = max(0.0, self._size - 2 * duration)
+            self._size = max(0.0, self._size - duration / HALT)
         into = 2 * self._phase - self._steps % 2
         ease = into * into * (3 - 2 * into)
         return gait.wander * ((1 - ease) * self._random(self._steps)[1] + ease * self._random(self._steps + 1)[1])
@@ -223,7 +236,7 @@ class GaitCycle:
 def _pattern(gait: Gait, legs: LegPlan, speed: float) -> Row:
     """Returns the offsets of all joints over a stride at a speed: (PHASES, joints) [rad] [m]."""
     phases = np.arange(PHASES) / PHASES
-    scale = min(1.3, gait.step_length(speed) / (NORMAL_STEP * legs.height))
+    scale = min(LARGEST_SCALE, gait.step_length(speed) / (NORMAL_STEP * legs.height))
     columns: dict[str, Row] = {}
     low = np.full(PHASES, math.inf)
     for side, start in zip(SIDES, (0.0, 0.5), strict=True):
@@ -234,10 +247,10 @@ def _pattern(gait: Gait, legs: LegPlan, speed: float) -> Row:
         low = np.minimum(low, _lowest(legs, hip, knee, ankle))
         columns[f"{side}_upper_arm_pitch"] = -gait.arms * min(1.0, scale) * np.cos(2 * np.pi * (phases - start - 0.5))
     columns[BOB] = -low  # the lower foot stays on the ground
-    columns[SWAY] = gait.excursion(speed) / 2 * np.cos(2 * np.pi * (phases - 0.3))  # over the standing leg
-    # The right shoulder is forward when the left heel strikes. The pelvis changes from turning with the thorax to turning against it.
+    columns[SWAY] = gait.excursion(speed) / 2 * np.cos(2 * np.pi * (phases - SWAYS_AT))  # over the standing leg
+    # The right shoulder is forward when the left heel strikes.
     thorax = gait.thorax * np.cos(2 * np.pi * phases)
-    between = np.interp(speed, (0.5, 1.5), (0.15, 0.4))
+    between = np.interp(speed, *PELVIS_AT)
     pelvis = gait.pelvis * np.cos(2 * np.pi * (phases - between))
     columns["pelvis_yaw"], columns["torso_yaw"], columns["head_yaw"] = pelvis, thorax - pelvis, -thorax
     return np.column_stack([columns[name] for name in (*OWN, *SHARED)])

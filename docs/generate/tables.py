@@ -7,10 +7,10 @@ import contextlib
 import inspect
 import io
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import pairwise
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 from unittest import mock
 
 import actr3d.cli
@@ -26,7 +26,10 @@ from actr3d.world.command_registry import BodyFunction
 
 ROBOT = """<mujoco><worldbody><body name="base"><joint name="slide" type="slide"/><geom size="0.1"/><site name="eye"/></body></worldbody>
   <actuator><motor name="pull" joint="slide"/></actuator></mujoco>"""
-WALKER = Path(__file__).parents[2] / "models" / "predictive_walker.py"
+WALKER = tuple(Path(__file__).parents[2] / file for file in ("models/predictive_walker.py", "actr3d/world/gait.py"))
+KINDS_OF_NUMBERS = ("fitted", "published", "chosen", "derived")
+WORDS = {"fitted with": "fitted", "chosen": "chosen", "follows from": "derived"}
+"""By a part of a number's docstring, of which kind it is; the others are published."""
 COMMANDS = {"actr3d": actr3d.cli.main, "workbench": workbench.cli.main}
 TABLES: dict[str, Callable[[], str]] = {}
 
@@ -129,17 +132,45 @@ def trace_kinds() -> str:
 
 @_registered
 def numbers_of_the_walker() -> str:
-    """Returns the table of all constants of the predictive walker: which are fitted, published or chosen, as their docstrings say."""
-    rows: list[Sequence[str]] = []
-    for node, text in pairwise(ast.parse(WALKER.read_text(encoding="utf-8")).body):
-        match node, text:
-            case ast.Assign(targets=[target], value=value), ast.Expr(value=ast.Constant(value=str(said))):
-                kind = "fitted" if "fitted with" in said else "chosen" if "chosen" in said else "published"
-                names, numbers = (
-                    ast.unparse(part).strip("()") if isinstance(part, ast.Tuple) else ast.unparse(part) for part in (target, value)
-                )
-                rows.append((kind, _code(names), _code(numbers), " ".join(said.split())))
-            case _:
-                pass
-    rows.sort(key=lambda row: ("fitted", "published", "chosen").index(row[0]))
-    return _rows(("Kind", "Names", "Values", "Meaning"), rows)
+    """Returns how many numbers the predictive walker and its gait have, and a table of them all, from their code."""
+    found = sorted((row for file in WALKER for row in _numbers(file)), key=lambda row: KINDS_OF_NUMBERS.index(row.kind))
+    counts = Counter[str]()
+    for row in found:
+        counts[row.kind] += len(row.names)
+    text = ", ".join(f"{counts[kind]} {kind}" for kind in KINDS_OF_NUMBERS)
+    rows = [(row.kind, row.file, ", ".join(map(_code, row.names)), _code(row.value), row.said) for row in found]
+    return f"{text}.\n\n{_rows(('Kind', 'File', 'Names', 'Values', 'Meaning and source'), rows)}"
+
+
+class _Number(NamedTuple):
+    """One or more numbers that share a docstring."""
+
+    kind: str
+    file: str
+    names: tuple[str, ...]
+    value: str
+    said: str
+
+
+def _numbers(file: Path) -> Iterator[_Number]:
+    """Yields the constants of a file, and the fields of its configurations, whose docstrings say where they are from."""
+    body = ast.parse(file.read_text(encoding="utf-8")).body
+    for block in (body, *(part.body for part in body if isinstance(part, ast.ClassDef))):
+        names, values = list[str](), list[str]()
+        for node in block:
+            match node:
+                case ast.Assign(targets=[ast.Name(id=name)]) if name.startswith("_"):
+                    pass
+                case ast.Assign(targets=[target], value=value) | ast.AnnAssign(target=target, value=ast.expr() as value):
+                    parts = target.elts if isinstance(target, ast.Tuple) else [target]
+                    names += map(ast.unparse, parts)
+                    text = ast.unparse(value)
+                    values.append(text[1:-1] if len(parts) > 1 else text if len(text) < 60 else f"{text[:50]} …")
+                case ast.Expr(value=ast.Constant(value=str(said))) if names:
+                    said = " ".join(said.split())
+                    kind = next((kind for word, kind in WORDS.items() if word in said), "published")
+                    if kind == "fitted" or ("Source:" in said and (block is body or file.name == "gait.py")):
+                        yield _Number(kind, file.name, tuple(names), "; ".join(values), said)
+                    names, values = [], []
+                case _:
+                    names, values = [], []

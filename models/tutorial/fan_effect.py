@@ -32,8 +32,11 @@ from actr3d.actr import *
 FACTS = (
     "sailor cellar",
     "baker meadow",
-    "tailor church", "tailor meadow",
-    "miller harbour", "miller church", "miller meadow",
+    "tailor church",
+    "tailor meadow",
+    "miller harbour",
+    "miller church",
+    "miller meadow",
 )
 
 

@@ -25,8 +25,12 @@ threshold = 0
 from actr3d.actr import *
 
 LINKS = (
-    ("heron", "bird"), ("owl", "bird"), ("bird", "animal"),
-    ("pike", "fish"), ("fish", "animal"), ("animal", "thing"),
+    ("heron", "bird"),
+    ("owl", "bird"),
+    ("bird", "animal"),
+    ("pike", "fish"),
+    ("fish", "animal"),
+    ("animal", "thing"),
 )
 
 

@@ -5,6 +5,7 @@ import { html } from "../vendor/preact.js";
 /** Units by the ending of a name: [ending, unit, decimals, factor]. */
 const UNITS = [
   ["_m_s", "m/s", 2],
+  ["_n_s", "N s", 1],
   ["_deg", "°", 1],
   ["_rad", "°", 1, 180 / Math.PI],
   ["_m", "m", 3],

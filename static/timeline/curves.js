@@ -43,7 +43,7 @@ function usual(all) {
   const joints = all.filter(({ group }) => group === "joint");
   const turns = joints.filter(({ name }) => /(stance|torso)_yaw$/.test(name)); // for people: hips and shoulders
   const plotted = turns.length > 0 ? turns : joints.slice(0, 1);
-  return all.filter((curve) => plotted.includes(curve) || USUAL.includes(curve.group)).map(({ name }) => name);
+  return all.filter((curve) => plotted.includes(curve) || USUAL.includes(curve.of ?? curve.group)).map(({ name }) => name);
 }
 
 /** The names of the plotted curves. */

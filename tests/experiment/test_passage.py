@@ -193,3 +193,16 @@ def test_watching_single_steps_moves_nothing() -> None:
     assert seen[:3] == pytest.approx([0.002, 0.004, 0.006])
     assert (len(seen) >= 1500, seen[-1]) == (True, pytest.approx(3))
     assert np.array_equal(one.world.state().mj_state, other.world.state().mj_state)
+
+
+def test_a_body_that_is_put_elsewhere_before_it_sets_out_starts_there() -> None:
+    simulation = walked(0.8)
+    simulation.command("teleport", 0.4, 0.1, 0.0, body="walker")
+    result = result_of(simulation)
+    assert result.outcome == "passed"
+    assert result.speed_m_s == pytest.approx(1.25, abs=1e-3)
+    simulation.seek(0)
+    assert result_of(simulation) == result
+    standing = walked(0.8, speed=0.0)
+    standing.command("teleport", 0.4, 0.1, 0.0, body="walker")
+    assert result_of(standing).outcome == "declined"

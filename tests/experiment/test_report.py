@@ -244,3 +244,20 @@ def test_an_experiment_that_was_run_has_a_report(tmp_path: Path, capsys: Any) ->
     assert main(["report", str(folder)]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(folder / "report" / "index.html")
     assert [(row["n_"], row["n"]) for row in table(folder, "means_rt")] == [("1", "3"), ("2", "3"), ("5", "3")]
+
+
+def test_starts_aside_and_aslant_have_a_figure_and_a_table(tmp_path: Path) -> None:
+    def misaligned(trial: Any) -> dict[str, Any]:
+        return {**walk(trial), "outcome": "passed" if trial.values["start_aside"] < 0.2 else "stopped"}
+
+    folder = store_rows(tmp_path / "starts", "misaligned_start", misaligned, trials=2)
+    write_report(folder)
+    assert (folder / "report" / "figures" / "starts.png").stat().st_size > 10_000
+    rows = table(folder, "starts")
+    assert len(rows) == 24
+    assert {float(row["passed"]) for row in rows if float(row["start_aside"]) < 0.2} == {1.0}
+    assert {float(row["passed"]) for row in rows if float(row["start_aside"]) > 0.2} == {0.0}
+    assert "Starts aside and aslant" in page(folder)
+    straight = store_rows(tmp_path / "straight", "warren_whang_1987", walk, trials=1, participants=3)
+    write_report(straight)
+    assert "Starts aside" not in page(straight)

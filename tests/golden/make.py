@@ -18,9 +18,9 @@ ROOT = GOLDEN.parent.parent
 MODELS = ROOT / "models"
 IN_FULL = {"tutorial/compilation", "tutorial/counting", "tutorial/imaginal", "tutorial/parallel_system", "tutorial/two_agents"}
 """The models whose golden traces hold every event; those of the others hold productions and buffers, or productions only."""
-VARIANTS = {"aperture_passage": ("replication",)}
+VARIANTS = {"aperture_passage": ("predictive", "replication")}
 """By model, the variants that have golden traces besides the default."""
-EMBODIED = {"aperture_passage", "aperture_passage@replication", "doorway", "predictive_walker"}
+EMBODIED = {"aperture_passage", "aperture_passage@predictive", "aperture_passage@replication", "doorway", "predictive_walker"}
 """Models with bodies: what these sense is the same to the last digit only on one kind of processor, when they act everywhere."""
 PRODUCTIONS_ONLY = {*EMBODIED, "paired_associates"}
 """The models whose golden traces hold productions, and no buffers: those with bodies, and those that are too long otherwise."""

@@ -165,7 +165,7 @@ def test_the_path_of_an_opened_recording_is_known_at_its_end_at_once(desk: Desk,
     assert drawn(again, 100, ("path",))["path"] == way
 
 
-def test_the_planned_posture_is_what_is_commanded_until_it_is_there(desk: Desk, tmp_path: Path) -> None:
+def test_the_commanded_posture_is_what_is_commanded_until_it_is_there(desk: Desk, tmp_path: Path) -> None:
     talk = after(desk, tmp_path, 20)
     ((place, target),) = drawn(talk, 20, ("posture",))["posture"]["walker"]
     assert target == pytest.approx(math.radians(40))
@@ -175,6 +175,33 @@ def test_the_planned_posture_is_what_is_commanded_until_it_is_there(desk: Desk, 
     told = talk.say("curves", names=["walker_torso_yaw"], first=1.0)
     assert told["curves"]["walker_torso_yaw"][-1] == pytest.approx(40, abs=0.5)
     assert place > 0
+
+
+PLANNING = LOOKING.replace(
+    "    def wait(",
+    """    def planned(self):
+        angle = 90 * (1 - self.now())
+        return Plan(posture={"torso_yaw": angle, "tail": 1}, text=f"turn by {angle:.0f}") if angle > 0 else None if angle > -9 else 1 / 0
+    def wait(""",
+).replace("import Motor", "import Motor, Plan")
+
+
+def test_what_an_agent_plans_is_a_posture_and_a_label_above_its_body(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, PLANNING)
+    talk.say("step", ticks=50)
+    talk.until("paused", tick=50)
+    plan = drawn(talk, 50, ("plan",))["plan"]["walker"]
+    ((place, target),) = plan["targets"]
+    assert target == pytest.approx(math.radians(45))
+    assert plan["text"] == "turn by 45"
+    assert plan["place"][2] > 1.7
+    assert place > 0
+    talk.say("step", ticks=55)
+    talk.until("paused", tick=105)
+    assert drawn(talk, 105, ("plan",)) == {"plan": {}}
+    talk.say("step", ticks=10)
+    talk.until("paused", tick=115)
+    assert drawn(talk, 115, ("plan",))["plan"]["walker"]["text"] == "planned(): ZeroDivisionError: division by zero"
 
 
 @pytest.mark.slow

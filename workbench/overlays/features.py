@@ -39,8 +39,6 @@ class Features(Overlay):
         server = drawn.server
         self._chosen = Lines(server, "/overlays/features/chosen", (217, 138, 31), 4.0)
         self._noticed = Lines(server, "/overlays/features/noticed", (150, 120, 60), 2.0)
-        self.labels: list[dict[str, Any]] = []
-        """The labels, each with `text`, `place` [m] and whether the feature received attention (`chosen`); each browser places them."""
         self.switch()
 
     @staticmethod

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -60,6 +60,9 @@ class Overlay(ABC):
     """The text in the menu."""
     shown_at_first: ClassVar[bool]
     visible = False
+    labels: Sequence[dict[str, Any]] = ()
+    """Labels that it wants, each with `text`, `place` [m] and whether it is about what an agent attends to (`chosen`); each browser places
+    them where they cover nothing."""
 
     @abstractmethod
     def __init__(self, drawn: Drawn) -> None: ...

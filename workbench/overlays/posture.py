@@ -18,23 +18,28 @@ SLIGHT = 1e-3
 COLOUR = (60, 170, 90)
 
 
-@overlay("posture", "planned posture")
-class Posture(Overlay):
-    """Shows the moving parts at their commanded positions, relative to the body's current position."""
+class Copies:
+    """Translucent copies of the parts of bodies that would be elsewhere in another posture.
 
-    def __init__(self, drawn: Drawn) -> None:
+    Args:
+        drawn: The 3D view.
+        name: Their name in viser's tree.
+        colour: Red, green, blue, 0 to 255.
+    """
+
+    def __init__(self, drawn: Drawn, name: str, colour: tuple[int, int, int]) -> None:
         self._server, self._model, self._data = drawn.server, drawn.model, MjData(drawn.model)
+        self._name, self._colour = name, colour
         self._handles: dict[int, Any] = {}
         self._seen: set[int] = set()
 
-    @staticmethod
-    def data(observed: Observed) -> dict[str, Any]:
-        """Returns the commanded joint positions [rad] or [m], with their index in `qpos`, of each body."""
-        return {name: _targets(body) for name, body in observed.simulation.world.bodies.items()}
+    def draw(self, data: MjData, targets: list[Any]) -> None:
+        """Draws the parts that joints at other positions would move.
 
-    def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
-        """Draws the parts that differ from the current posture."""
-        targets = [target for body in (drawn or {}).values() for target in body]
+        Args:
+            data: The current state.
+            targets: The positions, as index in `qpos` and value [rad] or [m].
+        """
         self._seen = self._pose(data, targets) if targets else set()
         for number in self._seen - self._handles.keys():
             self._handles[number] = self._copy(number)
@@ -42,10 +47,9 @@ class Posture(Overlay):
             handle = self._handles[number]
             if handle is not None:
                 handle.position, handle.wxyz = self._data.xpos[number].copy(), self._data.xquat[number].copy()
-        self.switch()
 
     def _pose(self, data: MjData, targets: list[Any]) -> set[int]:
-        """Computes the commanded posture; returns the MuJoCo bodies whose pose differs from the current one."""
+        """Computes the posture; returns the MuJoCo bodies whose pose differs from the current one."""
         now, then = data, self._data
         then.qpos[:], then.mocap_pos[:], then.mocap_quat[:] = now.qpos, now.mocap_pos, now.mocap_quat
         for place, target in targets:
@@ -65,15 +69,37 @@ class Posture(Overlay):
             return None
         mesh = merge_geoms(self._model, geoms)
         return self._server.scene.add_mesh_simple(
-            f"/overlays/posture/{number}", mesh.vertices, mesh.faces, color=COLOUR, opacity=0.35, cast_shadow=False, visible=False
+            f"{self._name}/{number}", mesh.vertices, mesh.faces, color=self._colour, opacity=0.35, cast_shadow=False, visible=False
         )
+
+    def show(self, visible: bool) -> None:
+        """Shows or hides the copies."""
+        for number, handle in self._handles.items():
+            seen = visible and number in self._seen
+            if handle is not None and handle.visible != seen:
+                handle.visible = seen
+
+
+@overlay("posture", "commanded posture")
+class Posture(Overlay):
+    """Shows the moving parts at their commanded positions, relative to the body's current position."""
+
+    def __init__(self, drawn: Drawn) -> None:
+        self._copies = Copies(drawn, "/overlays/posture", COLOUR)
+
+    @staticmethod
+    def data(observed: Observed) -> dict[str, Any]:
+        """Returns the commanded joint positions [rad] or [m], with their index in `qpos`, of each body."""
+        return {name: _targets(body) for name, body in observed.simulation.world.bodies.items()}
+
+    def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
+        """Draws the parts that differ from the current posture."""
+        self._copies.draw(data, [target for body in (drawn or {}).values() for target in body])
+        self.switch()
 
     def switch(self) -> None:
         """Shows or hides the copies."""
-        for number, handle in self._handles.items():
-            visible = self.visible and number in self._seen
-            if handle is not None and handle.visible != visible:
-                handle.visible = visible
+        self._copies.show(self.visible)
 
 
 def _targets(body: Body) -> list[list[float]]:

@@ -18,6 +18,8 @@ from actr3d.world.scene_objects import Aperture
 
 SET_OUT = 0.05
 """Distance from the start after which a body has set out [m]. Source: chosen for this library."""
+STANDS = 0.01
+"""Speed below which a body stands [m/s]. Source: chosen for this library; less than any walk."""
 FASTEST = 20.0
 """No part of a body moves faster than this [m/s]. Source: chosen; a swinging arm reaches a few metres a second."""
 TINY = 1e-9
@@ -143,6 +145,7 @@ class Passage:
         self._turning = np.array([row[:2] for row in turning], dtype=np.intp).reshape(-1, 2), np.array([row[2] for row in turning])
         x, y, _ = self._axis.tolist()
         self._start = x, y
+        self._slide = self._body.base.v
         self._reach = 2.0 + wall.thickness
         self._away = math.inf, math.inf
 
@@ -155,7 +158,11 @@ class Passage:
             number = bisect_right(self._times, end - ago + TINY)
             after = bisect_right(self._times, end + TINY)
             del self._times[number:after], self._samples[number:after]
-        if math.dist((x, y), self._start) >= SET_OUT:
+        if math.dist((x, y), self._start) < SET_OUT:
+            return
+        if not number and math.hypot(self._qvel[self._slide], self._qvel[self._slide + 1]) < STANDS:
+            self._start = x, y  # it was put elsewhere before it set out
+        else:
             self._times.insert(number, end)
             self._samples.insert(number, self._sample(end - ago, ago))
 
