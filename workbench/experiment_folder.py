@@ -13,8 +13,7 @@ from typing import Any, cast
 import msgspec
 
 from actr3d.recording.key import is_sealed, make_key, seal
-from workbench.experiment_command import ExperimentRunError
-from workbench.experiment_messages import ExperimentFacts
+from workbench.experiment_command import ExperimentFacts, ExperimentRunError
 
 SPECIFICATION, FACTS, TABLE, LOCK, NOTES = "experiment.json", "facts.json", "trials.sqlite", "lock", "workbench.json"
 """The files of an experiment's folder; the workbench writes only the last one."""

@@ -15,9 +15,16 @@ from typing import Any, TypeVar, cast
 
 from actr3d.errors import Actr3dError
 from workbench.design_files import design_argument, stamp_of
-from workbench.experiment_command import ExperimentCommand, ExperimentRunError
+from workbench.experiment_command import (
+    AnyExperimentEvent,
+    ExperimentCommand,
+    ExperimentEvent,
+    ExperimentFacts,
+    ExperimentProgress,
+    ExperimentRunError,
+    TriedFacts,
+)
 from workbench.experiment_folder import ExperimentFolder, as_values
-from workbench.experiment_messages import AnyExperimentEvent, ExperimentEvent, ExperimentFacts, ExperimentProgress, TriedFacts
 from workbench.files import OWN
 from workbench.retention import begun, stamp
 from workbench.sessions import Sessions, UntrustedError

@@ -7,14 +7,17 @@ import re
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
 
 from actr3d.actr.kernel.source_code import syntax_tree
-from actr3d.actr.loading.source_text import compile_source
+from actr3d.actr.loading.source_text import compile_source, read_source
 from actr3d.actr.loading.sweep import parameters as first_lines
 from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
 from actr3d.parameter_schema import Parameter, default_of, parameters_in
 from actr3d.runner.build_check import build_of, has_build, problem_of_build
 from actr3d.values import escape_surrogates
+from workbench.files import LARGEST, MOST_FILES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,6 +74,30 @@ def listing_of(source: str, filename: str = "model.py") -> ModelListing:
         productions=tuple(_productions(tree)),
         problems=problems,
     )
+
+
+@dataclass(frozen=True)
+class Outline:
+    """Holds what a list shows of a model file."""
+
+    title: str = ""
+    kind: str = "program"
+
+
+def outline_of(path: Path) -> Outline:
+    """Returns the outline of a file, which is read again only when it has changed; an empty one if the file cannot be read."""
+    try:
+        now = path.stat()
+        return _outline(path, (now.st_mtime_ns, now.st_size, now.st_ino)) if now.st_size <= LARGEST else Outline()
+    except (OSError, ModelFileError):
+        return Outline()
+
+
+@lru_cache(maxsize=2 * MOST_FILES)
+def _outline(path: Path, _: tuple[int, ...]) -> Outline:
+    """Reads a file; the numbers change when the file changes, so that the cache is not used for an old version."""
+    listing = listing_of(read_source(path), path.name)
+    return Outline(listing.title, listing.kind)
 
 
 def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:

@@ -15,8 +15,7 @@ from pydantic import Field
 from actr3d.values import escape_surrogates
 from workbench.about import about_of
 from workbench.files import ModelFile
-from workbench.loader import listing_of
-from workbench.outlines import outline_of
+from workbench.loader import listing_of, outline_of
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions

@@ -13,11 +13,11 @@ import msgspec
 
 from actr3d.errors import Actr3dError
 from workbench.client_feed import MOST_NOTICES, EventLog, Feed, Raw
+from workbench.overlays import ViewSettings
 from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
-from workbench.retention import erase, never_begun
+from workbench.retention import erase
 from workbench.run_request import LaunchedRun, RunOptions, start_of
-from workbench.view_settings import ViewSettings
 from workbench.worker.messages import At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import WorkerMonitor
@@ -526,3 +526,16 @@ class Session:
 def _exactly(seed: int | str) -> int | str:
     """Returns a seed in a form that a page can read without loss: as text if it exceeds JavaScript's exact integers."""
     return seed if isinstance(seed, int) and abs(seed) < 2**53 else str(seed)
+
+
+def never_begun(state: State | None, log: EventLog) -> bool:
+    """Returns whether a run has never left its start, printed nothing and received no command: its recording is useless.
+
+    Args:
+        state: Its newest state; None if it has not sent any.
+        log: Its events.
+    """
+    if state is None or state.furthest > 0 or state.status != "paused":
+        return False
+    _, events = log.since(0)
+    return not any(msgspec.json.decode(event)[2] in ("output", "command") for event in events)

@@ -27,8 +27,8 @@ from workbench.overlays import OVERLAYS
 from workbench.page_commands import COMMANDS, Question
 from workbench.page_commands.agents import Events, Explain, MemoryRows
 from workbench.page_commands.bodies import BodyState, Curves, View
+from workbench.worker.names import Top
 from workbench.worker.shown import Shown
-from workbench.worker.top_models import Top
 
 MODELS = Path(__file__).parents[2] / "models"
 KINDS = tuple(OVERLAYS)

@@ -7,10 +7,9 @@ from typing import Any, Protocol
 
 from actr3d.parameter_schema import LiveCommand
 from actr3d.trace import Trace
-from workbench.worker.names import Names
+from workbench.worker.names import Names, Top
 from workbench.worker.shown import Shown
 from workbench.worker.stop_conditions import Touches
-from workbench.worker.top_models import Top
 
 
 class ControlledRun(Protocol):

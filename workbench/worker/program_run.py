@@ -30,12 +30,11 @@ from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
 from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import Facts
-from workbench.worker.names import Names, names_of_program
+from workbench.worker.names import Names, Top, names_of_program
 from workbench.worker.recorded_once import RecordedOnce
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.shown import Kept, Shown
 from workbench.worker.stop_conditions import Touches
-from workbench.worker.top_models import Top
 
 PERIOD = 10_000
 """The length of a step [us]: that of a tick of a simulation."""

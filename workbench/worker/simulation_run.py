@@ -25,17 +25,16 @@ from actr3d.runner.traceback_report import failure
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
-from workbench.branches import new_branch, superfluous_branches
 from workbench.loader import ModelListing
+from workbench.retention import new_branch, superfluous_branches
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
 from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import Branched, Facts
-from workbench.worker.names import Names, names_of
+from workbench.worker.names import Names, Top, names_of
 from workbench.worker.run_controller import RunController
 from workbench.worker.shown import Shown
 from workbench.worker.stop_conditions import Touches
-from workbench.worker.top_models import Top
 
 BLOCK = 0.008
 """How long the run continues before it checks for commands of users [s], approximately."""
