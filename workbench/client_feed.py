@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Sequence
 from itertools import islice
-from typing import Any, Protocol
+from typing import Any
 
 import msgspec
 
@@ -73,51 +74,40 @@ class EventLog:
         return self.first + begin, found
 
 
-class FeedSource(Protocol):
-    """The part of a session that a feed sends; `Session` itself imports this module."""
+class Broadcast(ABC):
+    """What is sent to all browsers that watch: events and notices with numbers, state and facts with versions. A session is one.
 
-    @property
-    def name(self) -> str:
-        """The name of the session."""
-        ...
+    Args:
+        name: The name of the session.
+    """
 
-    @property
-    def run(self) -> int:
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.feeds: list[Feed] = []
+        self.run: int = 0
         """The number of the run on screen."""
-        ...
-
-    @property
-    def epoch(self) -> int:
+        self.epoch: int = 0
         """Counts how often the run has been replaced, or cut and continued differently."""
-        ...
-
-    @property
-    def log(self) -> EventLog:
+        self.log = EventLog()
         """The events of the run."""
-        ...
-
-    @property
-    def notices(self) -> deque[tuple[int, bytes]]:
+        self.notices: deque[tuple[int, bytes]] = deque(maxlen=MOST_NOTICES)
         """The notices to the user, numbered, as JSON."""
-        ...
+        self.state_version: int = 0
+        self.facts_version: int = 0
 
-    @property
-    def state_version(self) -> int:
-        """The version of the state: increases with each new state."""
-        ...
-
-    @property
-    def facts_version(self) -> int:
-        """The version of the facts about the session and its run."""
-        ...
-
+    @abstractmethod
     def state_json(self) -> bytes:
         """Returns the newest state as JSON."""
-        ...
 
+    @abstractmethod
     def facts_json(self) -> bytes:
         """Returns the facts about the session and its run as JSON."""
-        ...
+
+    def changed(self, *, facts: bool = False) -> None:
+        """Signals all browsers that there is something new to send, such as other facts."""
+        self.facts_version += facts
+        for feed in self.feeds:
+            feed.wake()
 
 
 class Feed:
@@ -128,7 +118,7 @@ class Feed:
         name: The browser's name, as other users see it.
     """
 
-    def __init__(self, shown: FeedSource, name: str) -> None:
+    def __init__(self, shown: Broadcast, name: str) -> None:
         self.name = name
         self._shown = shown
         self._changed = asyncio.Event()

@@ -204,7 +204,7 @@ async def command(request: Request, session: Id, body: CommandRequest) -> Respon
 
     409 if it fails; 202 if it is not done yet, for example because the model is busy.
     """
-    work = asyncio.create_task(sessions_of(request).get(session).carry_out(body.command, "API"))
+    work = asyncio.create_task(body.command.submit(sessions_of(request).get(session), "API"))
     done, _ = await asyncio.wait([work], timeout=ANSWER_TIME)
     if not done:
         return Response(

@@ -151,7 +151,7 @@ class SceneView:
         """Sends a command from the panel or an overlay to the session, which runs in another thread."""
 
         def notify() -> None:
-            self._session.run_task(self._session.carry_out(command, "3D view"))
+            self._session.run_task(command.submit(self._session, "3D view"))
 
         self._loop.call_soon_threadsafe(notify)
 

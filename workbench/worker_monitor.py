@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import signal
 import time
-from typing import Protocol
+from abc import ABC, abstractmethod
 
 import msgspec
 
@@ -28,28 +28,28 @@ _MEANINGS = {
 """Explanations of signals, added to their names."""
 
 
-class Receiver(Protocol):
-    """Receives what a monitor reports: a session, or a job without one (see `workbench.jobs`)."""
+class Receiver(ABC):
+    """Base of what a monitor reports to: a session, or a job without one (see `workbench.jobs`)."""
 
+    @abstractmethod
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
         """Handles a message from a worker."""
-        ...
 
+    @abstractmethod
     def take_end(self, worker: Worker, ending: str) -> None:
         """Handles the end of a worker; `ending` is empty if it ended normally."""
-        ...
 
+    @abstractmethod
     def add_notice(self, notice: Notice) -> None:
         """Sends a notice to the user."""
-        ...
 
+    @abstractmethod
     def busy(self, worker: Worker) -> bool:
         """Returns whether a worker is expected to send messages."""
-        ...
 
+    @abstractmethod
     def halt(self, worker: Worker, name: str) -> None:
         """Records that a signal with this name has stopped (paused) a worker; an empty name means that it runs again."""
-        ...
 
 
 class WorkerMonitor:

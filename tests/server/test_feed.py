@@ -4,27 +4,21 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections import deque
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 from workbench import client_feed as feeds
-from workbench.client_feed import EventLog, Feed
+from workbench.client_feed import Broadcast, EventLog, Feed
 
 
-class Shown:
+class Shown(Broadcast):
     """A session as a feed sees it."""
 
     def __init__(self) -> None:
-        self.name = "s1"
-        self.run = 1
-        self.epoch = 1
-        self.log = EventLog()
-        self.notices: deque[tuple[int, bytes]] = deque()
-        self.state_version = 1
-        self.facts_version = 1
+        super().__init__("s1")
+        self.run = self.epoch = self.state_version = self.facts_version = 1
 
     def state_json(self) -> bytes:
         return json.dumps({"version": self.state_version}).encode()
