@@ -18,9 +18,8 @@ from actr3d.actr.compat.log_files import finished
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import DesignError, SettingError, did_you_mean
-from actr3d.output import all_written, standard_output
+from actr3d.output import ModelOutput, all_written, printing_to, standard_output
 from actr3d.parameter_schema import Parameter
-from actr3d.printing import ModelOutput, printing_to
 from actr3d.runner.before_exit import before_the_end
 from actr3d.runner.build_check import check_build, has_build
 from actr3d.runner.cli_options import options_help, read_options, read_settings
@@ -189,6 +188,12 @@ def _count(text: str) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="actr3d", description="Runs cognitive models in bodies, in exact lockstep.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for add in (_add_run, _add_replay, _add_bench, _add_experiment, _add_fit, _add_report, _add_soak):
+        add(commands)
+    return parser
+
+
+def _add_run(commands: Any) -> None:
     run = commands.add_parser(
         "run",
         help="run a model file",
@@ -210,6 +215,9 @@ def _parser() -> argparse.ArgumentParser:
         run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds"),
     ]
     run.set_defaults(function=run_command, parser=run, general=[name for option in general for name in option.option_strings])
+
+
+def _add_replay(commands: Any) -> None:
     again = commands.add_parser(
         "replay",
         help="run a recording again",
@@ -223,11 +231,17 @@ def _parser() -> argparse.ArgumentParser:
     again.add_argument("--trust", action="store_true", help="run it even though this installation did not make it")
     again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
     again.set_defaults(function=replay_command)
+
+
+def _add_bench(commands: Any) -> None:
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
     bench.add_argument("name", metavar="NAME", nargs="?", help="what to measure (unless given, list all benchmarks)")
     bench.add_argument("--trials", type=_count, metavar="N", help="number of trials per cell, for benchmarks that run trials")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
+
+
+def _add_experiment(commands: Any) -> None:
     experiment = commands.add_parser(
         "experiment",
         help="run an experiment with a model",
@@ -237,11 +251,7 @@ def _parser() -> argparse.ArgumentParser:
         "130 it was stopped.",
     )
     experiment.add_argument("name", metavar="NAME|FILE|FOLDER", nargs="?", help="a design, a file with one, or the folder of an experiment")
-    experiment.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="replace levels of a factor, or a value")
-    experiment.add_argument("--participants", type=_count, metavar="N", help="number of participants of each group")
-    experiment.add_argument("--trials", type=_count, metavar="N", help="number of trials of each combination of levels")
-    experiment.add_argument("--workers", type=_count, metavar="N", help="number of workers here (default: one on each processor)")
-    experiment.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
+    _add_design_options(experiment)
     experiment.add_argument("--out", metavar="FOLDER", help="the new folder for the results (default: the name of the design)")
     experiment.add_argument("--resume", action="store_true", help="continue the experiment that is in the folder")
     experiment.add_argument("--any-version", action="store_true", help="continue although packages have other versions now")
@@ -250,6 +260,18 @@ def _parser() -> argparse.ArgumentParser:
     experiment.add_argument("--trial", type=int, metavar="ID", help="run this trial of the experiment in FOLDER again")
     experiment.add_argument("--record", metavar="RECORDING", help="with --trial: record it to this new file")
     experiment.set_defaults(function=_experiment)
+
+
+def _add_design_options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options that change a design, and those that say where its trials run."""
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="replace levels of a factor, or a value")
+    parser.add_argument("--participants", type=_count, metavar="N", help="number of participants of each group")
+    parser.add_argument("--trials", type=_count, metavar="N", help="number of trials of each combination of levels")
+    parser.add_argument("--workers", type=_count, metavar="N", help="number of workers here (default: one on each processor)")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
+
+
+def _add_fit(commands: Any) -> None:
     fit = commands.add_parser(
         "fit",
         help="fit parameters of a model to data",
@@ -266,14 +288,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     fit.add_argument("--ablate", action="append", default=[], metavar="NAME=VALUE", help="show the fit with this part changed")
     fit.add_argument("--recover", type=_count, default=0, metavar="N", help="estimate the known parameters of N simulated data sets")
-    fit.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="replace levels of a factor, or a value")
-    fit.add_argument("--participants", type=_count, metavar="N", help="number of participants of each group")
-    fit.add_argument("--trials", type=_count, metavar="N", help="number of trials of each combination of levels")
-    fit.add_argument("--workers", type=_count, metavar="N", help="number of workers here (default: one on each processor)")
-    fit.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
+    _add_design_options(fit)
     fit.add_argument("--out", metavar="FOLDER", help="the folder for the candidates and the result")
     fit.add_argument("--json", action="store_true", help="print one JSON object a line")
     fit.set_defaults(function=_fit)
+
+
+def _add_report(commands: Any) -> None:
     report = commands.add_parser(
         "report",
         help="write the report of an experiment",
@@ -285,10 +306,12 @@ def _parser() -> argparse.ArgumentParser:
     report.add_argument("--human", metavar="FILE", help="show these human data beside the model (default: those that the design names)")
     report.add_argument("--compare", metavar="FOLDER", help="show another experiment beside this one")
     report.set_defaults(function=_report)
+
+
+def _add_soak(commands: Any) -> None:
     soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
     soak.add_argument("--json", action="store_true", help="print one JSON object")
     soak.set_defaults(function=_soak)
-    return parser
 
 
 def _bench(options: argparse.Namespace) -> int:

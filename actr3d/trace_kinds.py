@@ -165,36 +165,17 @@ trace_kind(
     "as a trace begins",
     group="plan",
 )
-trace_kind(
-    "unit_task",
-    level="production",
-    source="SGOMS buffer",
-    data="name what path",
-    meaning="the same for a unit task",
-    group="plan",
-    title="unit task",
-    text="{name} {what}",
-)
-trace_kind(
-    "method",
-    level="production",
-    source="SGOMS buffer",
-    data="name what path",
-    meaning="the same for a method",
-    group="plan",
-    title="method",
-    text="{name} {what}",
-)
-trace_kind(
-    "operator",
-    level="production",
-    source="SGOMS buffer",
-    data="name what path",
-    meaning="the same for an operator",
-    group="plan",
-    title="operator",
-    text="{name} {what}",
-)
+for _level in ("unit_task", "method", "operator"):
+    trace_kind(
+        _level,
+        level="production",
+        source="SGOMS buffer",
+        data="name what path",
+        meaning=f"the same for {'an' if _level == 'operator' else 'a'} {_level.replace('_', ' ')}",
+        group="plan",
+        title=_level.replace("_", " "),
+        text="{name} {what}",
+    )
 trace_kind(
     "buffer",
     level="buffer",

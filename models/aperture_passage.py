@@ -100,7 +100,7 @@ class Parameters(Configuration):
     """The parameters of the model."""
 
     variant: Literal["predictive", "descriptive", "replication"] = "descriptive"
-    """The walker: one whose behaviour follows from gait, perception and experience; one that is told what people do; or a replication
+    """The walker: one whose behaviour follows from gait, perception and experience; one that is given people's behaviour; or a replication
     of the original ACT-R 3D's model."""
 
     aperture: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.5
@@ -527,7 +527,7 @@ class Replication(Walker):
 
 
 class Descriptive(Walker):
-    """A walker that is told what people do.
+    """A walker that is given people's behaviour.
 
     It keeps the same margin in any posture, a fraction of its shoulder width. Three of its numbers are not measured: when it reacts,
     how fast it turns, and how far it continues to turn. Because of the last two it turns more when it walks faster.

@@ -125,7 +125,7 @@ class ExperimentCommand:
         Raises:
             OSError: If no process can be started.
         """
-        # A file of the user must not stand in for a package: with a safe path, Python does not search the working folder.
+        # A file of the user must not replace a package: with a safe path, Python does not search the working folder.
         environment = {**os.environ, "PYTHONSAFEPATH": "1", "PYTHONUNBUFFERED": "1"}
         pipe = asyncio.subprocess.PIPE
         process = await asyncio.create_subprocess_exec(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import json
-import secrets
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, cast
@@ -14,6 +13,7 @@ import msgspec
 
 from actr3d.recording.key import is_sealed, make_key, seal
 from workbench.experiment_command import ExperimentFacts, ExperimentRunError
+from workbench.files import replace_file
 
 SPECIFICATION, FACTS, TABLE, LOCK, NOTES = "experiment.json", "facts.json", "trials.sqlite", "lock", "workbench.json"
 """The files of an experiment's folder; the workbench writes only the last one."""
@@ -141,13 +141,8 @@ class ExperimentFolder:
     def note(self, **changes: Any) -> None:
         """Changes notes; does nothing if the folder is gone or cannot be written, because they are not needed to run an experiment."""
         notes = msgspec.structs.replace(self.notes, **changes)
-        part = self.path / f".{NOTES}.{secrets.token_hex(4)}"
         with suppress(OSError):
-            try:
-                part.write_bytes(msgspec.json.encode(notes))
-                part.replace(self.path / NOTES)
-            finally:
-                part.unlink(missing_ok=True)
+            replace_file(self.path / NOTES, msgspec.json.encode(notes))
 
     @property
     def made_here(self) -> bool:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import json
 import re
-import secrets
 import time
 from collections import OrderedDict, deque
 from collections.abc import Mapping, Sequence
@@ -25,7 +24,7 @@ from workbench.experiment_command import (
     TriedFacts,
 )
 from workbench.experiment_folder import ExperimentFolder, as_values
-from workbench.files import OWN
+from workbench.files import OWN, move_to_trash
 from workbench.retention import begun, stamp
 from workbench.sessions import Sessions, UntrustedError
 
@@ -459,11 +458,7 @@ class Experiments:
         folder = self.folder(name)
         if name in self._running or folder.is_locked:
             raise ExperimentRunError("this experiment runs: stop it, then delete it")
-        trash = self._models.root / OWN / "trash" / time.strftime("%Y%m%d-%H%M%S")
-        trash.mkdir(parents=True, exist_ok=True)
-        target = trash / f"{secrets.token_hex(2)}-{name}"
-        folder.path.rename(target)
-        return target.relative_to(self._models.root).as_posix()
+        return move_to_trash(self._models.root, folder.path)
 
     def _trusted(self, name: str, *, trust: bool) -> ExperimentFolder:
         """Returns the folder of an experiment whose code may be run.

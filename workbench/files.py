@@ -153,7 +153,7 @@ class ModelFolder:
             if where.exists() and not _writable(where):
                 raise FileError(f"cannot write '{path}': it is read-only")
             where.parent.mkdir(parents=True, exist_ok=True)
-            self._write(where, data)
+            replace_file(where.resolve(), data)  # a link inside the folder stays a link
         except OSError as error:
             raise FileError(f"cannot write '{path}': {error.strerror}") from None
         return ModelFile(path=path, text=text, version=self.version(where))
@@ -163,21 +163,6 @@ class ModelFolder:
         with contextlib.suppress(OSError), where.open("rb") as file:
             return "\r\n" if file.readline(LARGEST).endswith(b"\r\n") else "\n"
         return "\n"
-
-    def _write(self, where: Path, data: bytes) -> None:
-        """Writes a file atomically: completely or not at all."""
-        target = where.resolve()  # a link inside the folder stays a link
-        beside = target.with_name(f".{secrets.token_hex(8)}.tmp")
-        try:
-            with beside.open("xb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-            if target.exists():
-                beside.chmod(target.stat().st_mode)
-            beside.replace(target)
-        finally:
-            beside.unlink(missing_ok=True)
 
     def copy(self, path: str, to: str) -> ModelFile:
         """Writes a copy of a model file under another name.
@@ -211,23 +196,42 @@ class ModelFolder:
             FileError: If the file does not exist or cannot be moved.
         """
         where = self._existing(path)
-        trash = self.root / OWN / "trash" / time.strftime("%Y%m%d-%H%M%S")
-        target = trash / f"{secrets.token_hex(2)}-{where.name}"
         try:
-            trash.mkdir(parents=True, exist_ok=True)
-            where.rename(target)
+            trash = move_to_trash(self.root, where)
         except OSError as error:
             raise FileError(f"cannot delete '{path}': {error.strerror}") from None
         with contextlib.suppress(OSError):
             if where.parent != self.root:
                 where.parent.rmdir()  # succeeds only if the folder is empty
-        return target.relative_to(self.root).as_posix()
+        return trash
 
     def _existing(self, path: str) -> Path:
         where = self.locate(path)
         if not where.is_file():
             raise NoSuchFileError(f"there is no '{path}'")
         return where
+
+
+def replace_file(target: Path, data: bytes) -> None:
+    """Writes a file atomically: completely or not at all."""
+    beside = target.with_name(f".{secrets.token_hex(8)}.tmp")
+    try:
+        with beside.open("xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        if target.exists():
+            beside.chmod(target.stat().st_mode)
+        beside.replace(target)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def move_to_trash(root: Path, path: Path) -> str:
+    """Moves a file or folder to the trash folder of a models folder; returns its new path inside the models folder."""
+    trash = root / OWN / "trash" / time.strftime("%Y%m%d-%H%M%S")
+    trash.mkdir(parents=True, exist_ok=True)
+    return path.rename(trash / f"{secrets.token_hex(2)}-{path.name}").relative_to(root).as_posix()
 
 
 def _writable(where: Path) -> bool:

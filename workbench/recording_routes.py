@@ -88,7 +88,7 @@ async def recording(request: Request, recording: Id) -> Response:
 async def download(request: Request, recording: Id, form: File = "sqlite") -> Response:
     """Returns a file: the recording itself, its events or states as CSV, or an HTML file that plays its scene beside its trace.
 
-    For a run that is still going on, it contains what has been recorded so far. 409 if there is nothing to return, for example no states.
+    For a run that is still going on, it contains what is recorded by now. 409 if there is nothing to return, for example no states.
     """
     sessions = sessions_of(request)
     path = sessions.recordings.path(recording)

@@ -283,7 +283,7 @@ class Session(Broadcast, Receiver):
     # -- commands and questions
 
     def take_control(self, who: str) -> None:
-        """Shows others who controls the session: the name of the user who has given the latest command."""
+        """Shows others that a user controls the session, as the sender of the latest command."""
         if who and who != self._controlled_by:
             self._controlled_by = who
             self.changed(facts=True)

@@ -59,7 +59,7 @@ def before_the_end(keep: Callable[[bool], object]) -> Generator[None]:
     Only in this process: a forked copy of it has nothing to keep. What ends the process from outside, or in compiled code, is not noticed.
 
     Args:
-        keep: Writes or sends everything so far; called with whether the program surely ends now. Its errors are ignored.
+        keep: Writes or sends what has been done until now; called with whether the program surely ends now. Its errors are ignored.
     """
     process = os.getpid()
     before = [(module, name, getattr(module, name)) for module, name, _ in _ENDS]

@@ -14,7 +14,7 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sealed import sealed
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, RecordingError
-from actr3d.printing import ModelOutput, printing_to
+from actr3d.output import ModelOutput, printing_to
 from actr3d.recording import Recorded
 from actr3d.runner.facts import CHECKED_BEFORE, END, UNCHECKED, built_facts, first_difference, program_facts
 from actr3d.runner.model_stdout import BuiltOutput, ProgramOutput

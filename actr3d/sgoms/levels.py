@@ -23,7 +23,7 @@ def _agent_of(buffer: Buffer) -> Any:
     Raises:
         PlanError: If its agent has not started: until then the buffer is that of the class.
     """
-    agent = buffer.__dict__.get("parent")
+    agent = vars(buffer).get("parent")
     if agent is None:
         raise PlanError("a buffer of SGOMS is set before its agent has started; do it in the agent's init(), or after its run(0)")
     return agent
@@ -127,7 +127,7 @@ class Level(Buffer):
         """Returns the levels above or below this one, from the top."""
         place = LEVELS.index(self.name)
         names = LEVELS[place + 1 :] if below else LEVELS[:place]
-        found = [self._agent().__dict__.get(name) for name in names]
+        found = [self._agent().__dict__.get(name) for name in names]  # of this agent, not of its class
         return [level for level in found if isinstance(level, Level)]
 
 

@@ -1,6 +1,6 @@
 """Gait: how legs, arms and trunk of a walking body move, from the speed of its base alone.
 
-It is kinematic: no balance is kept and no force drives the body forward. The base moves as it is commanded; sway, rotation and
+It is kinematic: no balance is kept and no force drives the body forward. The base moves as commanded; sway, rotation and
 steps are movements of the joints that it carries, held by their servos, so that obstacles stop them too.
 """
 
@@ -86,7 +86,7 @@ class Gait(Configuration):
 
     arms: Annotated[float, Ge(0), Le(1)] = math.radians(15)
     """Swing of each arm, forward and back, against the leg of its side [rad]. Source: an arc of about 30 degrees (Perry 1992). It falls
-    with the square of the cosine of the shoulders' turn, our assumption: who is turned sideways does not swing the arms aside."""
+    with the square of the cosine of the shoulders' turn, our assumption: a walker that is turned sideways does not swing the arms aside."""
 
     def steps_per_second(self, speed: float) -> float:
         """Returns the step frequency at a speed [m/s]."""

@@ -17,7 +17,7 @@ from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.kernel.tree import path_of, subtree
 from actr3d.actr.loading.global_seed import shared_random
-from actr3d.printing import ModelOutput, printing_to
+from actr3d.output import ModelOutput, printing_to
 from actr3d.runner.model_factory import build
 from actr3d.simulation import Simulation
 from actr3d.values import to_json

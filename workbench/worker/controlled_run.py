@@ -38,7 +38,7 @@ class ControlledRun(ABC):
     @property
     @abstractmethod
     def trace(self) -> Trace | None:
-        """The trace so far."""
+        """The trace up to now."""
 
     @property
     @abstractmethod

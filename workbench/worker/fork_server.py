@@ -3,6 +3,9 @@
 Requests arrive on a socket: each has two file descriptors (the connection and the output of a new worker) and the maximum memory
 of its model. The replies are the worker's process id and later its exit status. When the server is gone, this process ends all workers
 and itself.
+
+It is not that of `multiprocessing`, whose workers have no output and process group of their own, and which reports neither that a signal
+has stopped one nor ends what they leave behind.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ class RecordedOnce:
     """Passes items of one pass through a program to the recording, except those known from an earlier pass; the order is always the same.
 
     Args:
-        recording: The recording with the items so far.
+        recording: The recording with the items of earlier passes.
         left: Returns whether the program is being left: what it does then, as in `finally`, is not recorded.
     """
 
