@@ -181,7 +181,7 @@ def _seconds(text: str) -> float:
 
 def _count(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"must be a whole number from 1 on (got {text})")
+        raise argparse.ArgumentTypeError(f"must be a whole number >= 1 (got {text})")
     return int(text)
 
 

@@ -80,7 +80,7 @@ Source: the original's limits of 20 and 80 (docs/human-data.md)."""
 NECK = 60
 """The greatest turn of the head against a turned body [degrees]; the eye does the rest. Source: the mannequin's limit."""
 BEARING = 19.6
-"""Objects further from the walking direction are no obstacles [degrees]. Source: the original's 100 - acos(0.5 / 3) (docs/human-data.md)."""
+"""Objects further from the walking direction are not obstacles [degrees]. Source: the original's 100 - acos(0.5 / 3) (docs/human-data.md)."""
 TIGHT = 1.03
 """If the walker cannot turn further, it passes an opening this many times its width. Source: chosen for this model."""
 BESIDE = 57.3

@@ -19,6 +19,7 @@ HEADER = "x-workbench"
 SAFE = frozenset({"GET", "HEAD"})
 LARGEST = 2_000_000
 """Maximum size of a request's body [bytes]."""
+TOO_LARGE = f"the body of a request: must be <= {LARGEST:,} bytes"
 BODY_TIME = 30.0
 """Maximum time in which a request's body must arrive [s]."""
 LONGEST_PATH = 4_000
@@ -125,24 +126,24 @@ class Guard:
         gate, headers = self._gate, Headers(scope=scope)
         host, origin = _one(headers, "host"), _one(headers, "origin")
         if host is None or not gate.knows_host(host):
-            return 421, "this server does not go by that name"
+            return 421, "Host: must be a name of this server; add other names with --name"
         socket = scope["type"] == "websocket"
         method = "GET" if socket else scope["method"]
         if len(scope.get("raw_path") or b"") + len(scope["query_string"]) > LONGEST_PATH:
             return 414, "the address is too long"
         brought = parse_qs(scope["query_string"].decode("latin-1")).get("token", []) if not socket and method == "GET" else []
         if brought and scope["path"] == "/":
-            return (303, "") if len(brought) == 1 and gate.token.equals(brought[0]) else (401, "that is not the token of this server")
+            return (303, "") if len(brought) == 1 and gate.token.equals(brought[0]) else (401, "token: must be that of this server")
         bearer = _one(headers, "authorization") or ""
         by_header = bearer.startswith("Bearer ") and gate.token.equals(bearer.removeprefix("Bearer "))
         if not by_header and not any(gate.token.equals(value) for value in _cookies(headers, gate.cookie)):
             return 401, "open the address with the token that the workbench printed when it was started"
         if origin is not None and not gate.is_own_origin(origin, host):
-            return 403, "another page asks"
+            return 403, "Origin: must be that of the workbench's own page"
         if origin is None and not by_header and (socket or method not in SAFE):
-            return 403, "the request has no Origin header, so it is not known which page sent it"
+            return 403, "Origin: this header is missing, so it is not known which page sent the request"
         if _one(headers, "sec-fetch-site") in ("cross-site", "same-site") and _one(headers, "sec-fetch-mode") != "navigate":
-            return 403, "another page asks"
+            return 403, "Origin: must be that of the workbench's own page"
         if not socket and method not in SAFE:
             return _judge_change(headers)
         return 200, ""
@@ -151,13 +152,13 @@ class Guard:
 def _judge_change(headers: Headers) -> tuple[int, str]:
     """Checks a request that changes something: it must be JSON, have the workbench's header, and not be too large."""
     if (_one(headers, "content-type") or "").partition(";")[0].strip().lower() != "application/json":
-        return 415, "what changes something is sent as application/json"
+        return 415, "Content-Type: must be application/json for a request that changes something"
     if _one(headers, HEADER) is None:
-        return 403, f"what changes something is sent with the header {HEADER}"
+        return 403, f"{HEADER}: this header is missing from a request that changes something"
     length = _one(headers, "content-length") or "0"
     if not (length.isascii() and length.isdigit()):
-        return 400, "the length of the request is not a number"
-    return (413, f"no request has more than {LARGEST:,} bytes") if int(length) > LARGEST else (200, "")
+        return 400, "Content-Length: must be a number"
+    return (413, TOO_LARGE) if int(length) > LARGEST else (200, "")
 
 
 def _one(headers: Headers, name: str) -> str | None:
@@ -181,11 +182,11 @@ async def _body(receive: Receive) -> tuple[bytes, int, str]:
                 message = await receive()
                 body += message.get("body", b"")
                 if len(body) > LARGEST:
-                    return b"", 413, f"no request has more than {LARGEST:,} bytes"
+                    return b"", 413, TOO_LARGE
                 if message["type"] == "http.disconnect" or not message.get("more_body", False):
                     return bytes(body), 200, ""
     except TimeoutError:
-        return b"", 408, f"the request did not come as a whole within {BODY_TIME:g} s"
+        return b"", 408, f"the body of a request: must arrive within {BODY_TIME:g} s"
 
 
 def _given(body: bytes, receive: Receive) -> Receive:

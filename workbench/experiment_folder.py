@@ -166,7 +166,7 @@ class ExperimentFolder:
     def _read(self, name: str) -> bytes:
         path = self.path / name
         if not is_plain(path) or path.stat().st_size > LARGEST:
-            raise ValueError(f"{name} is no file, or too large")
+            raise ValueError(f"{name} is not a file, or is too large")
         return path.read_bytes()
 
 

@@ -94,11 +94,11 @@ class ModelFolder:
         """
         parts = path.split("/")
         if not path or "\0" in path or "\\" in path or len(path.encode("utf-8", "replace")) > 400:
-            raise FileError("that is not a name for a model file")
+            raise FileError("the path of a model file: must be a path with slashes, of at most 400 bytes")
         if any(part in ("", ".", "..") or part[0] == "." or len(part.encode("utf-8", "replace")) > 200 for part in parts):
-            raise FileError("a model file lies inside the models folder, and no part of its path is hidden")
+            raise FileError("the path of a model file: must lie inside the models folder, without hidden parts")
         if not path.endswith(".py") or any(unicodedata.category(c)[0] == "C" for c in path) or ":" in path:
-            raise FileError("a model file's name ends in .py, and has no special characters")
+            raise FileError("the path of a model file: must end in .py, without control characters and colons")
         where = self.root.joinpath(*parts)
         try:
             inside = where.resolve().is_relative_to(self.root)
@@ -142,7 +142,7 @@ class ModelFolder:
         where = self.locate(path)
         data = _encoded(text, self._line_end(where))
         if len(data) > LARGEST:
-            raise FileError(f"a model file has no more than {LARGEST:,} bytes")
+            raise FileError(f"the size of a model file: must be <= {LARGEST:,} bytes (got {len(data):,})")
         now = self.version(where) if where.is_file() else None
         if now != version:
             reason = (

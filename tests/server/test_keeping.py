@@ -63,7 +63,7 @@ def test_what_a_user_has_named_stays(recordings: Recordings, tmp_path: Path) -> 
 def test_names_are_names_and_nothing_is_replaced(recordings: Recordings, tmp_path: Path) -> None:
     one, other, *_ = [path.stem for path in (tmp_path / OWN / "recordings").glob("*.sqlite")]
     for name in ("", "..", "../x", "a/b", "x" * 200, ".hidden", "a b"):
-        with pytest.raises(RecordingError, match="a recording's name has"):
+        with pytest.raises(RecordingError, match="the name of a recording: must be"):
             recordings.rename(one, name)
     with pytest.raises(RecordingError, match="there is a recording"):
         recordings.rename(one, other)

@@ -1,6 +1,6 @@
 """The worker's end of its wire to the server: one thread reads, one writes, and the run waits for neither.
 
-It is no `multiprocessing.connection.Connection`: before each part of a message, it checks that the model has not replaced the socket.
+It is not a `multiprocessing.connection.Connection`: before each part of a message, it checks that the model has not replaced the socket.
 """
 
 from __future__ import annotations
