@@ -1,12 +1,14 @@
-"""Finds designs of experiments in the texts of files, without running them: those of the library, and those of the user's model files."""
+"""Finds designs of experiments, of the library and in the user's model files, without running them; and what users want of them."""
 
 from __future__ import annotations
 
 import ast
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import Field
 
 import actr3d
 from actr3d.actr.kernel.source_code import syntax_tree
@@ -14,9 +16,17 @@ from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError, ModelFileError, did_you_mean
 from actr3d.values import escape_surrogates
 from workbench.files import LARGEST, ModelFolder
+from workbench.page_commands import PageMessage
 
 LIBRARY = Path(actr3d.__file__).parent / "experiment" / "designs"
 """The folder of the library's own designs; importing them would load what only experiments need."""
+
+
+Identifier = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
+Whole = Annotated[int, Field(ge=-(2**63), lt=2**63)]
+Level = bool | Whole | Annotated[float, Field(allow_inf_nan=False)] | Annotated[str, Field(max_length=1_000)] | None
+Count = Annotated[int, Field(ge=1, le=1_000_000)]
+Workers = Annotated[int, Field(ge=1, le=256)]
 
 
 class NoSuchDesignError(Actr3dError):
@@ -110,6 +120,37 @@ def _marks(mark: ast.expr) -> bool:
     return (mark.attr if isinstance(mark, ast.Attribute) else mark.id if isinstance(mark, ast.Name) else "") == "design"
 
 
-def described(folder: ModelFolder) -> list[dict[str, Any]]:
-    """Returns the designs as plain values."""
-    return [asdict(outline) for outline in designs_of(folder)]
+# -- what a user wants of a design
+
+
+class WantedDesign(PageMessage):
+    """A design, with what replaces some of it."""
+
+    design: Annotated[str, Field(min_length=1, max_length=500)]
+    """The name of one of the library's, or `FILE:NAME`."""
+    values: dict[Identifier, Level | Annotated[list[Level], Field(max_length=200)]] = Field(default_factory=dict, max_length=100)
+    """New levels of factors, or values of other parameters."""
+    participants: Count | None = None
+    """The number of participants of each group; null for that of the design."""
+    trials: Count | None = None
+    """The number of trials of each combination of levels; null for that of the design."""
+
+    def options(self) -> list[str]:
+        """Returns what replaces some of the design, as options of the command; values as literals of Python, in ASCII."""
+        counts = (("participants", self.participants), ("trials", self.trials))
+        sets = [f"--set={name}={value!a}" for name, value in self.values.items()]
+        return [f"--{name}={count}" for name, count in counts if count is not None] + sets
+
+
+class Checking(WantedDesign):
+    """A design to check."""
+
+    trial: bool = False
+    """Whether a trial is run as well, which finds out how long it takes."""
+
+
+class Starting(WantedDesign):
+    """A design to run."""
+
+    workers: Workers | None = None
+    """The number of processes that run trials; null for one on each processor."""

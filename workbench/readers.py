@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Awaitable, Callable
 from io import FileIO
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 from weakref import WeakValueDictionary
 
 import msgspec
@@ -19,7 +19,6 @@ from workbench.recordings import NoSuchRecordingError
 from workbench.worker.messages import Start
 from workbench.worker.workers import Workers
 
-T = TypeVar("T")
 MEMORY = 2_000
 """How much memory reading a recording may take [MB]."""
 MOST = 8
@@ -146,25 +145,3 @@ async def _outcome(job: Job, left: Callable[[], Awaitable[bool]]) -> dict[str, A
     except StuckError as error:
         return {"agrees": None, "text": str(error)}
     return {"agrees": None, "text": f"no verdict: {job.problem}"} if job.result is None else msgspec.json.decode(job.result)
-
-
-async def while_wanted(work: Awaitable[T], gone: Callable[[], Awaitable[Any]]) -> T:
-    """Returns the result of some work, which is cancelled when the client disconnects.
-
-    Args:
-        work: The work.
-        gone: Waits until who asked for it has gone.
-
-    Raises:
-        ReadingError: If who asked has gone.
-    """
-    working, going = asyncio.ensure_future(work), asyncio.ensure_future(gone())
-    try:
-        await asyncio.wait([working, going], return_when=asyncio.FIRST_COMPLETED)
-        if working.done():
-            return working.result()
-        raise ReadingError("nobody waits for it any more")
-    finally:
-        for task in (working, going):
-            task.cancel()
-        await asyncio.gather(working, going, return_exceptions=True)

@@ -14,9 +14,8 @@ from pydantic import Field
 
 from actr3d.values import escape_surrogates, to_json
 from workbench.listing import MOST as MOST_LISTED
-from workbench.open_file import OpenFile, gone
+from workbench.open_file import OpenFile, while_wanted
 from workbench.page_commands import Name, PageMessage
-from workbench.readers import while_wanted
 from workbench.retention import stands_alone
 from workbench.routes import Id, sessions_of
 from workbench.sessions import SessionError, Sessions
@@ -101,7 +100,7 @@ async def download(request: Request, recording: Id, form: File = "sqlite") -> Re
 
 async def _made(request: Request, kind: str, *paths: Path, **options: Any) -> FileIO:
     """Returns an open file that a worker makes from recordings; the work is cancelled if the client disconnects."""
-    return await while_wanted(sessions_of(request).readers.make(kind, *paths, **options), lambda: gone(request.receive))
+    return await while_wanted(sessions_of(request).readers.make(kind, *paths, **options), request.receive)
 
 
 @router.get("/recordings/{recording}/curves")
