@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Mapping, Sequence
+from collections import Counter, deque
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from actr3d.runner.facts import program_facts
 from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.runner.traceback_report import failure
 from actr3d.simulation import Simulation
-from actr3d.trace import Run, Trace, top_path
+from actr3d.trace import Run, Trace, TraceEvent, top_path
 from actr3d.values import to_json
 from workbench.curves import joined
 from workbench.loader import ModelListing
@@ -31,7 +31,6 @@ from workbench.worker.helper_messages import helpers_of
 from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import Facts
 from workbench.worker.names import Names, Top, names_of_program
-from workbench.worker.recorded_once import RecordedOnce
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.shown import Kept, Shown
 
@@ -45,6 +44,41 @@ MOST_SIMULATIONS = 4
 
 class _Again(EndOfRun):
     """Ends a program so that it can be run again up to an earlier time."""
+
+
+class _RecordedOnce:
+    """Passes what a program does to its recording, except what an earlier pass through it has recorded; the order is always the same.
+
+    Args:
+        recording: The recording with the items of earlier passes.
+        left: Returns whether the program is being left: what it does then, as in `finally`, is not recorded.
+    """
+
+    def __init__(self, recording: Recording, left: Callable[[], bool]) -> None:
+        self._recording = recording
+        self._left = left
+        self._counts: Counter[str] = Counter()
+
+    def _is_new(self, sort: str, recorded: int) -> bool:
+        """Counts an item of a sort; returns whether it is to be recorded, given how many are recorded already."""
+        self._counts[sort] += 1
+        return self._counts[sort] > recorded and not self._left()
+
+    def event(self, event: TraceEvent) -> None:
+        if self._is_new("event", self._recording.events):
+            self._recording.event_alone(event)
+
+    def state(self, run: int, tick: int, data: bytes) -> None:
+        if self._is_new("state", self._recording.states):
+            self._recording.state(run, tick, data)
+
+    def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
+        if self._is_new("answer", self._recording.answers):
+            self._recording.answer(run, tick, body, word, value)
+
+    def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
+        if self._is_new("command", self._recording.commands):
+            self._recording.command(run, tick, data)
 
 
 class ProgramRun(ControlledRun):
@@ -149,7 +183,7 @@ class ProgramRun(ControlledRun):
         trace = Trace("all")
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
-            limits.recorder = again = RecordedOnce(self._recording, lambda: self._left)
+            limits.recorder = again = _RecordedOnce(self._recording, lambda: self._left)
             trace.listen(again.event)
         if not self._listing.simulates:  # otherwise it continues until its simulation is at its start
             self._hold_at_start()
