@@ -15,7 +15,7 @@ from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError, ModelFileError, did_you_mean
 from actr3d.values import escape_surrogates
-from workbench.files import LARGEST, ModelFolder
+from workbench.files import LARGEST, ModelFolder, file_stamp
 from workbench.page_commands import PageMessage
 
 LIBRARY = Path(actr3d.__file__).parent / "experiment" / "designs"
@@ -81,25 +81,20 @@ def stamp_of(folder: ModelFolder, design: str) -> Any:
     """Returns a value that changes whenever the file of a design changes, or another file in its folder."""
     file, colon, _ = design.rpartition(":")
     beside = folder.locate(file).parent.glob("*.py") if colon else ()
-    return sorted((path.name, *_stamp(path)) for path in beside if path.is_file())
+    return sorted((path.name, *file_stamp(path)) for path in beside if path.is_file())
 
 
 def _in_file(path: Path, file: str | None) -> list[DesignOutline]:
+    stamp = file_stamp(path)
     try:
-        stamp = _stamp(path)
-        return list(_read(path, file, stamp)) if stamp[1] <= LARGEST else []
+        return list(_read(path, file, stamp)) if stamp and stamp[-1] <= LARGEST else []
     except (OSError, ModelFileError):
         return []
 
 
-def _stamp(path: Path) -> tuple[int, int]:
-    now = path.stat()
-    return now.st_mtime_ns, now.st_size
-
-
 @lru_cache(maxsize=1000)
-def _read(path: Path, file: str | None, _: tuple[int, int]) -> tuple[DesignOutline, ...]:
-    """Reads a file; the numbers change when the file changes."""
+def _read(path: Path, file: str | None, _: tuple[int, ...]) -> tuple[DesignOutline, ...]:
+    """Reads a file; the stamp changes when the file changes."""
     text = read_source(path)
     if "design" not in text:
         return ()

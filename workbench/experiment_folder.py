@@ -13,7 +13,7 @@ import msgspec
 
 from actr3d.recording.key import is_sealed, make_key, seal
 from workbench.experiment_command import ExperimentFacts, ExperimentRunError
-from workbench.files import replace_file
+from workbench.files import file_stamp, replace_file
 
 SPECIFICATION, FACTS, TABLE, LOCK, NOTES = "experiment.json", "facts.json", "trials.sqlite", "lock", "workbench.json"
 """The files of an experiment's folder; the workbench writes only the last one."""
@@ -84,14 +84,7 @@ class ExperimentFolder:
     def table_stamp(self) -> Any:
         """A value that changes whenever the table changes; None if there is none."""
         table = self.table
-        if table is None:
-            return None
-        found: list[Any] = []
-        for each in (table, table.with_name(f"{table.name}-wal")):
-            with suppress(OSError):
-                now = each.stat()
-                found.append((now.st_mtime_ns, now.st_size, now.st_ino))
-        return found
+        return None if table is None else file_stamp(table, table.with_name(f"{table.name}-wal"))
 
     @property
     def report_made(self) -> float | None:

@@ -212,6 +212,16 @@ class ModelFolder:
         return where
 
 
+def file_stamp(*paths: Path) -> tuple[int, ...]:
+    """Returns numbers that change whenever one of some files changes; the last one is the size of the last file that exists."""
+    numbers: list[int] = []
+    for path in paths:
+        with contextlib.suppress(OSError):
+            now = path.stat()
+            numbers += now.st_ino, now.st_mtime_ns, now.st_size
+    return tuple(numbers)
+
+
 def replace_file(target: Path, data: bytes) -> None:
     """Writes a file atomically: completely or not at all."""
     beside = target.with_name(f".{secrets.token_hex(8)}.tmp")

@@ -17,7 +17,7 @@ from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
 from actr3d.parameter_schema import Parameter, default_of, parameters_in
 from actr3d.runner.build_check import build_of, has_build, problem_of_build
 from actr3d.values import escape_surrogates
-from workbench.files import LARGEST, MOST_FILES
+from workbench.files import LARGEST, MOST_FILES, file_stamp
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,16 +86,16 @@ class Outline:
 
 def outline_of(path: Path) -> Outline:
     """Returns the outline of a file, which is read again only when it has changed; an empty one if the file cannot be read."""
+    stamp = file_stamp(path)
     try:
-        now = path.stat()
-        return _outline(path, (now.st_mtime_ns, now.st_size, now.st_ino)) if now.st_size <= LARGEST else Outline()
+        return _outline(path, stamp) if stamp and stamp[-1] <= LARGEST else Outline()
     except (OSError, ModelFileError):
         return Outline()
 
 
 @lru_cache(maxsize=2 * MOST_FILES)
 def _outline(path: Path, _: tuple[int, ...]) -> Outline:
-    """Reads a file; the numbers change when the file changes, so that the cache is not used for an old version."""
+    """Reads a file; the stamp changes when the file changes, so that the cache is not used for an old version."""
     listing = listing_of(read_source(path), path.name)
     return Outline(listing.title, listing.kind)
 

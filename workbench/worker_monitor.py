@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import signal
 import time
 from abc import ABC, abstractmethod
 
 import msgspec
 
+from actr3d.runner.before_exit import signal_name
 from workbench.worker.channel import WIRE_LOST
 from workbench.worker.memory import TOO_MUCH_MEMORY
 from workbench.worker.messages import MOST_PRINTED, At, FromWorker, Notice, Over, Start, Where, notice
@@ -142,7 +142,7 @@ class WorkerMonitor:
             await asyncio.sleep(SILENT / 4)
             if self._worker.halted != halted:
                 halted, since = self._worker.halted, None
-                self._receiver.halt(self._worker, _name_of(halted) if halted else "")
+                self._receiver.halt(self._worker, signal_name(halted) if halted else "")
             if halted:
                 self._heard = time.monotonic()
                 continue
@@ -178,10 +178,5 @@ def _why(status: int, subject: str) -> str:
         return f"{subject} was ended: it used more memory than it may"
     if status >= 0:
         return f"{subject} ended with exit code {status}"
-    name = _name_of(-status)
+    name = signal_name(-status)
     return f"{subject} was ended by {name}{_MEANINGS.get(name, '')}; what it printed or recorded last may be missing"
-
-
-def _name_of(number: int) -> str:
-    """Returns the name of a signal."""
-    return signal.Signals(number).name if number in set(signal.Signals) else f"signal {number}"

@@ -32,6 +32,11 @@ def _raises(number: int) -> bool:
     return default and signal.Signals(number).name not in _NOT_FATAL
 
 
+def signal_name(number: int) -> str:
+    """Returns the name of a signal."""
+    return signal.Signals(number).name if number in set(signal.Signals) else f"signal {number}"
+
+
 def _kills(process: int, number: int) -> bool:
     return process == os.getpid() and _raises(number)
 

@@ -18,6 +18,7 @@ from typing import Any, NoReturn, TypeVar
 
 from actr3d.errors import Actr3dError, UntrustedError
 from actr3d.recording import Recorded
+from actr3d.runner.before_exit import signal_name
 from actr3d.runner.replayable import check_replayable
 from actr3d.runner.traceback_report import traceback_report
 
@@ -115,8 +116,7 @@ def _ended(status: int) -> str:
     """Says how a process ended that has given no verdict."""
     if status >= 0:
         return f"the model's process ended with exit code {status}"
-    name = signal.Signals(-status).name if -status in set(signal.Signals) else f"signal {-status}"
-    return f"the model's process was ended by {name}"
+    return f"the model's process was ended by {signal_name(-status)}"
 
 
 @contextmanager
