@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import asdict
-from functools import partial
+from functools import partial, wraps
 from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
@@ -335,72 +335,71 @@ def _bench(options: argparse.Namespace) -> int:
     return function(json_output=options.json, **settings)
 
 
+def _with_packages(work: Callable[[argparse.Namespace], int]) -> Callable[[argparse.Namespace], int]:
+    """Marks a command that needs packages for experiments, which may not be installed, and whose errors are shown to a modeller."""
+
+    @wraps(work)
+    def command(options: argparse.Namespace) -> int:
+        try:
+            return work(options)
+        except ModuleNotFoundError as error:
+            if error.name is None or error.name.startswith("actr3d"):
+                return _complain(error)
+            text = f"needs the package '{error.name}'; install: pip install 'actr3d[experiment]'"
+            print(f"actr3d {options.command}: {text}", file=sys.stderr)
+            return 2
+        except (SettingError, DesignError) as error:
+            print(f"error: {error}", file=sys.stderr)
+            return 2
+        except Exception as error:  # noqa: BLE001 - every error of a model is shown to its author
+            return _complain(error)
+
+    return command
+
+
+@_with_packages
 def _experiment(options: argparse.Namespace) -> int:
-    def work() -> int:
-        from actr3d.experiment import command
+    from actr3d.experiment import command
 
-        out = command.Output(json=options.json)
-        if options.name is None:
-            if any((*_numbers(options).values(), options.trial is not None, options.record, options.out, options.resume, options.check)):
-                raise SettingError("which experiment? name a design, a file or the folder of an experiment before the options")
-            return command.list_designs(out)
-        if options.trial is not None or options.record is not None:
-            if options.trial is None or options.record is None:
-                raise SettingError("--trial ID and --record RECORDING are given together")
-            return command.run_again(options.name, options.trial, options.record, out)
-        numbers = _numbers(options)
-        if options.check:
-            return command.check(options.name, out, **numbers)
-        how = {name: getattr(options, name) for name in ("workers", "scheduler", "resume", "any_version")}
-        if command.is_folder(options.name) and not any((*numbers.values(), *how.values(), options.out)):
-            return command.show_state(options.name, out)
-        return command.run(options.name, out, folder=options.out, **numbers, **how)
-
-    return _with_packages(options, work)
+    out = command.Output(json=options.json)
+    if options.name is None:
+        if any((*_numbers(options).values(), options.trial is not None, options.record, options.out, options.resume, options.check)):
+            raise SettingError("which experiment? name a design, a file or the folder of an experiment before the options")
+        return command.list_designs(out)
+    if options.trial is not None or options.record is not None:
+        if options.trial is None or options.record is None:
+            raise SettingError("--trial ID and --record RECORDING are given together")
+        return command.run_again(options.name, options.trial, options.record, out)
+    numbers = _numbers(options)
+    if options.check:
+        return command.check(options.name, out, **numbers)
+    how = {name: getattr(options, name) for name in ("workers", "scheduler", "resume", "any_version")}
+    if command.is_folder(options.name) and not any((*numbers.values(), *how.values(), options.out)):
+        return command.show_state(options.name, out)
+    return command.run(options.name, out, folder=options.out, **numbers, **how)
 
 
+@_with_packages
 def _fit(options: argparse.Namespace) -> int:
-    def work() -> int:
-        from actr3d.experiment import command
+    from actr3d.experiment import command
 
-        same = ("target", "measure", "candidates", "hold_out", "ablate", "recover", "workers", "scheduler")
-        given = {name: getattr(options, name) for name in same}
-        out = command.Output(json=options.json)
-        return command.fit(options.name, out, ranges=options.parameter, folder=options.out, **_numbers(options), **given)
-
-    return _with_packages(options, work)
+    same = ("target", "measure", "candidates", "hold_out", "ablate", "recover", "workers", "scheduler")
+    given = {name: getattr(options, name) for name in same}
+    out = command.Output(json=options.json)
+    return command.fit(options.name, out, ranges=options.parameter, folder=options.out, **_numbers(options), **given)
 
 
+@_with_packages
 def _report(options: argparse.Namespace) -> int:
-    def work() -> int:
-        from actr3d.experiment.report import command
+    from actr3d.experiment.report import command
 
-        print(command.write_report(options.folder, human=options.human, compare=options.compare))
-        return 0
-
-    return _with_packages(options, work)
+    print(command.write_report(options.folder, human=options.human, compare=options.compare))
+    return 0
 
 
 def _numbers(options: argparse.Namespace) -> dict[str, Any]:
     """Returns the options that change a design."""
     return {"values": read_settings(options.set, ()), "participants": options.participants, "trials": options.trials}
-
-
-def _with_packages(options: argparse.Namespace, work: Callable[[], int]) -> int:
-    """Does work that needs packages for experiments, which may not be installed; returns the exit code."""
-    try:
-        return work()
-    except ModuleNotFoundError as error:
-        if error.name is None or error.name.startswith("actr3d"):
-            return _complain(error)
-        text = f"needs the package '{error.name}'; install: pip install 'actr3d[experiment]'"
-        print(f"actr3d {options.command}: {text}", file=sys.stderr)
-        return 2
-    except (SettingError, DesignError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except Exception as error:  # noqa: BLE001 - every error of a model is shown to its author
-        return _complain(error)
 
 
 def _soak(options: argparse.Namespace) -> int:

@@ -17,7 +17,7 @@ import msgspec
 from actr3d.errors import Actr3dError
 
 NICENESS = 10
-"""How far its processes stand back behind the server and the sessions, from 0 to 19."""
+"""The niceness of its processes, so that the server and the sessions have priority: 0 to 19."""
 LONGEST_LINE = 4_000_000
 """Maximum length of a line of its output [bytes]."""
 LAST_LINES = 60

@@ -76,7 +76,7 @@ class ModelFolder:
     def _walk(self, folder: Path) -> Iterator[Path]:
         try:
             inside = sorted(folder.iterdir()) if folder.is_dir() else []
-        except OSError:  # not readable, or deleted in the meantime: the other folders are listed all the same
+        except OSError:  # not readable, or deleted in the meantime: the other folders are still listed
             return
         for path in inside:
             if path.name[0] in "._":

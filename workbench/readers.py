@@ -45,7 +45,7 @@ class Readers:
     """Reads recordings in workers, which write the results to files.
 
     Args:
-        workers: Who gives workers.
+        workers: The pool that starts workers.
     """
 
     def __init__(self, workers: Workers) -> None:
@@ -54,7 +54,7 @@ class Readers:
         self._turns_of: WeakValueDictionary[Path, asyncio.Semaphore] = WeakValueDictionary()
 
     async def make(self, kind: str, *paths: Path, **options: Any) -> FileIO:
-        """Returns an open file with what was made of recordings; it has no name any more, and is gone when it is closed.
+        """Returns an open file with the result; its name is deleted already, so that the file is deleted when it is closed.
 
         Args:
             kind: The kind of file to make, one of `workbench.exports`.
@@ -62,9 +62,9 @@ class Readers:
             options: The options of that kind of file.
 
         Raises:
-            NoSuchRecordingError: If one of them is gone meanwhile.
+            NoSuchRecordingError: If one of them was deleted in the meantime.
             ReadingError: If it cannot be made.
-            OSError: If no file or worker can be had.
+            OSError: If no file can be created, or no worker started.
         """
         turns = self._turns_of.setdefault(paths[0], asyncio.Semaphore(MOST_OF_ONE))
         async with turns, self._turns:
@@ -103,7 +103,7 @@ class Reruns:
     """The recordings that are being run again.
 
     Args:
-        workers: Who gives workers.
+        workers: The pool that starts workers.
     """
 
     def __init__(self, workers: Workers) -> None:

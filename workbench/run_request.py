@@ -43,7 +43,7 @@ def start_of(path: Path, options: RunOptions, **more: Any) -> Start:
 
     Raises:
         ModelFileError: If the file cannot be read.
-        OSError: If the file has been removed or cannot be read any more.
+        OSError: If the file has been removed or can no longer be read.
     """
     repeated = options.repeated
     if repeated is None:

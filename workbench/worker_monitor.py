@@ -164,7 +164,7 @@ def subject_of(start: Start) -> str:
 
 
 def _why(status: int, subject: str) -> str:
-    """Returns why a process ended that nobody asked to end.
+    """Returns why a process ended that was not asked to end.
 
     Args:
         status: Its exit code, or the negative number of a signal.

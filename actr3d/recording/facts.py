@@ -71,7 +71,7 @@ _KINDS = {
     "whole": _Kind("true, or null", lambda value: value is True or value is None),
     "branched": _Kind("a number >= 0, or null", lambda value: value is None or _number(value)),
 }
-"""Facts that this library or the workbench reads; what others are, whoever writes them knows."""
+"""The facts that this library or the workbench reads; other facts may have any values."""
 _SHOWN = 60
 """No more of a wrong value is quoted [characters]."""
 

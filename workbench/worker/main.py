@@ -169,7 +169,7 @@ class _PastPrint(io.RawIOBase):
     def flush(self) -> None:
         if self._rest:
             rest, self._rest = self._rest, b""
-            self._pass_on(rest + b"\n")  # passed on as a line, whatever follows
+            self._pass_on(rest + b"\n")  # passed on as a complete line
 
     def _pass_on(self, data: bytes) -> None:
         with suppress(OSError):  # the model may have closed the file

@@ -86,7 +86,7 @@ class ProgramRun(ControlledRun):
 
     Args:
         controller: Decides when it continues.
-        listing: What the model's text says of itself.
+        listing: The description read from the model's text.
     """
 
     def __init__(self, controller: RunController, listing: ModelListing) -> None:
@@ -160,7 +160,7 @@ class ProgramRun(ControlledRun):
             self._show_recorded()
             if self._listing.simulates:
                 self._controller.show()
-                self._controller.channel.flush()  # whatever the program does next, that it has begun is known
+                self._controller.channel.flush()  # before the program does anything that could prevent it
 
     def _send_facts(self) -> None:
         known = {parameter.name: parameter.default for parameter in self._listing.parameters}
@@ -226,7 +226,7 @@ class ProgramRun(ControlledRun):
             controller.went_back()
         if self._rush is None:
             controller.show()
-            controller.channel.flush()  # whatever the program does next, that it has begun is known
+            controller.channel.flush()  # before the program does anything that could prevent it
             with suppress(_Again):
                 controller.attend()
 
@@ -243,7 +243,7 @@ class ProgramRun(ControlledRun):
 
     @property
     def _left(self) -> bool:
-        """Whether it did not come to its end by itself."""
+        """Whether it is ended from outside, before its own end."""
         return self._again or self._controller.leaving
 
     def _end(self, status: Any, reason: str) -> None:

@@ -46,7 +46,7 @@ class SimulationRun(ControlledRun):
 
     Args:
         controller: Decides when it continues.
-        listing: What the model's text says of itself.
+        listing: The description read from the model's text.
     """
 
     def __init__(self, controller: RunController, listing: ModelListing) -> None:
@@ -84,7 +84,7 @@ class SimulationRun(ControlledRun):
                 if self._known_run is not None:
                     self._controller.repeat_recorded(self._known_run)
                 self._controller.show()
-                self._controller.channel.flush()  # whatever the model does next, that it was built is known
+                self._controller.channel.flush()  # before the model does anything that could prevent it
                 while True:
                     self._controller.attend()
                     self._go_on()
@@ -246,7 +246,7 @@ class SimulationRun(ControlledRun):
             raise SimulationError(f"the run is not recorded: {ahead} would be lost; go to its newest moment, or allow it with `drop`")
         path = new_branch(Path(self._start.record), at)
         try:
-            self._recording.copy_to(path, branched=at)  # a fact stays with the branch whatever it is called
+            self._recording.copy_to(path, branched=at)  # unlike the file name, a fact cannot be changed by renaming
         except Actr3dError as error:
             if drop:
                 return None

@@ -54,7 +54,7 @@ class Watch:
 
     @property
     def pending(self) -> str:
-        """A text that says until when the run goes on."""
+        """A text that names the condition at which the run will stop."""
         parts = [] if self.goal is None else [f"{seconds(self.goal):g} s"]
         if self.production is not None:
             parts.append(f"{self.production} fires")
