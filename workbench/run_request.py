@@ -56,20 +56,24 @@ def start_of(path: Path, options: RunOptions, **more: Any) -> Start:
     return Start(path=str(path), folder=str(path.parent), settings=options.settings, seed=seed, run=options.run, **more)
 
 
-class SourceVersions:
-    """Holds the versions of the texts that a run was made from.
+class LaunchedRun:
+    """Holds a run and its worker, from the moment the run is started, and the versions of the texts that it is made from.
 
     Args:
         start: What the run began with. Its helper modules, if any, are those of the earlier run that it repeats.
+        worker: Its worker.
     """
 
-    def __init__(self, start: Start) -> None:
-        self._source = start.source
+    def __init__(self, start: Start, worker: Worker) -> None:
+        self.start = start
+        self.worker = worker
+        self.over = False
+        """Whether the worker has ended."""
         self._helpers: dict[Path, str] = {}
         for file, text in list(start.helpers.values())[:MOST_HELPERS]:
             self._helpers[(Path(start.folder) / file).resolve()] = digest_of(text)
 
-    def add(self, loaded: Loaded) -> None:
+    def add_helper(self, loaded: Loaded) -> None:
         """Records a helper module that the run has loaded."""
         path = Path(loaded.file).resolve()
         if path in self._helpers or len(self._helpers) < MOST_HELPERS:
@@ -79,7 +83,7 @@ class SourceVersions:
         """Returns whether a file is one of the helper modules."""
         return path.resolve() in self._helpers
 
-    def differ(self, path: Path) -> bool:
+    def is_stale(self, path: Path) -> bool:
         """Returns whether any of the files has changed.
 
         Args:
@@ -89,21 +93,7 @@ class SourceVersions:
             # Reading something other than a regular file may never end.
             if not all(each.is_file() for each in (path, *self._helpers)):
                 return True
-            return read_source(path) != self._source or any(digest_of(read_source(path)) != then for path, then in self._helpers.items())
+            is_other = read_source(path) != self.start.source
+            return is_other or any(digest_of(read_source(each)) != then for each, then in self._helpers.items())
         except (Actr3dError, OSError):
             return True
-
-
-@dataclass(eq=False)
-class LaunchedRun:
-    """Holds a run and its worker, from the moment the run is started."""
-
-    start: Start
-    worker: Worker
-    versions: SourceVersions = field(init=False)
-    """The versions of the texts that the run is made of."""
-    over: bool = False
-    """Whether the worker has ended."""
-
-    def __post_init__(self) -> None:
-        self.versions = SourceVersions(self.start)

@@ -158,7 +158,7 @@ class Session(Broadcast, Receiver):
                 self.branched = message
                 self.changed(facts=True)
             case Loaded():
-                launched.versions.add(message)
+                launched.add_helper(message)
                 self.changed(facts=shown)
             case Notice():
                 self.add_notice(message, start)
@@ -394,7 +394,7 @@ class Session(Broadcast, Receiver):
             "breakpoints": self.breakpoints,
             "settings": start.settings if start is not None else {},
             "seed": None if facts is None else _exactly(facts.seed),
-            "stale": self._shown is not None and self._shown.versions.differ(self.path),
+            "stale": self._shown is not None and self._shown.is_stale(self.path),
             "gone": not self.path.is_file(),
             "attempt": self._attempt,
             "shown_attempt": start.attempt if start is not None else None,
@@ -470,7 +470,7 @@ class Session(Broadcast, Receiver):
 
     def file_changed(self, path: Path) -> None:
         """Informs pages that a file may have changed: a run that was made from it is stale."""
-        if path == self.path or (self._shown is not None and self._shown.versions.has_helper(path)):
+        if path == self.path or (self._shown is not None and self._shown.has_helper(path)):
             self.changed(facts=True)
 
     def renamed(self, path: Path, model: str) -> None:
