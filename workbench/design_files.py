@@ -16,6 +16,7 @@ from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError, ModelFileError, did_you_mean
 from actr3d.values import escape_surrogates
 from workbench.files import LARGEST, ModelFolder, file_stamp
+from workbench.loader import last_name
 from workbench.page_commands import PageMessage
 
 LIBRARY = Path(actr3d.__file__).parent / "experiment" / "designs"
@@ -98,7 +99,7 @@ def _read(path: Path, file: str | None, _: tuple[int, ...]) -> tuple[DesignOutli
     text = read_source(path)
     if "design" not in text:
         return ()
-    marked = [node for node in syntax_tree(text).body if isinstance(node, ast.FunctionDef) and any(map(_marks, node.decorator_list))]
+    functions = [node for node in syntax_tree(text).body if isinstance(node, ast.FunctionDef)]
     return tuple(
         DesignOutline(
             id=node.name if file is None else f"{file}:{node.name}",
@@ -106,13 +107,9 @@ def _read(path: Path, file: str | None, _: tuple[int, ...]) -> tuple[DesignOutli
             file=file,
             description=escape_surrogates(ast.get_docstring(node) or ""),
         )
-        for node in marked
+        for node in functions
+        if "design" in map(last_name, node.decorator_list)  # also as `@experiment.design`
     )
-
-
-def _marks(mark: ast.expr) -> bool:
-    """Returns whether a decorator is `@design`, also as `@experiment.design`."""
-    return (mark.attr if isinstance(mark, ast.Attribute) else mark.id if isinstance(mark, ast.Name) else "") == "design"
 
 
 # -- what a user wants of a design

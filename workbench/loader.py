@@ -70,7 +70,7 @@ def listing_of(source: str, filename: str = "model.py") -> ModelListing:
         text=text,
         kind="simulation" if builds else "program",
         parameters=tuple(parameters_in(tree, build_of(tree)) if builds else _of_first_lines(source)),
-        simulates=any(isinstance(node, ast.Call) and _last_name(node.func) == "Simulation" for node in ast.walk(tree)),
+        simulates=any(isinstance(node, ast.Call) and last_name(node.func) == "Simulation" for node in ast.walk(tree)),
         productions=tuple(_productions(tree)),
         problems=problems,
     )
@@ -133,7 +133,8 @@ def _of_first_lines(source: str) -> Iterator[Parameter]:
             yield Parameter(name=name, takes=takes, **default, optional=value is None, line=node.lineno)
 
 
-def _last_name(node: ast.expr) -> str:
+def last_name(node: ast.expr) -> str:
+    """Returns a name without the names before its last dot; an empty text for any other expression."""
     return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
 

@@ -233,7 +233,7 @@ class Writer:
         answers, events = _all_of(self.answers), _all_of(self.events)
         if not (states or facts or commands or answers or events):
             return
-        rows = [(part, _events_text(part)) for part in _parts(events, MOST_EVENTS)]
+        rows = [(part, plain_to_json(part, _one_by_one)) for part in _parts(events, MOST_EVENTS)]
         self._transact(self._insert_all, rows, states, facts, commands, answers)
 
     def _insert_all(
@@ -365,12 +365,8 @@ def _parts(things: list[Any], most: int) -> list[list[Any]]:
     return [things[start : start + most] for start in range(0, len(things), most)]
 
 
-def _events_text(events: list[TraceEvent]) -> str:
-    """Returns events as one JSON list; values that JSON cannot represent are converted as in `TraceEvent.to_json`."""
-    return plain_to_json(events, _one_by_one)
-
-
 def _one_by_one(events: list[TraceEvent]) -> str:
+    """Returns events as one JSON list; values that JSON cannot represent are converted as in `TraceEvent.to_json`."""
     return f"[{', '.join(plain_to_json(event, _converted) for event in events)}]"
 
 
