@@ -11,7 +11,8 @@ from typing import Any
 
 import msgspec
 
-from workbench.client_feed import MOST_NOTICES, Broadcast, EventLog, Feed, Raw
+from workbench.client_feed import MOST_NOTICES, Broadcast, Feed, Raw
+from workbench.event_log import EventLog
 from workbench.overlays import ViewSettings
 from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun

@@ -120,7 +120,7 @@ def test_a_run_that_never_began_leaves_no_recording(desk: Desk, tmp_path: Path) 
 
 
 def test_what_was_printed_before_the_first_tick_is_kept(desk: Desk, tmp_path: Path) -> None:
-    from workbench.client_feed import EventLog
+    from workbench.event_log import EventLog
     from workbench.session import never_begun
 
     talk = desk.begin(tmp_path, "x = 1\n", record=True)
