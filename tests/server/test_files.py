@@ -135,7 +135,7 @@ def test_what_is_no_text_or_too_large_is_refused(folder: ModelFolder) -> None:
     (folder.root / "bytes.py").write_bytes(b"x = '\xff'\n")
     with pytest.raises(Exception, match="line 1 is not UTF-8"):
         folder.read("bytes.py")
-    with pytest.raises(FileError, match="no more than"):
+    with pytest.raises(FileError, match="must be <= 1,000,000 bytes"):
         folder.save("large.py", "x" * (LARGEST + 1), None)
     with pytest.raises(FileError, match="unpaired surrogate character"):
         folder.save("half.py", "\ud800", None)
