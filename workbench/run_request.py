@@ -22,8 +22,8 @@ class RepeatedRun:
     """The path of the model file at that time; it is not read."""
     source: str
     """The model's text at that time."""
-    commands: list[tuple[int, dict[str, Any]]]
-    """The commands of users, which are applied again: tick after which each was given, and the command."""
+    commands: list[tuple[int, int, dict[str, Any]]]
+    """The commands of users, which are applied again: the run, the tick after which each was given, and the command."""
     recording: Path
     """The recording of the run."""
     helpers: dict[str, tuple[str, str]]

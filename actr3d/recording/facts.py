@@ -109,6 +109,7 @@ _KINDS = {
     "failed": _Kind("a text, or null", _failed),
     "whole": _Kind("true, or null", _true),
     "branched": _Kind("a number >= 0, or null", _time),
+    "origin": _TEXT,
 }
 """Facts that this library or the workbench reads; what others are, whoever writes them knows."""
 _SHOWN = 60

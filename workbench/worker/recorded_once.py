@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 from actr3d.recording import Recording
@@ -21,6 +22,29 @@ class RecordedOnce:
         self._recording = recording
         self._left = left
         self._events = self._states = self._answers = self._commands = 0
+        self._held: list[Callable[[], object]] | None = None
+        """Writes the items of a change that is being made; None otherwise."""
+
+    @contextmanager
+    def changing(self) -> Generator[None]:
+        """Makes a change of a user in the block; if it succeeds, what an earlier pass has recorded after the present is removed.
+
+        Raises:
+            RecordingError: If the file can no longer be written.
+        """
+        recording, events, commands = self._recording, self._events, self._commands
+        self._held = []
+        try:
+            yield
+            if recording.events > events or recording.commands > commands:
+                recording.cut(self._states - 1, events, self._answers, commands)
+        except BaseException:
+            self._held.clear()
+            raise
+        finally:
+            held, self._held = self._held, None
+            for write in held:
+                write()
 
     def event(self, event: TraceEvent) -> None:
         """Records an event.
@@ -29,7 +53,9 @@ class RecordedOnce:
             RecordingError: If the file can no longer be written.
         """
         self._events += 1
-        if self._events > self._recording.events and not self._left():
+        if self._held is not None:
+            self._held.append(lambda: self._recording.event_alone(event))
+        elif self._events > self._recording.events and not self._left():
             self._recording.event_alone(event)
 
     def state(self, run: int, tick: int, data: bytes) -> None:
@@ -51,5 +77,7 @@ class RecordedOnce:
     def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
         """Records a command of a user."""
         self._commands += 1
-        if self._commands > self._recording.commands and not self._left():
+        if self._held is not None:
+            self._held.append(lambda: self._recording.command(run, tick, data))
+        elif self._commands > self._recording.commands and not self._left():
             self._recording.command(run, tick, data)
