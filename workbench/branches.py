@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from workbench.labels import Labels
 from workbench.retention import stamp, written
 
 MOST = 20
@@ -29,6 +30,8 @@ def branched_at(path: Path) -> float | None:
 
 
 def superfluous_branches(recording: Path) -> list[Path]:
-    """Returns the oldest branches of a run beyond the number that is kept."""
-    found = [path for path in recording.parent.glob(f"{recording.stem}-at-*{recording.suffix}") if branched_at(path) is not None]
+    """Returns the oldest branches of a run beyond the number that is kept; those with a label do not count."""
+    labelled = Labels(recording.parent).all()
+    branches = [path for path in recording.parent.glob(f"{recording.stem}-at-*{recording.suffix}") if branched_at(path) is not None]
+    found = [path for path in branches if path.stem not in labelled]
     return sorted(found, key=written, reverse=True)[MOST:]

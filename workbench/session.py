@@ -207,6 +207,7 @@ class Session:
         before, worker = self._shown, self._worker
         self._shown, self._loading = launched, None
         useless = before.start.record if before is not None and never_begun(self.state, self.log) else None
+        useless = useless or (None if self.spare_recording is None else str(self.spare_recording))
         if before is not None and worker is not None:
             self._leave(worker, useless)
         self.run += 1
@@ -295,7 +296,10 @@ class Session:
 
     async def close(self) -> None:
         """Stops the workers, informs the watchers, and cancels all tasks."""
+        spare = self.spare_recording
         await self.stop()
+        if spare is not None:
+            erase(spare)
         self._notify_watchers(None)
         tasks = list(self._tasks)
         if tasks:
@@ -400,6 +404,20 @@ class Session:
         return None if start is None or start.recorded is None else Path(start.recorded)
 
     @property
+    def spare_recording(self) -> Path | None:
+        """The recording of a run that only repeats an opened recording: it is not needed unless a user changes the run."""
+        start = self.start
+        if start is None or start.recorded is None or start.record is None or self.branched is not None:
+            return None
+        return Path(start.record)
+
+    @property
+    def _recording_name(self) -> str | None:
+        """The name of the recording of the run on screen, as lists show it; None if it is not recorded or not listed."""
+        start = self.start
+        return None if start is None or start.record is None or self.spare_recording is not None else Path(start.record).stem
+
+    @property
     def alive(self) -> bool:
         """Whether the current run still accepts commands."""
         return self._shown is not None and not self._shown.over
@@ -436,10 +454,11 @@ class Session:
             "cuts": list(self._cuts),
             "born": self.born,
             "made": None if self.recorded is None else begun(self.recorded),
-            "recording": Path(start.record).stem if start is not None and start.record is not None else None,
+            "recording": self._recording_name,
         }
         if facts is not None:
-            facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters), "world": Raw(facts.world)}
+            facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters)}
+            facts_of_session |= {"world": Raw(facts.world), "changes": Raw(facts.changes)}
         return msgspec.json.encode(facts_of_session)
 
     def summary(self) -> dict[str, Any]:

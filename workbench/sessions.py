@@ -65,6 +65,7 @@ class Sessions:
         self._count = 0
         self._opening = asyncio.Lock()
         self._reopening = asyncio.Lock()
+        recordings.spare = lambda: {path for session in self.all() if (path := session.spare_recording) is not None}
 
     def all(self) -> list[Session]:
         """Returns all sessions, oldest first."""
@@ -171,7 +172,7 @@ class Sessions:
                 path = self.folder.root / path.name  # a new run uses the user's own model of that name, if there is one
             shown = path.relative_to(self.folder.root).as_posix()
             repeated = RepeatedRun(file=began.file, source=began.source, commands=began.commands, helpers=began.helpers, recording=where)
-            options = RunOptions(settings=began.parameters, seed=began.seed, record=False, repeated=repeated)
+            options = RunOptions(settings=began.parameters, seed=began.seed, repeated=repeated)
             return await self._begun(path, shown, options, real_time=real_time)
 
     async def _begun(self, path: Path, model: str, options: RunOptions, *, real_time: bool = False) -> Session:

@@ -105,7 +105,9 @@ class Facts(Message, frozen=True, kw_only=True):
     parameters: bytes
     """JSON: the values of parameters by name."""
     world: bytes
-    """JSON: bodies and apertures; null without a world."""
+    """JSON: bodies, apertures and objects; null without a world."""
+    changes: bytes = b"[]"
+    """JSON: the changes that a user can make by hand; see `worker.change_menu`."""
     mj_model: bytes | None
     """The compiled scene in MuJoCo's binary format; None without a world."""
 

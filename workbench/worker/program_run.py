@@ -29,6 +29,7 @@ from actr3d.trace import Run, Trace, top_path
 from actr3d.values import to_json
 from workbench.curves import joined
 from workbench.loader import ModelListing
+from workbench.worker.change_menu import change_menu
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
 from workbench.worker.kept_branch import KeptBranch
@@ -154,7 +155,10 @@ class ProgramRun:
         parameters = to_json({**known, **self._controller.channel.start.settings}).encode()
         self._scene = mj_model, world = self._scene_now()
         period = seconds(self.period)
-        facts = Facts(kind="program", seed=self._seed, period=period, parameters=parameters, world=world, mj_model=mj_model)
+        changes = change_menu(agents_only=True) if self._shown is None else b"[]"
+        facts = Facts(
+            kind="program", seed=self._seed, period=period, parameters=parameters, world=world, mj_model=mj_model, changes=changes
+        )
         self._controller.channel.post(facts)
 
     def _scene_now(self) -> tuple[bytes | None, bytes]:

@@ -26,6 +26,7 @@ from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench.loader import ModelListing
+from workbench.worker.change_menu import change_menu
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
 from workbench.worker.kept_branch import KeptBranch
@@ -107,6 +108,9 @@ class SimulationRun:
             helpers.heard = partial(self._recording.fact, "helpers")  # an agent may import one later
         if start.recorded is not None:
             self._known_run = known_run = KnownRun(Path(start.recorded), self._shown.kept.states.add)
+            if self._recording is not None:
+                for command in start.commands:
+                    self._recording.command(*command)
             simulation.plan([Command.from_data(tick, data) for _, tick, data in start.commands], known_run.ticks)
             ended: dict[str, Any] | None = known_run.facts.get("ended")
             if ended is not None and ended.get("by") in ENDINGS:
@@ -120,6 +124,7 @@ class SimulationRun:
             parameters=to_json(parameters).encode(),
             world=to_json(self._shown.world(self._listing.parameters)).encode(),
             mj_model=self._shown.mj_model,
+            changes=change_menu(agents_only=False),
         )
 
     def _go_on(self) -> None:
