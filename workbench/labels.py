@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
@@ -64,11 +63,12 @@ class Labels:
         """Removes the labels of deleted recordings."""
         with self._lock, suppress(OSError):
             labels = self.all()
-            if any([labels.pop(recording, None) for recording in recordings]):
+            gone = [labels.pop(recording) for recording in recordings if recording in labels]
+            if gone:
                 self._write(labels)
 
     def _write(self, labels: dict[str, Label]) -> None:
         part = self._file.with_name(f".{FILE}.part")
         kept = {name: msgspec.structs.asdict(label) for name, label in sorted(labels.items()) if label}
         part.write_text(json.dumps(kept, indent=1), encoding="utf-8")
-        os.replace(part, self._file)
+        part.replace(self._file)

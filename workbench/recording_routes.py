@@ -187,7 +187,7 @@ def rename_recording(request: Request, recording: Id, body: Naming) -> dict[str,
 
 @router.post("/recordings/{recording}/label")
 def label_recording(request: Request, recording: Id, body: Labelling) -> dict[str, Any]:
-    """Sets the name, the note and the tags of a recording, also while a run writes it; a labelled recording is never deleted automatically."""
+    """Sets the name, the note and the tags of a recording, even of one that is being written; it is then never deleted automatically."""
     recordings = sessions_of(request).recordings
     recordings.path(recording)
     label = Label(

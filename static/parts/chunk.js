@@ -22,6 +22,14 @@ export function chunkText(chunk) {
     .join(" ");
 }
 
+/** Returns a chunk as a model writes it, with full numbers; a slot that is not where its number says is named. */
+export function writtenChunk(chunk) {
+  const exact = (value) => (typeof value === "number" ? String(value) : valueText(value));
+  return Object.entries(chunk ?? {})
+    .map(([slot, value], place) => (slot === String(place) ? exact(value) : `${slot}:${exact(value)}`))
+    .join(" ");
+}
+
 export function Chunk({ chunk }) {
   if (!chunk) return html`<span class="empty">empty</span>`;
   return html`<span class="chunk">
