@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -10,8 +11,11 @@ import pytest
 
 from actr3d.recording import Recorded
 from actr3d.runner.replay import replay
+from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, Answer, call
 from tests.helpers.sessions import Desk, RefusedError, Talk
+from workbench.app import make_app
 from workbench.branches import branched_at
+from workbench.retention import Keeping
 
 AGENT = """
 from actr3d.actr import *
@@ -107,10 +111,68 @@ def test_changes_are_repeated_exactly_by_going_back_by_a_replay_and_by_opening(k
     opened.say("seek", time=0.2)
     change(opened, "set_buffer", buffer=f"{below}goal", chunk="count 9")
     assert opened.state["reason"] == "changed at 0.20 s; the recording keeps the rest"
+    there(opened, 0.5)
+    now = events(opened)
+    own = recording(opened)
+    desk.do(opened.sessions.close(opened.session.name))
     with Recorded(path) as recorded:
-        recorded.check()
-        assert [event.to_json() for event in recorded.events()][-1]
+        recorded.check()  # it is as it was
         assert len(list(recorded.commands())) == 5
+    with Recorded(own) as recorded:  # what followed is a branch of it
+        assert (recorded.facts["branched"], recorded.facts["origin"]) == (0.2, path.stem)
+        assert [event.time_us for event in recorded.events()][: len(now)] == [time for time, *_ in now]
+        comparison = replay(recorded)
+        assert comparison.difference is None, comparison.difference
+
+
+def test_an_opened_recording_that_nobody_changes_leaves_no_other(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, BUILT, record=True)
+    there(talk, 0.3)
+    path = recording(talk)
+    desk.do(talk.session.close())
+    opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
+    opened.until("paused", furthest=0.3)
+    there(opened, 0.2)
+    assert recording(opened).exists()
+    assert [one.stem for one in talk.sessions.recordings.all()] == [path.stem]  # it is not listed
+    assert opened.facts["recording"] is None
+    desk.do(opened.sessions.close(opened.session.name))
+    assert list(path.parent.glob("*.sqlite*")) == [path]
+
+
+def test_recordings_have_names_notes_and_tags(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, BUILT, record=True)
+    there(talk, 0.1)
+    name = recording(talk).stem
+    desk.do(talk.session.close())
+
+    def post(recording: str, body: Any) -> Answer:
+        sent = json.dumps(body).encode()
+        app = make_app(tmp_path, GATE)
+        app.state.sessions = desk.sessions(tmp_path)
+        return desk.do(call(app, f"/api/recordings/{recording}/label", HOST, COOKIE, ORIGIN, JSON, OURS, method="POST", body=sent))
+
+    def label(**body: Any) -> Answer:
+        return post(name, body)
+
+    hostile = {"name": "  <script>\ud800 ../..  ", "note": "a\nb", "tags": ["x", " x ", "", "y"]}
+    assert label(**hostile).status in (200, 422)
+    assert desk.ask(tmp_path, "/api/recordings").status == 200
+    answer = label(name=" to five ", note="kept", tags=["x", " x ", "", "y"])
+    assert json.loads(answer.body) == {"label": {"name": "to five", "note": "kept", "tags": ["x", "y"]}}
+    listed = json.loads(desk.ask(tmp_path, f"/api/recordings/{name}").body)
+    assert listed["label"] == {"name": "to five", "note": "kept", "tags": ["x", "y"]}
+    for wrong in ({"name": "x" * 101}, {"note": "x" * 2001}, {"tags": ["x"] * 21}, {"tags": ["x" * 41]}, {"names": "x"}):
+        assert label(**wrong).status == 422
+    assert post("nothing", {}).status == 404
+    recordings = talk.sessions.recordings
+    recordings.tidy(Keeping(number=0, megabytes=0))
+    recordings.tidy(Keeping(number=1))
+    assert name in recordings.labels.all()
+    recordings.rename(name, "other")
+    assert set(recordings.labels.all()) == {"other"}
+    recordings.delete("other")
+    assert recordings.labels.all() == {}
 
 
 @pytest.mark.parametrize("kind", MODELS)
