@@ -72,14 +72,23 @@ class ProgramChanges:
         Raises:
             Actr3dError: If it cannot be made; then nothing has changed.
         """
-        if word not in CHANGES or not issubclass(CHANGES[word], AgentChange):
-            known = [name for name, one in CHANGES.items() if issubclass(one, AgentChange)]
-            near = did_you_mean(word, known)
-            raise SimulationError(f"no change '{word}' for the agents of a program{near}; there are: {', '.join(known)}")
+        self.check(word)
         data = {"command": word, "data": {"values": list(values), "named": dict(named), "body": None}, "by": USER}
         self._carry_out(sch, time, data)
         self.known[self.made :] = [RecordedCommand(self._number(sch), time, data)]
         self.made += 1
+
+    @staticmethod
+    def check(word: str) -> None:
+        """Checks that there is a change of agents of this word.
+
+        Raises:
+            SimulationError: If there is none.
+        """
+        if word not in CHANGES or not issubclass(CHANGES[word], AgentChange):
+            known = [name for name, one in CHANGES.items() if issubclass(one, AgentChange)]
+            near = did_you_mean(word, known)
+            raise SimulationError(f"no change '{word}' for the agents of a program{near}; there are: {', '.join(known)}")
 
     def _carry_out(self, sch: Scheduler, time: int, data: dict[str, Any]) -> None:
         given = data["data"]

@@ -93,10 +93,10 @@ def test_pushes_that_are_under_way_are_part_of_the_state() -> None:
     [
         (("move", "wal", 0, 0), r"no object 'wal' to move; did you mean 'wall'\?; there are: walker, wall, pole, box"),
         (("move", "aperture_left", 0, 0), r"no object 'aperture_left' to move"),
-        (("move", "wall", math.nan, 0), r"Move.x: must be a finite number \(got nan\)"),
+        (("move", "wall", math.nan, 0), r"MoveObject.x: must be a finite number \(got nan\)"),
         (("push", "wall", 10), r"'wall' is fixed; there are: walker, box"),
-        (("push", "box", 1e9), r"Push.x: must be <= 100000.0 \(got 1000000000.0\)"),
-        (("push", "box", 10, 0, 0), r"Push.time: must be > 0 \(got 0.0\)"),
+        (("push", "box", 1e9), r"PushObject.x: must be <= 100000.0 \(got 1000000000.0\)"),
+        (("push", "box", 10, 0, 0), r"PushObject.time: must be > 0 \(got 0.0\)"),
         (("push", "box"), r"command 'push': missing a required argument: 'x'; it takes \(object, x, y=0.0, time=0.1\)"),
     ],
 )

@@ -406,6 +406,7 @@ class ProgramRun:
             raise SimulationError("the run is over: go back to an earlier time, or restart it")
         if self._shown is not None or body is not None:
             raise _refusal(word)
+        self._changes.check(word)
         if self._waits is None:
             raise SimulationError(f"'{word}' cannot be done: the program has not begun, so there is no agent yet; step once first")
         sch, begin, clock = self._waits

@@ -11,7 +11,7 @@ from actr3d.world.world import World
 
 @change
 @dataclass(frozen=True)
-class Move(WorldChange):
+class MoveObject(WorldChange):
     """Puts a body, a wall or another object elsewhere at once; what moves keeps its posture, its height and its commands."""
 
     word = "move"

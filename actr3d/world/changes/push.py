@@ -17,7 +17,7 @@ MOST = 1e5
 
 @change
 @dataclass(frozen=True)
-class Push(WorldChange):
+class PushObject(WorldChange):
     """Pushes a body or a loose object with a horizontal force for a time; the impulse is their product."""
 
     word = "push"
