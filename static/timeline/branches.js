@@ -11,11 +11,11 @@ import { follow, present, runs } from "../runs/list.js";
 import { outcomeText, whenText } from "../runs/wording.js";
 import { choose } from "../bar/models.js";
 import { call } from "../server.js";
-import { complain, session, state } from "../store.js";
-import { computed, html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { alive, complain, session, state } from "../store.js";
+import { computed, effect, html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { placeOf } from "./draw.js";
 import { column } from "./rows.js";
-import { furthest } from "./seek.js";
+import { furthest, seek } from "./seek.js";
 import { span } from "./view.js";
 
 const open = remembered("branches open", true);
@@ -51,7 +51,10 @@ const tree = computed(() => treeOf(runs.value ?? [], shown.value));
 
 /** Shows another branch: the open session that writes it, or its recording. */
 async function show(run) {
-  if (!run.session) return openRun(run);
+  if (!run.session) {
+    await openRun(run);
+    return beginAt(run);
+  }
   try {
     const { session: found } = await call("GET", `/api/sessions/${run.session}`);
     if (found.recorded === null) return choose(found.model);
@@ -59,6 +62,20 @@ async function show(run) {
   } catch (error) {
     return complain(error.message);
   }
+}
+
+/** Goes to the moment from which an opened branch differs, once its run is known. */
+function beginAt({ id, branched }) {
+  if (branched === null) return;
+  const end = effect(() => {
+    const here = session.value?.recorded === id;
+    if (session.value !== null && !here) queueMicrotask(() => end()); // another run is shown by now
+    if (!here || !alive.value || furthest.value < branched - 1e-6) return;
+    queueMicrotask(() => {
+      end();
+      seek(branched);
+    });
+  });
 }
 
 function compare(run) {

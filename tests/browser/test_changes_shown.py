@@ -99,6 +99,7 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
     rows.nth(1).locator(".branch-name").click()
     shows(page, ".recording-banner", r"0\.30 s are known")
     page.wait_for_url("**/?recording=*")
+    shows(page, "#time", r"0\.12 s")  # from where it differs
     say(page, type="seek", time=0.2)
     say(page, type="command", word="clear_buffer", named={"buffer": "goal"})
     shows(page, ".recording-banner", "what follows is recorded as a branch of it")
