@@ -181,6 +181,7 @@ def test_a_production_fires_next_in_place_of_the_chosen_one_whatever_its_utility
         ),
         (("fire_next", "mind", "upp"), r"no production 'upp' in 'mind'; did you mean 'up'\?; there are: recall, rest, up"),
         (("forbid_once", "mnd", "up"), r"no production system 'mnd'; did you mean 'mind'\?; there are: mind"),
+        (("parameter", "mind.memory.latency", "abc"), r"parameter 'mind.memory.latency' must be a number \(got 'abc'\)"),
         (("parameter", "mind.production_tim", 1), r"no parameter 'mind.production_tim': 'mind' has no 'production_tim'"),
         (("set_bufer", "mind.goal", "a"), r"no command 'set_bufer'; did you mean 'set_buffer'\?"),
     ],

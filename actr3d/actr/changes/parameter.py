@@ -33,4 +33,6 @@ class SetParameter(AgentChange):
         known = [known for known, now in part.__dict__.items() if known[0] != "_" and type(now) in LASTING_TYPES]
         if name not in known:
             raise SimulationError(f"no parameter '{self.path}': '{place}' has no '{name}'{did_you_mean(name, known)}")
+        if isinstance(getattr(part, name), (int, float)) and isinstance(self.value, str):
+            raise SimulationError(f"parameter '{self.path}' must be a number (got {self.value!r})")
         setattr(part, name, self.value)
