@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from actr3d.actr.chunks.chunk import Slot
+from actr3d.actr.chunks.chunk import Slot, plain_text
 from actr3d.actr.chunks.pattern import MISSING
-from actr3d.actr.chunks.safe_text import plain_text
 from actr3d.actr.explain.module_reasons import live_retrieval, live_searches
 from actr3d.actr.explain.state import NOT_KNOWN, OPAQUE, Fact, FunctionResult, is_unknown
 from actr3d.actr.kernel.buffer import UNKNOWN, Buffer, plain_empty, plain_value, reads_chunk

@@ -7,9 +7,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Final, NamedTuple, cast
 
-from actr3d.actr.chunks.chunk import LASTING_TYPES, Chunk, Slot
+from actr3d.actr.chunks.chunk import LASTING_TYPES, Chunk, Slot, plain_text
 from actr3d.actr.chunks.pattern import MISSING, Missing
-from actr3d.actr.chunks.safe_text import plain_text
 from actr3d.actr.kernel.model import Model, profile_of
 from actr3d.actr.kernel.parameters import named_parameters
 from actr3d.actr.kernel.tracing import lasting_slots, traceable

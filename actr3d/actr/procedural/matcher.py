@@ -16,9 +16,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from actr3d.actr.chunks.chunk import LASTING_TYPES, as_text
+from actr3d.actr.chunks.chunk import LASTING_TYPES, as_text, plain_text
 from actr3d.actr.chunks.pattern import MISSING, Bindings, Condition, Missing, calls, get_attribute, is_empty, look_up, slot_named
-from actr3d.actr.chunks.safe_text import plain_text
 from actr3d.actr.kernel.buffer import UNKNOWN, Buffer, plain_empty, plain_value, reads_chunk
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tracing import UNWATCHED
@@ -78,7 +77,7 @@ class Matcher:
         target = self._context[name]
         read = reader_of(target, key)
         label = self.observed.watch(name, key, target)
-        if is_recorded(target, key):
+        if reads_chunk(target, key) or (records_changes(target, key) and _lasts(target, key)):
             return read
         looked = self.observed.looked
 
@@ -335,16 +334,6 @@ def records_changes(target: Any, key: Any) -> bool:
     if not isinstance(target, Model) or not isinstance(key, str) or "." in key:
         return False
     return type(target).__getitem__ is Model.__getitem__ and key not in UNWATCHED and key[:1] != "_"
-
-
-def is_recorded(target: Any, key: Any) -> bool:
-    """Returns whether the trace records every change of a slot or attribute anyway.
-
-    A key of None means whether the target is empty.
-    """
-    if key is None or reads_chunk(target, key):
-        return hasattr(target, "chunk")
-    return records_changes(target, key) and _lasts(target, key)
 
 
 def _lasts(target: Any, key: str) -> bool:
