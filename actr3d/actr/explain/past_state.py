@@ -14,7 +14,7 @@ from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import path_of, places_in
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.matcher import records_changes, result_label
-from actr3d.actr.procedural.production import Production
+from actr3d.actr.procedural.production import Production, ProductionOwner
 from actr3d.actr.procedural.production_system import ProductionSystem, rules_of, system_of, utility_part_names
 from actr3d.actr.reasons import RetrievalReason, SearchReason
 from actr3d.clock import seconds
@@ -123,9 +123,9 @@ class Past:
         return self._paths.get(id(part)) is not None
 
     def learned(self, production: Production) -> bool:
-        return production.name not in self._of(system_of(production)).unborn
+        return production.name not in self._of(production.system).unborn
 
-    def _of(self, part: Model) -> _Part:
+    def _of(self, part: Model | ProductionOwner) -> _Part:
         return self._parts[id(part)]
 
     def slot(self, production: Production, name: str, key: Slot) -> Fact:
@@ -184,29 +184,27 @@ class Past:
         return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
     def function_result(self, production: Production, number: int) -> FunctionResult | None:
-        observation = self._of(system_of(production)).observations.get(result_label(production.name, number))
+        observation = self._of(production.system).observations.get(result_label(production.name, number))
         if observation is None:
             return None
         given, agrees, bound = observation.value
         return FunctionResult(given, agrees, bound, _since(observation))
 
     def matched(self, production: Production) -> bool:
-        return production.name in self._of(system_of(production)).matched
+        return production.name in self._of(production.system).matched
 
     def parts(self, production: Production) -> dict[str, float | None]:
-        system = system_of(production)
-        known = self._of(system).parts.get(production.name, {})
-        return {name: known.get(name) for name in utility_part_names(system)}
+        known = self._of(production.system).parts.get(production.name, {})
+        return {name: known.get(name) for name in utility_part_names(system_of(production))}
 
     def choice(self, production: Production) -> ConflictSet | None:
-        system = system_of(production)
-        known = self._of(system)
+        known = self._of(production.system)
         data = known.conflict or {}
         choice = ConflictSet(
             utilities=data.get("utilities", {}),
             parts=data.get("parts", {}),
             threshold=data.get("threshold"),
-            weighed=rules_of(system).by_utility,
+            weighed=rules_of(system_of(production)).by_utility,
             chosen=known.chosen,
         )
         return choice if choice.chosen is not None or choice.held_back else None
