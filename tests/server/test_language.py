@@ -121,6 +121,15 @@ def test_texts_that_are_not_complete_yet(ask: Asked, end: str) -> None:
     assert ask.labels(COUNTING.replace("number:?now last", "nu| last") + end) == ["number"]
 
 
+@pytest.mark.parametrize(
+    ("pattern", "word"),
+    [("nu|", "nu"), ("task:co|", "co"), ("number:?n|", "?n"), ("number:!?n|", "?n"), ("number:2!3|", "3"), ("task:|", ""), ("a b|", "b")],
+)
+def test_a_completion_replaces_the_word_that_was_begun(ask: Asked, pattern: str, word: str) -> None:
+    text = COUNTING.replace("task:count number:?now last:!?now", pattern)
+    assert text[ask("complete", text)["start"] : text.index("|")] == word
+
+
 def test_a_completion_says_what_it_is(ask: Asked) -> None:
     (slot,) = (one for one in ask("complete", DOORWAY.replace("pose x:?x", "pose |"))["items"] if one["label"] == "heading")
     assert (slot["detail"], slot["apply"]) == ("slot of pose", "heading:")

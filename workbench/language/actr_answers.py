@@ -27,7 +27,7 @@ class Attributes(Protocol):
 OWN, KNOWN, OTHER = 3, 2, 0
 """The ranks of completions: used with the same part, given by the library, used with other parts."""
 _SLOT = re.compile(r"(\??[\w.]+):(.*)", re.DOTALL)
-_SIGN = re.compile(r"(?:[\w.-]*)(!?\??)[<>=]*([\w.-]*)$")
+_SIGN = re.compile(r"(!?\??)[<>=]*([\w.-]*)$")
 MOST_NAMED = 8
 """How many names are listed in a documentation."""
 
