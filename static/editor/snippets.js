@@ -51,8 +51,8 @@ def \${my_design}():
     return Design(
         model="\${my_model.py}",
         factors={"\${width}": [\${0.5, 0.8}]},
-        groups={"\${adults}": Group(participants=\${5}, parameters={"\${speed}": Normal(mean=\${1.2}, sd=\${0.1}, low=\${0.5})})},
-        trials=\${10},
+        groups={"\${adults}": Group(participants=5, parameters={"\${speed}": Normal(mean=\${1.2}, sd=\${0.1}, low=\${0.5})})},
+        trials=10,
         measures=[Measured(name="\${time}", unit="\${s}")],
     )
 `,

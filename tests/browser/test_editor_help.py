@@ -141,7 +141,7 @@ def test_pieces_are_inserted_where_they_may_stand(opened: Callable[[str], Page],
     page = opened(SHORT)
     at_end_of(page, "memory = Memory(facts)")
     page.get_by_role("button", name="More", exact=True).click()
-    page.get_by_role("button", name=piece).click()
+    page.get_by_role("button", name=re.compile(f"^{piece}")).click()
     unsaved = page.locator(".file-status .state")
     expect(unsaved).to_have_text(re.compile("unsaved"))
     shows(page, ".problems", "No problems")

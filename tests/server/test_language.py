@@ -7,6 +7,7 @@ import json
 import os
 import py_compile
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -20,9 +21,12 @@ from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, ca
 from tests.helpers.sessions import Desk
 from workbench.app import make_app
 from workbench.language import language_server
+from workbench.language.answers import LanguageError
 from workbench.language.explicit_names import ExplicitText
-from workbench.language.language_server import LONGEST_TEXT, MOST_WAITING, BusyError, LanguageError, LanguageServer
+from workbench.language.language_server import LONGEST_TEXT, MOST_WAITING, LanguageServer, TooManyQuestionsError
+from workbench.language.language_worker import safe_path
 from workbench.language.model_text import ModelText
+from workbench.language.python_answers import Python
 from workbench.language.questions import CodeUnits
 from workbench.loader import listing_of
 
@@ -335,6 +339,28 @@ def test_nothing_is_executed(alone: Asked, tmp_path: Path) -> None:
     assert [mark for mark in marks if mark.exists()] == []
 
 
+def test_no_compiled_module_is_imported_even_if_it_could_be_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    mark = tmp_path / "executed"
+    (tmp_path / "compiled.py").write_text(f"from pathlib import Path\nPath({str(mark)!r}).touch()\n", encoding="utf-8")
+    py_compile.compile(str(tmp_path / "compiled.py"), str(tmp_path / "compiled.pyc"))
+    (tmp_path / "compiled.py").unlink()
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
+    explicit = ExplicitText(ModelText("import compiled\ncompiled."))
+    assert Python(tmp_path).complete(explicit, "model.py", len(explicit.text)) == []
+    assert not mark.exists()
+
+
+def test_modules_are_not_found_in_the_working_directory_or_the_models_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    here, models = tmp_path / "here", tmp_path / "models"
+    for folder in (here, models / "sub"):
+        folder.mkdir(parents=True)
+        monkeypatch.setattr(sys, "path", [str(folder), *sys.path])
+    monkeypatch.chdir(here)
+    paths = safe_path(models)
+    assert {str(here), str(models / "sub"), ""}.isdisjoint(paths)
+    assert paths[-1] == str(MODELS.parent)  # the library itself comes last
+
+
 def test_a_text_that_takes_too_long_is_given_up_and_the_next_is_answered(alone: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "import" in alone.labels("impo|")
     monkeypatch.setattr(language_server, "ANSWER_TIME", 1.0)
@@ -368,7 +394,7 @@ def test_questions_at_once_are_answered_in_turn_and_too_many_refused(alone: Aske
 
     answers = desk.do(asked())
     assert [json.loads(answer)["items"][0]["label"] for answer in answers[:MOST_WAITING]] == [f"name_{n}" for n in range(MOST_WAITING)]
-    assert [type(answer) for answer in answers[MOST_WAITING:]] == [BusyError] * 5
+    assert [type(answer) for answer in answers[MOST_WAITING:]] == [TooManyQuestionsError] * 5
 
 
 @pytest.mark.parametrize(

@@ -36,7 +36,7 @@ MOST_NAMED = 8
 
 
 def complete(model: ModelText, at: int, attributes: Attributes) -> Completion | None:
-    """Returns what may stand at a position of a text of chunks or patterns; None if that is not the place."""
+    """Returns what may come at a position of a text of chunks or patterns; None if that is not the place."""
     text = model.text_at(at)
     if text is None:
         return None
@@ -60,7 +60,7 @@ def complete(model: ModelText, at: int, attributes: Attributes) -> Completion | 
 
 
 def complete_name(model: ModelText, at: int, attributes: Attributes) -> tuple[list[Item], bool]:
-    """Returns the slots, parts or parameters whose names may stand at a position in code, and whether nothing else may.
+    """Returns the slots, parts or parameters whose names may come at a position in code, and whether nothing else may.
 
     Args:
         model: The text, with a name at the position.

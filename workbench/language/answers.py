@@ -4,6 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from actr3d.errors import Actr3dError
+
+
+class LanguageError(Actr3dError):
+    """A question about a text cannot be answered; the message says why."""
+
+    status = 409
+
 
 @dataclass(frozen=True, kw_only=True)
 class Item:
@@ -24,7 +32,7 @@ class Item:
 
 @dataclass(frozen=True, kw_only=True)
 class Completion:
-    """What may stand at a position."""
+    """What may come at a position."""
 
     start: int
     """Where the word begins that is completed."""

@@ -6,10 +6,10 @@ import asyncio
 from contextlib import suppress
 from pathlib import Path
 
-from actr3d.errors import Actr3dError
+from workbench.language.answers import LanguageError
 from workbench.worker.messages import Do, FromWorker, Notice, Reply, Start
 from workbench.worker.workers import Worker, Workers
-from workbench.worker_monitor import WorkerMonitor
+from workbench.worker_monitor import Receiver, WorkerMonitor
 
 ANSWER_TIME = 10.0
 """Maximum time for an answer [s]; then the process is ended."""
@@ -23,19 +23,13 @@ LONGEST_TEXT = 200_000
 """Maximum length of a text that is read [characters]."""
 
 
-class LanguageError(Actr3dError):
-    """A question about a text cannot be answered; the message says why."""
-
-    status = 409
-
-
-class BusyError(LanguageError):
+class TooManyQuestionsError(LanguageError):
     """Too many questions wait already."""
 
     status = 503
 
 
-class LanguageServer:
+class LanguageServer(Receiver):
     """Answers questions about texts, by a process of its own with limits of time and memory.
 
     Args:
@@ -64,7 +58,7 @@ class LanguageServer:
             OSError: If no process can be started.
         """
         if self._waiting >= MOST_WAITING:
-            raise BusyError("too many questions about texts wait already")
+            raise TooManyQuestionsError("too many questions about texts wait already")
         self._waiting += 1
         try:
             async with self._turn:

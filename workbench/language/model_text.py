@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from actr3d.actr.lint.slot_names import GIVERS, READERS
-from workbench.language.tokens import Token, tokens_of
+from workbench.language.tokens import CodeToken, tokens_of
 
 _WORD = re.compile(r"\S+")
 _SLOT = re.compile(r"(\??[\w.]+):")
@@ -260,7 +260,7 @@ class ModelText:
 
     # -- reading
 
-    def _take(self, number: int, token: Token) -> None:
+    def _take(self, number: int, token: CodeToken) -> None:
         if token.begins_statement:
             self._brackets.clear()
         if token.first and not self._brackets:
@@ -274,7 +274,7 @@ class ModelText:
         elif token.kind == "sign":
             self._take_sign(number, token)
 
-    def _begin_line(self, number: int, token: Token) -> None:
+    def _begin_line(self, number: int, token: CodeToken) -> None:
         self._statement = number
         if token.kind == "end":
             return
@@ -284,7 +284,7 @@ class ModelText:
         if method is not None and token.column > method.column and method.body is None:
             self._body(method, token)
 
-    def _body(self, method: Method, token: Token) -> None:
+    def _body(self, method: Method, token: CodeToken) -> None:
         start = self.text.rfind("\n", 0, token.start) + 1
         method.body = token.line, self.text[start : start + token.column]
 
@@ -301,7 +301,7 @@ class ModelText:
     def _text(self, number: int) -> str:
         return self._tokens[number].text if 0 <= number < len(self._tokens) else ""
 
-    def _take_name(self, number: int, token: Token) -> None:
+    def _take_name(self, number: int, token: CodeToken) -> None:
         bracket = self._brackets[-1] if self._brackets else None
         begins = bracket is not None and self._text(number - 1) in ("(", ",", "*", "**")
         keyword = begins and bracket is not None and bracket.kind in ("def", "call") and self._text(number + 1) == "="
@@ -321,7 +321,7 @@ class ModelText:
             Name(text=token.text, start=token.start, before=before, keyword=keyword, called=called, agent=self._agent, method=self._method)
         )
 
-    def _define(self, keyword: Token, name: Token) -> None:
+    def _define(self, keyword: CodeToken, name: CodeToken) -> None:
         around, directly = self._agent, bool(self._blocks) and self._blocks[-1].kind == "class"
         self._blocks.append(_Block(kind=keyword.text, name=name.text, column=keyword.column))
         if keyword.text == "class":
@@ -334,7 +334,7 @@ class ModelText:
         if found is not None:
             found.parameters[name] = has_default
 
-    def _take_sign(self, number: int, token: Token) -> None:
+    def _take_sign(self, number: int, token: CodeToken) -> None:
         if token.text in ("(", "[", "{"):
             self._open(number, token)
         elif token.text in (")", "]", "}"):
@@ -346,7 +346,7 @@ class ModelText:
         elif token.text == ":" and not self._brackets and self._blocks and self._text(self._statement) == "def":
             self._headed = self.method(f"{self._agent}.{self._blocks[-1].name}")
 
-    def _open(self, number: int, token: Token) -> None:
+    def _open(self, number: int, token: CodeToken) -> None:
         called = token.text == "(" and number > 0 and self._tokens[number - 1].kind == "name"
         names = (*self._before(number - 1), self._tokens[number - 1].text) if called else ()
         head = self._text(self._statement) if called and number == self._statement + 2 else ""
@@ -363,7 +363,7 @@ class ModelText:
         self.agents[self._agent].parts[name.text] = part
         return part
 
-    def _take_text(self, token: Token) -> None:
+    def _take_text(self, token: CodeToken) -> None:
         """Stores a text that may describe a chunk or a pattern."""
         for bracket in reversed(self._brackets):
             if bracket.kind == "def":
@@ -376,7 +376,7 @@ class ModelText:
                     self._add_text("request" if names[-1] in READERS else "chunk", names[-2], token)
                 return
 
-    def _add_text(self, kind: str, part: str, token: Token) -> None:
+    def _add_text(self, kind: str, part: str, token: CodeToken) -> None:
         self.texts.append(ChunkText(kind=kind, part=part, agent=self._agent, method=self._method, text=token.text, start=token.start))
 
     @property

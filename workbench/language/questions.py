@@ -12,16 +12,15 @@ import msgspec
 from ruff import find_ruff_bin
 
 from workbench.language import actr_answers
-from workbench.language.answers import Completion, Definition, Documentation, Hover, Item, Renaming
+from workbench.language.answers import Completion, Definition, Documentation, Hover, Item, LanguageError, Renaming
 from workbench.language.explicit_names import ExplicitText
-from workbench.language.language_server import LanguageError
 from workbench.language.model_text import ModelText
 from workbench.language.python_answers import Python
 
 FORMAT_TIME = 5.0
 """Maximum time that formatting may take [s]."""
 _MARK = "completed_here"
-"""Stands for the name that is not written yet."""
+"""Takes the place of the name that is not written yet."""
 
 
 class LanguageQuestion(msgspec.Struct, frozen=True, kw_only=True):

@@ -17,7 +17,7 @@ _STATEMENTS = ("class", "def", "import", "@")
 
 
 @dataclass(frozen=True, slots=True)
-class Token:
+class CodeToken:
     """A name, a text, a sign, or anything else in code."""
 
     kind: str
@@ -40,12 +40,12 @@ class Token:
         return self.first and self.text in _STATEMENTS
 
 
-def tokens_of(code: str) -> list[Token]:
+def tokens_of(code: str) -> list[CodeToken]:
     """Returns the tokens of some code."""
     return list(_tokens(code))
 
 
-def _tokens(code: str) -> Iterator[Token]:
+def _tokens(code: str) -> Iterator[CodeToken]:
     at = skipped = seen = 0
     for token in tokenize(code, version_info=_VERSION):
         at += len(token.prefix)
@@ -57,12 +57,12 @@ def _tokens(code: str) -> Iterator[Token]:
         if kind == "ERRORTOKEN" and token.string[-1] in "'\"":  # a string without its end: the rest of the line is its text
             skipped = code.find("\n", start)
             skipped = len(code) if skipped < 0 else skipped
-            yield Token("text", code[at:skipped], at, line, column, first)
+            yield CodeToken("text", code[at:skipped], at, line, column, first)
         elif kind == "STRING":
             quote = _QUOTE.match(token.string)
             assert quote is not None
             inside = token.string[quote.end() : -len(quote[2])]
-            yield Token("other" if "b" in quote[1].lower() else "text", inside, start + quote.end(), line, column, first)
+            yield CodeToken("other" if "b" in quote[1].lower() else "text", inside, start + quote.end(), line, column, first)
         else:
             names = {"NAME": "name", "FSTRING_STRING": "text", "OP": "sign", "NEWLINE": "end"}
-            yield Token(names.get(kind, "other"), token.string, start, line, column, first)
+            yield CodeToken(names.get(kind, "other"), token.string, start, line, column, first)
