@@ -172,7 +172,17 @@ function hideBox(view) {
   return true;
 }
 
+/** Lets the server load what it needs for its answers when the text is first entered, so that the first completion comes at once. */
+let warmed = false;
+const warm = EditorView.domEventHandlers({
+  focus(_, { state }) {
+    if (!warmed) helpWith(state, "complete", state.doc.length);
+    warmed = true;
+  },
+});
+
 export const assist = [
+  warm,
   autocompletion({ override: [complete], icons: true, maxRenderedOptions: 60 }),
   hover,
   box,

@@ -87,6 +87,19 @@ def alone(desk: Desk, tmp_path: Path) -> Iterator[Asked]:
 VISION = "from actr3d.vision import Vision\n" + COUNTING.replace("memory = ", "seen = Buffer()\n    vision = Vision(seen)\n    memory = ")
 
 
+POLE = """from dataclasses import dataclass
+from actr3d.vision import Feature, Metres
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pole(Feature):
+    girth: Metres
+
+
+"""
+
+
+@pytest.mark.daily(12)
 @pytest.mark.parametrize(
     ("text", "first"),
     [
@@ -112,6 +125,11 @@ VISION = "from actr3d.vision import Vision\n" + COUNTING.replace("memory = ", "s
         (DOORWAY + "\nfrom actr3d.world import Mann|", ["Mannequin"]),
         (VISION.replace('memory.request("count ?now ?next")', 'vision.request("feature:|")'), ["obstacle", "opening"]),
         (VISION.replace('memory.request("count ?now ?next")', 'vision.request("feature:opening |")'), ["distance", "direction", "motion"]),
+        (POLE + VISION.replace('memory.request("count ?now ?next")', 'vision.request("feature:|")'), ["obstacle", "opening", "pole"]),
+        (
+            POLE + VISION.replace('memory.request("count ?now ?next")', 'vision.request("feature:pole |")'),
+            ["distance", "direction", "motion", "girth"],
+        ),
         ("import beside\nbeside.|", ["helps"]),
         ("x = 'not a chunk |'", []),
     ],
@@ -120,6 +138,7 @@ def test_what_may_stand_at_a_place(ask: Asked, text: str, first: list[str]) -> N
     assert ask.labels(text)[: len(first)] == first
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize("end", ["", "\n\nclass Other(AC", '\n    def more(goal="task:', "\n    def more(goal=", "\n)]}\n", "\nprint(f'{"])
 def test_texts_that_are_not_complete_yet(ask: Asked, end: str) -> None:
     assert ask.labels(COUNTING.replace("number:?now last", "nu| last") + end) == ["number"]
@@ -146,6 +165,7 @@ def test_a_completion_says_what_it_is(ask: Asked) -> None:
 # -- documentation
 
 
+@pytest.mark.daily(6)
 @pytest.mark.parametrize(
     ("text", "title", "said"),
     [
@@ -270,6 +290,7 @@ def test_positions_count_as_in_the_page(ask: Asked) -> None:
 # -- reading any text
 
 
+@pytest.mark.daily(8)
 @pytest.mark.parametrize("path", sorted(MODELS.rglob("*.py")), ids=lambda path: path.stem)
 def test_the_productions_of_every_model_are_found(path: Path) -> None:
     text = path.read_text(encoding="utf-8")

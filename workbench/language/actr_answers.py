@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from itertools import chain
 from typing import Protocol
 
 from workbench.language.answers import Completion, Hover, Item, Renaming
@@ -17,6 +16,10 @@ class Attributes(Protocol):
 
     def attributes(self, expression: str) -> list[tuple[str, str]]:
         """Returns them, each with its documentation."""
+        ...
+
+    def parameters(self, expression: str) -> list[tuple[str, str]]:
+        """Returns the parameters of a call of the expression, each with its documentation."""
         ...
 
     def is_truth(self, expression: str) -> bool:
@@ -112,7 +115,7 @@ def _slots(model: ModelText, text: ChunkText, at: int, attributes: Attributes) -
     own = model.chunks_of(text.part, text.agent)
     parts = model.parts_of(text.agent)
     part = parts.get(text.part)
-    for word, texts in _answers(parts, text):
+    for word, texts in _answers(model, text, attributes):
         yield from (
             Item(label=name, type="property", detail=f"slot of {word.word}", boost=KNOWN, text=said, apply=f"{name}:")
             for name, said in texts.items()
@@ -128,17 +131,28 @@ def _slots(model: ModelText, text: ChunkText, at: int, attributes: Attributes) -
                     yield Item(label=slot.text, type="property", detail=f"slot, {one.part}", boost=rank, apply=f"{slot.text}:")
 
 
-def _answers(parts: dict[str, Part], text: ChunkText) -> Iterator[tuple[Word, dict[str, str]]]:
+def _answers(model: ModelText, text: ChunkText, attributes: Attributes | None = None) -> Iterator[tuple[Word, dict[str, str]]]:
     """Yields what the library puts into a buffer, or what a module searches for, with the slots; if the text names one, only that."""
     found: list[Word] = []
-    for part in parts.values():
+    for part in model.parts_of(text.agent).values():
         if text.part in part.given and text.kind == "pattern":
             found += answers_of(part.kind)
         if text.part in part.given if text.kind == "pattern" else text.part == part.name:
-            found += (Word(word=one.word, text=one.text, slots={"feature": "", **one.slots}) for one in features_of(part.kind))
+            found += _features(model, part, attributes)
     named = {piece.text for piece in text.pieces}
     for word in [word for word in found if word.word in named] or found:
         yield word, word.slots
+
+
+def _features(model: ModelText, part: Part, attributes: Attributes | None = None) -> Iterator[Word]:
+    """Yields the features that a module finds: the library's, and those that the text itself defines."""
+    library = features_of(part.kind)
+    for one in library:
+        yield Word(word=one.word, text=one.text, slots={"feature": "", **one.slots})
+    for agent in model.agents.values() if library else ():
+        if "Feature" in agent.bases:
+            slots = dict(attributes.parameters(agent.name)) if attributes is not None else {}
+            yield Word(word=agent.name.lower(), text=f"{agent.name}, in this file", slots={"feature": "", **slots})
 
 
 def _words(model: ModelText, text: ChunkText, place: int) -> Iterator[Item]:
@@ -160,9 +174,10 @@ def _values(model: ModelText, text: ChunkText, slot: str, at: int, attributes: A
     parts = model.parts_of(text.agent)
     part = parts.get(text.part)
     if slot == "feature":
-        kinds = [one.kind for one in parts.values() if text.part in one.given or one.name == text.part]
-        for word in chain.from_iterable(map(features_of, kinds)):
-            yield Item(label=word.word, type="constant", detail="feature", boost=OWN, text=word.text)
+        for one in parts.values():
+            if text.part in one.given or one.name == text.part:
+                for word in _features(model, one):
+                    yield Item(label=word.word, type="constant", detail="feature", boost=OWN, text=word.text)
     tests_module = part is not None and part.kind != "Buffer" and text.kind == "pattern" and slot.isidentifier()
     if part is not None and tests_module and attributes.is_truth(f"{part.agent}.{part.name}.{slot}"):
         yield from (Item(label=word, type="constant", detail=f"{slot} of {part.name}", boost=KNOWN) for word in ("False", "True"))
@@ -223,7 +238,7 @@ def _document_in(model: ModelText, text: ChunkText, at: int) -> Hover | None:
 def _of_slot(model: ModelText, slot: str, text: ChunkText | None = None) -> str:
     lines: list[str] = []
     if text is not None:
-        lines += [f"{word.word}: {slots[slot]}" for word, slots in _answers(model.parts_of(text.agent), text) if slots.get(slot)]
+        lines += [f"{word.word}: {slots[slot]}" for word, slots in _answers(model, text) if slots.get(slot)]
     uses = [one for one in model.texts if any(other.text == slot for other in one.slots)]
     lines.append(_listed("matched in", (one.method.rpartition(".")[2] for one in uses if one.kind == "pattern")))
     lines.append(_listed("set in", (one.method.rpartition(".")[2] for one in uses if one.kind == "chunk")))
@@ -237,7 +252,7 @@ def _of_value(model: ModelText, text: ChunkText, piece: Piece) -> str:
     part = model.parts_of(text.agent).get(text.part)
     known = words_for(part.kind, "set" if text.kind == "chunk" else "request") if part is not None and text.kind != "pattern" else ()
     lines = [f"{one.word}({one.takes}): {one.text}" for one in known if one.word == piece.text]
-    lines += [f"{word.word}: {word.text}" for word, _ in _answers(model.parts_of(text.agent), text) if word.word == piece.text]
+    lines += [f"{word.word}: {word.text}" for word, _ in _answers(model, text) if word.word == piece.text]
     where = f"in slot {piece.slot}" if not piece.slot.isdecimal() else f"word {int(piece.slot) + 1}"
     uses = [one for one in model.texts if any(other.text == piece.text and other.slot == piece.slot for other in one.pieces)]
     lines.append(f"{where}, {_listed('used in', (one.method.rpartition('.')[2] for one in uses))}")

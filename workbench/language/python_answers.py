@@ -148,6 +148,12 @@ class PythonExpressions:
         said = [(one, _field_text(one) or one.docstring(raw=True)) for one in found]
         return [(one.name, text) for one, text in said if text or (owners and (one.full_name or "").startswith(owners))]
 
+    def parameters(self, expression: str) -> list[tuple[str, str]]:
+        """Returns the parameters of a call of it, each with its documentation."""
+        script, line, column = self._after(f"{expression}(")
+        found = [one for signature in script.get_signatures(line, column) for one in signature.params]
+        return [(one.name, _field_text(one)) for one in found]
+
     def is_truth(self, expression: str) -> bool:
         """Returns whether it is True or False."""
         script, line, column = self._after(expression)
