@@ -84,10 +84,13 @@ function applied(inserted) {
 
 // -- documentation
 
+function documentationBox() {
+  return Object.assign(document.createElement("div"), { className: "documentation", role: "note", ariaLabel: "Documentation", tabIndex: 0 }); // it may have to be scrolled
+}
+
 /** Returns documentation as an element; everything in it is text. */
 function documentation({ title, text }) {
-  const box = document.createElement("div");
-  box.className = "documentation";
+  const box = documentationBox();
   if (title) box.append(Object.assign(document.createElement("pre"), { textContent: title }));
   if (text) box.append(Object.assign(document.createElement("p"), { textContent: text }));
   return box;
@@ -117,8 +120,7 @@ const box = StateField.define({
 });
 
 function parametersOf({ name, parameters, active, text }) {
-  const dom = document.createElement("div");
-  dom.className = "documentation";
+  const dom = documentationBox();
   const line = document.createElement("pre");
   line.append(`${name}(`);
   parameters.forEach((parameter, n) => {

@@ -78,6 +78,7 @@ const EXTENSIONS = [
   highlightSelectionMatches(),
   search({ top: true }),
   look,
+  EditorView.contentAttributes.of({ tabindex: "0" }), // what can be scrolled can be reached
   EditorView.clickAddsSelectionRange.of((event) => event.altKey), // Ctrl and click goes to a definition
   EditorView.domEventHandlers({
     mousedown(event, view) {

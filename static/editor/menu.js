@@ -41,7 +41,7 @@ export function Menu({ disabled }) {
   return html`<button ref=${button} class="bare" popovertarget=${id} disabled=${disabled} title="More: definition, rename, format, insert" aria-label="More"><${Icon} name="more" /></button>
     <div ref=${menu} id=${id} popover="auto" class="editor-menu" role="group" aria-label="More" onBeforeToggle=${place}>
       ${ACTIONS.map(({ text, key, work }) => html`<button key=${text} class="bare" onClick=${() => choose(work)}><span>${text}</span><kbd>${keyText(key)}</kbd></button>`)}
-      <h3>Insert</h3>
+      <p>Insert</p>
       ${SNIPPETS.map((piece) => html`<button key=${piece.label} class="bare" onClick=${() => choose(() => withView((view) => insertAtCursor(view, piece)))}><span>${piece.detail}</span></button>`)}
     </div>`;
 }
