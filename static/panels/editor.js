@@ -35,13 +35,15 @@ async function runShown() {
   if (document.theirs.value?.text != null) comparing.value = document;
 }
 
-const onShown = (work) => () => shownDocument() && work(shownDocument());
-Object.assign(keys, { run: runShown, save: saveShown, define: onShown(define), rename: onShown(renameName), format: onShown(format) });
+Object.assign(keys, { run: runShown, save: saveShown });
 bindKey("Mod+s", "Save the text", saveShown, "Editor");
 bindKey("Mod+Enter", "Save the text, and run it", runShown, "Editor");
+noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor");
+
+const onShown = (work) => () => shownDocument() && work(shownDocument());
+Object.assign(keys, { define: onShown(define), rename: onShown(renameName), format: onShown(format) });
 for (const { key, text } of ACTIONS) noteKey(key, text.replace(" …", ""), "Editor");
 noteKey("Mod+Click", "Go to the definition", "Editor");
-noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor");
 
 /** Applies the user's choice between two versions. */
 async function choose(document, which) {
