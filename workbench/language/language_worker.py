@@ -35,10 +35,10 @@ def serve(channel: Channel) -> None:
 
 
 def safe_path(folder: Path) -> list[str]:
-    """Returns where modules are found: not in the working directory, nor anywhere in the models folder, and in packages first."""
-    root = Path(actr3d.__file__).resolve().parents[1]
-    around = (Path.cwd(), folder.resolve())
-    paths = [
-        path for path in sys.path if path and Path(path).resolve() != root and not any(map(Path(path).resolve().is_relative_to, around[1:]))
-    ]
-    return [*(path for path in paths if Path(path).resolve() != around[0]), str(root)]
+    """Returns where modules are found: installed packages first, the library last; neither the working directory nor the models folder."""
+    library = Path(actr3d.__file__).resolve().parents[1]
+
+    def is_safe(path: Path) -> bool:
+        return path not in (library, Path.cwd()) and not path.is_relative_to(folder.resolve())
+
+    return [*(path for path in sys.path if path and is_safe(Path(path).resolve())), str(library)]
