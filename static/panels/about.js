@@ -1,4 +1,4 @@
-// The model's description: its docstring, with values to try, and a link to its source.
+// The model's description: its docstring, with values to try, and links to its source and its page in the manual.
 
 import { h, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
@@ -64,6 +64,8 @@ function About() {
   return html`<div class="about-frame"><article class="about">
     <header>
       <span class="mono">${file}</span>
+      <span class="stretch"></span>
+      ${answer?.manual ? html`<a href=${answer.manual} target="_blank" rel="noopener" title="Its page in the manual, with what it prints and a picture of a run"><${Icon} name="book" />Manual</a>` : null}
       <button title="Open its file in the editor" onClick=${() => openAt(shown.model, 1)}><${Icon} name="pen" />Edit</button>
     </header>
     ${isLost ? html`<p class="bad">${runStatus.value.text}</p>` : null}

@@ -10,7 +10,8 @@ import { duplicate, makeNew, remove, rename } from "../editor/files.js";
 import { Problems } from "../editor/problems.js";
 import { saveAndRun } from "../editor/stale_run.js";
 import { Strip } from "../editor/banner.js";
-import { bindKey, noteKey } from "../keys.js";
+import { command } from "../commands.js";
+import { noteKey } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { session } from "../store.js";
 
@@ -34,8 +35,9 @@ async function runShown() {
 }
 
 Object.assign(keys, { run: runShown, save: saveShown });
-bindKey("Mod+s", "Save the text", saveShown, "Editor");
-bindKey("Mod+Enter", "Save the text, and run it", runShown, "Editor");
+const hasText = () => Boolean(shownDocument());
+command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText });
+command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText });
 noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor");
 
 /** Applies the user's choice between two versions. */
