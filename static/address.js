@@ -22,6 +22,13 @@ export function goToAddress(kind, name) {
   history[other ? "pushState" : "replaceState"](null, "", `?${wanted}`);
 }
 
+/** Takes the moment out of the address: who loads the page again is not taken back to it. */
+export function leaveMoment() {
+  const wanted = new URLSearchParams(location.search);
+  wanted.delete("t");
+  history.replaceState(null, "", `?${wanted}`);
+}
+
 /** Returns the whole address of a moment of a recorded run. */
 export function addressOf(run, time) {
   return `${location.origin}/?${new URLSearchParams({ run, t: String(Number(time.toFixed(6))) })}`;

@@ -18,7 +18,7 @@ const channel = new BroadcastChannel("actr3d pages");
 
 function ownName() {
   const known = sessionStorage.getItem("page");
-  const name = known ?? crypto.randomUUID();
+  const name = known ?? String(Math.random()).slice(2);
   sessionStorage.setItem("page", name);
   return name;
 }

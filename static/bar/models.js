@@ -1,11 +1,11 @@
 // Chooses the model or recording to show: opens its session or starts one, and puts the choice into the page's address.
 
 import { effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
-import { addressed, addressedTime, goToAddress } from "../address.js";
+import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
 import { call, say, showModel, showRecording, sinceNow } from "../server.js";
 import { withTrust } from "../runs/trust.js";
-import { alive, complain, connected, session } from "../store.js";
+import { alive, complain, connected, running, session } from "../store.js";
 import { travel } from "../timeline/seek.js";
 
 /** The model files of the folder: {path, title, kind}. */
@@ -42,26 +42,42 @@ export async function choose(path) {
   }
 }
 
-/** Shows a recording, which has its own address, so that the browser's «back» leads to what was shown before; at a moment [s], if one
- * is given. */
-export async function chooseRecording(id, time = null) {
+/** Shows a recording, which has its own address, so that the browser's «back» leads to what was shown before. Returns
+ * whether it is shown: the user may decline. */
+export async function chooseRecording(id) {
   const left = session.peek();
-  if ((await openRecording(id)) === null) return;
+  if ((await openRecording(id)) === null) return false;
   if (left && left.recorded === null) before.value = { model: left.model, id: left.id };
   goToAddress("run", id);
-  if (time !== null) goWhenShown(id, time);
+  return true;
 }
 
-/** Goes to a moment [s] of a recording as soon as it is shown. */
-function goWhenShown(id, time) {
+/** Shows a moment [s] of a recorded run, as a link asks for it: the run itself if it is still open, or else its recording. Returns whether it
+ * is shown. */
+async function chooseMoment(id, time) {
+  const { sessions } = await call("GET", "/api/sessions");
+  const open = sessions.find(({ recording, alive: lives }) => recording === id && lives);
+  if (open) await choose(open.model);
+  else if (!(await chooseRecording(id))) return false;
+  leaveMoment();
   const wanted = sinceNow();
   const end = effect(() => {
-    if (!alive.value || session.value?.recorded !== id) return;
+    const { recording, recorded } = session.value ?? {};
+    if (!alive.value || (open ? recording : recorded) !== id) return;
     queueMicrotask(() => {
       end();
-      if (wanted()) travel(time);
+      if (!wanted()) return;
+      if (running.peek()) complain(`The link leads to ${time} s of this run. It goes on now: pause it, and go there on the timeline.`, "info");
+      else travel(time);
     });
   });
+  return true;
+}
+
+/** Shows the run that the address names, at its moment, if it has one. Returns whether it is shown. */
+function chooseAddressed(id) {
+  const time = addressedTime();
+  return time === null ? chooseRecording(id) : chooseMoment(id, time);
 }
 
 /** Shows a recording, after asking if its code comes from elsewhere; returns null if the user declines. */
@@ -98,7 +114,7 @@ export function note(path) {
 /** Shows what the address names, after «back» or «forward». */
 function follow() {
   const [run, path] = [addressed("run"), addressed("model")];
-  if (run !== null) chooseRecording(run, addressedTime()).catch((error) => complain(error.message));
+  if (run !== null) chooseAddressed(run).catch((error) => complain(error.message));
   else if (path !== null) choose(path);
 }
 
@@ -133,10 +149,7 @@ export async function begin() {
   let problem = null;
   if (run !== null) {
     try {
-      if ((await openRecording(run)) !== null) {
-        if (addressedTime() !== null) goWhenShown(run, addressedTime());
-        return;
-      }
+      if (await chooseAddressed(run)) return;
     } catch (error) {
       problem = `The recording «${run}» cannot be opened: ${error.message}`;
     }

@@ -26,9 +26,12 @@ export async function readManual() {
   }
 }
 
-/** Returns the text of a piece of HTML; nothing in it is run or loaded. */
+const SIGNS = { lt: "<", gt: ">", quot: '"', amp: "&" };
+
+/** Returns the text of a piece of HTML, which is shown as text. */
 function plainText(markup) {
-  return new DOMParser().parseFromString(markup, "text/html").body.textContent.replace(/\s+/g, " ").trim();
+  const text = markup.replace(/<[^>]*>/g, " ").replace(/&(?:#(\d+)|(lt|gt|quot|amp));/g, (_, code, name) => (name ? SIGNS[name] : String.fromCodePoint(code)));
+  return text.replace(/\s+/g, " ").trim();
 }
 
 /** Returns the sections that contain all words of a search, the best first: {title, text, address}, with a piece of the text around

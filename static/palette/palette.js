@@ -37,10 +37,11 @@ function found() {
   const hits = all
     .flatMap((of) => {
       const hit = match(words, `${of.text} ${of.group}`);
-      return hit === null ? [] : [{ of, heading: "Commands", places: hit.places, score: hit.score + rank(of) - (of.ready() ? 0 : 20) }];
+      return hit === null ? [] : [{ of, heading: "Commands", places: hit.places, score: hit.score + rank(of) }];
     })
-    .sort((one, other) => other.score - one.score);
-  return hits.filter(({ score }) => score > WEAK * hits[0].score).slice(0, MOST);
+    .sort((one, other) => other.of.ready() - one.of.ready() || other.score - one.score);
+  const best = Math.max(...hits.map(({ score }) => score));
+  return hits.filter(({ score }) => score > WEAK * best).slice(0, MOST);
 }
 
 /** Returns everything that is offered. */
@@ -120,9 +121,9 @@ function Palette() {
       onKeyDown=${press}
     />
     <ul id="palette-list" role="listbox" aria-label="Found">
-      ${groups.map(([heading, list]) => html`<li key=${heading} role="presentation">
-        <div class="palette-heading" role="presentation" id=${`palette-${heading}`}>${heading}</div>
-        <ul role="group" aria-labelledby=${`palette-${heading}`}>${list.map(({ entry, n }) => html`<${Entry} key=${`${entry.of.group} ${entry.of.text}`} entry=${entry} n=${n} />`)}</ul>
+      ${groups.map(([heading, list], number) => html`<li key=${heading} role="presentation">
+        <div class="palette-heading" role="presentation" id=${`palette-group-${number}`}>${heading}</div>
+        <ul role="group" aria-labelledby=${`palette-group-${number}`}>${list.map(({ entry, n }) => html`<${Entry} key=${`${entry.of.group} ${entry.of.text}`} entry=${entry} n=${n} />`)}</ul>
       </li>`)}
     </ul>
     ${entries.length === 0 ? html`<p class="empty">Nothing has this in its name.</p>` : null}
