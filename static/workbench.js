@@ -62,8 +62,12 @@ function WholePage() {
     <${Bar} />
     <div><${RecordingBanner} /></div>
     <${Work} />
-    <${Splitter} size=${timelineHeight} along="rows" label="Height of the timeline" least=${80} most=${() => innerHeight - 300} />
-    ${hasTimeline ? html`<section class="below" aria-label="Timeline"><${Timeline} /></section>` : html`<${Strip} area="timeline" />`}
+    ${hasTimeline
+      ? html`<section class="below" aria-label="Timeline">
+          <${Splitter} size=${timelineHeight} along="rows" label="Height of the timeline" least=${80} most=${() => innerHeight - 300} />
+          <${Timeline} />
+        </section>`
+      : html`<nav aria-label="Collapsed"><${Strip} area="timeline" /></nav>`}
     <${StatusLine} />
   </div>`;
 }

@@ -6,6 +6,7 @@ import { remembered } from "../local_storage.js";
 import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { match } from "./fuzzy.js";
 import { inManual, readManual } from "./manual_search.js";
+import { readRecordings } from "./recordings.js";
 
 const MOST_RECENT = 6;
 const MOST = 60; // entries shown
@@ -92,7 +93,10 @@ function Palette() {
   const entries = offered();
   const at = Math.min(chosen.value, entries.length - 1);
   useLayoutEffect(() => void box.current.showModal(), []);
-  useEffect(() => void readManual(), []);
+  useEffect(() => {
+    readManual();
+    readRecordings();
+  }, []);
 
   function press(event) {
     const to = { ArrowDown: at + 1, ArrowUp: at - 1, PageDown: Math.min(at + 8, entries.length - 1), PageUp: Math.max(at - 8, 0) }[event.key];

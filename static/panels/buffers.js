@@ -69,7 +69,7 @@ function Agent({ agent, paths, parts, requests, several }) {
   const rest = of("part");
   const title = agent ?? "Other parts";
   return html`<section class="agent" aria-label=${title}>
-    ${several ? html`<h2>${title}${agent ? html` <span class="quiet">${parts[agent].class}</span>` : null}</h2>` : null}
+    <h2 class=${several ? "" : "unseen"}>${title}${agent ? html` <span class="quiet">${parts[agent].class}</span>` : null}</h2>
     ${buffers.length
       ? html`<table class="buffers" aria-label="Buffers of ${title}">
           <colgroup><col class="names" /><col /></colgroup>

@@ -72,6 +72,7 @@ function Reasons() {
     event.preventDefault();
   };
   return html`<section class="reasons" aria-label="Explanations">
+    <h2 class="unseen">Explanations</h2>
     <div class="tools">
       <div class="choices" role="tablist" aria-label="Explanations">
         ${VIEWS.map(
