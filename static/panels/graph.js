@@ -9,7 +9,7 @@ import { openTab } from "../open_tab.js";
 import { useAnswer } from "../parts/answer.js";
 import { chunkText } from "../parts/chunk.js";
 import { nothing } from "../run_status.js";
-import { session, state } from "../store.js";
+import { running, session, state } from "../store.js";
 
 const QUESTION = { type: "explain" };
 const KINDS = { reads: "reads", writes: "writes", asks: "asks", fills: "fills" };
@@ -146,7 +146,7 @@ function Agent({ agent, parts, reasons, width, several }) {
       })}
       ${graph.productions.map(({ id, system, name }) => {
         const isNext = parts[system].chosen === name;
-        const matches = reasons.get(id)?.matches === true;
+        const matches = !running.value && reasons.get(id)?.matches === true;
         const words = isNext ? "is about to fire" : graph.fired === id ? "has fired" : matches ? "matches" : "";
         const inner = system === agent ? null : html`<span class="system">${nameIn(agent, system)}.</span>`;
         return node(id, `production ${isNext ? "on" : graph.fired === id ? "fired" : matches ? "matches" : ""}`, null, `${system}: ${name}${words ? `: ${words}` : ""}`, inner);
@@ -182,7 +182,7 @@ function Legend() {
 function Graph() {
   const box = useRef(null);
   const [width, setWidth] = useState(0);
-  const { answer } = useAnswer(QUESTION, { live: true });
+  const { answer } = useAnswer(QUESTION, { once: true });
   const parts = state.value?.parts ?? {};
   const agents = agentsOf(parts);
   useEffect(() => {

@@ -46,7 +46,7 @@ def test_the_graph_shows_what_is_read_written_asked_and_filled(pages: Callable[.
     assert places(page) == before
     goal.click()
     expect(page.locator(".graph-text")).to_have_text(
-        "goal is read by count_on, start_counting, stop_counting; is written by start_counting, count_on"
+        "goal is read by count_on, start_counting, stop_counting; is written by count_on, start_counting"
     )
     page.keyboard.press("ArrowRight")
     expect(nodes.filter(has_text="count_on")).to_be_focused()
