@@ -7,10 +7,11 @@ const OWN = new Set(["buffer", "state", "request", "productions", "select", "add
 
 export const keyOf = (system, production) => `${system}\n${production}`;
 
-/** What is known of a run: `writes` has for each production (`keyOf`) the paths of buffers that it has changed and modules that it has
- * asked; `feeds` for each module the paths of the buffers that it has filled. */
+/** What is known of a run. */
 class Known {
-  writes = new Map();
+  #writes = new Map(); // by production: the buffers that it has filled, and the modules that it has asked
+  #clears = new Map(); // by production: the buffers that were emptied as it fired
+  /** By module: the paths of the buffers that it has filled. */
   feeds = new Map();
   #next = 0;
   #fired = null; // the production that has just fired, as [key, time]
@@ -24,7 +25,8 @@ class Known {
   }
 
   #one([time, source, kind, data]) {
-    if (ENDS.has(kind) || (this.#fired && time !== this.#fired[1])) {
+    if (this.#fired && time !== this.#fired[1]) this.#fired = null;
+    if (ENDS.has(kind)) {
       this.#begins = kind === "initialize";
       this.#fired = kind === "fire" ? [keyOf(source, data.production), time] : null;
       this.#group = { time, modules: new Set(), buffers: new Set() };
@@ -32,14 +34,21 @@ class Known {
     }
     if (this.#begins) return;
     if (this.#fired) {
-      // That a buffer is emptied is often the work of the module that is asked, which will fill it.
-      if (kind === "request" || (kind === "buffer" && data.chunk !== null)) add(this.writes, this.#fired[0], source);
+      if (kind === "request" || kind === "buffer") add(kind === "buffer" && data.chunk === null ? this.#clears : this.#writes, this.#fired[0], source);
       return;
     }
     if (time !== this.#group.time) this.#group = { time, modules: new Set(), buffers: new Set() };
     if (kind === "buffer" && data.chunk !== null) this.#group.buffers.add(source);
     else if (!OWN.has(kind)) this.#group.modules.add(source);
     if (this.#group.modules.size === 1) for (const buffer of this.#group.buffers) add(this.feeds, [...this.#group.modules][0], buffer);
+  }
+
+  /** Returns the paths of the buffers that a production (`keyOf`) has changed, and of the modules that it has asked. A module that is
+   * asked may empty the buffer that it will fill: that is not the production's own work. */
+  changedBy(production) {
+    const written = this.#writes.get(production) ?? new Set();
+    const own = [...(this.#clears.get(production) ?? [])].filter((path) => ![...written].some((module) => this.feeds.get(module)?.has(path)));
+    return new Set([...written, ...own]);
   }
 }
 

@@ -34,7 +34,7 @@ function graphOf(agent, parts, reasons) {
   const productions = systems.flatMap((system) => parts[system].productions.map((name) => ({ id: keyOf(system, name), system, name })));
   const belongs = new Set(own);
   const { fired, answered } = justNow(session.value?.period || 0.01, (source) => belongs.has(source));
-  const { writes, feeds } = flows();
+  const known = flows();
   const there = new Set([...buffers, ...modules]);
   const edges = [];
   for (const { id, system, name } of productions) {
@@ -42,13 +42,13 @@ function graphOf(agent, parts, reasons) {
     const isNext = parts[system].chosen === name;
     const read = readsOf(reason, agent, buffers);
     edges.push(...read.map((path) => ({ from: path, to: id, kind: "reads", flows: isNext })));
-    for (const path of writes.get(id) ?? []) {
+    for (const path of known.changedBy(id)) {
       if (there.has(path)) edges.push({ from: id, to: path, kind: buffers.includes(path) ? "writes" : "asks", flows: fired === id });
     }
   }
   for (const module of modules) {
     const waits = parts[module].state?.busy === true;
-    for (const path of feeds.get(module) ?? []) {
+    for (const path of known.feeds.get(module) ?? []) {
       if (there.has(path)) edges.push({ from: module, to: path, kind: "fills", flows: answered.has(module), waits });
     }
   }
@@ -83,6 +83,19 @@ function Edges({ graph, layout }) {
   </svg>`;
 }
 
+/** Returns the node that an arrow key leads to: the next of the column, or the nearest of the next column that has any. */
+function neighbour(key, id, columns, nodes) {
+  const n = columns.findIndex((column) => column.includes(id));
+  const step = { ArrowDown: 1, ArrowUp: -1 }[key];
+  if (step) return columns[n][columns[n].indexOf(id) + step];
+  const others = key === "ArrowLeft" ? columns.slice(0, n).reverse() : columns.slice(n + 1);
+  const middle = (one) => nodes.get(one).y + nodes.get(one).height / 2;
+  const away = (one) => Math.abs(middle(one) - middle(id));
+  return others.find((column) => column.length > 0)?.toSorted((one, other) => away(one) - away(other))[0];
+}
+
+const ARROWS = ["ArrowDown", "ArrowUp", "ArrowLeft", "ArrowRight"];
+
 function Agent({ agent, parts, reasons, width, several }) {
   const graph = graphOf(agent, parts, reasons);
   const layout = placed(width, graph.columns);
@@ -91,28 +104,14 @@ function Agent({ agent, parts, reasons, width, several }) {
   const ids = graph.columns.flat();
   const inHand = ids.includes(chosen.value) ? chosen.value : ids[0];
 
-  /** Moves to the next node of the column, or to the nearest of another column. */
   function press(event) {
-    const n = graph.columns.findIndex((column) => column.includes(inHand));
-    const column = graph.columns[n];
-    const place = column.indexOf(inHand);
-    let to;
-    if (event.key === "ArrowDown" || event.key === "ArrowUp") to = column[place + (event.key === "ArrowDown" ? 1 : -1)];
-    else if (event.key === "ArrowLeft" || event.key === "ArrowRight") {
-      const others = event.key === "ArrowLeft" ? graph.columns.slice(0, n).reverse() : graph.columns.slice(n + 1);
-      const next = others.find((ids_) => ids_.length > 0) ?? [];
-      const { y, height } = layout.nodes.get(inHand);
-      const away = (id) => Math.abs(layout.nodes.get(id).y + layout.nodes.get(id).height / 2 - y - height / 2);
-      to = next.toSorted((one, other) => away(one) - away(other))[0];
-    } else if (event.key === "Escape" && chosen.value !== null) {
-      chosen.value = null;
-      event.preventDefault();
-      return;
-    } else return;
+    const leaves = event.key === "Escape" && chosen.value !== null;
+    if (!leaves && !ARROWS.includes(event.key)) return;
     event.preventDefault();
+    const to = leaves ? null : neighbour(event.key, inHand, graph.columns, layout.nodes);
     if (to === undefined) return;
     chosen.value = to;
-    event.currentTarget.querySelector(`[data-node="${CSS.escape(to)}"]`).focus();
+    if (to !== null) event.currentTarget.querySelector(`[data-node="${CSS.escape(to)}"]`).focus();
   }
 
   function node(id, kind, more, title, before = null) {
