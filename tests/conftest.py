@@ -6,8 +6,10 @@ import atexit
 import os
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -34,6 +36,13 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 def pytest_xdist_auto_num_workers() -> int:
     """Returns the number of processes: one more than there are processors, as tests wait much for processes and browsers."""
     return (os.cpu_count() or 1) + 1
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compiles what models with a body need before several processes begin: each of them would compile it."""
+    if "PYTEST_XDIST_WORKER" not in os.environ and session.config.getoption("numprocesses", None):
+        model = Path(__file__).parents[1] / "models" / "aperture_passage.py"
+        subprocess.run([sys.executable, "-m", "actr3d", "run", str(model)], stdout=subprocess.DEVNULL, check=False)
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest leaves out what is marked as slow
