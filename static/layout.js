@@ -1,5 +1,6 @@
 // The layout: which parts of the page are shown, how large they are, on which side, and in which window.
 
+import { addressed } from "./address.js";
 import { command } from "./commands.js";
 import { remembered } from "./local_storage.js";
 import { computed, effect, signal } from "./vendor/preact.js";
@@ -28,7 +29,9 @@ function ofKind(name, otherwise) {
   };
 }
 
-const isThere = (area) => area !== "scene" || hasWorld.value;
+/** Whether this is the whole page: a window of its own has one panel. */
+const isWhole = addressed("panel") === null;
+const isThere = (area) => isWhole && (area !== "scene" || hasWorld.value);
 
 const ROWS = 336; // the height of the default rows of a model with a body [px]
 /** The width of the panels [px]. By default, all tabs can be seen, and wide windows give the panels more room too. */
@@ -84,6 +87,6 @@ export const layoutCommands = Object.fromEntries(
 );
 
 /** Swaps the 3D view and the panels. */
-export const swap = command({ text: "Swap the sides of the 3D view and the panels", group: "Page", work: () => (swapped.value = !swapped.value), ready: () => hasWorld.value });
+export const swap = command({ text: "Swap the sides of the 3D view and the panels", group: "Page", work: () => (swapped.value = !swapped.value), ready: () => isThere("scene") });
 
 command({ text: "All parts of the page again, after one was maximised", key: "Escape", group: "Page", work: () => (largest.value = null), ready: () => maximised.value !== null });
