@@ -66,6 +66,12 @@ def test_parts_of_the_page_are_maximised_collapsed_and_swapped(page: Page) -> No
     page.keyboard.press("Tab")  # from now on, the keyboard is used
     page.get_by_role("separator", name="Width of the panels").press("ArrowRight")
     panels_are_at(page, 0, 808)
+    page.get_by_role("button", name="Arrange: Timeline").press("Enter")
+    page.keyboard.press("Tab")
+    expect(page.get_by_role("group", name="Arrange: Timeline").get_by_role("button", name="Maximise")).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("region", name="Panels")).not_to_be_visible()
+    page.keyboard.press("Escape")
     page.get_by_role("separator", name="Height of the timeline").press("ArrowUp")
     height = page.get_by_role("separator", name="Height of the timeline").get_attribute("aria-valuenow")
     page.reload()
