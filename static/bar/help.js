@@ -1,10 +1,11 @@
 // The help, opened by `?`: a link to the manual, and the keys.
 
 import { html } from "../vendor/preact.js";
-import { bindKey, KEY_GROUPS, keysOf, keyText } from "../keys.js";
+import { command } from "../commands.js";
+import { KEY_GROUPS, keysOf, keyText } from "../keys.js";
 import { dialog } from "../parts/dialog.js";
 
-export function showHelp() {
+function showHelp() {
   const groups = KEY_GROUPS.map(
     (group) => html`<section key=${group}>
       <h3 id="keys-${group}">${group}</h3>
@@ -15,4 +16,5 @@ export function showHelp() {
   dialog({ title: "Help", body: html`${manual}<div class="keys">${groups}</div>` });
 }
 
-bindKey("?", "Help: the manual and the keys", showHelp, "Panels");
+/** The command that opens it. */
+export const help = command({ text: "Help: the manual and the keys", key: "?", group: "Page", work: showHelp });

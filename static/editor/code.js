@@ -129,6 +129,7 @@ export function showText(place, document) {
     view.setState(document.state);
     const name = `Text of ${document.path}. Escape, then Tab, leaves it.`;
     view.contentDOM.setAttribute("aria-label", name);
+    view.contentDOM.tabIndex = 0;
   }
   if (view.dom.parentNode !== place) place.append(view.dom);
   view.requestMeasure();

@@ -12,7 +12,8 @@ import { ACTIONS, Menu } from "../editor/menu.js";
 import { Problems } from "../editor/problems.js";
 import { saveAndRun } from "../editor/stale_run.js";
 import { Strip } from "../editor/banner.js";
-import { bindKey, noteKey } from "../keys.js";
+import { command } from "../commands.js";
+import { noteKey } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { session } from "../store.js";
 
@@ -36,8 +37,9 @@ async function runShown() {
 }
 
 Object.assign(keys, { run: runShown, save: saveShown });
-bindKey("Mod+s", "Save the text", saveShown, "Editor");
-bindKey("Mod+Enter", "Save the text, and run it", runShown, "Editor");
+const hasText = () => Boolean(shownDocument());
+command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText });
+command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText });
 noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor");
 
 const onShown = (work) => () => shownDocument() && work(shownDocument());
