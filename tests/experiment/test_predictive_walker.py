@@ -78,7 +78,13 @@ def test_of_two_doorways_it_passes_one(model: Any, seed: int) -> None:
     assert not simulation.world.bodies["walker"].get("contacts")
 
 
-@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.slow)])
+BOTH_WAIT = [
+    pytest.mark.slow,
+    pytest.mark.xfail(reason="with these seeds somebody waits for ever: an open fault of the walker", strict=True),
+]
+
+
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=BOTH_WAIT), pytest.param(3, marks=BOTH_WAIT)])
 def test_of_two_people_one_waits_while_the_other_passes_the_doorway(model: Any, capsys: Any, seed: int) -> None:
     with RunLimits(seed=seed, until=60):
         simulation = model.build(model.Parameters(aperture=0.8, scene="two people"))
