@@ -13,7 +13,7 @@ function showHelp() {
     </section>`,
   );
   const manual = html`<p><a href="/manual/" target="_blank" rel="noopener">Manual of ACT-R 3D</a> (<a href="/manual/workbench/" target="_blank" rel="noopener">the workbench</a>)</p>`;
-  dialog({ title: "Help", body: html`${manual}<div class="keys">${groups}</div>` });
+  dialog({ title: "Help", body: html`${manual}<div class="keys" tabindex="0" role="region" aria-label="Keys">${groups}</div>` });
 }
 
 /** The command that opens it. */
