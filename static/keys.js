@@ -1,24 +1,20 @@
-// The keys of the page: registered in one place, so that `?` can list them.
+// The keys of the page: those of its commands, and those that work in some part of it only.
 
-const known = new Map();
+import { commandOf, permanent, run } from "./commands.js";
+
+const notes = [];
 
 /** The groups of keys, in the order in which they are shown. */
-export const KEY_GROUPS = ["Run", "Timeline", "3D view", "Panels", "Editor"];
-
-/** Binds a key to an action. `key` is as in KeyboardEvent, preceded by "Shift+" or "Mod+" (Ctrl, or Cmd on a Mac). Keys without
- * Mod are ignored while the user types. A key without a text is not listed. */
-export function bindKey(key, text, work, group = "Run") {
-  known.set(key, { key, text, work, group });
-}
+export const KEY_GROUPS = ["Run", "Timeline", "3D view", "Panels", "Page", "Editor"];
 
 /** Lists a key that only works in some part of the page, which handles it itself. */
 export function noteKey(key, text, group) {
-  known.set(`${key} ${text}`, { key, text, group });
+  notes.push({ key, text, group });
 }
 
-/** Returns the keys of a group with their actions, in the order in which they were bound. */
+/** Returns the keys of a group with their texts. */
 export function keysOf(wanted) {
-  return [...known.values()].filter(({ text, group }) => text && group === wanted);
+  return [...permanent(), ...notes].filter(({ key, group }) => key && group === wanted);
 }
 
 export const isMac = /Mac|iPhone|iPad/.test(navigator.platform);
@@ -70,19 +66,25 @@ function isTaken(element, event) {
   return pointed.has(element) && !element.matches(SLIDER) && isOwn(element, event);
 }
 
-/** Runs the action of a key; returns whether it is bound and enabled. */
+/** Returns the title of a command's button: its text, or another one, and its key. */
+export function buttonTitle({ text, key }, shown = text) {
+  return key ? `${shown} (${keyText(key)})` : shown;
+}
+
+/** Runs the command of a key; returns whether there is one, and the page takes the key. Keys without Mod are ignored while the user
+ * types. */
 function press(event) {
   const mod = isMac ? event.metaKey : event.ctrlKey;
   const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
   const shift = event.shiftKey && (event.key.length > 1 || /[a-z]/i.test(event.key)) ? "Shift+" : "";
-  const bound = known.get(`${mod ? "Mod+" : ""}${shift}${name}`);
-  if (!bound?.work || event.altKey || event.defaultPrevented) return false;
+  const bound = commandOf(`${mod ? "Mod+" : ""}${shift}${name}`);
+  if (!bound || event.altKey || event.defaultPrevented) return false;
   if (document.querySelector("dialog[open]")) return false;
-  if (!mod && isWriting(document.activeElement)) return false;
+  if (bound.key === "Escape" ? !bound.ready() || document.querySelector(":popover-open") : !mod && isWriting(document.activeElement)) return false;
   const focused = document.activeElement?.checkVisibility() ? document.activeElement : null; // for a moment it may lie in a dialog that was just closed
   if (!mod && isOwn(focused, event) && !isTaken(focused, event)) return false;
   event.preventDefault();
-  bound.work();
+  run(bound);
   return true;
 }
 
@@ -111,7 +113,7 @@ function handOn(event) {
   inner?.document?.dispatchEvent(new inner.KeyboardEvent(type, { key, code }));
 }
 
-/** Runs the action of a key before the element with the focus by pointer gets it. */
+/** Runs the command of a key before the element with the focus by pointer gets it. */
 function pressFirst(event) {
   const { activeElement } = document;
   if (!isTaken(activeElement, event) || !press(event)) return;

@@ -1,6 +1,8 @@
 // Which of the tabs beside the 3D view is open.
 
+import { addressed } from "./address.js";
 import { remembered } from "./local_storage.js";
+import { signal } from "./vendor/preact.js";
 
-/** The id of the open tab. */
-export const openTab = remembered("tab", "about");
+/** The id of the open tab; in a window of its own, of the panel that it shows. */
+export const openTab = addressed("panel") === null ? remembered("tab", "about") : signal(addressed("panel"));

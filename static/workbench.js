@@ -1,57 +1,93 @@
-// The layout: the top bar, the 3D view beside the tabs, the timeline below, and the status line.
+// The layout: the top bar, the 3D view beside the tabs, the timeline below, and the status line; or, in a window of its own, one panel.
 
-import { effect, html } from "./vendor/preact.js";
+import { html, useEffect } from "./vendor/preact.js";
 import { Bar } from "./bar/bar.js";
+import { Clock } from "./bar/clock.js";
+import { begin } from "./bar/models.js";
 import { RecordingBanner } from "./bar/recorded.js";
 import { StatusLine } from "./bar/status.js";
-import { bindKey, noteKey } from "./keys.js";
+import { command, run } from "./commands.js";
+import { noteKey } from "./keys.js";
+import { AREAS, hasWorld, isCollapsed, layoutCommands, maximised, panelsWidth, swapped, timelineHeight } from "./layout.js";
 import { openTab } from "./open_tab.js";
+import { CommandPalette } from "./palette/palette.js";
 import { PANELS } from "./panels.js"; // made by the server: all files of panels/ that export a panel
+import { AreaMenu } from "./parts/area_menu.js";
 import { Dialogs } from "./parts/dialog.js";
+import { Icon } from "./parts/icon.js";
 import { Splitter } from "./parts/splitter.js";
 import { Tabs } from "./parts/tabs.js";
 import { Toasts } from "./parts/toasts.js";
 import { Scene } from "./panels/scene.js";
 import { Timeline } from "./panels/timeline.js";
-import { remembered } from "./local_storage.js";
 import { hurried, session } from "./store.js";
+import { alone, follow, openWindow } from "./windows.js";
 
 const LEAST_SCENE = 320; // [px]
-const ROWS = 336; // the height of the default rows of a model with a body [px]
-// By default, all tabs can be seen, and wide windows give the panels more room too.
-const side = remembered("side width", Math.max(736, Math.round(0.38 * innerWidth)));
-/** Whether there is a 3D view; otherwise the panels have all the room. */
-const hasWorld = remembered("has world", true); // while a model loads, that of the previous one
-effect(() => {
-  if (session.value?.kind) hasWorld.value = Boolean(session.value.world);
-});
-const below = remembered("timeline height", Math.round(Math.min(0.42 * innerHeight, Math.max(ROWS, 0.34 * innerHeight))));
+/** What a window can show alone. */
+const VIEWS = { ...Object.fromEntries(PANELS.map(({ id, title, View }) => [id, { title, View }])), scene: { title: "3D view", View: Scene }, timeline: { title: "Timeline", View: Timeline } };
 
-PANELS.slice(0, 10).forEach(({ id }, n) => bindKey(String((n + 1) % 10), "", () => (openTab.value = id)));
+PANELS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => (openTab.value = id) }));
+const openPanel = command({ text: "Open the panel in a window of its own", group: "Page", work: () => openWindow(openTab.value), ready: () => alone === null });
 noteKey("1 … 9, 0", "Open a tab", "Panels");
 noteKey("w", "Why, of a line of the firing trace", "Panels");
 noteKey("b", "Breakpoint, in the list of productions", "Panels");
 noteKey("Enter", "Go to a line of the trace; open a run", "Panels");
 noteKey("Delete", "Delete the chosen runs", "Panels");
 
+/** A strip at the edge of the page, in the place of a part that is collapsed. */
+function Strip({ area }) {
+  const { expand } = layoutCommands[area];
+  return html`<button class="strip of-${area}" title=${expand.text} onClick=${() => run(expand)}><${Icon} name=${area === "timeline" ? "up" : "layout"} /><span>${AREAS[area]}</span></button>`;
+}
+
+function Work() {
+  const [noScene, noPanels] = [isCollapsed("scene"), isCollapsed("panels") && hasWorld.value];
+  const kinds = [hasWorld.value ? "" : "bodiless", swapped.value ? "swapped" : "", noScene ? "no-scene" : "", noPanels ? "no-panels" : ""];
+  return html`<main class="work ${kinds.join(" ")}">
+    <${Scene} />
+    ${noScene && hasWorld.value ? html`<${Strip} area="scene" />` : null}
+    <${Splitter} size=${panelsWidth} along="columns" reversed=${swapped.value} label="Width of the panels" least=${280} most=${() => innerWidth - LEAST_SCENE} />
+    ${noPanels ? html`<${Strip} area="panels" />` : null}
+    <section class="side" aria-label="Panels">
+      <${Tabs} label="Panels" tabs=${PANELS} shown=${openTab} more=${html`<${AreaMenu} area="panels" opening=${openPanel} />`} />
+    </section>
+  </main>`;
+}
+
+function WholePage() {
+  const sizes = { "--side": `${panelsWidth.value}px`, "--below": `${timelineHeight.value}px` };
+  const hasTimeline = !isCollapsed("timeline");
+  return html`<div class="workbench ${hurried.value ? "hurried" : ""} ${hasTimeline ? "" : "no-timeline"}" data-maximised=${maximised.value} style=${sizes}>
+    <${Bar} />
+    <div><${RecordingBanner} /></div>
+    <${Work} />
+    ${hasTimeline
+      ? html`<section class="below" aria-label="Timeline">
+          <${Splitter} size=${timelineHeight} along="rows" label="Height of the timeline" least=${80} most=${() => innerHeight - 300} />
+          <${Timeline} />
+        </section>`
+      : html`<nav aria-label="Collapsed"><${Strip} area="timeline" /></nav>`}
+    <${StatusLine} />
+  </div>`;
+}
+
+/** One panel in a window of its own; links to other panels show them here. */
+function OnePanel() {
+  const { title, View } = VIEWS[openTab.value] ?? PANELS[0];
+  const model = session.value?.model ?? "";
+  useEffect(() => follow(begin), []);
+  useEffect(() => void (document.title = `${title} · ${model}`), [title, model]);
+  return html`<div class="workbench alone ${hurried.value ? "hurried" : ""}">
+    <header class="bar"><h1>${title}</h1><span class="mono quiet">${model}</span><span class="stretch"></span><${Clock} /></header>
+    <main class="alone-view" aria-label=${title}><${View} /></main>
+    <${StatusLine} />
+  </div>`;
+}
+
 export function Workbench() {
-  const sizes = { "--side": `${side.value}px`, "--below": `${below.value}px` };
-  return html`
-    <div class="workbench ${hurried.value ? "hurried" : ""}" style=${sizes}>
-      <${Bar} />
-      <div><${RecordingBanner} /></div>
-      <main class="work ${hasWorld.value ? "" : "bodiless"}">
-        <${Scene} />
-        <${Splitter} size=${side} along="columns" label="Width of the panels" least=${280} most=${() => innerWidth - LEAST_SCENE} />
-        <section class="side" aria-label="Panels">
-          <${Tabs} label="Panels" tabs=${PANELS} shown=${openTab} />
-        </section>
-      </main>
-      <${Splitter} size=${below} along="rows" label="Height of the timeline" least=${80} most=${() => innerHeight - 300} />
-      <section class="below" aria-label="Timeline"><${Timeline} /></section>
-      <${StatusLine} />
-    </div>
+  return html`${alone === null ? html`<${WholePage} />` : html`<${OnePanel} />`}
     <${Dialogs} />
-    <${Toasts} />
-  `;
+    <${CommandPalette} />
+    <${Toasts} />`;
 }

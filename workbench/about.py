@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
 from markdown_it import MarkdownIt
@@ -40,7 +41,7 @@ def about_of(source: str, filename: str) -> dict[str, Any]:
 
     Returns:
         `title`, the first line as elements; `nodes`, the rest; `cut`, whether the text was too long and is cut; `readable`, whether the
-        text could be parsed as Python.
+        text could be parsed as Python; `agents`, with their productions and parts, as far as the text says what they have.
     """
     listing = listing_of(source, filename)
     text = listing.text[:LONGEST]
@@ -50,6 +51,7 @@ def about_of(source: str, filename: str) -> dict[str, Any]:
         "title": list(_inside(_tree(title), listing)),
         "nodes": list(_nodes(_tree(rest), listing)),
         "cut": len(listing.text) > LONGEST,
+        "agents": [asdict(agent) for agent in listing.agents],
         "readable": bool(listing.text) or not any(problem.level == "error" for problem in listing.problems),
     }
 

@@ -18,10 +18,11 @@ from starlette.types import ASGIApp
 
 from actr3d.errors import Actr3dError
 from actr3d.values import escape_surrogates
-from workbench import experiment_routes, recording_routes, routes, sockets
+from workbench import experiment_routes, language_routes, recording_routes, routes, sockets
 from workbench.auth import Gate, Guard
 from workbench.experiments import Experiments
 from workbench.files import ModelFolder
+from workbench.language.language_server import LanguageServer
 from workbench.protocol import problem_of
 from workbench.recordings import Recordings
 from workbench.retention import Keeping
@@ -46,9 +47,10 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     workers = Workers(memory, zygote)
     sessions = Sessions(folder, Recordings(folder.root), workers)
     experiments = Experiments(sessions)
+    language = LanguageServer(workers, folder.root)
 
     async def leave() -> None:
-        await asyncio.gather(sessions.close_all(), experiments.close())
+        await asyncio.gather(sessions.close_all(), experiments.close(), language.close())
         await workers.close()
 
     @asynccontextmanager
@@ -69,11 +71,13 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     app.state.leave = leave
     app.state.sessions = sessions
     app.state.experiments = experiments
+    app.state.language = language
     app.state.bridge = Bridge()
     app.state.pages = 0
     app.include_router(routes.router)
     app.include_router(recording_routes.router)
     app.include_router(experiment_routes.router)
+    app.include_router(language_routes.router)
     app.include_router(sockets.router)
     app.mount("/static", StaticFiles(directory=static()), name="static")
     app.mount("/manual", _manual(), name="manual")

@@ -28,6 +28,24 @@ class Problem:
 
 
 @dataclass(frozen=True, kw_only=True)
+class WrittenPart:
+    """A buffer, memory or other part of an agent, as its class body makes it."""
+
+    name: str
+    made_by: str
+    """The name of the class that is called."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class WrittenAgent:
+    """A class with productions, as far as its text says what it has."""
+
+    name: str
+    productions: tuple[str, ...]
+    parts: tuple[WrittenPart, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
 class ModelListing:
     """Describes a model file, as far as this is possible without executing it."""
 
@@ -40,9 +58,13 @@ class ModelListing:
     parameters: tuple[Parameter, ...] = ()
     simulates: bool = False
     """Whether it creates simulations itself: its text calls `Simulation`."""
-    productions: tuple[str, ...] = ()
-    """The names `Agent.production` that were found in the text."""
+    agents: tuple[WrittenAgent, ...] = ()
     problems: tuple[Problem, ...] = field(default=())
+
+    @property
+    def productions(self) -> tuple[str, ...]:
+        """The names `Agent.production` that were found in the text."""
+        return tuple(f"{agent.name}.{production}" for agent in self.agents for production in agent.productions)
 
     def parameter(self, name: str) -> Parameter:
         """Returns a parameter by name.
@@ -68,7 +90,7 @@ def listing_of(source: str, filename: str = "model.py") -> ModelListing:
         kind="simulation" if builds else "program",
         parameters=tuple(parameters_in(tree, build_of(tree)) if builds else _of_first_lines(source)),
         simulates=any(isinstance(node, ast.Call) and _last_name(node.func) == "Simulation" for node in ast.walk(tree)),
-        productions=tuple(_productions(tree)),
+        agents=tuple(_agents(tree)),
         problems=problems,
     )
 
@@ -110,9 +132,20 @@ def _last_name(node: ast.expr) -> str:
     return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
 
-def _productions(tree: ast.Module) -> Iterator[str]:
-    """Yields the names of methods whose parameters all have defaults, as those of productions do."""
+def _agents(tree: ast.Module) -> Iterator[WrittenAgent]:
+    """Yields the classes with productions: methods whose parameters all have defaults."""
     for kind in (node for node in tree.body if isinstance(node, ast.ClassDef)):
-        for node in kind.body:
-            if isinstance(node, ast.FunctionDef) and node.args.args and len(node.args.defaults) == len(node.args.args):
-                yield f"{kind.name}.{node.name}"
+        methods = [node for node in kind.body if isinstance(node, ast.FunctionDef)]
+        productions = tuple(node.name for node in methods if node.args.args and len(node.args.defaults) == len(node.args.args))
+        if productions:
+            name = escape_surrogates(kind.name)
+            yield WrittenAgent(name=name, productions=tuple(map(escape_surrogates, productions)), parts=tuple(_parts(kind)))
+
+
+def _parts(kind: ast.ClassDef) -> Iterator[WrittenPart]:
+    """Yields the parts that a class body makes: `goal = Buffer()`."""
+    for node in kind.body:
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and _last_name(node.value.func):
+            for target in node.targets:
+                if isinstance(target, ast.Name):
+                    yield WrittenPart(name=escape_surrogates(target.id), made_by=escape_surrogates(_last_name(node.value.func)))

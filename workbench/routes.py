@@ -20,6 +20,7 @@ from workbench.outlines import outline_of
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions
+from workbench.shipped import manual, manual_page
 
 router = APIRouter(prefix="/api")
 
@@ -90,10 +91,10 @@ def sessions_of(request: Request) -> Sessions:
 
 @router.get("/models")
 def models(request: Request) -> dict[str, Any]:
-    """Lists the model files; none of them is executed."""
+    """Lists the model files; none of them is executed. `manual` says whether the manual is there."""
     folder = sessions_of(request).folder
     files = [{"path": escape_surrogates(path), **vars(outline_of(folder.root / path))} for path in folder.paths()]
-    return {"folder": escape_surrogates(str(folder.root)), "models": files}
+    return {"folder": escape_surrogates(str(folder.root)), "models": files, "manual": manual() is not None}
 
 
 @router.get("/model")
@@ -191,12 +192,15 @@ def session(request: Request, session: Id) -> Response:
 
 @router.get("/sessions/{session}/about")
 def about(request: Request, session: Id) -> dict[str, Any]:
-    """Returns the description of the model on screen: its docstring as a tree of elements, with values to try."""
+    """Returns the description of the model on screen: its docstring as a tree of elements, with values to try.
+
+    `manual` is the address of its page in the manual; null if it has none.
+    """
     found = sessions_of(request).get(session)
     source = found.source
     if source is None:  # no run could be started
         source = sessions_of(request).folder.read(found.model).text
-    return about_of(source, found.model)
+    return {**about_of(source, found.model), "manual": manual_page(found.model)}
 
 
 @router.post("/sessions/{session}/command")

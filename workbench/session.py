@@ -436,16 +436,22 @@ class Session:
             "cuts": list(self._cuts),
             "born": self.born,
             "made": None if self.recorded is None else begun(self.recorded),
-            "recording": Path(start.record).stem if start is not None and start.record is not None else None,
+            "recording": self._recording,
         }
         if facts is not None:
             facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters), "world": Raw(facts.world)}
         return msgspec.json.encode(facts_of_session)
 
+    @property
+    def _recording(self) -> str | None:
+        """The name of the recording that its run writes."""
+        return None if self.start is None or self.start.record is None else Path(self.start.record).stem
+
     def summary(self) -> dict[str, Any]:
         """Returns the entry of this session in the list of sessions."""
         return {
             "recorded": None if self.recorded is None else self.recorded.stem,
+            "recording": self._recording,
             "id": self.name,
             "model": self.model,
             "run": self.run,

@@ -160,7 +160,7 @@ class WorkerMonitor:
 
 def subject_of(start: Start) -> str:
     """Returns a name for the process that does this job, for messages to users."""
-    return "the process that read it" if start.job in ("make", "list") else "the model's process"
+    return "the process that read it" if start.job in ("make", "list", "language") else "the model's process"
 
 
 def _why(status: int, subject: str) -> str:

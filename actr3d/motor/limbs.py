@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from math import radians
 
 from actr3d.errors import WorldError
@@ -207,7 +208,12 @@ TINY = 1e-9
 
 def on_grid(value: float, grid: float) -> float:
     """Returns the multiple of `grid` that is nearest to a value; as an int if it is one."""
-    near = round(value / grid) * grid
+    return _multiple(round(value / grid), grid)
+
+
+@lru_cache(maxsize=4096)  # a moving body is felt at the same few angles and sizes again and again
+def _multiple(number: int, grid: float) -> float:
+    near = number * grid
     if near != int(near):
         near = round(near, 9)
     return int(near) if near == int(near) else near

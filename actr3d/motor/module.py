@@ -503,11 +503,11 @@ class Motor(WithParameters, Port):
         step = Step(seconds(now - self._felt_us), before, reading)
         self._felt_us = now
         if self._schema is None:
-            self._update(limbs, reading, limbs.order)
+            self._update(limbs, reading, dict(zip(limbs.order, reading.positions, strict=True)))
             check_patterns(self)
         elif before != reading.positions:
-            gone = [joint for joint, was, at in zip(limbs.order, before, reading.positions, strict=True) if was != at]
-            self._update(limbs, reading, gone)
+            moved = {joint: at for joint, was, at in zip(limbs.order, before, reading.positions, strict=True) if was != at}
+            self._update(limbs, reading, moved)
         over: list[tuple[str, str]] = []
         for key, movement in self._under_way.items():
             end = movement.ended(step, self.patience) if movement.begun else None
@@ -522,19 +522,18 @@ class Motor(WithParameters, Port):
         if any(movement.begun for movement in self._under_way.values()):
             self._ask()
 
-    def _update(self, limbs: Limbs, reading: Proprioception, joints: Sequence[str]) -> None:
+    def _update(self, limbs: Limbs, reading: Proprioception, felt: Mapping[str, float]) -> None:
         """Updates the felt positions of some joints, and the felt size of the body."""
         draw = self.random.gauss
-        felt = [reading.positions[limbs.number[joint]] for joint in joints]
         if self.angle_noise:
-            felt = [at + draw(0, self.angle_noise * limbs.unit[joint]) for joint, at in zip(joints, felt, strict=True)]
+            felt = {joint: at + draw(0, self.angle_noise * limbs.unit[joint]) for joint, at in felt.items()}
         schema = self._schema
         if schema is None:
-            limbs.feel(dict(zip(joints, felt, strict=True)))
+            limbs.feel(felt)
             schema = self._schema = BodySchema(limbs, self.angle_grid, self.size_grid, self.extreme_step)
-            for joint in joints:
+            for joint in felt:
                 self._become(limbs.shown_as[joint], schema.at[joint])
-        new = schema.feel(joints, felt)
+        new = schema.feel(felt)
         for joint in new:
             self._become(limbs.shown_as[joint], schema.at[joint])
         for name in SIZES:

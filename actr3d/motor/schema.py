@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from actr3d.motor.limbs import Limbs, on_grid
@@ -36,11 +36,11 @@ class BodySchema:
         self._start = {joint: self.shown(joint, limbs.felt[joint]) for joint in limbs.order}
         self.at = dict(self._start)
         """By joint, its felt position on the grid."""
-        self._between = {joint: (at, at) for joint, at in limbs.felt.items()}
+        self._from, self._to = dict(limbs.felt), dict(limbs.felt)
         """By joint, the least and the greatest of its felt positions since the one on the grid last changed."""
         self._least, self._most = dict(limbs.felt), dict(limbs.felt)
 
-    def feel(self, joints: Sequence[str], positions: Sequence[float]) -> Sequence[str]:
+    def feel(self, positions: Mapping[str, float]) -> Sequence[str]:
         """Updates the felt positions of some joints [rad] or [m], and their values on the grid.
 
         Rounding keeps the order of numbers: a position between two others with one value has the same value, and is no new extreme.
@@ -48,21 +48,19 @@ class BodySchema:
         Returns:
             The joints whose positions are not between such others.
         """
-        between = self._between
-        new: dict[str, float] = {}
-        for joint, position in zip(joints, positions, strict=True):
-            least, most = between[joint]
-            if not least <= position <= most:
-                new[joint] = position
-        self._limbs.felt.update(zip(joints, positions, strict=True))
+        least, most = self._from, self._to
+        new = {joint: at for joint, at in positions.items() if not least[joint] <= at <= most[joint]}
+        self._limbs.felt.update(positions)
         self._limbs.feel(new)
-        for joint, position in new.items():
-            shown = self.shown(joint, position)
-            if shown == self.at[joint]:
-                least, most = between[joint]
-                between[joint] = (position, most) if position < least else (least, position)
+        for joint, at in new.items():
+            shown = self.shown(joint, at)
+            if shown != self.at[joint]:
+                least[joint] = most[joint] = at
+                self.at[joint] = shown
+            elif at < least[joint]:
+                least[joint] = at
             else:
-                between[joint], self.at[joint] = (position, position), shown
+                most[joint] = at
         return tuple(new)
 
     def shown(self, joint: str, position: float) -> float:

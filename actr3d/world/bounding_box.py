@@ -16,7 +16,7 @@ from actr3d.world.kernel import widen
 Point = tuple[float, float, float]
 
 
-NOTHING = ((math.inf,) * 3, (-math.inf,) * 3)
+NOTHING = np.array(((math.inf,) * 3, (-math.inf,) * 3))
 """The least and greatest coordinates of a box around nothing."""
 
 
@@ -78,7 +78,7 @@ class Extent:
         Raises:
             WorldError: If there is no geom.
         """
-        box = np.array(NOTHING)
+        box = NOTHING.copy()
         self._widen(box, self._plain, self._clouds, origin, axes)
         if also:
             self._widen(box, *self._shapes(np.array(also, dtype=np.intp)), origin, axes)

@@ -6,7 +6,7 @@ import inspect
 import math
 import re
 from collections.abc import Callable, Collection
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, get_type_hints
 
 from actr3d.errors import WorldError, did_you_mean
 
@@ -51,6 +51,14 @@ class BodyFunction(Generic[B]):
         """Its parameters, as Python writes them."""
         parameters = list(self._signature.parameters.values())[1:]
         return ", ".join(str(parameter.replace(annotation=inspect.Parameter.empty)) for parameter in parameters)
+
+    @property
+    def returns(self) -> Any:
+        """The type of what it returns; None if it is not known here."""
+        try:
+            return get_type_hints(self._function).get("return")
+        except NameError:  # a type that is imported only for type checkers
+            return None
 
     @property
     def meaning(self) -> str:

@@ -1,16 +1,18 @@
 // The top bar: the model, its aperture, and the controls of the run.
 
 import { html } from "../vendor/preact.js";
-import { bindKey } from "../keys.js";
+import { command } from "../commands.js";
+import { buttonTitle } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { chosen, nextTheme } from "../theme.js";
 import { Aperture } from "./aperture.js";
 import { Clock } from "./clock.js";
-import { showHelp } from "./help.js";
+import { help } from "./help.js";
+import { opening } from "../palette/palette.js";
 import { ModelChoice } from "./models.js";
 import { Transport } from "./transport.js";
 
-bindKey("t", "Light, dark, or as the system has it", nextTheme, "Panels");
+const theme = command({ text: "Theme: light, dark, or as the system has it", key: "t", group: "Page", work: nextTheme });
 
 export function Bar() {
   return html`<header class="bar">
@@ -20,7 +22,8 @@ export function Bar() {
     <${Clock} />
     <${Aperture} />
     <span class="stretch"></span>
-    <button class="bare" title="Theme: ${chosen} (T)" aria-label="Theme: ${chosen}" onClick=${nextTheme}><${Icon} name="theme" /></button>
-    <button class="bare" title="Help: the manual and the keys (?)" aria-label="Help" onClick=${showHelp}><${Icon} name="help" /></button>
+    <button class="bare" title=${buttonTitle(opening)} aria-label="All commands" onClick=${opening.work}><${Icon} name="search" /></button>
+    <button class="bare" title=${buttonTitle(theme, `Theme: ${chosen.value}`)} aria-label="Theme: ${chosen}" onClick=${nextTheme}><${Icon} name="theme" /></button>
+    <button class="bare" title=${buttonTitle(help)} aria-label="Help" onClick=${help.work}><${Icon} name="help" /></button>
   </header>`;
 }

@@ -1,10 +1,11 @@
 // The help, opened by `?`: a link to the manual, and the keys.
 
 import { html } from "../vendor/preact.js";
-import { bindKey, KEY_GROUPS, keysOf, keyText } from "../keys.js";
+import { command } from "../commands.js";
+import { KEY_GROUPS, keysOf, keyText } from "../keys.js";
 import { dialog } from "../parts/dialog.js";
 
-export function showHelp() {
+function showHelp() {
   const groups = KEY_GROUPS.map(
     (group) => html`<section key=${group}>
       <h3 id="keys-${group}">${group}</h3>
@@ -12,7 +13,8 @@ export function showHelp() {
     </section>`,
   );
   const manual = html`<p><a href="/manual/" target="_blank" rel="noopener">Manual of ACT-R 3D</a> (<a href="/manual/workbench/" target="_blank" rel="noopener">the workbench</a>)</p>`;
-  dialog({ title: "Help", body: html`${manual}<div class="keys">${groups}</div>` });
+  dialog({ title: "Help", body: html`${manual}<div class="keys" tabindex="0" role="region" aria-label="Keys">${groups}</div>` });
 }
 
-bindKey("?", "Help: the manual and the keys", showHelp, "Panels");
+/** The command that opens it. */
+export const help = command({ text: "Help: the manual and the keys", key: "?", group: "Page", work: showHelp });

@@ -1,14 +1,19 @@
 // Chooses the model or recording to show: opens its session or starts one, and puts the choice into the page's address.
 
 import { effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
-import { call, say, showModel, showRecording } from "../server.js";
+import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
+import { commandsOf } from "../commands.js";
+import { call, say, showModel, showRecording, sinceNow } from "../server.js";
 import { withTrust } from "../runs/trust.js";
-import { complain, connected, session } from "../store.js";
+import { alive, complain, connected, running, session } from "../store.js";
+import { travel } from "../timeline/seek.js";
 
 /** The model files of the folder: {path, title, kind}. */
 export const models = signal([]);
 /** The path of the folder. */
 export const folder = signal("");
+/** Whether the manual is there. */
+export const hasManual = signal(false);
 /** The model that is shown. */
 export const model = signal(null);
 
@@ -24,6 +29,7 @@ export async function listModels() {
   if (mine !== asked) return;
   folder.value = listing.folder;
   models.value = listing.models;
+  hasManual.value = listing.manual;
 }
 
 /** Shows a model. */
@@ -36,12 +42,42 @@ export async function choose(path) {
   }
 }
 
-/** Shows a recording, which has its own address, so that the browser's «back» leads to what was shown before. */
+/** Shows a recording, which has its own address, so that the browser's «back» leads to what was shown before. Returns
+ * whether it is shown: the user may decline. */
 export async function chooseRecording(id) {
   const left = session.peek();
-  if ((await openRecording(id)) === null) return;
+  if ((await openRecording(id)) === null) return false;
   if (left && left.recorded === null) before.value = { model: left.model, id: left.id };
-  goToAddress("recording", id);
+  goToAddress("run", id);
+  return true;
+}
+
+/** Shows a moment [s] of a recorded run, as a link asks for it: the run itself if it is still open, or else its recording. Returns whether it
+ * is shown. */
+async function chooseMoment(id, time) {
+  const { sessions } = await call("GET", "/api/sessions");
+  const open = sessions.find(({ recording, alive: lives }) => recording === id && lives);
+  if (open) await choose(open.model);
+  else if (!(await chooseRecording(id))) return false;
+  leaveMoment();
+  const wanted = sinceNow();
+  const end = effect(() => {
+    const { recording, recorded } = session.value ?? {};
+    if (!alive.value || (open ? recording : recorded) !== id) return;
+    queueMicrotask(() => {
+      end();
+      if (!wanted()) return;
+      if (running.peek()) complain(`The link leads to ${time} s of this run. It goes on now: pause it, and go there on the timeline.`, "info");
+      else travel(time);
+    });
+  });
+  return true;
+}
+
+/** Shows the run that the address names, at its moment, if it has one. Returns whether it is shown. */
+function chooseAddressed(id) {
+  const time = addressedTime();
+  return time === null ? chooseRecording(id) : chooseMoment(id, time);
 }
 
 /** Shows a recording, after asking if its code comes from elsewhere; returns null if the user declines. */
@@ -75,21 +111,10 @@ export function note(path) {
   goToAddress("model", path);
 }
 
-function addressed(kind) {
-  return new URLSearchParams(location.search).get(kind);
-}
-
-/** Puts what is shown into the page's address, so that «back» and «forward» switch between a recording and a model. */
-function goToAddress(kind, name) {
-  if (addressed(kind) === name) return;
-  const other = kind === "recording" || addressed("recording") !== null;
-  history[other ? "pushState" : "replaceState"](null, "", `?${kind}=${encodeURIComponent(name)}`);
-}
-
 /** Shows what the address names, after «back» or «forward». */
 function follow() {
-  const [recording, path] = [addressed("recording"), addressed("model")];
-  if (recording !== null) chooseRecording(recording).catch((error) => complain(error.message));
+  const [run, path] = [addressed("run"), addressed("model")];
+  if (run !== null) chooseAddressed(run).catch((error) => complain(error.message));
   else if (path !== null) choose(path);
 }
 
@@ -104,7 +129,10 @@ effect(() => {
   if (isNew) note(path);
 });
 
-async function begin() {
+commandsOf(() => models.value.map(({ path, title }) => ({ text: `Model: ${path}`, group: title, work: () => choose(path) })));
+
+/** Shows what the address names, or the model shown last, when the page is opened. */
+export async function begin() {
   try {
     await listModels();
   } catch (error) {
@@ -117,13 +145,13 @@ async function begin() {
     return;
   }
   if (model.value !== null) return; // the user has already chosen one
-  const recording = addressed("recording");
+  const run = addressed("run");
   let problem = null;
-  if (recording !== null) {
+  if (run !== null) {
     try {
-      if ((await openRecording(recording)) !== null) return;
+      if (await chooseAddressed(run)) return;
     } catch (error) {
-      problem = `The recording «${recording}» cannot be opened: ${error.message}`;
+      problem = `The recording «${run}» cannot be opened: ${error.message}`;
     }
   }
   const asked = addressed("model");

@@ -5,6 +5,7 @@ import { counted } from "../parts/count.js";
 import { Branch } from "./branch.js";
 import { Former } from "../editor/stale_run.js";
 import { Hint } from "./pace.js";
+import { Share } from "./share.js";
 import { runStatus } from "../run_status.js";
 import { connected, me, session, state } from "../store.js";
 
@@ -29,6 +30,7 @@ export function StatusLine() {
     <span class="stretch"></span>
     <${Branch} />
     <${Former} />
+    <${Share} />
     ${recording ? html`<span class="fact" title="Kept as this recording">rec ${recording}</span>` : null}
     ${seed !== null && seed !== undefined ? html`<span class="fact" title="The seed of the run">seed ${String(seed)}</span>` : null}
     <span class="fact">${counted(state.value?.events ?? 0, "event")}</span>

@@ -1,7 +1,8 @@
 // The controls of the run: run, pause, tick, cycle, back, restart, stop; and its speed.
 
 import { html } from "../vendor/preact.js";
-import { bindKey, keyText } from "../keys.js";
+import { command, commandsOf, run } from "../commands.js";
+import { keyText, buttonTitle } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { optimistic } from "../parts/optimistic_value.js";
 import { order, say } from "../server.js";
@@ -28,7 +29,6 @@ function isRestarting() {
 
 /** Runs or pauses; restarts a run that is over. */
 function toggle() {
-  if (isIdle("run")) return;
   if (isRestarting()) say({ type: "run" }).catch(() => {}); // goes to the new run; a message says why it cannot be made
   else if (running.value) order({ type: "pause" });
   else if (isDone() && session.value.recorded !== null && session.value.alive) runAgain();
@@ -43,9 +43,9 @@ async function runAgain() {
 }
 
 const BUTTONS = [
-  { id: "back", text: "One tick of 10 ms back", key: "ArrowLeft", what: { type: "back" }, say: orderThere },
-  { id: "step", text: "One tick of 10 ms", key: "ArrowRight", what: { type: "step" }, say: orderThere },
-  { id: "cycle", text: "Until the next production fires", key: "c", what: { type: "cycle" }, say: orderThere },
+  { id: "back", text: "Step back by one tick of 10 ms", key: "ArrowLeft", what: { type: "back" }, say: orderThere },
+  { id: "step", text: "Step by one tick of 10 ms", key: "ArrowRight", what: { type: "step" }, say: orderThere },
+  { id: "cycle", text: "Step until the next production fires", key: "c", what: { type: "cycle" }, say: orderThere },
   { id: "restart", text: "Restart with the same seed", key: "r", what: { type: "restart" } },
   { id: "new-seed", icon: "seed", text: "Restart with a new seed", key: "Shift+r", what: { type: "restart", new_seed: true } },
   { id: "stop", text: "Stop the model, whatever it does", key: "Mod+.", what: { type: "stop" } },
@@ -61,15 +61,17 @@ function isIdle(id) {
   return ["step", "cycle", "until"].includes(id) && isDone();
 }
 
-function press({ id, what, say = order }) {
-  if (!isIdle(id)) say(what);
+/** Registers a command of the run, with the id of its button. */
+function registered(id, text, key, work) {
+  return command({ text, key, group: "Run", work, ready: () => !isIdle(id) });
 }
 
-bindKey(" ", "Run or pause; in the past, continue from here", toggle);
-for (const button of BUTTONS) bindKey(button.key, button.text, () => press(button));
-bindKey("u", "Run until …", () => isIdle("until") || runUntil());
-bindKey("+", "Faster", () => changeSpeed(1));
-bindKey("-", "Slower", () => changeSpeed(-1));
+const toggling = registered("run", "Run or pause; in the past, continue from here", " ", toggle);
+const byButton = new Map(BUTTONS.map(({ id, text, key, what, say = order }) => [id, registered(id, text, key, () => say(what))]));
+const until = registered("until", "Run until …", "u", runUntil);
+const faster = registered("speed", "Faster", "+", () => changeSpeed(1));
+const slower = registered("speed", "Slower", "-", () => changeSpeed(-1));
+commandsOf(() => SPEEDS.map(([text], n) => ({ text: `Speed: ${text}`, group: "Run", work: () => setSpeed(n), ready: () => Boolean(session.value) })));
 
 const speed = optimistic(
   () => state.value?.wanted ?? null,
@@ -87,16 +89,16 @@ function setSpeed(number) {
 }
 
 function changeSpeed(by) {
-  if (session.value) setSpeed(Math.max(0, Math.min(SPEEDS.length - 1, speedNumber() + by)));
+  setSpeed(Math.max(0, Math.min(SPEEDS.length - 1, speedNumber() + by)));
 }
 
-bindFaster(() => changeSpeed(1));
+bindFaster(() => run(faster));
 
 export function Transport() {
   const goes = running.value && !isRestarting();
   const text = goes ? "Pause" : session.value && isDone() && !session.value.loading && !isRestarting() ? "Run again" : "Run";
   return html`<div class="transport" role="toolbar" aria-label="Run">
-    <button id="run" class="primary" disabled=${isIdle("run")} title="${text} (Space)" onClick=${toggle}>
+    <button id="run" class="primary" disabled=${isIdle("run")} title=${buttonTitle(toggling, text)} onClick=${() => run(toggling)}>
       <${Icon} name=${goes ? "pause" : "run"} />${text}
     </button>
     ${BUTTONS.map(
@@ -105,15 +107,15 @@ export function Transport() {
         id=${button.id}
         class="bare"
         disabled=${isIdle(button.id)}
-        title="${button.text} (${keyText(button.key)})"
+        title=${buttonTitle(byButton.get(button.id))}
         aria-label=${button.text}
-        onClick=${() => press(button)}
+        onClick=${() => run(byButton.get(button.id))}
       >
         <${Icon} name=${button.icon ?? button.id} />
       </button>${button.id === "new-seed" ? html`<${SeedField} />` : null}`,
     )}
-    <button id="until" class="bare" disabled=${isIdle("until")} title="Run until … (U)" aria-label="Run until" onClick=${runUntil}><${Icon} name="until" /></button>
-    <select aria-label="Speed" title="How fast it goes at most, in times real time (+ and -)" value=${String(speedNumber())} disabled=${!session.value} onChange=${(event) => setSpeed(Number(event.currentTarget.value))}>
+    <button id="until" class="bare" disabled=${isIdle("until")} title=${buttonTitle(until)} aria-label="Run until" onClick=${() => run(until)}><${Icon} name="until" /></button>
+    <select aria-label="Speed" title="How fast it goes at most, in times real time (${keyText(faster.key)} and ${keyText(slower.key)})" value=${String(speedNumber())} disabled=${!session.value} onChange=${(event) => setSpeed(Number(event.currentTarget.value))}>
       ${SPEEDS.map(([text], n) => html`<option value=${String(n)}>${text}</option>`)}
     </select>
   </div>`;

@@ -1,6 +1,7 @@
 // «Run until»: a time, a production, a buffer that matches a pattern, a contact; and the list of breakpoints.
 
 import { html, signal, useId } from "../vendor/preact.js";
+import { commandsOf } from "../commands.js";
 import { dialog } from "../parts/dialog.js";
 import { agentsOf, nameIn } from "../inspector/agents.js";
 import { breakpoints, toggleBreakpoint } from "../inspector/breakpoints.js";
@@ -34,6 +35,8 @@ function missing() {
   if (kind.value === "production" && !production.value) return "the name of a production is wanted";
   return kind.value === "buffer" && !buffer.value ? "the name of a buffer is wanted" : "";
 }
+
+commandsOf(() => productionNames().map((name) => ({ text: `${breakpoints.value.includes(name) ? "Remove the breakpoint" : "Breakpoint"} on ${name}`, group: "Run", work: () => toggleBreakpoint(name) })));
 
 function wanted() {
   switch (kind.value) {

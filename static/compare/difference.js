@@ -43,7 +43,7 @@ function Rows({ difference }) {
   const { before, events, after } = difference;
   const rest = Array.from({ length: Math.max(after[0].length, after[1].length) }, (_, n) => [after[0][n], after[1][n]]);
   const over = "no more events";
-  return html`<div class="parting"><table aria-label="Events around the first difference">
+  return html`<div class="parting" tabindex="0" role="region" aria-label="Events side by side"><table aria-label="Events around the first difference">
     <thead><tr>${["first", "second"].map((side) => html`<th class="number" scope="col"><span class="dot ${side}"></span>time</th><th scope="col">source</th><th scope="col">kind</th><th scope="col">data</th>`)}</tr></thead>
     <tbody>
       ${before.map((event, n) => html`<tr key="b${n}" class="same"><${Cells} event=${event} /><${Cells} event=${event} /></tr>`)}

@@ -1,7 +1,6 @@
 // The page's use of CodeMirror: one view, which shows one of the open texts at a time.
 
 import {
-  autocompletion,
   bracketMatching,
   closeBrackets,
   closeBracketsKeymap,
@@ -33,20 +32,26 @@ import {
   searchKeymap,
 } from "../vendor/codemirror.js";
 import { look } from "./look.js";
+import { isMac } from "../keys.js";
 import { marking } from "./marks.js";
-import { complete } from "./completions.js";
+import { assist } from "./assist.js";
+import { read } from "./language.js";
 
 /** The actions of the editor's own keys; panels/editor.js fills it in. */
-export const keys = { run: () => {}, save: () => {} };
+export const keys = { run: () => {}, save: () => {}, define: () => {}, rename: () => {}, format: () => {} };
 
 let view = null;
 let inView = null;
+read.path = () => inView?.path ?? null;
 
 const language = python();
 const own = Prec.highest(
   keymap.of([
     { key: "Mod-Enter", run: () => (keys.run(), true) },
     { key: "Mod-s", run: () => (keys.save(), true) },
+    { key: "F12", run: () => (keys.define(), true) },
+    { key: "F2", run: () => (keys.rename(), true) },
+    { key: "Shift-Alt-f", run: () => (keys.format(), true) },
   ]),
 );
 
@@ -65,8 +70,7 @@ const EXTENSIONS = [
   indentUnit.of("    "),
   indentOnInput(),
   language,
-  language.language.data.of({ autocomplete: complete }),
-  autocompletion(),
+  assist,
   bracketMatching(),
   closeBrackets(),
   highlightActiveLine(),
@@ -74,6 +78,17 @@ const EXTENSIONS = [
   highlightSelectionMatches(),
   search({ top: true }),
   look,
+  EditorView.contentAttributes.of({ tabindex: "0" }), // what can be scrolled can be reached
+  EditorView.clickAddsSelectionRange.of((event) => event.altKey), // Ctrl and click goes to a definition
+  EditorView.domEventHandlers({
+    mousedown(event, view) {
+      const at = (isMac ? event.metaKey : event.ctrlKey) && event.button === 0 ? view.posAtCoords({ x: event.clientX, y: event.clientY }) : null;
+      if (at === null) return false;
+      view.dispatch({ selection: EditorSelection.cursor(at) });
+      keys.define();
+      return true;
+    },
+  }),
   keymap.of([...closeBracketsKeymap, ...completionKeymap, ...lintKeymap, ...searchKeymap, ...historyKeymap, ...foldKeymap, ...defaultKeymap, indentWithTab]),
 ];
 
@@ -106,7 +121,7 @@ function scrollToRevealed() {
 
 /** Shows a text in an element of the page. */
 export function showText(place, document) {
-  view ??= new EditorView({ state: document.state, dispatchTransactions: taken });
+  view ??= made(document.state);
   if (inView !== document) {
     finishMeasuring();
     leaveText();
@@ -114,11 +129,26 @@ export function showText(place, document) {
     view.setState(document.state);
     const name = `Text of ${document.path}. Escape, then Tab, leaves it.`;
     view.contentDOM.setAttribute("aria-label", name);
+    view.contentDOM.tabIndex = 0;
   }
   if (view.dom.parentNode !== place) place.append(view.dom);
   view.requestMeasure();
   view.scrollDOM.scrollTop = document.scroll;
   if (document.revealed !== null) scrollToRevealed();
+}
+
+function made(state) {
+  const editor = new EditorView({ state, dispatchTransactions: taken });
+  let height = 0;
+  // Where a list of problems appears below, the line that is being written stays in view.
+  new ResizeObserver(() => {
+    const before = height;
+    const { top, bottom } = editor.scrollDOM.getBoundingClientRect();
+    height = bottom - top;
+    const cursor = editor.hasFocus && height > 0 && height < before ? editor.coordsAtPos(editor.state.selection.main.head) : null;
+    if (cursor && cursor.bottom > bottom && cursor.top < top + before) editor.dispatch({ effects: EditorView.scrollIntoView(editor.state.selection.main) });
+  }).observe(editor.scrollDOM);
+  return editor;
 }
 
 /** Lets CodeMirror measure what it has put off to the next frame. `setState` keeps such requests, for example to place the list of
@@ -142,6 +172,19 @@ export function goTo(line) {
   const place = view.state.doc.line(Math.max(1, Math.min(line, view.state.doc.lines)));
   view.dispatch({ selection: EditorSelection.cursor(place.from), effects: EditorView.scrollIntoView(place.from, { y: "center" }) });
   focusText();
+}
+
+/** Moves the cursor to a position of the text that is shown. */
+export function goToPosition(at) {
+  const place = Math.min(at, view.state.doc.length);
+  view.dispatch({ selection: EditorSelection.cursor(place), effects: EditorView.scrollIntoView(place, { y: "center" }), userEvent: "select" });
+  focusText();
+}
+
+/** Opens a panel or starts an action of the editor itself, such as the search, on the text that is shown. */
+export function withView(work) {
+  view.focus();
+  work(view);
 }
 
 /** Moves the focus into the text, unless the user may be typing in a field by now. */

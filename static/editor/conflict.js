@@ -20,7 +20,7 @@ export function Conflict({ document, choose }) {
         EditorView.lineWrapping, // differences may be far to the right
         colours, // without the colours of the language, which are not readable on every background
         EditorState.readOnly.of(true),
-        EditorView.contentAttributes.of({ "aria-label": "Both texts" }),
+        EditorView.contentAttributes.of({ "aria-label": "Both texts", tabindex: "0" }),
         unifiedMergeView({ original: theirs.text, mergeControls: false, collapseUnchanged: FOLD }),
       ],
     });

@@ -1,11 +1,11 @@
-// The templates of new models: short and runnable.
+// The pieces of new models: short and runnable.
 
-const AGENT = `"""Says in a line what this model is about."""
+const DOCSTRING = '"""Says in a line what this model is about."""';
 
-from actr3d.actr import *
-
-
-class Agent(ACTR):
+/** An agent alone: {imports, source}. */
+export const AGENT = {
+  imports: ["from actr3d.actr import *"],
+  source: `class Agent(ACTR):
     goal = Buffer()
 
     def init():
@@ -18,27 +18,26 @@ class Agent(ACTR):
     def finish(goal="count number:?number last:?number"):
         print(number)
         goal.clear()
+`,
+};
 
-
-if __name__ == "__main__":
+const START = `if __name__ == "__main__":
     model = Agent()
     model.run()
 `;
 
-const BODY = `"""Says in a line what this model is about."""
-
-from dataclasses import dataclass
-from typing import Annotated
-
-from annotated_types import Gt, Le
-
-from actr3d.actr import *
-from actr3d.configuration import Configuration, Live
-from actr3d.simulation import BodyPort, Simulation
-from actr3d.world import Aperture, Floor, Mannequin, Scene
-
-
-@dataclass(frozen=True, kw_only=True)
+/** An agent with a body in a world: {imports, source}. */
+export const BODY = {
+  imports: [
+    "from dataclasses import dataclass",
+    "from typing import Annotated",
+    "from annotated_types import Gt, Le",
+    "from actr3d.actr import *",
+    "from actr3d.configuration import Configuration, Live",
+    "from actr3d.simulation import BodyPort, Simulation",
+    "from actr3d.world import Aperture, Floor, Mannequin, Scene",
+  ],
+  source: `@dataclass(frozen=True, kw_only=True)
 class Parameters(Configuration):
     """What may be set."""
 
@@ -83,10 +82,20 @@ def build(parameters: Parameters) -> Simulation:
 
     scene = Scene(parts=(Floor(), Aperture(width=parameters.width), Mannequin(name="walker")))
     return Simulation(scene, {"walker": agent})
-`;
+`,
+};
+
+/** Returns imports as they stand in a file: those of the standard library, of other packages, and of this one, with a line between. */
+function importLines(imports) {
+  const group = (line) => (/^from (actr3d|workbench)/.test(line) ? 2 : /^from (annotated_types|numpy)/.test(line) ? 1 : 0);
+  const groups = [0, 1, 2].map((wanted) => imports.filter((line) => group(line) === wanted).join("\n"));
+  return groups.filter(Boolean).join("\n\n");
+}
+
+const file = (...parts) => `${parts.map((part) => part.trimEnd()).join("\n\n\n")}\n`;
 
 /** The templates to choose from: {value, text, source}. */
 export const TEMPLATES = [
-  { value: "agent", text: "An agent alone", source: AGENT },
-  { value: "body", text: "An agent with a body in a world", source: BODY },
+  { value: "agent", text: "An agent alone", source: file(`${DOCSTRING}\n\n${importLines(AGENT.imports)}`, AGENT.source, START) },
+  { value: "body", text: "An agent with a body in a world", source: file(`${DOCSTRING}\n\n${importLines(BODY.imports)}`, BODY.source) },
 ];

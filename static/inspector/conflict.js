@@ -58,7 +58,7 @@ function Cycle({ cycle, agents }) {
       <table class="conflict">
         <thead>
           <tr>
-            <th></th><th>Production</th><th class="number">Utility</th>
+            <th><span class="unseen">Chosen</span></th><th>Production</th><th class="number">Utility</th>
             ${names.length && !own ? html`<th class="number">base</th>` : null}
             ${names.map((name) => html`<th key=${name} class="number" title=${conflict.drawn?.includes(name) ? "Drawn by lot" : ""}>${name}${conflict.drawn?.includes(name) ? " (noise)" : ""}</th>`)}
             <th>Bound</th>

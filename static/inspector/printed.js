@@ -7,6 +7,7 @@ import { firstWhere } from "../timeline/search.js";
 
 const MOST = 500_000; // the maximum number of lines; beyond it, the oldest are dropped
 const AT_ONCE = 20_000; // the number of events requested at once
+const NOTHING = { events: 0, notice: -1 };
 
 /** Counts the changes of the lines. */
 export const printedVersion = signal(0);
@@ -17,12 +18,14 @@ let gaps = [];
 let next = 0; // the number of the next event
 let dropped = 0; // the number of lines dropped because there were too many
 let of = ""; // the session and run of the lines
+let cleared = NOTHING; // what the user has cleared
 
 function reset(run) {
   lines = [];
   gaps = [];
   next = 0;
   dropped = 0;
+  cleared = NOTHING;
   of = run;
   printedVersion.value += 1;
 }
@@ -41,6 +44,7 @@ function hear({ of: session, run, events: news }) {
     lines.length = placeOf(cut);
     gaps = gaps.map(([from, to]) => [from, Math.min(to, cut)]).filter(([from, to]) => from < to);
     next = cut;
+    cleared = { ...cleared, events: Math.min(cleared.events, cut) };
   }
   if (list.length === 0) {
     if (lines.length !== before) printedVersion.value += 1;
@@ -60,10 +64,17 @@ function hear({ of: session, run, events: news }) {
 
 listeners.add(hear);
 
-/** Returns what is known of the run that is shown: {lines, gaps, dropped, of}. */
+/** Returns what is known of the run that is shown: {lines, gaps, dropped, cleared, of}. */
 export function printed() {
   printedVersion.value;
-  return of === whichRun() ? { lines, gaps, dropped, of } : { lines: [], gaps: [], dropped: 0, of: "" };
+  return of === whichRun() ? { lines, gaps, dropped, cleared, of } : { lines: [], gaps: [], dropped: 0, cleared: NOTHING, of: "" };
+}
+
+/** Clears the run that is shown: the lines of the first `events` events and the notices up to number `notice` are kept, but shown no
+ * longer; by default, all are shown again. */
+export function clear(events = 0, notice = -1) {
+  cleared = { events, notice };
+  printedVersion.value += 1;
 }
 
 let asking = false;

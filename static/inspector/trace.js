@@ -124,7 +124,7 @@ export function FiringTrace() {
       count=${mixed.count}
       row=${row}
       columns=${several ? [TIME, "22%", "auto", "42px"] : [TIME, "auto", "42px"]}
-      head=${html`<th class="number">Time [s]</th>${several ? html`<th>Agent</th>` : null}<th>Event</th><th></th>`}
+      head=${html`<th class="number">Time [s]</th>${several ? html`<th>Agent</th>` : null}<th>Event</th><th><span class="unseen">Why</span></th>`}
       aim=${present > 0 ? present - 1 : null}
       chosen=${chosenRow}
       onChoose=${(n) => setChosen(mixed.numberAt(n))}

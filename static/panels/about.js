@@ -1,36 +1,15 @@
-// The model's description: its docstring, with values to try, and a link to its source.
+// The model's description: its docstring, with values to try, and links to its source and its page in the manual.
 
-import { h, html, signal, useLayoutEffect } from "../vendor/preact.js";
+import { h, html } from "../vendor/preact.js";
+import { useDescription } from "../inspector/description.js";
 import { Icon } from "../parts/icon.js";
 import { openAt } from "../parts/place.js";
-import { call, order } from "../server.js";
+import { order } from "../server.js";
 import { runStatus } from "../run_status.js";
 import { session } from "../store.js";
 
 /** The elements allowed in a description; the server sends no others. */
 const ELEMENTS = new Set(["p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a"]);
-const loaded = signal({ key: "", answer: null, problem: null });
-
-/** Returns a key for the text and the run that a description belongs to. */
-function keyOf({ id, run, attempt, shown_attempt: shown }) {
-  return `${id} ${run} ${shown ?? attempt}`;
-}
-
-async function follow(wanted) {
-  const key = keyOf(wanted);
-  if (loaded.peek().key === key) return;
-  const same = loaded.peek().key.split(" ")[0] === wanted.id; // the description of the former run stays until the new one is there
-  loaded.value = { key, answer: same ? loaded.peek().answer : null, problem: null };
-  let answer = null;
-  let problem = null;
-  try {
-    answer = await call("GET", `/api/sessions/${encodeURIComponent(wanted.id)}/about`);
-  } catch (error) {
-    problem = error.message;
-  }
-  if (loaded.peek().key === key) loaded.value = { key, answer, problem };
-}
-
 /** Runs the model from its start with these parameter values. */
 function attempt(settings) {
   order({ type: "restart", settings, run: true });
@@ -56,14 +35,15 @@ function Nodes({ nodes }) {
 
 function About() {
   const shown = session.value;
-  useLayoutEffect(() => void (shown && follow(shown)));
+  const { answer, problem } = useDescription();
   if (!shown) return html`<p class="empty">${runStatus.value.text}</p>`;
-  const { answer, problem } = loaded.value;
   const file = shown.model.split("/").at(-1);
   const isLost = runStatus.value.is === "unloadable";
   return html`<div class="about-frame"><article class="about">
     <header>
       <span class="mono">${file}</span>
+      <span class="stretch"></span>
+      ${answer?.manual ? html`<a href=${answer.manual} target="_blank" rel="noopener" title="Its page in the manual, with what it prints and a picture of a run"><${Icon} name="book" />Manual</a>` : null}
       <button title="Open its file in the editor" onClick=${() => openAt(shown.model, 1)}><${Icon} name="pen" />Edit</button>
     </header>
     ${isLost ? html`<p class="bad">${runStatus.value.text}</p>` : null}

@@ -3,12 +3,14 @@
 import { html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { AtStart } from "../inspector/at_start.js";
 import { agentOf, agentsOf, nameIn } from "../inspector/agents.js";
+import { useWrittenAgents } from "../inspector/description.js";
 import { Flash } from "../inspector/flash.js";
 import { Module, Plain, useRequests } from "../inspector/modules.js";
 import { Result } from "../inspector/result.js";
 import { Icon } from "../parts/icon.js";
 import { chunkText, slotsOf } from "../parts/chunk.js";
-import { nothing } from "../run_status.js";
+import { counted } from "../parts/count.js";
+import { nothing, runStatus } from "../run_status.js";
 import { running, session, state } from "../store.js";
 
 const LINES = 3; // the number of lines of a chunk shown unless expanded
@@ -67,7 +69,7 @@ function Agent({ agent, paths, parts, requests, several }) {
   const rest = of("part");
   const title = agent ?? "Other parts";
   return html`<section class="agent" aria-label=${title}>
-    ${several ? html`<h2>${title}${agent ? html` <span class="quiet">${parts[agent].class}</span>` : null}</h2>` : null}
+    <h2 class=${several ? "" : "unseen"}>${title}${agent ? html` <span class="quiet">${parts[agent].class}</span>` : null}</h2>
     ${buffers.length
       ? html`<table class="buffers" aria-label="Buffers of ${title}">
           <colgroup><col class="names" /><col /></colgroup>
@@ -88,11 +90,24 @@ function Agent({ agent, paths, parts, requests, several }) {
   </section>`;
 }
 
+/** The parts of an agent as its text has them, before there is one. */
+function WrittenAgent({ agent: { name, parts, productions } }) {
+  return html`<section class="agent" aria-label=${name}>
+    <h2>${name} <span class="quiet">${counted(productions.length, "production")}</span></h2>
+    <table class="buffers" aria-label="Parts of ${name}">
+      <colgroup><col class="names" /><col /></colgroup>
+      <tbody>${parts.map((part) => html`<tr key=${part.name}><th scope="row" class="mono">${part.name}</th><td class="quiet">${part.made_by}</td></tr>`)}</tbody>
+    </table>
+  </section>`;
+}
+
 function Buffers() {
+  const written = useWrittenAgents();
   const parts = state.value?.parts ?? {};
   const paths = Object.keys(parts);
   const busy = paths.filter((path) => parts[path].state?.busy === true);
   const requests = useRequests(busy);
+  if (written.length > 0) return html`<div class="agent-parts"><p class="at-start quiet">These are in its text. ${runStatus.value.text}</p>${written.map((agent) => html`<${WrittenAgent} key=${agent.name} agent=${agent} />`)}</div>`;
   if (paths.length === 0) return html`<p class="empty">${nothing("This model has no agent to look into.")}</p>`;
   const agents = agentsOf(parts);
   const groups = [...agents, null]

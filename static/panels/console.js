@@ -1,7 +1,7 @@
 // The model's output as it is printed, with the warnings and errors of the run between its lines; goes back with the run.
 
 import { html, useEffect, useMemo } from "../vendor/preact.js";
-import { fillGaps, printed, printedVersion } from "../inspector/printed.js";
+import { clear, fillGaps, printed, printedVersion } from "../inspector/printed.js";
 import { CopyButton } from "../parts/copy.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
@@ -40,11 +40,11 @@ function Written({ text }) {
   return html`${parts}${more > 0 ? html`<span class="control"> … ${more.toLocaleString("en")} more characters; a copy has them</span>` : null}`;
 }
 
-/** Returns the notices of the shown run that came before an event, in order. */
-function noticesUpTo(now) {
+/** Returns the notices of the shown run that came after a notice and before an event, in order. */
+function noticesOf(after, now) {
   const { shown_attempt: attempt, cuts = [] } = session.value ?? {};
   const isGone = ({ number, events }) => cuts.some(([before, cut]) => number < before && events > cut);
-  return notices.value.filter((notice) => notice.attempt === attempt && notice.number >= 0 && notice.events <= now && !isGone(notice)).toSorted((one, other) => one.events - other.events);
+  return notices.value.filter((notice) => notice.attempt === attempt && notice.number > after && notice.events <= now && !isGone(notice)).toSorted((one, other) => one.events - other.events);
 }
 
 /** The contents of the console: lines and notices, in order. */
@@ -80,15 +80,16 @@ function useListed() {
   const version = printedVersion.value;
   const wanted = words.value.toLowerCase();
   const has = (text) => text.toLowerCase().includes(wanted);
-  const { lines, gaps, dropped, of } = printed();
+  const { lines, gaps, dropped, cleared, of } = printed();
   const present = firstWhere(lines, ({ number }) => number >= now);
-  const messages = noticesUpTo(now);
+  const first = Math.min(present, firstWhere(lines, ({ number }) => number >= cleared.events));
+  const messages = noticesOf(cleared.notice, now);
   const shown = useMemo(() => {
-    const past = present === lines.length ? lines : lines.slice(0, present);
+    const past = first === 0 && present === lines.length ? lines : lines.slice(first, present);
     return wanted ? past.filter(({ text }) => has(text)) : past;
-  }, [version, present, wanted]);
+  }, [version, first, present, wanted]);
   const listed = new Listed(shown, wanted ? messages.filter((notice) => has(textOf([null, notice]))) : messages);
-  return { listed, ahead: lines.length - present, all: present + messages.length, gaps, dropped, of };
+  return { listed, ahead: lines.length - present, all: present - first + messages.length, gaps, dropped, cleared, of };
 }
 
 function Line({ entry: [line, notice] }) {
@@ -97,24 +98,26 @@ function Line({ entry: [line, notice] }) {
   return html`<div class=${level}>${level === "info" ? null : html`<span class="level">${level}</span> `}${file ? html`<${Place} file=${file} line=${number} /> ` : null}<${Written} text=${text.replaceAll(/\s*\n\s*/g, " ")} /></div>`;
 }
 
-function Notes({ gaps, dropped, ahead }) {
+function Notes({ gaps, dropped, cleared, ahead }) {
   const now = state.value?.events ?? 0;
   const missing = gaps.reduce((sum, [from, to]) => sum + Math.max(0, Math.min(to, now) - from), 0);
   return html`
     ${dropped > 0 ? html`<p class="note">The first ${counted(dropped, "line is", "lines are")} left out: there are too many.</p>` : null}
+    ${cleared.events > 0 || cleared.notice >= 0 ? html`<p class="note" role="status">Earlier lines are cleared. <button class="link" onClick=${() => clear()}>Show all</button></p>` : null}
     ${missing > 0 ? html`<p class="note" role="status">${alive.value ? "Lines from earlier in the run are being fetched …" : `What was printed in ${counted(missing, "earlier event")} is not known here any more; the recording has it.`}</p>` : null}
     ${ahead > 0 ? html`<p class="note" role="status">${counted(ahead, "line")} printed after this moment ${ahead === 1 ? "is" : "are"} not shown.</p>` : null}
   `;
 }
 
 function Console() {
-  const { listed, ahead, all, gaps, dropped, of } = useListed();
+  const { listed, ahead, all, gaps, dropped, cleared, of } = useListed();
   useEffect(() => {
     const timer = setTimeout(fillGaps, 0);
     return () => clearTimeout(timer);
   }, [printedVersion.value, alive.value, moment.value]);
   const name = `${(session.value?.model ?? "model").split("/").at(-1).replace(/\.py$/, "")}_seed_${session.value?.seed ?? ""}_console.txt`;
   const save = () => saveFile(name, new Blob([listed.text], { type: "text/plain;charset=utf-8" }));
+  const clearAll = () => clear(state.peek()?.events ?? 0, Math.max(-1, ...notices.peek().map(({ number }) => number)));
   const none = all > 0 ? "No line has that text." : ahead > 0 ? "Nothing was printed before this moment." : nothingYet("Nothing was printed in this run.").replace("Nothing has happened yet", "Nothing has been printed yet");
   return html`<div class="console">
     <div class="tools" role="toolbar" aria-label="Console">
@@ -122,8 +125,9 @@ function Console() {
       <span class="quiet number">${words.value ? `${listed.count} of ${counted(all, "line")}` : counted(all, "line")}</span>
       <${CopyButton} text="Copy" title="Copy the lines that are shown" disabled=${listed.count === 0} copied=${() => listed.text} />
       <button disabled=${listed.count === 0} title="Save the lines that are shown as a text file" onClick=${save}><${Icon} name="download" />Save</button>
+      <button disabled=${all === 0} title="Clear the lines up to now; the run and its recording keep them" onClick=${clearAll}>Clear</button>
     </div>
-    <${Notes} gaps=${gaps} dropped=${dropped} ahead=${ahead} />
+    <${Notes} gaps=${gaps} dropped=${dropped} cleared=${cleared} ahead=${ahead} />
     ${listed.count === 0 ? html`<p class="empty">${none}</p>` : null}
     <${Lines} label="What the model prints" count=${listed.count} of=${`${of} ${words.value}`} line=${(n) => html`<${Line} key=${n} entry=${listed.at(n)} />`} />
   </div>`;

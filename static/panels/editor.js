@@ -2,15 +2,18 @@
 
 import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { folder, listModels, model, models } from "../bar/models.js";
+import { define, format, rename as renameName } from "../editor/actions.js";
 import { checkByLoading } from "../editor/checks.js";
 import { focusText, goTo, keys, leaveText, showText } from "../editor/code.js";
 import { Conflict } from "../editor/conflict.js";
 import { documents, look, open, save, shown, shownDocument, take, unsaved, wanted } from "../editor/documents.js";
 import { duplicate, makeNew, remove, rename } from "../editor/files.js";
+import { ACTIONS, Menu } from "../editor/menu.js";
 import { Problems } from "../editor/problems.js";
 import { saveAndRun } from "../editor/stale_run.js";
 import { Strip } from "../editor/banner.js";
-import { bindKey, noteKey } from "../keys.js";
+import { command } from "../commands.js";
+import { noteKey } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { session } from "../store.js";
 
@@ -34,9 +37,15 @@ async function runShown() {
 }
 
 Object.assign(keys, { run: runShown, save: saveShown });
-bindKey("Mod+s", "Save the text", saveShown, "Editor");
-bindKey("Mod+Enter", "Save the text, and run it", runShown, "Editor");
+const hasText = () => Boolean(shownDocument());
+command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText });
+command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText });
 noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor");
+
+const onShown = (work) => () => shownDocument() && work(shownDocument());
+Object.assign(keys, { define: onShown(define), rename: onShown(renameName), format: onShown(format) });
+for (const { key, text } of ACTIONS) noteKey(key, text.replace(" …", ""), "Editor");
+noteKey("Mod+Click", "Go to the definition", "Editor");
 
 /** Applies the user's choice between two versions. */
 async function choose(document, which) {
@@ -81,6 +90,7 @@ function Files({ path, document }) {
     ${tool("file", "New model", makeNew, false)}${tool("copy", "Duplicate", () => duplicate(path))}
     ${tool("pen", "Rename", () => rename(path))}${tool("trash", "Delete", () => remove(path, document.dirty.value))}
     ${tool("check", "Load it without running it, and list what is wrong (this executes its top level)", () => checkByLoading(document))}
+    <${Menu} disabled=${!document} />
   </div>`;
 }
 

@@ -5,6 +5,7 @@ import { AtStart } from "../inspector/at_start.js";
 import { at, question, shownReasons } from "../inspector/asked.js";
 import { HeldNote, held } from "../inspector/breakpoints.js";
 import { ConflictSets } from "../inspector/conflict.js";
+import { useWrittenAgents } from "../inspector/description.js";
 import { explained, ProductionList, productionsOf } from "../inspector/list.js";
 import { Retrievals } from "../inspector/retrievals.js";
 import { FiringTrace } from "../inspector/trace.js";
@@ -55,10 +56,12 @@ function Reasons() {
   const result = useAnswer(question.value, { once: at.value !== null });
   const explanations = result.answer ?? [];
   const shown = VIEWS.some(({ id }) => id === shownReasons.value) ? shownReasons.value : "why";
-  const all = productionsOf(
+  const written = useWrittenAgents().flatMap(({ name: system, productions }) => productions.toSorted().map((name) => ({ system, name, reason: null })));
+  const there = productionsOf(
     state.value?.parts,
     explanations.flatMap((one) => one.productions),
   );
+  const all = written.length > 0 ? written : there;
   const chosen = explained(all);
   const time = explanations[0]?.time;
   const old = running.value && at.value === null && time !== undefined;
@@ -69,6 +72,7 @@ function Reasons() {
     event.preventDefault();
   };
   return html`<section class="reasons" aria-label="Explanations">
+    <h2 class="unseen">Explanations</h2>
     <div class="tools">
       <div class="choices" role="tablist" aria-label="Explanations">
         ${VIEWS.map(

@@ -2,7 +2,9 @@
 
 import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
 import { RetinaInset } from "../eye/inset.js";
-import { bindKey, hearKeys, noteKey } from "../keys.js";
+import { command, commandsOf } from "../commands.js";
+import { hearKeys, noteKey, buttonTitle } from "../keys.js";
+import { AreaMenu } from "../parts/area_menu.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
 import { optimistic } from "../parts/optimistic_value.js";
@@ -10,6 +12,7 @@ import { remembered } from "../local_storage.js";
 import { frameBudget } from "../frame_budget.js";
 import { VIEWS } from "../scene/stage.js";
 import { runStatus } from "../run_status.js";
+import { openWindow } from "../windows.js";
 import { running, session, state } from "../store.js";
 
 const open = remembered("overlays open", false);
@@ -38,9 +41,10 @@ function ViewBar() {
       <select aria-label="Camera" title="From where the scene is seen (V)" value=${view.value} onChange=${(event) => (view.value = event.currentTarget.value)}>
         ${Object.entries(VIEWS).map(([id, title]) => html`<option key=${id} value=${id}>${title}</option>`)}
       </select>
-      <button aria-label="Reset view" title="Reset view (Shift V)" onClick=${resetView}><${Icon} name="restart" /></button>
+      <button aria-label="Reset view" title=${buttonTitle(reset)} onClick=${resetView}><${Icon} name="restart" /></button>
       <button aria-expanded=${open.value} title="What is drawn over the scene" onClick=${() => (open.value = !open.value)}>Overlays</button>
       <${ManualLink} page="scene" title="3D view" />
+      <${AreaMenu} area="scene" opening=${openScene} />
     </div>
     ${open.value &&
     html`<div class="overlay-list" role="group" aria-label="Overlays">
@@ -63,8 +67,16 @@ function nextView() {
   view.value = views[(views.indexOf(view.value) + 1) % views.length];
 }
 
-bindKey("v", "Next view: with the body, free, from the side, from above, through the eye", nextView, "3D view");
-bindKey("Shift+v", "Reset view", resetView, "3D view");
+/** Whether there is a scene to look at. */
+const isShown = () => Boolean(session.value?.world && session.value.scene);
+command({ text: "Next view: with the body, free, from the side, from above, through the eye", key: "v", group: "3D view", work: nextView, ready: isShown });
+const reset = command({ text: "Reset view", key: "Shift+v", group: "3D view", work: resetView, ready: isShown });
+commandsOf(() => (isShown() ? Object.entries(VIEWS).map(([id, title]) => ({ text: `View: ${title}`, group: "3D view", work: () => (view.value = id) })) : []));
+commandsOf(() => (session.value?.overlays ?? []).map(({ name, title }) => {
+  const shown = overlay(name).value.value;
+  return { text: `${shown ? "Hide" : "Show"} overlay: ${title}`, group: "3D view", work: () => overlay(name).set(!shown), ready: isShown };
+}));
+const openScene = command({ text: "Open the 3D view in a window of its own", group: "Page", work: () => openWindow("scene"), ready: isShown });
 noteKey("W A S D Q E", "Move the camera, where it is free", "3D view");
 
 /** Shows the time of the 3D view if it cannot keep up with the run. */

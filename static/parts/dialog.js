@@ -85,7 +85,7 @@ export function Dialogs() {
     ${shown.ask?.choices?.map(
       ({ value, text }, n) => html`<label class="choice"><input type="radio" name="choice" value=${value} defaultChecked=${n === 0} />${text}</label>`,
     )}
-    <footer>
+    <footer role="none">
       ${shown.actions.map(({ text, value, kind }) => html`<button class=${kind ?? ""} disabled=${isChecking && Boolean(value)} onClick=${() => done(value)}>${isChecking && value ? "checking …" : text}</button>`)}
     </footer>
   </dialog>`;

@@ -10,10 +10,9 @@ const STEP = 24; // the step of an arrow key [px]
  * @param label The name of the panel whose size it sets.
  * @param least The minimum size [px].
  * @param most Returns the maximum size [px].
- *
- * The panel whose size it sets comes after the bar: right of it, or below.
+ * @param reversed Whether the panel whose size it sets comes before the bar: left of it, or above; otherwise after it.
  */
-export function Splitter({ size, along, label, least, most }) {
+export function Splitter({ size, along, label, least, most, reversed = false }) {
   const clamp = (value) => Math.round(Math.max(least, Math.min(most(), value)));
   const place = (event) => (along === "columns" ? event.clientX : event.clientY);
 
@@ -23,7 +22,7 @@ export function Splitter({ size, along, label, least, most }) {
     const before = size.value;
     bar.setPointerCapture(event.pointerId);
     document.body.dataset.dragging = along; // frames receive no pointer events meanwhile
-    bar.onpointermove = (moved) => (size.value = clamp(before + from - place(moved)));
+    bar.onpointermove = (moved) => (size.value = clamp(before + (reversed ? place(moved) - from : from - place(moved))));
     bar.onpointerup = bar.onpointercancel = () => {
       bar.onpointermove = bar.onpointerup = bar.onpointercancel = null;
       delete document.body.dataset.dragging;
@@ -32,7 +31,8 @@ export function Splitter({ size, along, label, least, most }) {
   }
 
   function press(event) {
-    const [larger, smaller] = along === "columns" ? ["ArrowLeft", "ArrowRight"] : ["ArrowUp", "ArrowDown"];
+    const keys = along === "columns" ? ["ArrowLeft", "ArrowRight"] : ["ArrowUp", "ArrowDown"];
+    const [larger, smaller] = reversed ? keys.reverse() : keys;
     const to = { [larger]: size.value + STEP, [smaller]: size.value - STEP, Home: least, End: most() }[event.key];
     if (to === undefined) return;
     event.preventDefault();

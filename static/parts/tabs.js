@@ -8,8 +8,9 @@ import { ManualLink } from "./manual.js";
  * @param tabs [{id, title, View, badge?}]; `badge` returns {text, title?, level?} for a mark beside the title (a dot if the text is
  *   empty), or nothing.
  * @param shown A signal with the id of the visible tab.
+ * @param more What comes after the tabs.
  */
-export function Tabs({ label, tabs, shown }) {
+export function Tabs({ label, tabs, shown, more = null }) {
   const row = useRef(null);
   const open = tabs.find(({ id }) => id === shown.value) ?? tabs[0];
   useLayoutEffect(() => row.current.querySelector("[aria-selected=true]").scrollIntoView({ block: "nearest", inline: "nearest" }), [open.id]);
@@ -27,7 +28,7 @@ export function Tabs({ label, tabs, shown }) {
   return html`
     <div class="tab-row"><div class="tabs" role="tablist" ref=${row} aria-label=${label} onKeyDown=${press}>
       ${tabs.map(({ id, title, badge }) => {
-        const more = badge?.();
+        const mark = badge?.();
         return html`<button
           key=${id}
           id="tab-${id}"
@@ -37,10 +38,10 @@ export function Tabs({ label, tabs, shown }) {
           tabindex=${open.id === id ? 0 : -1}
           onClick=${() => (shown.value = id)}
         >
-          <span class="tab-title" data-text=${title}>${title}</span>${more ? html`<span class="badge ${more.level ?? ""} ${more.text ? "" : "dot"}" title=${more.title}>${more.text}</span>` : null}
+          <span class="tab-title" data-text=${title}>${title}</span>${mark ? html`<span class="badge ${mark.level ?? ""} ${mark.text ? "" : "dot"}" title=${mark.title}>${mark.text}</span>` : null}
         </button>`;
       })}
-    </div><${ManualLink} page=${open.id} title=${open.title} /></div>
+    </div><${ManualLink} page=${open.id} title=${open.title} />${more}</div>
     <div class="tab-panel" role="tabpanel" id="panel-${open.id}" aria-labelledby="tab-${open.id}" key=${open.id}>
       <${open.View} />
     </div>

@@ -131,7 +131,7 @@ export function Table({ list, open }) {
   const chooseAll = () => (chosen.value = new Set(all ? [] : list.map((run) => run.id)));
 
   return html`<div class="runs-list" ref=${box} tabindex="-1">
-    <table class="runs-table" aria-label="Recordings" aria-multiselectable="true" aria-rowcount=${list.length + 1}>
+    <table class="runs-table" aria-label="Recordings" aria-rowcount=${list.length + 1}>
       <thead>
         <tr aria-rowindex="1">
           <th class="pick"><input type="checkbox" aria-label="Choose all that are listed" checked=${all} onClick=${chooseAll} /></th>

@@ -1,14 +1,16 @@
 // The tools above the timeline: visible rows, zoom, and where the run continues.
 
 import { html } from "../vendor/preact.js";
-import { bindKey } from "../keys.js";
+import { command, commandsOf, run } from "../commands.js";
+import { buttonTitle } from "../keys.js";
+import { AreaMenu } from "../parts/area_menu.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
 import { order } from "../server.js";
 import { alive, running, session } from "../store.js";
 import { CurveChoice } from "./choice.js";
-import { names } from "./curves.js";
+import { chosen as plotted, names, plot } from "./curves.js";
 import { lanesVersion } from "./record.js";
 import { groupsThere, hidden } from "./rows.js";
 import { FEW } from "./pointer.js";
@@ -16,6 +18,7 @@ import { furthest, goTicks, inThePast, present, seek, wanted } from "./seek.js";
 import { savePictures } from "./pictures.js";
 import { filter } from "./canvas.js";
 import { fit, mode, zoom } from "./view.js";
+import { openWindow } from "../windows.js";
 
 const STEP = 1.6; // the factor of a zoom button
 
@@ -33,13 +36,26 @@ function near(factor) {
   zoom(factor, present.peek(), present.peek(), furthest.peek());
 }
 
-bindKey("Home", "To the beginning of the run", () => seek(0), "Timeline");
-bindKey("End", "To its newest moment", () => seek(furthest.peek()), "Timeline");
-bindKey("Shift+ArrowLeft", "Five ticks back", () => goTicks(-FEW), "Timeline");
-bindKey("Shift+ArrowRight", "Five ticks on", () => goTicks(FEW), "Timeline");
-bindKey("z", "Zoom in", () => near(1 / STEP), "Timeline");
-bindKey("Shift+z", "Zoom out", () => near(STEP), "Timeline");
-bindKey("f", "Show all of the run", fit, "Timeline");
+/** Registers a command of the timeline. */
+function registered(text, key, work, ready) {
+  return command({ text, key, group: "Timeline", work, ready });
+}
+
+const canGo = () => alive.value;
+registered("To the beginning of the run", "Home", () => seek(0), canGo);
+const toNewest = registered("To its newest moment", "End", () => seek(furthest.peek()), canGo);
+registered("Five ticks back", "Shift+ArrowLeft", () => goTicks(-FEW), canGo);
+registered("Five ticks on", "Shift+ArrowRight", () => goTicks(FEW), canGo);
+const zoomIn = registered("Zoom in", "z", () => near(1 / STEP));
+const zoomOut = registered("Zoom out", "Shift+z", () => near(STEP));
+const showAll = registered("Show all of the run", "f", fit);
+const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0);
+const keep = registered("Keep the timeline or a plot as a picture, or its values as CSV", null, savePictures, () => Boolean(session.value));
+const openTimeline = command({ text: "Open the timeline in a window of its own", group: "Page", work: () => openWindow("timeline") });
+commandsOf(() => names.value.map(({ name }) => {
+  const shown = plotted.value.includes(name);
+  return { text: `${shown ? "Remove the curve" : "Plot the curve"} ${name}`, group: "Timeline", work: () => plot(name, !shown) };
+}));
 
 function chooseCurves() {
   dialog({ title: "Curves below the lanes", body: html`<${CurveChoice} />` });
@@ -52,7 +68,7 @@ function Going() {
     <button disabled=${!ready} title="Run on from this moment. It goes as it went before; if you change something here, another way begins." onClick=${() => order({ type: "run" })}>
       <${Icon} name="run" /><span>Continue from here</span>
     </button>
-    <button disabled=${!alive.value || !past} title="Go to the newest moment of the run (End)" onClick=${() => seek(furthest.peek())}>
+    <button disabled=${!alive.value || !past} title=${buttonTitle(toNewest, "Go to the newest moment of the run")} onClick=${() => run(toNewest)}>
       <${Icon} name="until" /><span>Newest moment</span>
     </button>
   </div>`;
@@ -63,15 +79,16 @@ export function Tools() {
     <h2>Timeline</h2>
     <${Groups} />
     <input type="search" aria-label="Filter rows" placeholder="Filter" value=${filter.value} onInput=${(event) => (filter.value = event.currentTarget.value)} />
-    <button disabled=${names.value.length === 0} title="Choose the curves that are plotted" onClick=${chooseCurves}>Curves …</button>
+    <button disabled=${!curves.ready()} title=${buttonTitle(curves)} onClick=${chooseCurves}>Curves …</button>
     <span class="stretch"></span>
     <${Going} />
     <div class="timeline-zoom" role="group" aria-label="Zoom">
-      <button class="bare" title="Show less, nearer (Z, wheel)" aria-label="Zoom in" onClick=${() => near(1 / STEP)}>+</button>
-      <button class="bare" title="Show more (Shift Z, wheel)" aria-label="Zoom out" onClick=${() => near(STEP)}>−</button>
-      <button class="bare" aria-pressed=${mode.value === "fit"} title="Show all of the run (F)" onClick=${fit}>Fit</button>
+      <button class="bare" title=${buttonTitle(zoomIn, "Show less, nearer; also the wheel")} aria-label="Zoom in" onClick=${zoomIn.work}>+</button>
+      <button class="bare" title=${buttonTitle(zoomOut, "Show more; also the wheel")} aria-label="Zoom out" onClick=${zoomOut.work}>−</button>
+      <button class="bare" aria-pressed=${mode.value === "fit"} title=${buttonTitle(showAll)} onClick=${fit}>Fit</button>
     </div>
-    <button class="bare" disabled=${!session.value} title="Keep the timeline or a plot as a picture, or its values as CSV" aria-label="Keep a picture" onClick=${savePictures}><${Icon} name="download" /></button>
+    <button class="bare" disabled=${!keep.ready()} title=${buttonTitle(keep)} aria-label="Keep a picture" onClick=${savePictures}><${Icon} name="download" /></button>
     <${ManualLink} page="timeline" title="Timeline" />
+    <${AreaMenu} area="timeline" opening=${openTimeline} />
   </div>`;
 }

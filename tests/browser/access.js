@@ -71,7 +71,7 @@
   for (const element of document.querySelectorAll(INTERACTIVE)) {
     if (!seen(element) || isOff(element)) continue;
     if (!nameOf(element)) found.push(`no name: ${say(element)} ${element.outerHTML.slice(0, 120)}`);
-    const set = element.closest("[role=tablist], .production-names, .rows"); // the arrow keys go from one to the next
+    const set = element.closest("[role=tablist], .production-names, .rows, .graph-nodes"); // the arrow keys go from one to the next
     const reached = element.tabIndex >= 0 || set?.tabIndex === 0 || set?.querySelector("[tabindex='0']");
     if (!reached) found.push(`not reached by keyboard: ${say(element)}`);
   }

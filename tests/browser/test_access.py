@@ -1,8 +1,9 @@
-"""Every panel and dialog can be read, and used without a mouse: contrast, names, reach by keyboard; in both themes."""
+"""Every panel and dialog can be read, and used without a mouse: contrast, names, reach by keyboard, all rules of axe; in both themes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +14,19 @@ from tests.helpers.page import open_tab, shows
 from tests.helpers.workbench_server import Served
 
 LOOK = (Path(__file__).parent / "access.js").read_text(encoding="utf-8")
+AXE = (resources.files("axe_playwright_python") / "axe.min.js").read_text(encoding="utf-8")
+RUN_AXE = """async () => {
+  const { violations } = await axe.run(document, { iframes: false, preload: false, resultTypes: ["violations"] });
+  return violations.flatMap(({ id, nodes }) => nodes.map(({ html }) => `${id}: ${html.slice(0, 160)}`));
+}"""
 
 
-def calm(page: Page) -> None:
-    """Waits until what has just changed lights up no more."""
+def problems_of(page: Page) -> list[str]:
+    """Returns what of a page cannot be read, named or reached, once what has just changed lights up no more."""
     expect(page.locator(".changed")).to_have_count(0)
+    if page.evaluate("() => !('axe' in window)"):
+        page.evaluate(AXE)
+    return [*page.evaluate(LOOK), *page.evaluate(RUN_AXE)]
 
 
 @pytest.mark.daily(1)
@@ -28,19 +37,21 @@ def test_all_can_be_read_named_and_reached(pages: Callable[..., Page], theme: An
     problems: list[str] = []
 
     def look(where: str) -> None:
-        calm(page)
-        problems.extend(f"{where}: {problem}" for problem in page.evaluate(LOOK))
+        problems.extend(f"{where}: {problem}" for problem in problems_of(page))
 
     look("start")
     page.click("#run")
     shows(page, "#status", "ended")
-    for title in ("Buffers", "Productions", "Memory", "Eye", "Parameters", "Editor", "Runs", "Messages"):
+    for title in ("Buffers", "Productions", "Memory", "Eye", "Graph", "Parameters", "Editor", "Runs", "Messages"):
         open_tab(page, title)
         if title == "Productions":
             expect(page.locator("#why-text")).to_contain_text("match")
             for view in ("Conflict set", "Retrievals"):
                 page.get_by_role("tab", name=view).click()
                 look(view)
+        if title == "Graph":
+            page.get_by_role("group", name="Graph of").get_by_role("button").first.click()
+            expect(page.locator(".graph-text")).to_be_visible()
         if title == "Eye":
             page.get_by_role("button", name="Edges").click()
         if title == "Editor":
@@ -50,7 +61,10 @@ def test_all_can_be_read_named_and_reached(pages: Callable[..., Page], theme: An
             expect(page.get_by_role("toolbar", name="The chosen run")).to_be_visible()
         look(title)
     page.keyboard.press("Escape")
-    for button in ("Help", "Curves …"):
+    page.get_by_role("button", name="Arrange: Panels").click()
+    look("Arrange")
+    page.keyboard.press("Escape")
+    for button in ("All commands", "Help", "Curves …"):
         page.get_by_role("button", name=button, exact=True).click()
         expect(page.get_by_role("dialog")).to_be_visible()
         look(button)
@@ -68,8 +82,7 @@ def test_what_asks_and_compares_can_be_read_named_and_reached(pages: Callable[..
     problems: list[str] = []
 
     def look(where: str) -> None:
-        calm(page)
-        problems.extend(f"{where}: {problem}" for problem in page.evaluate(LOOK))
+        problems.extend(f"{where}: {problem}" for problem in problems_of(page))
 
     for width in ("60", "80"):
         shows(page, "#status", "at its start")

@@ -73,7 +73,7 @@ def test_a_recording_that_is_changed_is_not_said_to_have_a_branch(pages: Callabl
     name = page.evaluate("async () => (await import('/static/store.js')).session.value.recording")
     for one in workbench.get("/api/sessions").json()["sessions"]:
         workbench.post(f"/api/sessions/{one['id']}/close")
-    page.goto(f"{page.url.partition('?')[0]}?recording={name}")
+    page.goto(f"{page.url.partition('?')[0]}?run={name}")
     expect(page.locator(".recording-banner")).to_contain_text("1.00 s are known")
     change_the_past(page)
     shows(page, ".branched", r"The recording is unchanged: it still has the run up to 1\.00 s")

@@ -173,7 +173,7 @@ def test_keys_do_what_the_buttons_do_and_a_question_mark_shows_them(pages: Calla
     page.keyboard.press("c")
     shows(page, "#status", "fired")
     page.keyboard.press("?")
-    expect(page.get_by_role("dialog")).to_contain_text("Until the next production fires")
+    expect(page.get_by_role("dialog")).to_contain_text("Step until the next production fires")
     page.keyboard.press("Space")
     page.keyboard.press("Escape")
     expect(page.get_by_role("dialog")).to_have_count(0)

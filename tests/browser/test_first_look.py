@@ -125,6 +125,20 @@ def test_without_a_world_the_panels_have_all_the_room(pages: Pages) -> None:
     expect(page.get_by_label("Speed", exact=True)).to_have_value("4")
 
 
+def test_before_its_first_run_a_program_shows_what_its_text_has_and_takes_breakpoints(pages: Pages) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    expect(page.get_by_role("table", name="Parts of Counting").get_by_role("rowheader")).to_have_text(["goal", "retrieval", "memory"])
+    open_tab(page, "Productions")
+    expect(page.locator(".production-list button.name")).to_have_text(["count_on", "start_counting", "stop_counting"])
+    page.get_by_role("button", name="Breakpoint on count_on").click()
+    page.click("#run")
+    shows(page, "#status", "breakpoint: count_on fired")
+    page.get_by_role("button", name="Remove it").click()
+    open_tab(page, "Buffers")
+    expect(page.get_by_role("table", name="Buffers of top")).to_be_visible()
+
+
 def test_the_console_has_what_is_printed_as_it_is_printed_and_goes_back_with_the_run(pages: Pages, workbench: Served) -> None:
     (workbench.folder / "prints.py").write_text(PRINTS, encoding="utf-8")
     page = pages("prints.py", tab="about")
@@ -163,6 +177,11 @@ def test_the_console_has_what_is_printed_as_it_is_printed_and_goes_back_with_the
     expect(lines(page)).to_have_text(["at 3"])
     shows(page, ".console .tools", "1 of 8 lines")
     page.get_by_label("Search the console").fill("")
+    page.locator(".console").get_by_role("button", name="Clear").click()
+    expect(lines(page)).to_have_count(0)
+    shows(page, ".console", "Earlier lines are cleared")
+    page.locator(".console").get_by_role("button", name="Show all").click()
+    expect(lines(page)).to_have_count(8)
     page.click("#back")
     shows(page, "#status", "went to this time")
     expect(lines(page)).to_have_count(6)

@@ -120,7 +120,7 @@ def test_tabs_stay_where_they_are_whichever_is_open(page: Page) -> None:
         return [box["x"] for box in boxes if box is not None]
 
     before = places()
-    assert len(before) == 11
+    assert len(before) == 12
     for title in ("Memory", "Parameters", "Messages"):
         open_tab(page, title)
         expect(page.get_by_role("tab", name=title)).to_have_attribute("aria-selected", "true")

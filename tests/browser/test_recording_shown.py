@@ -34,7 +34,7 @@ def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, work
     expect(banner).to_contain_text(name)
     expect(banner).to_contain_text("6.80 s are known")
     shows(page, "#time", "t = 0.00 s")
-    assert page.url.endswith(f"/?recording={name}")
+    assert page.url.endswith(f"/?run={name}")
     open_tab(page, "Productions")
     expect(page.locator("#events tbody tr.ahead")).not_to_have_count(0)  # what will happen is there before it does
     page.get_by_role("button", name="Newest moment").click()
@@ -61,7 +61,7 @@ def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, work
     page.get_by_label("Model", exact=True).select_option("doorway.py")  # which is not a recording
     shows(page, "#status", "at its start")
     expect(banner).to_have_count(0)
-    page.goto(f"{workbench.url}/?recording={name}")
+    page.goto(f"{workbench.url}/?run={name}")
     expect(banner).to_contain_text(name)
     shows(page, "#time", "t = 6.80 s")
     page.click("#restart")  # a new run of the model is not a recording, and has the address of the model
@@ -78,7 +78,7 @@ def test_the_page_fits_its_window_whatever_a_recording_is_called(pages: Pages, w
     for model_shown in ("counting.py", model.name):  # as the way back; then both are open, in a list
         page = pages(model_shown)
         shows(page, "#status", "at its start")
-        page.goto(f"{workbench.url}/?recording={name}")
+        page.goto(f"{workbench.url}/?run={name}")
         banner = page.locator(".recording-banner")
         expect(banner).to_contain_text("s are known")
         for width in (1280, 1024):
@@ -144,7 +144,7 @@ def test_before_the_rest_of_a_changed_recording_is_lost_it_is_asked_and_what_two
     name = recorded(workbench, "doorway.py")
     page, other = pages("counting.py", tab="buffers"), pages("counting.py", tab="buffers")
     for one in (page, other):
-        one.goto(f"{workbench.url}/?recording={name}")
+        one.goto(f"{workbench.url}/?run={name}")
         expect(one.locator(".recording-banner")).to_contain_text("6.80 s are known")
         shows(one, "#time", "t = 0.00 s")
     asked = page.get_by_role("dialog")
@@ -202,7 +202,7 @@ def test_an_address_of_a_recording_that_is_gone_says_so_and_shows_a_model(browse
         page = context.new_page()
         page.goto(f"{workbench.address}&model=counting.py")
         shows(page, "#status", "paused")
-        page.goto(f"{workbench.url}/?recording=gone")
+        page.goto(f"{workbench.url}/?run=gone")
         open_tab(page, "Messages")
         shows(page, "#log", "The recording «gone» cannot be opened: there is no such recording")
         shows(page, "#status", "paused")

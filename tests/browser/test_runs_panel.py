@@ -212,7 +212,7 @@ def test_a_recording_from_elsewhere_shows_its_code_and_asks_before_it_is_run(
     assert all(one["recorded"] is None for one in workbench.get("/api/sessions").json()["sessions"])
     page.get_by_role("button", name="Open", exact=True).click()
     dialog.get_by_role("button", name="Run its code").click()
-    expect(page).to_have_url(re.compile("recording=far"))
+    expect(page).to_have_url(re.compile("run=far"))
     far.unlink()
 
 

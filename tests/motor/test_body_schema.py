@@ -20,7 +20,7 @@ def test_felt_positions_and_extremes_are_those_of_each_single_reading(step: floa
     least, most = list(now), list(now)
     for _ in range(400):
         now = [at + draw.gauss(0, step) for at in now]
-        new = schema.feel(limbs.order, now)
+        new = schema.feel(dict(zip(limbs.order, now, strict=True)))
         least, most = [*map(min, least, now)], [*map(max, most, now)]
         for number, joint in enumerate(limbs.order):
             grid = 1.0 if limbs.joints[joint].kind == "hinge" else 0.001

@@ -96,6 +96,8 @@ def test_the_parameters_of_a_program_are_its_first_lines() -> None:
     assert listing.kind == "program"
     assert {parameter.name: parameter.default for parameter in listing.parameters} == {"first": 2, "last": 6, "latency_factor": 0.05}
     assert "Counting.count_on" in listing.productions
+    (counting,) = listing.agents
+    assert [(part.name, part.made_by) for part in counting.parts] == [("goal", "Buffer"), ("retrieval", "Buffer"), ("memory", "Memory")]
 
 
 def test_every_model_is_listed_without_complaint() -> None:

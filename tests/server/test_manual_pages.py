@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.asgi_client import COOKIE, GATE, HOST, ask
-from workbench import app
+from workbench import app, shipped
 
 
 def test_the_built_manual_is_served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -20,6 +20,18 @@ def test_the_built_manual_is_served(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     answer = ask(made, "/manual/workbench/buffers/", HOST, COOKIE)
     assert (answer.status, answer.body) == (200, b"<h1>Buffers</h1>")
     assert "script-src 'self';" in answer.headers["content-security-policy"]
+
+
+def test_a_shipped_model_has_a_page_in_the_built_manual(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = tmp_path / "models" / "tutorial-counting" / "index.html"
+    page.parent.mkdir(parents=True)
+    page.write_text("<h1>Counting</h1>", encoding="utf-8")
+    monkeypatch.setattr(shipped, "manual", lambda: tmp_path)
+    assert shipped.manual_page("tutorial/counting.py") == "/manual/models/tutorial-counting/"
+    assert shipped.manual_page("own.py") is None
+    assert shipped.manual_page("\0.py") is None
+    monkeypatch.setattr(shipped, "manual", lambda: None)
+    assert shipped.manual_page("tutorial/counting.py") is None
 
 
 def test_without_a_built_manual_the_answer_says_how_to_build_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -103,6 +103,11 @@ def _run(channel: Channel, controller: RunController) -> None:
 
         {"replay": recorded.replay_again, "make": recorded.make, "list": recorded.summarize}[start.job](channel)
         return
+    if start.job == "language":
+        from workbench.language.language_worker import serve
+
+        serve(channel)
+        return
     compile_source(start.source, start.path)  # errors in the text are reported before anything else
     check_build(start.source, start.path)
     listing = listing_of(start.source, start.path)

@@ -35,9 +35,9 @@ def digest_of(text: str) -> str:
 class Start(Message, frozen=True, kw_only=True):
     """Starts a job; the first message to a worker."""
 
-    job: Literal["run", "check", "replay", "make", "list"] = "run"
+    job: Literal["run", "check", "replay", "make", "list", "language"] = "run"
     """`check` loads the model and builds what it describes without running it; `replay` runs a recording again and compares; `make`
-    makes a file from recordings; `list` reads summaries of recordings.
+    makes a file from recordings; `list` reads summaries of recordings; `language` answers questions about texts.
     """
     path: str = ""
     """The model file, or the recording to replay."""
@@ -74,7 +74,7 @@ class Do(Message, frozen=True, kw_only=True):
 
     id: int
     command: bytes
-    """A pickled `workbench.page_commands.PageCommand`, which the server has validated."""
+    """A pickled `workbench.page_commands.PageCommand`, which the server has validated; for the job `language`, a question as JSON."""
 
 
 class Leave(Message, frozen=True, kw_only=True):

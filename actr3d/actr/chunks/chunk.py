@@ -1,8 +1,9 @@
-"""Chunks: slots with values, and how they are made from text."""
+"""Chunks: slots with values; how they are made from text, and how values are compared as text."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from enum import Enum
 from functools import lru_cache
 from typing import Any, Protocol, Self, cast
 
@@ -13,6 +14,9 @@ PLAIN_TYPES = frozenset({str, float, int, bool})
 """Plain types: a chunk copies such values from an object, and a trace keeps them unchanged."""
 LASTING_TYPES = PLAIN_TYPES | {type(None)}
 """Immutable types: their text never changes."""
+_COLLECTIONS = (tuple, list, set, frozenset)
+DEEPEST = 8
+"""The maximum depth of nested collections that are examined; a collection may contain itself."""
 
 
 class ChunkStoreLike(Protocol):
@@ -59,6 +63,34 @@ def as_text(value: object) -> str:
     if isinstance(value, float):
         return f"{value:g}"
     return repr(value)
+
+
+def plain_text(value: Any) -> str | None:
+    """Returns a value as patterns compare it (`as_text`); None if only the modeller's code can convert it."""
+    if type(value) in LASTING_TYPES:
+        return as_text(value)
+    if isinstance(value, str):
+        return str.__str__(value)
+    if isinstance(value, float):
+        return as_text(value) if type(value).__format__ is float.__format__ else None
+    return as_text(value) if _prints_plainly(value) else None
+
+
+def _prints_plainly(value: Any, depth: int = 0) -> bool:
+    """Returns whether printing a value runs none of the modeller's code."""
+    if type(value) in LASTING_TYPES:
+        return True
+    if depth > DEEPEST:
+        return False
+    if isinstance(value, Enum):
+        # `value.value` may be a modeller's own property; Python documents `_value_`.
+        return type(value).__repr__ is Enum.__repr__ and _prints_plainly(value._value_, depth + 1)
+    if type(value) in _COLLECTIONS:
+        return all(_prints_plainly(item, depth + 1) for item in cast("Sequence[Any]", value))
+    if type(value) is dict:
+        items = cast("Mapping[Any, Any]", value).items()
+        return all(_prints_plainly(part, depth + 1) for item in items for part in item)
+    return False
 
 
 def parse_slots(text: str) -> tuple[tuple[Slot, str], ...]:

@@ -17,7 +17,7 @@ from actr3d.actr.kernel.model import Model, ensure_converted
 from actr3d.actr.kernel.tree import path_of, places_in, subtree, top_of
 from actr3d.actr.modules.port import Searching
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import ProductionSystem, prepare_context, rules_of
+from actr3d.actr.procedural.production_system import ProductionSystem, prepare_context, rules_of, system_of
 from actr3d.actr.reasons import Explanation, ProductionReason
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import ParameterError, SchedulerError
@@ -26,22 +26,20 @@ from actr3d.trace import TraceEvent
 Kind = TypeVar("Kind", bound=Model)
 
 
-def why(system: ProductionSystem, production: Production, state: AgentState) -> ProductionReason:
+def why(production: Production, state: AgentState) -> ProductionReason:
     """Returns the reason of one production in a state."""
-    trial = ProductionTrial(system, production, state)
+    trial = ProductionTrial(production, state)
     failed = trial.failure
-    choice = state.choice(system)
+    choice = state.choice(production)
     none_drawn: dict[str, float] = {}
     drawn = none_drawn if choice is None else choice.parts.get(production.name, none_drawn)
-    parts: dict[str, float | None] = {
-        name: drawn.get(name) if value is None else value for name, value in state.parts(system, production).items()
-    }
+    parts: dict[str, float | None] = {name: drawn.get(name) if value is None else value for name, value in state.parts(production).items()}
     if "get_activation" not in parts:
         parts = {"base": production.base_utility, **parts}
     known = [value for value in parts.values() if value is not None]
     return ProductionReason(
         name=production.name,
-        system=state.path(system),
+        system=state.path(system_of(production)),
         parents=production.parents,
         matches=trial.matches,
         condition=failed.condition if failed is not None else None,
@@ -65,13 +63,7 @@ def explain(agent: ProductionSystem, at: float | None = None) -> Explanation:
         prepare_context(system)
     memories, eyes = _modules_in_sight(Memory, agent, systems), _modules_in_sight(Searching, agent, systems)
     state = Present(agent) if at is None else _past(agent, at, systems, [*memories, *eyes])
-    productions = [
-        why(system, p, state)
-        for system in systems
-        if state.exists(system)
-        for p in rules_of(system).productions
-        if state.learned(system, p)
-    ]
+    productions = [why(p, state) for system in systems if state.exists(system) for p in rules_of(system).productions if state.learned(p)]
     retrievals = [state.retrieval(memory) for memory in memories if state.exists(memory)]
     searches = [reason for eye in eyes if state.exists(eye) for reason in state.searches(eye)]
     return Explanation(

@@ -9,14 +9,13 @@ from actr3d.actr.chunks.chunk import LASTING_TYPES, Slot, as_text
 from actr3d.actr.chunks.pattern import MISSING
 from actr3d.actr.explain.module_reasons import outcome_of, past_retrieval, past_search
 from actr3d.actr.explain.state import NOT_KNOWN, OPAQUE, Fact, FunctionResult, is_unknown
-from actr3d.actr.kernel.buffer import Buffer, reads_chunk
+from actr3d.actr.kernel.buffer import Buffer, plain_empty, reads_chunk
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import path_of, places_in
 from actr3d.actr.procedural.conflict_set import ConflictSet
-from actr3d.actr.procedural.observed_values import records_changes, result_label
-from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import ProductionSystem, rules_of, utility_part_names
-from actr3d.actr.procedural.safe_reading import plain_empty
+from actr3d.actr.procedural.matcher import records_changes, result_label
+from actr3d.actr.procedural.production import Production, ProductionOwner
+from actr3d.actr.procedural.production_system import ProductionSystem, rules_of, system_of, utility_part_names
 from actr3d.actr.reasons import RetrievalReason, SearchReason
 from actr3d.clock import seconds
 from actr3d.trace import Trace, TraceEvent
@@ -123,14 +122,14 @@ class Past:
     def exists(self, part: Model) -> bool:
         return self._paths.get(id(part)) is not None
 
-    def learned(self, system: ProductionSystem, production: Production) -> bool:
-        return production.name not in self._of(system).unborn
+    def learned(self, production: Production) -> bool:
+        return production.name not in self._of(production.system).unborn
 
-    def _of(self, part: Model) -> _Part:
+    def _of(self, part: Model | ProductionOwner) -> _Part:
         return self._parts[id(part)]
 
-    def slot(self, system: ProductionSystem, name: str, key: Slot) -> Fact:
-        target = rules_of(system).context[name]
+    def slot(self, production: Production, name: str, key: Slot) -> Fact:
+        target = production.context[name]
         if reads_chunk(target, key):
             return self._slot_of_chunk(target, key)
         found = self._observations(target, key)
@@ -165,8 +164,8 @@ class Past:
             return OPAQUE
         return Fact(texts.value[str(key)], _since(recorded))
 
-    def empty(self, system: ProductionSystem, name: str) -> Fact:
-        target = rules_of(system).context[name]
+    def empty(self, production: Production, name: str) -> Fact:
+        target = production.context[name]
         if isinstance(target, Buffer):
             recorded = self._of(target).attributes.get("chunk")
             return NOT_KNOWN if recorded is None else Fact(not recorded.value)
@@ -177,35 +176,35 @@ class Past:
         empty = plain_empty(target)
         return NOT_KNOWN if is_unknown(empty) or hasattr(cast("Any", type(target)), "__len__") else Fact(empty)
 
-    def slots(self, system: ProductionSystem, name: str) -> list[str]:
-        target = rules_of(system).context[name]
+    def slots(self, production: Production, name: str) -> list[str]:
+        target = production.context[name]
         if isinstance(target, Buffer):
             recorded = self._of(target).attributes.get("chunk")
             return list(recorded.value or ()) if recorded is not None else []
         return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
-    def function_result(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
-        observation = self._of(system).observations.get(result_label(production.name, number))
+    def function_result(self, production: Production, number: int) -> FunctionResult | None:
+        observation = self._of(production.system).observations.get(result_label(production.name, number))
         if observation is None:
             return None
         given, agrees, bound = observation.value
         return FunctionResult(given, agrees, bound, _since(observation))
 
-    def matched(self, system: ProductionSystem, production: Production) -> bool:
-        return production.name in self._of(system).matched
+    def matched(self, production: Production) -> bool:
+        return production.name in self._of(production.system).matched
 
-    def parts(self, system: ProductionSystem, production: Production) -> dict[str, float | None]:
-        known = self._of(system).parts.get(production.name, {})
-        return {name: known.get(name) for name in utility_part_names(system)}
+    def parts(self, production: Production) -> dict[str, float | None]:
+        known = self._of(production.system).parts.get(production.name, {})
+        return {name: known.get(name) for name in utility_part_names(system_of(production))}
 
-    def choice(self, system: ProductionSystem) -> ConflictSet | None:
-        known = self._of(system)
+    def choice(self, production: Production) -> ConflictSet | None:
+        known = self._of(production.system)
         data = known.conflict or {}
         choice = ConflictSet(
             utilities=data.get("utilities", {}),
             parts=data.get("parts", {}),
             threshold=data.get("threshold"),
-            weighed=rules_of(system).by_utility,
+            weighed=rules_of(system_of(production)).by_utility,
             chosen=known.chosen,
         )
         return choice if choice.chosen is not None or choice.held_back else None

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
-from actr3d.actr.chunks.chunk import Slot
+from actr3d.actr.chunks.chunk import Slot, plain_text
 from actr3d.actr.chunks.pattern import MISSING
-from actr3d.actr.chunks.safe_text import plain_text
 from actr3d.actr.explain.module_reasons import live_retrieval, live_searches
 from actr3d.actr.explain.state import NOT_KNOWN, OPAQUE, Fact, FunctionResult, is_unknown
-from actr3d.actr.kernel.buffer import Buffer, reads_chunk
+from actr3d.actr.kernel.buffer import UNKNOWN, Buffer, plain_empty, plain_value, reads_chunk
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import path_of
 from actr3d.actr.modules.port import Searching
 from actr3d.actr.procedural.conflict_set import ConflictSet
-from actr3d.actr.procedural.observed_values import Observed
+from actr3d.actr.procedural.matcher import Observed
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import ProductionSystem, rules_of, standing_choice, utility_parts
-from actr3d.actr.procedural.safe_reading import UNKNOWN, plain_empty, plain_value
+from actr3d.actr.procedural.production_system import ProductionSystem, rules_of, standing_choice, system_of, utility_parts
 from actr3d.actr.reasons import RetrievalReason, SearchReason
 from actr3d.clock import seconds
 
@@ -40,49 +38,49 @@ class Present:
     def exists(self, part: Model) -> bool:
         return True
 
-    def learned(self, system: ProductionSystem, production: Production) -> bool:
+    def learned(self, production: Production) -> bool:
         return True
 
-    def slot(self, system: ProductionSystem, name: str, key: Slot) -> Fact:
-        target = rules_of(system).context[name]
+    def slot(self, production: Production, name: str, key: Slot) -> Fact:
+        target = production.context[name]
         value = plain_value(target, key)
         if value is MISSING:
             return Fact(MISSING)
         text = None if value is UNKNOWN else plain_text(value)
         if text is not None:
             return Fact(text)
-        looked = _observed(system).looked
+        looked = _observed(production).looked
         label = f"{name}.{key}"
         if label not in looked:
             return OPAQUE if reads_chunk(target, key) else NOT_KNOWN
         return Fact(MISSING if looked[label] is None else looked[label], LAST_SEEN)
 
-    def empty(self, system: ProductionSystem, name: str) -> Fact:
-        empty = plain_empty(rules_of(system).context[name])
+    def empty(self, production: Production, name: str) -> Fact:
+        empty = plain_empty(production.context[name])
         return NOT_KNOWN if is_unknown(empty) else Fact(empty)
 
-    def slots(self, system: ProductionSystem, name: str) -> list[str]:
-        target = rules_of(system).context[name]
+    def slots(self, production: Production, name: str) -> list[str]:
+        target = production.context[name]
         if isinstance(target, Buffer):
             return [str(key) for key in target.chunk or ()]
         return [key for key in getattr(target, "__dict__", ()) if key[0] != "_"]
 
-    def function_result(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
-        asked = _observed(system).asked.get((production.name, number))
+    def function_result(self, production: Production, number: int) -> FunctionResult | None:
+        asked = _observed(production).asked.get((production.name, number))
         if asked is None:
             return None
         given, agrees, bound = asked.plain()
         return FunctionResult(given, agrees, bound, f"as asked at {seconds(asked.time):.3f} s")
 
-    def matched(self, system: ProductionSystem, production: Production) -> bool:
-        matcher = rules_of(system).matcher
+    def matched(self, production: Production) -> bool:
+        matcher = rules_of(system_of(production)).matcher
         return matcher is not None and production in matcher.last
 
-    def parts(self, system: ProductionSystem, production: Production) -> dict[str, float | None]:
-        return utility_parts(system, production)
+    def parts(self, production: Production) -> dict[str, float | None]:
+        return utility_parts(system_of(production), production)
 
-    def choice(self, system: ProductionSystem) -> ConflictSet | None:
-        return standing_choice(system)
+    def choice(self, production: Production) -> ConflictSet | None:
+        return standing_choice(system_of(production))
 
     def retrieval(self, memory: Any) -> RetrievalReason | None:
         return live_retrieval(memory)
@@ -91,6 +89,6 @@ class Present:
         return live_searches(module)
 
 
-def _observed(system: ProductionSystem) -> Observed:
-    matcher = rules_of(system).matcher
+def _observed(production: Production) -> Observed:
+    matcher = rules_of(system_of(production)).matcher
     return matcher.observed if matcher is not None else Observed()

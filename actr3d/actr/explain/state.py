@@ -10,11 +10,10 @@ from typing import Any, NamedTuple, Protocol
 
 from actr3d.actr.chunks.chunk import Slot
 from actr3d.actr.chunks.pattern import Bindings, Missing
+from actr3d.actr.kernel.buffer import UNKNOWN
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import ProductionSystem
-from actr3d.actr.procedural.safe_reading import UNKNOWN
 from actr3d.actr.reasons import RetrievalReason, SearchReason
 
 
@@ -55,36 +54,36 @@ class AgentState(Protocol):
         """Returns whether a part was in the tree."""
         ...
 
-    def learned(self, system: ProductionSystem, production: Production) -> bool:
+    def learned(self, production: Production) -> bool:
         """Returns whether a production existed; a compiled one does from when it is learned."""
         ...
 
-    def slot(self, system: ProductionSystem, name: str, key: Slot) -> Fact:
-        """Returns a slot's value as text."""
+    def slot(self, production: Production, name: str, key: Slot) -> Fact:
+        """Returns the value of a slot, as text, in what a production sees under a name."""
         ...
 
-    def empty(self, system: ProductionSystem, name: str) -> Fact:
-        """Returns whether a buffer or object is empty."""
+    def empty(self, production: Production, name: str) -> Fact:
+        """Returns whether what a production sees under a name is empty."""
         ...
 
-    def slots(self, system: ProductionSystem, name: str) -> list[str]:
-        """Returns the existing slots, for messages."""
+    def slots(self, production: Production, name: str) -> list[str]:
+        """Returns the slots of what a production sees under a name, for messages."""
         ...
 
-    def function_result(self, system: ProductionSystem, production: Production, number: int) -> FunctionResult | None:
+    def function_result(self, production: Production, number: int) -> FunctionResult | None:
         """Returns the last result of the function in a condition; it is not called again."""
         ...
 
-    def matched(self, system: ProductionSystem, production: Production) -> bool:
+    def matched(self, production: Production) -> bool:
         """Returns whether a production was among those that matched at the latest match."""
         ...
 
-    def parts(self, system: ProductionSystem, production: Production) -> dict[str, float | None]:
+    def parts(self, production: Production) -> dict[str, float | None]:
         """Returns the parts of a production's utility."""
         ...
 
-    def choice(self, system: ProductionSystem) -> ConflictSet | None:
-        """Returns the latest conflict set, until the production fires or another choice is made."""
+    def choice(self, production: Production) -> ConflictSet | None:
+        """Returns the latest conflict set of its system, until the chosen production fires or another choice is made."""
         ...
 
     def retrieval(self, memory: Any) -> RetrievalReason | None:

@@ -9,7 +9,6 @@ from actr3d.actr.chunks.chunk import as_text
 from actr3d.actr.chunks.pattern import Bindings, Condition, Missing, slot_named
 from actr3d.actr.explain.state import AgentState, Fact, is_unknown
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.actr.reasons import ConditionReason
 from actr3d.errors import did_you_mean
 
@@ -32,13 +31,11 @@ class ProductionTrial:
     The later conditions do not affect the result; `conditions` contains what is known about them.
 
     Args:
-        system: The production system.
-        production: Its production.
+        production: The production.
         state: The state in which it is tested.
     """
 
-    def __init__(self, system: ProductionSystem, production: Production, state: AgentState) -> None:
-        self._system = system
+    def __init__(self, production: Production, state: AgentState) -> None:
         self._production = production
         self._state = state
         self._bound: Bindings = {}
@@ -86,11 +83,10 @@ class ProductionTrial:
     def _failure(self, number: int, condition: Condition) -> Failure | None:
         op, name, key, value = condition
         name = name or "self"
-        system = self._system
         if op == "call":
             return self._failure_of_function(number, condition)
         if op == "empty":
-            fact = self._known(self._state.empty(system, name))
+            fact = self._known(self._state.empty(self._production, name))
             if is_unknown(fact.value):
                 return self._unknown(_text(condition), "nothing in it", fact.source)
             self._fact = "nothing in it" if fact.value else "something"
@@ -101,7 +97,7 @@ class ProductionTrial:
             if key[1:] not in self._bound:
                 return self._not_bound(condition, f"a slot that ?{key[1:]} names", key[1:])
             key = slot_named(self._bound[key[1:]])
-        fact = self._known(self._state.slot(system, name, key))
+        fact = self._known(self._state.slot(self._production, name, key))
         wanted = self._bound.get(value) if op in ("same", "differs") else value
         expected = _expected(condition, wanted)
         if is_unknown(fact.value) or (op in ("same", "differs") and value in self._open):
@@ -125,7 +121,7 @@ class ProductionTrial:
         return fact
 
     def _nothing(self, name: str, key: Any) -> str:
-        known = self._state.slots(self._system, name)
+        known = self._state.slots(self._production, name)
         return f"no slot '{key}'{did_you_mean(str(key), known)}" if known else f"{name} is empty"
 
     def _not_bound(self, condition: Condition, expected: str, variable: str) -> Failure:
@@ -134,7 +130,7 @@ class ProductionTrial:
         return Failure(condition=_text(condition), expected=expected, found=f"?{variable} is not bound", unknown=settled)
 
     def _failure_of_function(self, number: int, condition: Condition) -> Failure | None:
-        result = self._state.function_result(self._system, self._production, number)
+        result = self._state.function_result(self._production, number)
         text, expected = _text(condition), "anything but False"
         if self.failure is not None:
             return _not_known(text, expected, "it is asked only where all before it holds")
@@ -152,7 +148,7 @@ class ProductionTrial:
 
     def _unknown(self, text: str, expected: str, why: str | None) -> Failure | None:
         """Returns None, for a condition that holds, if the production matched last; otherwise an unknown failure."""
-        if self.failure is None and self._state.matched(self._system, self._production):
+        if self.failure is None and self._state.matched(self._production):
             self._source = AT_THE_LAST_MATCH
             return None
         return _not_known(text, expected, why or "it depends on what is not known")

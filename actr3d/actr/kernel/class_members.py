@@ -1,102 +1,26 @@
-"""What a model gets from its class: methods that others can wait for, and its own copies of the class's objects."""
+"""What a model gets from its class: methods, and its own copies of the class's objects."""
 
 from __future__ import annotations
 
 import copy
 import inspect
-from collections.abc import Callable, Generator, Mapping
-from types import MethodType, ModuleType
-from typing import Any, Protocol, cast
+from collections.abc import Callable, Mapping
+from types import ModuleType
+from typing import Any, cast
 
 from actr3d.actr.chunks.chunk import PLAIN_TYPES
-from actr3d.actr.kernel.events import Event, Trigger
-from actr3d.actr.kernel.profile import Profile
-from actr3d.actr.kernel.scheduler import Scheduler
-from actr3d.clock import seconds
-from actr3d.errors import SchedulerError, hint_for
+from actr3d.errors import SchedulerError
 
 Method = Callable[..., Any]
 
 
-class MethodOwner(Protocol):
-    """A model whose methods are wrapped."""
-
-    sch: Scheduler
-
-    def now(self) -> float:
-        """Returns the current time [s]."""
-        ...
-
-
-class Caller(Protocol):
-    """A production that calls a method."""
-
-    name: str
-
-    @property
-    def place(self) -> str:
-        """Where it is written: `file:line`."""
-        ...
-
-
-class MethodWrapper:
-    """A method of one model; `yield model.method` waits for the end of its next call."""
-
-    def __init__(self, obj: MethodOwner, func: Method, name: str) -> None:
-        self.obj = obj
-        self.func = func
-        self._method = MethodType(func, obj)
-        self.__name__ = name
-        self.begins = Trigger(f"{name} begin")
-        self.ends = Trigger(f"{name} end")
-
-    @property
-    def default_trigger(self) -> Trigger:
-        """The trigger that `yield model.method` waits for."""
-        return self.ends
-
-    @property
-    def _profile(self) -> Profile | None:
-        return self.obj.__dict__.get("_profile")
-
-    def __call__(self, *args: Any, **keys: Any) -> Any:
-        if self.begins.waiting:
-            self.obj.sch.trigger(self.begins)
-        value = self._method(*args, **keys)
-        if self.ends.waiting:
-            self.obj.sch.trigger(self.ends)
-        return value
-
-    def __repr__(self) -> str:
-        return f"<method {self.func.__qualname__}>"
-
-
-class GeneratorWrapper(MethodWrapper):
-    """A generator method of one model: a call schedules it and returns the event, which can be waited for."""
-
-    def __call__(self, *args: Any, **keys: Any) -> Event:
-        sch = self.obj.sch
-        return sch.begin(self._steps(args, keys, sch.firing, sch.now_us), self)
-
-    def _steps(self, args: tuple[Any, ...], keys: dict[str, Any], caller: Caller | None, called_us: int) -> Generator[Any, Any, None]:
-        """Runs the method and fires its triggers; an error in it names its caller and the time of the call [us]."""
-        if self.begins.waiting:
-            self.obj.sch.trigger(self.begins)
-        try:
-            yield from self.func(self.obj, *args, **keys)
-        except Exception as error:
-            if caller is not None:
-                error.add_note(
-                    f"in '{self.__name__}' at {self.obj.now():g} s, called by production '{caller.name}' ({caller.place}) "
-                    f"at {seconds(called_us):g} s{hint_for(error, self.func.__globals__)}"
-                )
-            raise
-        if self.ends.waiting:
-            self.obj.sch.trigger(self.ends)
-
-
 RESERVED = frozenset({"run", "now", "get_children", "traced", "explain"})
 """Names that a subclass may override, but that are neither wrapped nor copied."""
+
+
+def is_modellers(kind: type) -> bool:
+    """Returns whether a class is a modeller's own."""
+    return kind is not object and not kind.__module__.startswith("actr3d.")
 
 
 def has_setter(member: object) -> bool:

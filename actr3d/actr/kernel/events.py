@@ -7,8 +7,6 @@ from inspect import CO_GENERATOR
 from types import GeneratorType
 from typing import Any, Final, cast
 
-from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
-
 AGAIN: Final = object()
 """The library's own generators yield this to continue at the same moment, with the priority of their event."""
 
@@ -56,12 +54,6 @@ class Call:
 
     def __lt__(self, other: Call) -> bool:
         return False  # the queue alone orders events of equal time and priority
-
-    @property
-    def profile(self) -> Profile:
-        """The profile of the model whose method this is."""
-        owner = getattr(self.call, "__self__", self.call)
-        return getattr(owner, "_profile", None) or PYTHON_ACTR
 
     def describe(self) -> str:
         """Returns the name of the call."""

@@ -4,31 +4,23 @@ from __future__ import annotations
 
 import inspect
 import random
-import sys
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Generator
+from types import MethodType
+from typing import Any, Protocol
 from weakref import ref
 
 from actr3d.actr.chunks.chunk import LASTING_TYPES, PLAIN_TYPES, PlaceName
 from actr3d.actr.kernel import log as logs
-from actr3d.actr.kernel.class_members import (
-    GeneratorWrapper,
-    Method,
-    MethodWrapper,
-    check_names,
-    class_members,
-    copy_objects,
-    has_setter,
-    minding_properties,
-)
-from actr3d.actr.kernel.events import Trigger
+from actr3d.actr.kernel.class_members import Method, check_names, class_members, copy_objects, has_setter, minding_properties
+from actr3d.actr.kernel.events import Event, Trigger
 from actr3d.actr.kernel.profile import PROFILES, PYTHON_ACTR, Profile
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.kernel.scheduler import Scheduler
-from actr3d.actr.kernel.source_code import for_python_actr
+from actr3d.actr.kernel.source_code import written_for_python_actr
 from actr3d.actr.kernel.tracing import UNWATCHED, traceable
 from actr3d.actr.kernel.tree import TreeNode, forget_place, keep_path, lineage, note_move, path_of, subtree, top_of
-from actr3d.errors import SchedulerError
+from actr3d.clock import seconds
+from actr3d.errors import SchedulerError, hint_for
 from actr3d.trace import Trace, top_path
 from actr3d.values import COLLECTIONS
 from actr3d.warnings import warn_modeller
@@ -434,12 +426,6 @@ def state_of(model: Model) -> dict[str, Any]:
     return model._state()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
-def written_for_python_actr(kind: type) -> bool:
-    """Returns whether a class is part of a program that imports python_actr or ccm by name."""
-    files = [sys.modules.get(klass.__module__) for klass in kind.__mro__]
-    return logs.LOG.announce or any(for_python_actr(vars(file)) for file in files if file is not None)
-
-
 def _name_part(part: Model, name: str, shown: bool = False) -> None:
     """Names a model after its place in the tree.
 
@@ -451,6 +437,76 @@ def _name_part(part: Model, name: str, shown: bool = False) -> None:
     """
     slot = name if shown or is_converted(part) else None if type(part) is Model else "top"
     part.__dict__["name"] = PlaceName(name, slot)
+
+
+# -- methods that others can wait for
+
+
+class Caller(Protocol):
+    """A production that calls a method."""
+
+    name: str
+
+    @property
+    def place(self) -> str:
+        """Where it is written: `file:line`."""
+        ...
+
+
+class MethodWrapper:
+    """A method of one model; `yield model.method` waits for the end of its next call."""
+
+    def __init__(self, obj: Model, func: Method, name: str) -> None:
+        self.obj = obj
+        self.func = func
+        self._method = MethodType(func, obj)
+        self.__name__ = name
+        self.begins = Trigger(f"{name} begin")
+        self.ends = Trigger(f"{name} end")
+
+    @property
+    def default_trigger(self) -> Trigger:
+        """The trigger that `yield model.method` waits for."""
+        return self.ends
+
+    @property
+    def _profile(self) -> Profile | None:
+        return self.obj.__dict__.get("_profile")
+
+    def __call__(self, *args: Any, **keys: Any) -> Any:
+        if self.begins.waiting:
+            self.obj.sch.trigger(self.begins)
+        value = self._method(*args, **keys)
+        if self.ends.waiting:
+            self.obj.sch.trigger(self.ends)
+        return value
+
+    def __repr__(self) -> str:
+        return f"<method {self.func.__qualname__}>"
+
+
+class GeneratorWrapper(MethodWrapper):
+    """A generator method of one model: a call schedules it and returns the event, which can be waited for."""
+
+    def __call__(self, *args: Any, **keys: Any) -> Event:
+        sch = self.obj.sch
+        return sch.begin(self._steps(args, keys, sch.firing, sch.now_us), self)
+
+    def _steps(self, args: tuple[Any, ...], keys: dict[str, Any], caller: Caller | None, called_us: int) -> Generator[Any, Any, None]:
+        """Runs the method and fires its triggers; an error in it names its caller and the time of the call [us]."""
+        if self.begins.waiting:
+            self.obj.sch.trigger(self.begins)
+        try:
+            yield from self.func(self.obj, *args, **keys)
+        except Exception as error:
+            if caller is not None:
+                error.add_note(
+                    f"in '{self.__name__}' at {self.obj.now():g} s, called by production '{caller.name}' ({caller.place}) "
+                    f"at {seconds(called_us):g} s{hint_for(error, self.func.__globals__)}"
+                )
+            raise
+        if self.ends.waiting:
+            self.obj.sch.trigger(self.ends)
 
 
 # -- the trace of a run

@@ -11,6 +11,7 @@ from typing import Any, Literal, cast
 
 from actr3d.actr.kernel.events import AGAIN, NOTHING_LEFT, Call, Event, Trigger, makes_generator
 from actr3d.actr.kernel.log import LOG
+from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.clock import MICROSECONDS, Ends, EventQueue, microseconds, seconds
 from actr3d.errors import SchedulerError, did_you_mean
@@ -166,7 +167,7 @@ class Scheduler:
         later = round(exact)
         part = exact - later
         left = event.left = self.left
-        if self.round_ms and later > 0 and event.profile.whole_milliseconds:
+        if self.round_ms and later > 0 and _profile_of(event).whole_milliseconds:
             time = max(self.now_us, round((self.now_us + later) / 1000) * 1000)
         elif -NO_PART < part < NO_PART:
             time = self.now_us + later
@@ -347,7 +348,7 @@ class Scheduler:
             if event.cancelled:
                 return
             others = event.cancel_others()
-            if self.round_ms and not event.profile.awaits_expiry:
+            if self.round_ms and not _profile_of(event).awaits_expiry:
                 self.drop(others)
         generator = event.generator
         if generator is None:
@@ -411,6 +412,12 @@ class Scheduler:
         for parent in event.parents:
             self.put_now(parent)
         event.parents = []
+
+
+def _profile_of(event: Call) -> Profile:
+    """Returns the profile of the model whose method an event calls."""
+    owner = getattr(event.call, "__self__", event.call)
+    return getattr(owner, "_profile", None) or PYTHON_ACTR
 
 
 # -- what a generator may wait for

@@ -148,3 +148,9 @@ WRITTEN_FOR_PYTHON_ACTR = "__written_for_python_actr__"
 def for_python_actr(file: Mapping[str, Any]) -> bool:
     """Returns whether a file, given its globals, is part of a program that imports python_actr or ccm by name."""
     return LOG.announce or bool(file.get(WRITTEN_FOR_PYTHON_ACTR))
+
+
+def written_for_python_actr(kind: type) -> bool:
+    """Returns whether a class is part of such a program."""
+    files = [sys.modules.get(klass.__module__) for klass in kind.__mro__]
+    return LOG.announce or any(for_python_actr(vars(file)) for file in files if file is not None)

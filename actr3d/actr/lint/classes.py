@@ -11,18 +11,13 @@ from collections.abc import Callable, Iterator
 from functools import lru_cache
 from typing import Any
 
+from actr3d.actr.kernel.class_members import is_modellers
 from actr3d.actr.kernel.model import Model
-from actr3d.actr.kernel.parameters import settable_of, slip_hint
+from actr3d.actr.kernel.parameters import WithParameters, settable_of, slip_hint
 from actr3d.actr.kernel.source_code import SOURCE, source_of, syntax_tree
-from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.actr.procedural.rebinding import stored_names
 from actr3d.errors import ModelWarning
 from actr3d.warnings import warn_at
-
-
-def is_modellers(klass: type) -> bool:
-    """Returns whether a class is a modeller's own."""
-    return klass is not object and not klass.__module__.startswith("actr3d.")
 
 
 def check_names_of_methods(klass: type, func: Callable[..., Any]) -> None:
@@ -82,7 +77,7 @@ def _definitions(text: str) -> tuple[ast.ClassDef, ...]:
     return tuple(node for node in ast.walk(syntax_tree(text)) if isinstance(node, ast.ClassDef))
 
 
-def check_parameters(system: ProductionSystem) -> None:
+def check_parameters(system: WithParameters) -> None:
     """Warns about attributes of an agent's class whose names are similar to those of parameters of agents."""
     for klass in type(system).__mro__:
         if not is_modellers(klass):

@@ -14,11 +14,10 @@ from actr3d.actr.chunks.pattern import parse
 from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.declarative.partial_matching import Partial
 from actr3d.actr.kernel.buffer import Buffer
-from actr3d.actr.kernel.class_members import MethodWrapper
-from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.model import MethodWrapper, Model
 from actr3d.actr.kernel.source_code import function_node, source_of
-from actr3d.actr.lint.patterns import SURE, slots_held
-from actr3d.actr.lint.slot_names import GIVERS, READERS, slip_of, slots_in, text_of, vocabulary
+from actr3d.actr.lint.slot_inference import slots_held
+from actr3d.actr.lint.slot_names import GIVERS, READERS, SURE, slip_of, slots_in, text_of, vocabulary
 from actr3d.actr.modules.imaginal import ImaginalModule
 from actr3d.actr.procedural.production import Production
 from actr3d.errors import PatternException, did_you_mean

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any, cast
 
 from actr3d.actr.chunks.pattern import MISSING, Condition
-from actr3d.actr.declarative.memory import Memory
-from actr3d.actr.kernel.buffer import Buffer
-from actr3d.actr.lint.slot_inference import all_slots
-from actr3d.actr.lint.slot_names import vocabulary
+from actr3d.actr.kernel.buffer import UNKNOWN, Buffer, plain_value
+from actr3d.actr.lint.slot_inference import all_slots, slots_held
+from actr3d.actr.lint.slot_names import SURE, vocabulary
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.safe_reading import UNKNOWN, plain_value
 from actr3d.errors import did_you_mean, nearest
 from actr3d.warnings import warn_at
-
-SURE = 0.74
-"""The similarity to another name (0 to 1) from which a name counts as misspelt."""
 
 
 def check_patterns(production: Production) -> None:
@@ -74,18 +69,6 @@ def _check_slot(production: Production, key: int | str) -> None:
             _warn_likely(production, f"{what}{hint}")
         else:
             _warn_never(production, what)
-
-
-def slots_held(parts: Iterable[object]) -> set[Any]:
-    """Returns the slots of the chunks that are in buffers and memories now, and those that a library sets in buffers."""
-    found: set[Any] = set()
-    for part in parts:
-        if isinstance(part, Buffer):
-            found.update(part.chunk or (), part._slots)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
-        elif isinstance(part, Memory):
-            for chunk in part.dm:
-                found.update(chunk)
-    return found
 
 
 def _missing_attribute(target: Any, path: str) -> tuple[str, str]:

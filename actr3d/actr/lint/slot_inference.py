@@ -1,18 +1,19 @@
-"""Infers all slots that chunks can ever have, if a program's text contains them all."""
+"""Finds the slots that chunks have now, and infers all that they can ever have, if a program's text contains them all."""
 
 from __future__ import annotations
 
 import ast
 import sys
+from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any, cast
 
 from actr3d.actr.chunks.chunk import Slot, parse_slots
 from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.kernel.buffer import Buffer
+from actr3d.actr.kernel.class_members import is_modellers
 from actr3d.actr.kernel.source_code import source_of, syntax_tree
 from actr3d.actr.kernel.tree import TreeNode, subtree, top_of
-from actr3d.actr.lint.classes import is_modellers
 from actr3d.actr.lint.slot_names import GIVERS, is_production
 from actr3d.actr.modules.imaginal import ImaginalModule
 from actr3d.actr.modules.motor import Motor
@@ -65,6 +66,18 @@ def all_slots(production: Production) -> frozenset[Slot] | None:
         elif not isinstance(part, _PLAIN):
             return None
     return _literal_slots(source_of(func))
+
+
+def slots_held(parts: Iterable[object]) -> set[Any]:
+    """Returns the slots of the chunks that are in buffers and memories now, and those that a library sets in buffers."""
+    found: set[Any] = set()
+    for part in parts:
+        if isinstance(part, Buffer):
+            found.update(part.chunk or (), part._slots)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
+        elif isinstance(part, Memory):
+            for chunk in part.dm:
+                found.update(chunk)
+    return found
 
 
 @lru_cache(maxsize=16)

@@ -13,6 +13,8 @@ from actr3d.actr.kernel.source_code import source_of, syntax_tree
 _NAMED = re.compile(r"(?:^|\s)(\w+):(?:\S|$)")
 _COMPUTED = "\0"
 """Marks a computed value in an f-string's text."""
+SURE = 0.74
+"""The similarity to another name (0 to 1) from which a name counts as misspelt."""
 READERS = ("request", "find_matching_chunks")
 """Methods whose text requests a chunk, and sets no slots."""
 GIVERS = ("set", "add")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
-from actr3d.actr.kernel.class_members import Method, MethodWrapper
+from actr3d.actr.kernel.class_members import Method
 from actr3d.actr.kernel.log import dummy
-from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.model import MethodWrapper, Model
 from actr3d.actr.kernel.noise import pick
 from actr3d.actr.kernel.parameters import WithParameters
 from actr3d.actr.kernel.profile import find_profile
@@ -247,6 +247,11 @@ class ProductionSystem(WithParameters, Model):
 def rules_of(system: ProductionSystem) -> Rules:
     """Returns the productions of a system and the state of its cycle; empty before the system is converted."""
     return system.__dict__.get("_rules") or Rules()
+
+
+def system_of(production: Production) -> ProductionSystem:
+    """Returns the system that a production belongs to."""
+    return cast("ProductionSystem", production.system)
 
 
 def prepare_context(system: ProductionSystem) -> None:

@@ -12,7 +12,6 @@ from actr3d.actr.kernel.noise import logistic_noise
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.kernel.tree import path_of
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
 from actr3d.trace import Trace
 
 
@@ -48,7 +47,7 @@ class ProceduralSubModule(WithParameters, Model):
     def _trace_change(self, trace: Trace, key: str, value: Any) -> None:
         super()._trace_change(trace, key, value)
         if key in self._decisive and trace.all and self.parent is not None:
-            for production in rules_of(cast("ProductionSystem", self.parent)).productions:
+            for production in _productions_of(self.parent):
                 _trace_part(trace, self, production, known_part(self, production))
 
     def _learned(self, prod: Any) -> None:
@@ -59,6 +58,11 @@ class ProceduralSubModule(WithParameters, Model):
 def utility_modules(agent: Model | None) -> list[ProceduralSubModule]:
     """Returns the utility modules of an agent."""
     return [] if agent is None else agent.__dict__.get("_adaptors", [])
+
+
+def _productions_of(agent: Model | None) -> list[Production]:
+    """Returns the productions of an agent."""
+    return [] if agent is None else agent.__dict__.get("_productions", [])
 
 
 def known_part(module: ProceduralSubModule, prod: Any) -> float | None:
@@ -184,7 +188,7 @@ class PMPGC(ProceduralSubModule):
             KeyError: If the agent has no production of that name.
         """
         if isinstance(prod, str):
-            prod = {p.name: p for p in rules_of(cast("ProductionSystem", self.parent)).productions}[prod]
+            prod = {p.name: p for p in _productions_of(self.parent)}[prod]
         if successes is not None:
             prod.successes = successes
         if failures is not None:

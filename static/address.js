@@ -1,0 +1,35 @@
+// The address of the page: which model, or which recorded run and time; in a window of its own, which panel.
+
+/** Returns a part of the address: "model", "run", "t", "panel" or "page"; null for none. */
+export function addressed(name) {
+  return new URLSearchParams(location.search).get(name);
+}
+
+/** Returns the moment of the address [s]; null for none. */
+export function addressedTime() {
+  const text = addressed("t");
+  const time = Number(text);
+  return text !== null && text.trim() !== "" && Number.isFinite(time) && time >= 0 ? time : null;
+}
+
+/** Puts what is shown into the address: `kind` is "model" or "run". «Back» and «forward» switch between a recorded run and a model. */
+export function goToAddress(kind, name) {
+  if (addressed(kind) === name) return;
+  const wanted = new URLSearchParams();
+  for (const kept of ["panel", "page"]) if (addressed(kept) !== null) wanted.set(kept, addressed(kept));
+  wanted.set(kind, name);
+  const other = kind === "run" || addressed("run") !== null;
+  history[other ? "pushState" : "replaceState"](null, "", `?${wanted}`);
+}
+
+/** Takes the moment out of the address: who loads the page again is not taken back to it. */
+export function leaveMoment() {
+  const wanted = new URLSearchParams(location.search);
+  wanted.delete("t");
+  history.replaceState(null, "", `?${wanted}`);
+}
+
+/** Returns the whole address of a moment of a recorded run. */
+export function addressOf(run, time) {
+  return `${location.origin}/?${new URLSearchParams({ run, t: String(Number(time.toFixed(6))) })}`;
+}

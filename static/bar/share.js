@@ -1,0 +1,39 @@
+// Copies a link to the moment of the run that is shown.
+
+import { html, signal } from "../vendor/preact.js";
+import { addressOf } from "../address.js";
+import { command, run } from "../commands.js";
+import { buttonTitle } from "../keys.js";
+import { Icon } from "../parts/icon.js";
+import { complain, session } from "../store.js";
+import { present } from "../timeline/seek.js";
+
+const SHOWN = 2000; // how long the confirmation is shown [ms]
+const copied = signal(0); // how many confirmations are shown
+
+/** Returns the recording that has the run that is shown; null for none. */
+function recordingOf(facts) {
+  const { recording, recorded, branched } = facts ?? {};
+  return recording ?? (branched ? null : recorded) ?? null;
+}
+
+async function copyLink() {
+  try {
+    await navigator.clipboard.writeText(addressOf(recordingOf(session.peek()), present.peek()));
+  } catch (error) {
+    complain(`The link was not copied: ${error.name === "NotAllowedError" ? "the browser does not let the page write to the clipboard" : error.message}.`);
+    return;
+  }
+  copied.value += 1;
+  setTimeout(() => (copied.value -= 1), SHOWN);
+}
+
+const sharing = command({ text: "Copy a link to this moment of the run", group: "Run", work: copyLink, ready: () => recordingOf(session.value) !== null });
+
+export function Share() {
+  const ready = sharing.ready();
+  const why = session.value && !ready ? "This run is not recorded, so no link leads to it" : buttonTitle(sharing);
+  return html`<button class="bare ${copied.value ? "good" : ""}" disabled=${!ready} title=${copied.value ? "Copied" : why} aria-label="Copy a link" onClick=${() => run(sharing)}>
+    <${Icon} name=${copied.value ? "check" : "link"} /><span class="unseen" role="status">${copied.value ? "The link is copied" : ""}</span>
+  </button>`;
+}

@@ -1,0 +1,45 @@
+// The commands of the page, each registered once: the palette lists them, keys run them, the help and the titles of buttons name them.
+
+const known = [];
+const sources = [];
+
+/**
+ * @typedef Command
+ * @property {string} text What it does.
+ * @property {string} group The part of the page that it belongs to.
+ * @property {string | null} key As in KeyboardEvent, preceded by "Shift+" or "Mod+" (Ctrl, or Cmd on a Mac); null for none.
+ * @property {() => void} work Runs it.
+ * @property {() => boolean} ready Whether it can be run now.
+ */
+
+/** Registers a command, and returns it. */
+export function command({ text, group, key = null, work, ready = () => true }) {
+  const made = { text, group, key, work, ready };
+  known.push(made);
+  return made;
+}
+
+/** Registers commands that depend on what is shown: `list` returns them, each time they are asked for. They are found by a search. */
+export function commandsOf(list) {
+  sources.push(list);
+}
+
+/** Returns the commands that are always there, in the order in which they were registered. */
+export function permanent() {
+  return known;
+}
+
+/** Returns the commands that depend on what is shown. */
+export function present() {
+  return sources.flatMap((list) => list().map((one) => ({ key: null, ready: () => true, ...one })));
+}
+
+/** Returns the command of a key. */
+export function commandOf(key) {
+  return known.find((one) => one.key === key);
+}
+
+/** Runs a command if it is ready. */
+export function run(one) {
+  if (one.ready()) one.work();
+}

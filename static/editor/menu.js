@@ -1,0 +1,47 @@
+// The menu of the editor: what its keys do, and pieces of models to insert.
+
+import { gotoLine, openSearchPanel, startCompletion } from "../vendor/codemirror.js";
+import { html, useId, useRef } from "../vendor/preact.js";
+import { keyText } from "../keys.js";
+import { Icon } from "../parts/icon.js";
+import { showHelp } from "./assist.js";
+import { keys, withView } from "./code.js";
+import { insertAtCursor, SNIPPETS } from "./snippets.js";
+
+const WIDTH = 290; // [px]
+
+/** The actions: {text, key, work}; the keys are those of code.js, assist.js and CodeMirror. */
+export const ACTIONS = [
+  { text: "Complete", key: "Ctrl+Space", work: () => withView(startCompletion) },
+  { text: "Documentation", key: "Mod+Shift+Space", work: () => withView(showHelp) },
+  { text: "Go to the definition", key: "F12", work: () => keys.define() },
+  { text: "Rename …", key: "F2", work: () => keys.rename() },
+  { text: "Format", key: "Shift+Alt+F", work: () => keys.format() },
+  { text: "Find and replace …", key: "Mod+F", work: () => withView(openSearchPanel) },
+  { text: "Go to a line …", key: "Mod+Alt+G", work: () => withView(gotoLine) },
+];
+
+/** @param disabled Whether there is no text. */
+export function Menu({ disabled }) {
+  const id = useId();
+  const button = useRef(null);
+  const menu = useRef(null);
+
+  function place(event) {
+    if (event.newState !== "open") return;
+    const { right, bottom } = button.current.getBoundingClientRect();
+    Object.assign(menu.current.style, { left: `${Math.max(4, right - WIDTH)}px`, top: `${bottom + 2}px` });
+  }
+
+  function choose(work) {
+    menu.current.hidePopover();
+    work();
+  }
+
+  return html`<button ref=${button} class="bare" popovertarget=${id} disabled=${disabled} title="More: definition, rename, format, insert" aria-label="More"><${Icon} name="more" /></button>
+    <div ref=${menu} id=${id} popover="auto" class="editor-menu" role="group" aria-label="More" onBeforeToggle=${place}>
+      ${ACTIONS.map(({ text, key, work }) => html`<button key=${text} class="bare" onClick=${() => choose(work)}><span>${text}</span><kbd>${keyText(key)}</kbd></button>`)}
+      <p>Insert</p>
+      ${SNIPPETS.map((piece) => html`<button key=${piece.label} class="bare" onClick=${() => choose(() => withView((view) => insertAtCursor(view, piece)))}><span>${piece.detail}</span></button>`)}
+    </div>`;
+}

@@ -1,0 +1,109 @@
+// Pieces of models to insert: offered among the completions at the start of a line, and in the menu of the editor.
+
+import { snippet } from "../vendor/codemirror.js";
+import { AGENT, BODY } from "./templates.js";
+
+const ACTR = "from actr3d.actr import *";
+
+/** {label, detail, needs: imports, source: a template with fields in CodeMirror's form, whole: whether it stands outside of classes}. */
+export const SNIPPETS = [
+  { label: "agent", detail: "an agent with a production", needs: AGENT.imports, source: AGENT.source, whole: true },
+  {
+    label: "production",
+    detail: "a production",
+    needs: [ACTR],
+    source: 'def ${name}(goal="${task:start}"):\n\tgoal.set("${task:done}")\n',
+  },
+  {
+    label: "memory",
+    detail: "a declarative memory and its buffer",
+    needs: [ACTR],
+    source: "${retrieval} = Buffer()\n${memory} = Memory(${retrieval})\n",
+  },
+  { label: "body", detail: "an agent with a body in a world", needs: BODY.imports, source: BODY.source, whole: true },
+  {
+    label: "detector",
+    detail: "a detector for the agent's vision",
+    needs: ["from dataclasses import dataclass", "from actr3d.vision import DETECTORS, Feature, Metres, detector"],
+    whole: true,
+    source: `@dataclass(frozen=True, kw_only=True)
+class \${Wall}(Feature):
+    """\${A wide thing.}"""
+
+    width: Metres
+
+
+@detector(\${Wall})
+def \${walls}(view, *, least: Metres = \${1.0}):
+    """Returns everything that is at least so wide."""
+    things = DETECTORS["obstacle"](view)
+    return tuple(\${Wall}(distance=one.distance, direction=one.direction, width=one.width) for one in things if one.width >= least)
+`,
+  },
+  {
+    label: "experiment",
+    detail: "a design of an experiment",
+    needs: ["from actr3d.experiment import Design, Group, Measured, Normal, design"],
+    whole: true,
+    source: `@design
+def \${my_design}():
+    """\${Says in a line what is compared.}"""
+    return Design(
+        model="\${my_model.py}",
+        factors={"\${width}": [\${0.5, 0.8}]},
+        groups={"\${adults}": Group(participants=5, parameters={"\${speed}": Normal(mean=\${1.2}, sd=\${0.1}, low=\${0.5})})},
+        trials=10,
+        measures=[Measured(name="\${time}", unit="\${s}")],
+    )
+`,
+  },
+];
+
+/** What inserts each piece as a completion, at the start of a line. */
+export function completionsOf() {
+  return SNIPPETS.map((piece) => ({
+    label: piece.label,
+    type: "text",
+    detail: piece.detail,
+    boost: 4,
+    apply: (view, _, from, to) => insertPiece(view, piece, from, to),
+  }));
+}
+
+/** Inserts a piece between two positions of the text that is shown, and the imports that it needs. */
+function insertPiece(view, piece, from, to) {
+  const missing = piece.needs.filter((line) => !imports(view.state.doc).some(({ text }) => text === line));
+  if (missing.length === 0) return snippet(piece.source)(view, null, from, to);
+  const changes = view.state.changes(importing(view.state.doc, missing));
+  view.dispatch({ changes, userEvent: "input" });
+  return snippet(piece.source)(view, null, changes.mapPos(from, 1), changes.mapPos(to, 1));
+}
+
+/** Returns the lines of a text that are imports at its top level. */
+function imports(doc) {
+  return Array.from(doc.iterLines(), (text, n) => ({ text, number: n + 1 })).filter(({ text }) => /^(from|import)\s/.test(text));
+}
+
+/** Returns the change that adds imports: after the last one, or otherwise after the docstring. */
+function importing(doc, lines) {
+  const last = imports(doc).at(-1);
+  if (last) return { from: doc.line(last.number).to, insert: `\n${lines.join("\n")}` };
+  const [docstring = ""] = /^\s*("""[^]*?"""|'''[^]*?''')[^\n]*\n?/.exec(doc.sliceString(0, 20_000)) ?? [];
+  return { from: docstring.length, insert: `${docstring ? "\n" : ""}${lines.join("\n")}\n\n\n` };
+}
+
+/** Inserts a piece at the cursor: in its line if that is empty, otherwise below; what stands outside of classes, below the class or
+ * function that the cursor is in. */
+export function insertAtCursor(view, piece) {
+  const { doc, selection } = view.state;
+  let line = doc.lineAt(selection.main.head);
+  if (piece.whole) {
+    while (line.number < doc.lines && !/^\S/.test(doc.line(line.number + 1).text)) line = doc.line(line.number + 1);
+    while (line.number > 1 && line.text.trim() === "") line = doc.line(line.number - 1);
+  }
+  const isEmpty = line.text.trim() === "";
+  const gap = isEmpty ? "" : piece.whole ? "\n\n\n" : `\n${/^\s*/.exec(line.text)[0]}`;
+  view.dispatch({ changes: { from: line.to, insert: gap }, userEvent: "input" });
+  insertPiece(view, piece, line.to + gap.length, line.to + gap.length);
+  view.focus();
+}

@@ -1,0 +1,89 @@
+// What flows between the productions, buffers and modules of a run, as its events show it.
+
+import { events, state, way } from "../store.js";
+
+const ENDS = new Set(["conflict", "fire", "initialize"]); // what follows is no longer the work of the production that has fired
+const OWN = new Set(["buffer", "state", "request", "productions", "select", "add", "output"]); // these say nothing of where a buffer's content comes from
+
+export const keyOf = (system, production) => `${system}\n${production}`;
+
+/** What is known of a run. */
+class Known {
+  #writes = new Map(); // by production: the buffers that it has filled, and the modules that it has asked
+  #clears = new Map(); // by production: the buffers that were emptied as it fired
+  /** By module: the paths of the buffers that it has filled. */
+  feeds = new Map();
+  #next = 0;
+  #fired = null; // the production that has just fired, as [key, time]
+  #group = { time: -1, modules: new Set(), buffers: new Set() };
+  #begins = false; // whether agents are being initialised
+
+  /** Takes in the new events of a list. */
+  take({ list, first }) {
+    for (let n = Math.max(0, this.#next - first); n < list.length; n += 1) this.#one(list[n]);
+    this.#next = first + list.length;
+  }
+
+  #one([time, source, kind, data]) {
+    if (this.#fired && time !== this.#fired[1]) this.#fired = null;
+    if (ENDS.has(kind)) {
+      this.#begins = kind === "initialize";
+      this.#fired = kind === "fire" ? [keyOf(source, data.production), time] : null;
+      this.#group = { time, modules: new Set(), buffers: new Set() };
+      return;
+    }
+    if (this.#begins) return;
+    if (this.#fired) {
+      if (kind === "request" || kind === "buffer") add(kind === "buffer" && data.chunk === null ? this.#clears : this.#writes, this.#fired[0], source);
+      return;
+    }
+    if (time !== this.#group.time) this.#group = { time, modules: new Set(), buffers: new Set() };
+    if (kind === "buffer" && data.chunk !== null) this.#group.buffers.add(source);
+    else if (!OWN.has(kind)) this.#group.modules.add(source);
+    if (this.#group.modules.size === 1) for (const buffer of this.#group.buffers) add(this.feeds, [...this.#group.modules][0], buffer);
+  }
+
+  /** Returns the paths of the buffers that a production (`keyOf`) has changed, and of the modules that it has asked. A module that is
+   * asked may empty the buffer that it will fill: that is not the production's own work. */
+  changedBy(production) {
+    const written = this.#writes.get(production) ?? new Set();
+    const own = [...(this.#clears.get(production) ?? [])].filter((path) => ![...written].some((module) => this.feeds.get(module)?.has(path)));
+    return new Set([...written, ...own]);
+  }
+}
+
+function add(map, key, value) {
+  if (!map.has(key)) map.set(key, new Set());
+  map.get(key).add(value);
+}
+
+let known = new Known();
+let of = "";
+
+/** Returns what is known of the run that is shown. */
+export function flows() {
+  if (of !== way.value) {
+    known = new Known();
+    of = way.value;
+  }
+  known.take(events.value);
+  return known;
+}
+
+/** Returns what has happened within the last tick up to the present moment: {fired, answered}, the production that has fired, as `keyOf`,
+ * and the modules that have filled buffers; by system, if `belongs` says that a source belongs to it. */
+export function justNow(period, belongs) {
+  const { list, first } = events.value;
+  const now = state.value?.events ?? 0;
+  const since = Math.round(((state.value?.time ?? 0) - period) * 1e6);
+  let fired = null;
+  const answered = new Set();
+  for (let n = Math.min(list.length, now - first) - 1; n >= 0; n -= 1) {
+    const [time, source, kind, data] = list[n];
+    if (time <= since) break;
+    if (!belongs(source)) continue;
+    if (kind === "fire") fired ??= keyOf(source, data.production);
+    else if (!OWN.has(kind) && !ENDS.has(kind)) answered.add(source);
+  }
+  return { fired, answered };
+}

@@ -1,0 +1,92 @@
+// The layout: which parts of the page are shown, how large they are, on which side, and in which window.
+
+import { addressed } from "./address.js";
+import { command } from "./commands.js";
+import { remembered } from "./local_storage.js";
+import { computed, effect, signal } from "./vendor/preact.js";
+import { session } from "./store.js";
+
+/** The parts of the page, with their titles. */
+export const AREAS = { scene: "3D view", panels: "Panels", timeline: "Timeline" };
+
+/** Whether there is a 3D view; otherwise the panels have all the room. While a model loads, it is as for the previous one. */
+export const hasWorld = remembered("has world", true);
+effect(() => {
+  if (session.value?.kind) hasWorld.value = Boolean(session.value.world);
+});
+
+/** Returns a value that models with a world and those without one have each for themselves; it is stored in the browser. */
+function ofKind(name, otherwise) {
+  const [withWorld, without] = [remembered(name, otherwise), remembered(`${name} without a world`, otherwise)];
+  const kept = () => (hasWorld.value ? withWorld : without);
+  return {
+    get value() {
+      return kept().value;
+    },
+    set value(value) {
+      kept().value = value;
+    },
+  };
+}
+
+/** Whether this is the whole page: a window of its own has one panel. */
+const isWhole = addressed("panel") === null;
+const isThere = (area) => isWhole && (area !== "scene" || hasWorld.value);
+
+const ROWS = 336; // the height of the default rows of a model with a body [px]
+/** The width of the panels [px]. By default, all tabs can be seen, and wide windows give the panels more room too. */
+export const panelsWidth = ofKind("side width", Math.max(784, Math.round(0.38 * innerWidth)));
+/** The height of the timeline [px]. */
+export const timelineHeight = ofKind("timeline height", Math.round(Math.min(0.42 * innerHeight, Math.max(ROWS, 0.34 * innerHeight))));
+/** Whether the panels are on the left. */
+export const swapped = remembered("swapped sides", false);
+const collapsed = ofKind("collapsed", []);
+const largest = signal(null);
+/** The part that fills the page; null for none. */
+export const maximised = computed(() => (largest.value !== null && isThere(largest.value) ? largest.value : null));
+
+/** Returns whether a part is collapsed: a strip at the edge of the page. */
+export function isCollapsed(area) {
+  return collapsed.value.includes(area);
+}
+
+/** Returns whether a part can be collapsed now: something else is beside it. */
+export function canCollapse(area) {
+  return area === "timeline" || (hasWorld.value && !isCollapsed(area === "scene" ? "panels" : "scene"));
+}
+
+export function collapse(area) {
+  largest.value = null;
+  collapsed.value = [...collapsed.value.filter((other) => other !== area), area];
+}
+
+export function expand(area) {
+  collapsed.value = collapsed.value.filter((other) => other !== area);
+}
+
+/** Lets a part fill the page, or no longer. */
+export function maximise(area) {
+  largest.value = maximised.value === area ? null : area;
+}
+
+const KEYS = { panels: "m", scene: "Shift+m", timeline: null };
+
+/** The commands of a part: {maximise, collapse, expand}. */
+export const layoutCommands = Object.fromEntries(
+  Object.entries(AREAS).map(([area, title]) => {
+    const named = (text, work, ready, key = null) => command({ text: `${text} the ${title === "3D view" ? title : title.toLowerCase()}`, key, group: "Page", work, ready });
+    return [
+      area,
+      {
+        maximise: named("Maximise", () => maximise(area), () => isThere(area), KEYS[area]),
+        collapse: named("Collapse", () => collapse(area), () => isThere(area) && !isCollapsed(area) && canCollapse(area)),
+        expand: named("Expand", () => expand(area), () => isThere(area) && isCollapsed(area)),
+      },
+    ];
+  }),
+);
+
+/** Swaps the 3D view and the panels. */
+export const swap = command({ text: "Swap the sides of the 3D view and the panels", group: "Page", work: () => (swapped.value = !swapped.value), ready: () => isThere("scene") });
+
+command({ text: "All parts of the page again, after one was maximised", key: "Escape", group: "Page", work: () => (largest.value = null), ready: () => maximised.value !== null });

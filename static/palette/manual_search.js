@@ -1,0 +1,55 @@
+// Searches the manual, in the index that its own search uses; it is read when the palette is first used.
+
+import { hasManual } from "../bar/models.js";
+import { signal } from "../vendor/preact.js";
+
+const MOST = 6;
+const LEAST = 3; // letters of a search
+const AROUND = 60; // letters of a text shown before the word found
+
+/** The sections of the manual: {title, text, low, address}; null before they have been read. */
+const sections = signal(null);
+let asked = false;
+
+/** Reads the index, once. */
+export async function readManual() {
+  if (asked || !hasManual.value) return;
+  asked = true;
+  try {
+    const { docs } = await (await fetch("/manual/search/search_index.json")).json();
+    sections.value = docs.map(({ location, title, text }) => {
+      const plain = plainText(text);
+      return { title: plainText(title), text: plain, low: plain.toLowerCase(), address: `/manual/${location}`, depth: location.includes("#") ? 1 : 0 };
+    });
+  } catch {
+    asked = false; // it is asked again when the palette is opened again
+  }
+}
+
+const SIGNS = { lt: "<", gt: ">", quot: '"', amp: "&" };
+
+/** Returns the text of a piece of HTML, which is shown as text. */
+function plainText(markup) {
+  const text = markup.replace(/<[^>]*>/g, " ").replace(/&(?:#(\d+)|(lt|gt|quot|amp));/g, (_, code, name) => (name ? SIGNS[name] : String.fromCodePoint(code)));
+  return text.replace(/\s+/g, " ").trim();
+}
+
+/** Returns the sections that contain all words of a search, the best first: {title, text, address}, with a piece of the text around
+ * the first word. */
+export function inManual(search) {
+  const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+  if (sections.value === null || words.join("").length < LEAST) return [];
+  const found = [];
+  for (const section of sections.value) {
+    const title = section.title.toLowerCase();
+    if (!words.every((word) => title.includes(word) || section.low.includes(word))) continue;
+    const score = words.reduce((sum, word) => sum + (title === word ? 30 : title.startsWith(word) ? 12 : title.includes(word) ? 8 : 1), 0) - section.depth;
+    found.push({ section, score });
+  }
+  found.sort((one, other) => other.score - one.score);
+  return found.slice(0, MOST).map(({ section: { title, text, low, address } }) => {
+    const at = Math.max(0, ...words.map((word) => low.indexOf(word)).filter((place) => place >= 0).slice(0, 1));
+    const from = at > AROUND ? text.indexOf(" ", at - AROUND) + 1 : 0;
+    return { title, text: `${from > 0 ? "… " : ""}${text.slice(from, from + 3 * AROUND)}`, address };
+  });
+}

@@ -1,0 +1,152 @@
+// The command palette (Ctrl K): every command of the page, found by a few letters; what was used last comes first; and the manual.
+
+import { command, permanent, present, run } from "../commands.js";
+import { KEY_GROUPS, keyText } from "../keys.js";
+import { remembered } from "../local_storage.js";
+import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
+import { match } from "./fuzzy.js";
+import { inManual, readManual } from "./manual_search.js";
+import { readRecordings } from "./recordings.js";
+
+const MOST_RECENT = 6;
+const MOST = 60; // entries shown
+const WEAK = 0.6; // what fits worse than this share of the best is left out
+
+const isOpen = signal(false);
+const search = signal("");
+const chosen = signal(0);
+/** The names of the commands used last, the newest first. */
+const recent = remembered("recent commands", []);
+
+const nameOf = ({ group, text }) => `${group}: ${text}`;
+
+/** Returns the entries for a search: {of, heading, places}. */
+function found() {
+  const all = [...permanent().filter((one) => one !== opening), ...present()];
+  const words = search.value.trim();
+  if (words === "") {
+    const byName = new Map(all.map((one) => [nameOf(one), one]));
+    const last = recent.value.flatMap((name) => byName.get(name) ?? []);
+    const others = permanent().filter((one) => one !== opening && one.ready() && !last.includes(one));
+    const groups = [...KEY_GROUPS, "Tab"].flatMap((group) => others.filter((one) => one.group === group));
+    return [...last.map((of) => ({ of, heading: "Used last" })), ...groups.map((of) => ({ of, heading: of.group }))];
+  }
+  const rank = (one) => {
+    const place = recent.value.indexOf(nameOf(one));
+    return place < 0 ? 0 : MOST_RECENT - place;
+  };
+  const hits = all
+    .flatMap((of) => {
+      const hit = match(words, `${of.text} ${of.group}`);
+      return hit === null ? [] : [{ of, heading: "Commands", places: hit.places, score: hit.score + rank(of) }];
+    })
+    .sort((one, other) => other.of.ready() - one.of.ready() || other.score - one.score);
+  const best = Math.max(...hits.map(({ score }) => score));
+  return hits.filter(({ score }) => score > WEAK * best).slice(0, MOST);
+}
+
+/** Returns everything that is offered. */
+function offered() {
+  const pages = inManual(search.value.trim()).map((section) => ({
+    of: { text: section.title, group: section.text, key: null, ready: () => true, work: () => open(section.address, "_blank", "noopener") },
+    heading: "Manual",
+  }));
+  return [...found(), ...pages];
+}
+
+function take({ of, heading }) {
+  if (!of.ready()) return;
+  isOpen.value = false;
+  if (heading !== "Manual") recent.value = [nameOf(of), ...recent.value.filter((name) => name !== nameOf(of))].slice(0, MOST_RECENT);
+  setTimeout(() => run(of)); // after the palette has closed and given back the focus
+}
+
+function Text({ text, places }) {
+  if (!places) return text;
+  return Array.from(text, (letter, n) => (places.has(n) ? html`<b key=${n}>${letter}</b>` : letter));
+}
+
+function Entry({ entry, n }) {
+  const { of, heading, places } = entry;
+  const line = useRef(null);
+  const isChosen = chosen.value === n;
+  useLayoutEffect(() => {
+    if (isChosen) line.current.scrollIntoView({ block: "nearest" });
+  }, [isChosen]);
+  return html`<li
+    ref=${line}
+    id="palette-${n}"
+    role="option"
+    aria-selected=${isChosen}
+    aria-disabled=${!of.ready()}
+    onPointerMove=${() => (chosen.value = n)}
+    onClick=${() => take(entry)}
+  >
+    <span class="palette-text"><${Text} text=${of.text} places=${places} /></span>
+    ${heading === of.group ? null : html`<span class="palette-group quiet">${of.group}</span>`}
+    ${of.key ? html`<kbd>${keyText(of.key)}</kbd>` : null}
+  </li>`;
+}
+
+function Palette() {
+  const box = useRef(null);
+  const entries = offered();
+  const at = Math.min(chosen.value, entries.length - 1);
+  useLayoutEffect(() => void box.current.showModal(), []);
+  useEffect(() => {
+    readManual();
+    readRecordings();
+  }, []);
+
+  function press(event) {
+    const to = { ArrowDown: at + 1, ArrowUp: at - 1, PageDown: Math.min(at + 8, entries.length - 1), PageUp: Math.max(at - 8, 0) }[event.key];
+    if (to !== undefined && entries.length > 0) chosen.value = (to + entries.length) % entries.length;
+    else if (event.key === "Enter" && entries[at]) take(entries[at]);
+    else if (event.key.toLowerCase() === "k" && (event.ctrlKey || event.metaKey)) isOpen.value = false;
+    else return;
+    event.preventDefault();
+  }
+
+  const groups = [...Map.groupBy(entries.map((entry, n) => ({ entry, n })), ({ entry }) => entry.heading)];
+  return html`<dialog class="palette" ref=${box} aria-label="Commands" onClose=${() => (isOpen.value = false)} onClick=${(event) => event.target === box.current && (isOpen.value = false)}>
+    <input
+      type="text"
+      role="combobox"
+      autofocus
+      spellcheck=${false}
+      autocomplete="off"
+      aria-label="Search commands and the manual"
+      aria-expanded="true"
+      aria-controls="palette-list"
+      aria-activedescendant=${at >= 0 ? `palette-${at}` : undefined}
+      placeholder="Search commands and the manual"
+      value=${search.value}
+      onInput=${(event) => ((search.value = event.currentTarget.value), (chosen.value = 0))}
+      onKeyDown=${press}
+    />
+    <ul id="palette-list" role="listbox" aria-label="Found">
+      ${groups.map(([heading, list], number) => html`<li key=${heading} role="presentation">
+        <div class="palette-heading" role="presentation" id=${`palette-group-${number}`}>${heading}</div>
+        <ul role="group" aria-labelledby=${`palette-group-${number}`}>${list.map(({ entry, n }) => html`<${Entry} key=${`${entry.of.group} ${entry.of.text}`} entry=${entry} n=${n} />`)}</ul>
+      </li>`)}
+    </ul>
+    ${entries.length === 0 ? html`<p class="empty">Nothing has this in its name.</p>` : null}
+  </dialog>`;
+}
+
+/** The command that opens it. */
+export const opening = command({
+  text: "All commands, and the manual",
+  key: "Mod+k",
+  group: "Page",
+  work: () => {
+    search.value = "";
+    chosen.value = 0;
+    isOpen.value = true;
+  },
+});
+
+/** The container of the palette. */
+export function CommandPalette() {
+  return isOpen.value ? html`<${Palette} />` : null;
+}

@@ -1,0 +1,56 @@
+// Windows of their own for panels, the 3D view and the timeline: each is a page that shows what the page shows that has opened it.
+
+import { addressed } from "./address.js";
+import { show } from "./server.js";
+import { complain, session } from "./store.js";
+import { effect } from "./vendor/preact.js";
+
+const PATIENCE = 400; // how long a window waits for the page that has opened it [ms]
+const SIZES = { scene: [960, 720], timeline: [1200, 420] }; // [px]
+const USUAL = [760, 620];
+
+/** The id of the panel, or of the part of the page, that this window shows alone; null for the whole page. */
+export const alone = addressed("panel");
+
+/** Identifies the page that this window belongs to: itself, unless it was opened by one. */
+const page = addressed("page") ?? ownName();
+const channel = new BroadcastChannel("actr3d pages");
+
+function ownName() {
+  const known = sessionStorage.getItem("page");
+  const name = known ?? String(Math.random()).slice(2);
+  sessionStorage.setItem("page", name);
+  return name;
+}
+
+/** Opens a panel or a part of the page in a window of its own. */
+export function openWindow(id) {
+  const [width, height] = SIZES[id] ?? USUAL;
+  const address = new URLSearchParams(location.search);
+  address.set("panel", id);
+  address.set("page", page);
+  if (!open(`/?${address}`, `${page} ${id}`, `popup,width=${width},height=${height}`)) complain("The browser does not open a window: allow this page to.");
+}
+
+function tell() {
+  if (session.peek()) channel.postMessage({ page, shown: session.peek().id });
+}
+
+if (alone === null) {
+  channel.addEventListener("message", ({ data }) => data.page === page && data.asked && tell());
+  effect(() => {
+    session.value?.id;
+    tell();
+  });
+}
+
+/** Follows the page that has opened this window; `otherwise` is called if there is none any more. */
+export function follow(otherwise) {
+  const timer = setTimeout(otherwise, PATIENCE);
+  channel.addEventListener("message", ({ data }) => {
+    if (data.page !== page || !data.shown) return;
+    clearTimeout(timer);
+    if (data.shown !== session.peek()?.id) show(data.shown);
+  });
+  channel.postMessage({ page, asked: true });
+}

@@ -1,0 +1,154 @@
+"""Help while writing, in a real browser: completions, documentation, definitions, renaming, formatting, and pieces to insert."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.helpers.page import open_tab, shows
+from tests.helpers.workbench_server import Served
+
+CODE = ".code .cm-content"
+LOOK = (Path(__file__).parent / "access.js").read_text(encoding="utf-8")
+SHORT = """from actr3d.actr import *
+
+
+class Agent(ACTR):
+    goal = Buffer()
+    facts = Buffer()
+    memory = Memory(facts)
+
+    def init():
+        memory.add("word:dog meaning:pet")
+        goal.set("task:ask word:dog")
+
+    def ask(goal="task:ask word:?word"):
+        memory.request("word:?word")
+        print(word)
+"""
+
+
+@pytest.fixture
+def opened(pages: Callable[..., Page], workbench: Served) -> Callable[[str], Page]:
+    """Opens a text in the editor."""
+
+    def open_text(text: str) -> Page:
+        (workbench.folder / "written.py").write_text(text, encoding="utf-8")
+        page = pages("counting.py", refusals=True)
+        shows(page, "#status", "at its start")
+        open_tab(page, "Editor")
+        page.get_by_label("File", exact=True).select_option("written.py")
+        expect(page.locator(f"{CODE}[aria-label*='written.py']")).to_be_visible()
+        return page
+
+    return open_text
+
+
+def at_end_of(page: Page, line: str) -> None:
+    """Places the cursor at the end of a line."""
+    page.locator(".cm-line", has_text=line).first.click()
+    page.keyboard.press("End")
+
+
+def has_line(page: Page, text: str) -> Any:
+    return expect(page.locator(CODE)).to_have_text(re.compile(re.escape(text)))
+
+
+def choose(page: Page, label: str) -> None:
+    """Chooses a completion, which is there."""
+    option = page.locator(".cm-tooltip-autocomplete li", has_text=re.compile(rf"^{re.escape(label)}"))
+    expect(option).to_be_visible()
+    option.click()
+
+
+def test_help_while_writing(opened: Callable[[str], Page]) -> None:
+    page = opened(SHORT)
+    at_end_of(page, "print(word)")
+    page.keyboard.type("\n\nde")  # two lines, the second of which is not in the body any more
+    page.keyboard.press("Escape")
+    page.keyboard.press("Backspace")
+    page.keyboard.press("Backspace")
+    page.keyboard.press("Shift+Tab")
+    page.keyboard.type("def answer(")
+    choose(page, "facts")
+    page.keyboard.type("m")
+    choose(page, "meaning")
+    page.keyboard.type("p")  # the values of the slot are offered at once
+    choose(page, "pet")
+    has_line(page, 'def answer(facts="meaning:pet")')
+    page.locator(".cm-line", has_text="memory = Memory").get_by_text("Memory").hover()
+    shows(page, ".documentation", "Declarative memory: stores chunks")
+    page.locator("#status").hover()
+    expect(page.locator(".documentation")).to_have_count(0)
+    at_end_of(page, "memory = Memory(facts)")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.type(", latency=")
+    expect(page.locator(".documentation b")).to_have_text("latency: float | None=None")
+    page.keyboard.press("Escape")
+    expect(page.locator(".documentation")).to_have_count(0)
+    expect(page.locator(CODE)).to_be_focused()
+
+
+def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[str], Page]) -> None:
+    page = opened(SHORT.replace("print(word)", "print( word )"))
+    at_end_of(page, "print( word )")
+    for _ in range(3):
+        page.keyboard.press("ArrowLeft")
+    page.keyboard.press("F2")
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_have_text(re.compile("Rename the variable word in 3 places"))
+    page.keyboard.type("for")
+    page.keyboard.press("Enter")
+    expect(dialog).to_have_text(re.compile("'for' is not a name for a variable"))
+    page.keyboard.type("asked")
+    page.keyboard.press("Enter")
+    for line in ('word:?asked"):', 'memory.request("word:?asked")', "print( asked )"):
+        has_line(page, line)
+    page.keyboard.press("F12")
+    expect(page.locator(".cm-activeLine")).to_have_text(re.compile("def ask"))
+    page.keyboard.press("Shift+Alt+F")
+    has_line(page, "print(asked)")
+    expect(page.locator(".cm-activeLine")).to_have_text(re.compile("def ask"))  # the cursor stays
+    page.keyboard.press("Control+z")
+    has_line(page, "print( asked )")
+    page.keyboard.press("Control+z")
+    has_line(page, "print( word )")
+    page.get_by_role("button", name="More", exact=True).click()
+    assert page.evaluate(LOOK) == []
+    page.get_by_role("button", name="a detector for the agent's vision").click()
+    page.keyboard.type("Pole")  # in all places at once
+    has_line(page, "@detector(Pole)")
+    page.keyboard.press("Control+Home")
+    has_line(page, "from actr3d.actr import *from dataclasses import dataclassfrom actr3d.vision import DETECTORS")
+    shows(page, ".problems", "No problems")
+    page.keyboard.press("Control+Alt+g")
+    expect(page.locator(".cm-panel input")).to_be_focused()
+    page.keyboard.insert_text("3")
+    page.keyboard.press("Enter")
+    expect(page.locator(".cm-activeLine")).to_have_text(re.compile("^from actr3d.vision import"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "piece", ["an agent with a production", "a production", "a declarative memory and its buffer", "an agent with a body", "a design of"]
+)
+def test_pieces_are_inserted_where_they_may_stand(opened: Callable[[str], Page], workbench: Served, piece: str) -> None:
+    page = opened(SHORT)
+    at_end_of(page, "memory = Memory(facts)")
+    page.get_by_role("button", name="More", exact=True).click()
+    page.get_by_role("button", name=re.compile(f"^{piece}")).click()
+    unsaved = page.locator(".file-status .state")
+    expect(unsaved).to_have_text(re.compile("unsaved"))
+    shows(page, ".problems", "No problems")
+    page.keyboard.press("Escape")
+    page.keyboard.press("Control+s")
+    shows(page, ".file-status", "saved")
+    written = (workbench.folder / "written.py").read_text(encoding="utf-8")
+    compile(written, "written.py", "exec")
+    assert len(written) > len(SHORT)
+    assert written.count("from actr3d.actr import *") == 1

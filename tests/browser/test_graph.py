@@ -1,0 +1,60 @@
+"""The graph of an agent: what its productions read and write, and what flows at this moment."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+from playwright.sync_api import Locator, Page, expect
+
+from tests.helpers.page import open_tab, shows
+
+
+def edges(page: Page, kind: str, more: str = "") -> Locator:
+    return page.locator(f".graph .edge.{kind}{more}")
+
+
+def places(page: Page) -> dict[str, Any]:
+    """Returns where each node is."""
+    return page.evaluate(
+        "() => Object.fromEntries([...document.querySelectorAll('.graph .node')].map((one) => [one.dataset.node, one.style.cssText]))"
+    )
+
+
+def test_the_graph_shows_what_is_read_written_asked_and_filled(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="graph")
+    shows(page, ".graph", "There is no model yet")
+    page.click("#cycle")
+    shows(page, "#status", "start_counting fired")
+    nodes = page.get_by_role("group", name="Graph of top").get_by_role("button")
+    expect(nodes).to_have_count(6)
+    before = places(page)
+    goal = nodes.filter(has_text="goal")
+    expect(goal).to_contain_text("task:count number:2")
+    expect(nodes.filter(has_text="start_counting")).to_have_class(re.compile("fired"))
+    expect(edges(page, "writes", ".now")).to_have_count(1)
+    expect(edges(page, "asks", ".now")).to_have_count(1)
+    expect(nodes.filter(has_text="memory")).to_contain_text("busy")
+    expect(edges(page, "reads")).to_have_count(4)
+    page.click("#step")
+    shows(page, "#time", "0.06 s")
+    expect(edges(page, "writes", ".now")).to_have_count(0)
+    page.click("#cycle")
+    shows(page, "#status", "count_on fired")
+    expect(edges(page, "fills")).to_have_count(1)
+    assert places(page) == before
+    goal.click()
+    expect(page.locator(".graph-text")).to_have_text(
+        "goal is read by count_on, start_counting, stop_counting; is written by count_on, start_counting"
+    )
+    page.keyboard.press("ArrowRight")
+    expect(nodes.filter(has_text="count_on")).to_be_focused()
+    expect(page.locator(".graph-text")).to_contain_text("count_on reads goal, retrieval; writes goal; asks memory")
+    page.get_by_role("button", name="Why", exact=True).click()
+    expect(page.get_by_role("tab", name="Productions")).to_have_attribute("aria-selected", "true")
+    expect(page.locator("#why-text")).to_contain_text("count_on")
+    page.click("#back")
+    shows(page, "#status", "went to this time")
+    open_tab(page, "Graph")
+    expect(edges(page, "fills")).to_have_count(1)

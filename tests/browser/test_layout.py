@@ -1,0 +1,129 @@
+"""The parts of the page: maximised, collapsed, on the other side, in windows of their own; and links to moments of runs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from playwright.sync_api import Page, expect
+
+from tests.helpers.page import choose, open_tab, shows, until
+from tests.helpers.workbench_server import Served
+
+Pages = Callable[..., Page]
+
+
+def panels_are_at(page: Page, left: float, width: float) -> None:
+    """Waits until the panels are at a place [px]."""
+
+    def are_there() -> bool:
+        found = page.get_by_role("region", name="Panels").bounding_box()
+        return found is not None and (found["x"], found["width"]) == (left, width)
+
+    until(page, are_there)
+
+
+def arrange(page: Page, part: str, what: str) -> None:
+    page.get_by_role("button", name=f"Arrange: {part}").click()
+    page.get_by_role("group", name=f"Arrange: {part}").get_by_role("button", name=what).click()
+
+
+def test_parts_of_the_page_are_maximised_collapsed_and_swapped(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    scene, timeline = page.get_by_role("region", name="3D view", exact=True), page.get_by_role("region", name="Timeline")
+    page.keyboard.press("m")
+    expect(scene).not_to_be_visible()
+    expect(timeline).not_to_be_visible()
+    panels_are_at(page, 0, 1280)
+    open_tab(page, "Editor")
+    page.locator(".code .cm-content").focus()
+    page.keyboard.press("Escape")
+    expect(scene).to_be_visible()
+    expect(timeline).to_be_visible()
+    page.keyboard.press("Shift+m")  # which is written
+    panels_are_at(page, 496, 784)
+    page.keyboard.press("Control+z")
+    arrange(page, "Timeline", "Collapse")
+    expect(timeline).not_to_be_visible()
+    arrange(page, "3D view", "Collapse")
+    expect(scene).not_to_be_visible()
+    page.get_by_role("button", name="Arrange: Panels").click()  # nothing would be left
+    menu = page.get_by_role("group", name="Arrange: Panels").get_by_role("button")
+    expect(menu).to_have_text(["MaximiseM", "Open in a window", "Swap the sides"])
+    page.keyboard.press("Escape")
+    page.reload()
+    shows(page, "#status", "at its start")
+    expect(scene).not_to_be_visible()
+    choose(page, "counting.py")  # a model without a world is arranged by itself
+    expect(timeline).to_be_visible()
+    choose(page, "doorway.py")
+    expect(timeline).not_to_be_visible()
+    page.get_by_role("button", name="3D view", exact=True).click()
+    page.get_by_role("button", name="Timeline", exact=True).click()
+    expect(timeline).to_be_visible()
+    arrange(page, "Panels", "Swap the sides")
+    panels_are_at(page, 0, 784)
+    page.keyboard.press("Tab")  # from now on, the keyboard is used
+    page.get_by_role("separator", name="Width of the panels").press("ArrowRight")
+    panels_are_at(page, 0, 808)
+    page.get_by_role("button", name="Arrange: Timeline").press("Enter")
+    page.keyboard.press("Tab")
+    expect(page.get_by_role("group", name="Arrange: Timeline").get_by_role("button", name="Maximise")).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("region", name="Panels")).not_to_be_visible()
+    page.keyboard.press("Escape")
+    page.get_by_role("separator", name="Height of the timeline").press("ArrowUp")
+    height = page.get_by_role("separator", name="Height of the timeline").get_attribute("aria-valuenow")
+    page.reload()
+    shows(page, "#status", "at its start")
+    panels_are_at(page, 0, 808)
+    choose(page, "counting.py")
+    expect(page.get_by_role("separator", name="Height of the timeline")).not_to_have_attribute("aria-valuenow", height or "")
+    panels_are_at(page, 0, 1280)
+
+
+def test_a_panel_has_a_window_of_its_own_which_follows_the_page(pages: Pages) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    with page.context.expect_page() as opened:
+        arrange(page, "Panels", "Open in a window")
+    window = opened.value
+    expect(window.get_by_role("heading", name="Buffers")).to_be_visible()
+    expect(window.get_by_role("tab")).to_have_count(0)
+    expect(window).to_have_title("Buffers · counting.py")
+    page.click("#step")
+    shows(window, "#time", "0.01 s")
+    window.keyboard.press("ArrowRight")
+    shows(page, "#time", "0.02 s")
+    choose(page, "doorway.py")
+    expect(window).to_have_title("Buffers · doorway.py")
+    page.close()
+    window.reload()  # without the page that has opened it
+    expect(window).to_have_title("Buffers · counting.py")
+
+
+def test_a_link_leads_to_a_moment_of_a_run(pages: Pages, workbench: Served) -> None:
+    page = pages("counting.py")
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#status", "fired")
+    page.get_by_role("button", name="Copy a link").click()
+    expect(page.locator(".status-line")).to_contain_text("The link is copied")
+    link = page.evaluate("navigator.clipboard.readText()")
+    assert re.fullmatch(rf"{workbench.url}/\?run=counting-[\w-]+&t=0\.05", link)
+    page.click("#run")
+    shows(page, "#status", "ended")
+    other = page.context.new_page()
+    other.goto(link)  # the run itself, for it is still open
+    shows(other, "#time", r"0\.05 s")
+    other.wait_for_url(re.compile(r"\?model=counting.py$"))
+    other.close()
+    page.click("#restart")  # which ends it
+    shows(page, "#time", r"0\.00 s")
+    page.goto(link.replace("0.05", "1.2"))
+    expect(page.locator(".recording-banner")).to_be_visible()
+    shows(page, "#time", r"1\.20 s")
+    page.wait_for_url(re.compile(r"\?run=counting-[\w-]+$"))
+    page.get_by_role("button", name="Copy a link").click()
+    until(page, lambda: page.evaluate("navigator.clipboard.readText()") == link.replace("0.05", "1.2"))

@@ -1,0 +1,100 @@
+"""The command palette: every command of the page by a few letters, and the manual."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+from playwright.sync_api import Locator, Page, expect
+
+from tests.helpers.page import shows
+
+INDEX = {
+    "docs": [
+        {"location": "how-to/profile/", "title": "Profile a model", "text": "<p>It says where <b>time</b> goes.</p>"},
+        {"location": "x/#y", "title": "<img src=x onerror=alert(1)>Chunks", "text": "<script>alert(1)</script><p>Time and chunks.</p>"},
+        {"location": "z/", "title": "Nothing of that", "text": ""},
+    ]
+}
+
+
+def options(page: Page) -> Locator:
+    return page.get_by_role("dialog", name="Commands").get_by_role("option")
+
+
+def search(page: Page, words: str) -> None:
+    page.keyboard.press("Control+k")
+    expect(page.get_by_role("combobox", name="Search commands")).to_be_focused()
+    page.keyboard.insert_text(words)
+
+
+def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    search(page, "step back")
+    expect(options(page).first).to_have_text("Step back by one tick of 10 msRun←")
+    expect(options(page).first).to_have_attribute("aria-disabled", "true")
+    page.keyboard.press("Enter")  # which does nothing
+    expect(page.get_by_role("dialog")).to_have_count(1)
+    page.keyboard.press("Control+a")
+    page.keyboard.insert_text("stp tck")
+    expect(options(page)).to_have_text(["Step by one tick of 10 msRun→", "Step back by one tick of 10 msRun←"])
+    page.keyboard.press("Enter")
+    shows(page, "#time", "0.01 s")
+    search(page, "open mem")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("tab", name="Memory")).to_have_attribute("aria-selected", "true")
+    page.get_by_label("Filter rows").focus()  # the palette opens while one types, too
+    search(page, "")
+    last = page.get_by_role("group", name="Used last").get_by_role("option")
+    expect(last).to_have_text(["Open MemoryTab4", "Step by one tick of 10 msRun→"])
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    shows(page, "#time", "0.02 s")
+    search(page, "xyzzyq")
+    expect(page.get_by_role("dialog")).to_contain_text("Nothing has this in its name")
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    search(page, "model count")
+    page.keyboard.press("Enter")
+    expect(page.get_by_label("Model", exact=True)).to_have_value("counting.py")
+    shows(page, "#status", "at its start")
+    names, keys = page.evaluate(
+        """async () => {
+          const { permanent, present } = await import("/static/commands.js");
+          const names = [...permanent(), ...present()].map(({ group, text }) => `${group}: ${text}`);
+          return [names, permanent().flatMap(({ key }) => key ?? [])];
+        }"""
+    )
+    assert len(set(names)) == len(names)
+    assert len(set(keys)) == len(keys)
+    for name in (
+        "Run: Speed: 2 x",
+        "Page: Theme: light, dark, or as the system has it",
+        "Editor: Save the text",
+        "Model: doorway.py",
+        "Recording: doorway",
+    ):
+        assert any(name in one for one in names), name
+
+
+def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Callable[..., Page]) -> None:
+    built = [False, True]
+    page = pages("counting.py")
+    page.context.route("**/api/models", lambda route: route.fulfill(json={**route.fetch().json(), "manual": built.pop(0)}))
+    page.reload()
+    shows(page, "#status", "at its start")
+    search(page, "time chunk")
+    expect(page.get_by_role("dialog")).to_contain_text("Nothing has this in its name")
+    expect(page.get_by_role("group", name="Manual")).to_have_count(0)
+    page.context.route("**/manual/**", lambda route: route.fulfill(body=json.dumps(INDEX), content_type="application/json"))
+    page.reload()
+    shows(page, "#status", "at its start")
+    search(page, "time chunk")
+    found = page.get_by_role("group", name="Manual").get_by_role("option")
+    expect(found).to_have_text(["Chunksalert(1) Time and chunks."])
+    page.keyboard.press("Control+a")
+    page.keyboard.insert_text("where time goes")
+    expect(found).to_have_text(["Profile a modelIt says where time goes."])
+    with page.context.expect_page() as opened:
+        found.click()
+    assert opened.value.url.endswith("/manual/how-to/profile/")

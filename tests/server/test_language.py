@@ -1,0 +1,460 @@
+"""Questions about texts: what is known of ACT-R and Python, and that no text runs, blocks or breaks anything."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import py_compile
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, call
+from tests.helpers.sessions import Desk
+from workbench.app import make_app
+from workbench.language import language_server
+from workbench.language.answers import LanguageError
+from workbench.language.explicit_names import ExplicitText
+from workbench.language.language_server import LONGEST_TEXT, MOST_WAITING, LanguageServer, TooManyQuestionsError
+from workbench.language.language_worker import safe_path
+from workbench.language.model_text import ModelText
+from workbench.language.python_answers import Python
+from workbench.language.questions import CodeUnits
+from workbench.loader import listing_of
+
+MODELS = Path(__file__).parents[2] / "models"
+COUNTING = (MODELS / "counting.py").read_text(encoding="utf-8")
+DOORWAY = (MODELS / "doorway.py").read_text(encoding="utf-8")
+
+Ask = Callable[..., Any]
+
+
+class Asked:
+    """Asks a language server about texts in which `|` stands for the position.
+
+    Args:
+        desk: Has workers.
+        folder: The models folder.
+    """
+
+    def __init__(self, desk: Desk, folder: Path) -> None:
+        self._desk = desk
+        self.server = LanguageServer(desk.workers, folder)
+
+    def __call__(self, ask: str, text: str, name: str = "", path: str = "model.py") -> Any:
+        return json.loads(self._desk.do(self.server.ask(question(ask, text, name, path))))
+
+    def labels(self, text: str, **more: Any) -> list[str]:
+        """Returns completions, those of the highest rank first."""
+        items = self("complete", text, **more)["items"]
+        return [item["label"] for item in sorted(items, key=lambda item: -item["boost"])]
+
+
+def question(ask: str, text: str, name: str = "", path: str = "model.py") -> bytes:
+    at = max(0, text.find("|"))
+    return json.dumps({"ask": ask, "path": path, "text": text.replace("|", "", 1), "at": at, "name": name}).encode()
+
+
+@pytest.fixture(scope="module")
+def ask(whole_desk: Desk, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Asked]:
+    """One process for all tests that do not end it."""
+    folder = tmp_path_factory.mktemp("language")
+    (folder / "beside.py").write_text("def helps(distance):\n    'Measures.'\n", encoding="utf-8")
+    asked = Asked(whole_desk, folder)
+    yield asked
+    whole_desk.do(asked.server.close())
+
+
+@pytest.fixture
+def alone(desk: Desk, tmp_path: Path) -> Iterator[Asked]:
+    """A process that the test may end."""
+    asked = Asked(desk, tmp_path)
+    yield asked
+    desk.do(asked.server.close())
+
+
+# -- completion
+
+
+VISION = "from actr3d.vision import Vision\n" + COUNTING.replace("memory = ", "seen = Buffer()\n    vision = Vision(seen)\n    memory = ")
+
+
+POLE = """from dataclasses import dataclass
+from actr3d.vision import Feature, Metres
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pole(Feature):
+    girth: Metres
+
+
+"""
+
+
+@pytest.mark.daily(12)
+@pytest.mark.parametrize(
+    ("text", "first"),
+    [
+        (COUNTING.replace("goal.clear()", "goal.modify(|)"), ["task=", "number=", "last="]),
+        (COUNTING.replace("number:?now last", "nu| last"), ["number"]),
+        (COUNTING.replace("task:count number:?now last:!?now", "task:|"), ["start", "count"]),
+        (COUNTING.replace("number:?now last:!?now", "number:?|"), ["?now", "?next", "?after"]),
+        (COUNTING.replace('retrieval="count ?now ?next"', "|"), ["retrieval", "memory"]),
+        (COUNTING.replace('retrieval="count ?now ?next"', 'retrieval="|"'), ["count"]),
+        (
+            COUNTING.replace("    retrieval = ", "    production_ti|\n    retrieval = "),
+            ["production_match_delay", "production_threshold", "production_time"],
+        ),
+        (COUNTING.replace("goal.clear()", "goal.|"), ["chunk", "clear", "isEmpty", "modify", "set"]),
+        (COUNTING.replace("goal.clear()", "retr|"), ["retrieval"]),
+        (COUNTING.replace("print(now)", "print(no|)"), ["now"]),
+        (DOORWAY.replace('eye.request("view")', 'eye.request("|")'), ["accelerometer", "anatomy", "bounding_box"]),
+        (DOORWAY.replace('eye.request("view")', 'eye.set("|")'), ["brake", "control", "gaze"]),
+        (DOORWAY.replace("pose x:?x", "pose |"), ["x", "y", "z", "heading", "pitch", "roll"]),
+        (DOORWAY.replace('eye="busy:False"', 'eye="|"'), ["walk", "view"]),
+        (DOORWAY.replace('eye="busy:False"', 'eye="busy:|"'), ["False", "True"]),
+        (DOORWAY.replace("Aperture(", "Aperture(clo|, ").replace("import Aperture(clo|,", "import Aperture,"), ["closing="]),
+        (DOORWAY + "\nfrom actr3d.world import Mann|", ["Mannequin"]),
+        (VISION.replace('memory.request("count ?now ?next")', 'vision.request("feature:|")'), ["obstacle", "opening"]),
+        (VISION.replace('memory.request("count ?now ?next")', 'vision.request("feature:opening |")'), ["distance", "direction", "motion"]),
+        (POLE + VISION.replace('memory.request("count ?now ?next")', 'vision.request("feature:|")'), ["obstacle", "opening", "pole"]),
+        (
+            POLE + VISION.replace('memory.request("count ?now ?next")', 'vision.request("feature:pole |")'),
+            ["distance", "direction", "motion", "girth"],
+        ),
+        ("import beside\nbeside.|", ["helps"]),
+        ("x = 'not a chunk |'", []),
+    ],
+)
+def test_what_may_stand_at_a_place(ask: Asked, text: str, first: list[str]) -> None:
+    assert ask.labels(text)[: len(first)] == first
+
+
+@pytest.mark.daily(2)
+@pytest.mark.parametrize("end", ["", "\n\nclass Other(AC", '\n    def more(goal="task:', "\n    def more(goal=", "\n)]}\n", "\nprint(f'{"])
+def test_texts_that_are_not_complete_yet(ask: Asked, end: str) -> None:
+    assert ask.labels(COUNTING.replace("number:?now last", "nu| last") + end) == ["number"]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "word"),
+    [("nu|", "nu"), ("task:co|", "co"), ("number:?n|", "?n"), ("number:!?n|", "?n"), ("number:2!3|", "3"), ("task:|", ""), ("a b|", "b")],
+)
+def test_a_completion_replaces_the_word_that_was_begun(ask: Asked, pattern: str, word: str) -> None:
+    text = COUNTING.replace("task:count number:?now last:!?now", pattern)
+    assert text[ask("complete", text)["start"] : text.index("|")] == word
+
+
+def test_a_completion_says_what_it_is(ask: Asked) -> None:
+    (slot,) = (one for one in ask("complete", DOORWAY.replace("pose x:?x", "pose |"))["items"] if one["label"] == "heading")
+    assert (slot["detail"], slot["apply"]) == ("slot of pose", "heading:")
+    assert "left is positive" in slot["text"]
+    said = ask("document item", "from actr3d.world import Ap|", "Aperture")
+    assert said["title"].startswith("Aperture(name")
+    assert "doorway" in said["text"]
+
+
+# -- documentation
+
+
+@pytest.mark.daily(6)
+@pytest.mark.parametrize(
+    ("text", "title", "said"),
+    [
+        ("from actr3d.actr import Mem|ory", "Memory(buffer", "Declarative memory"),
+        (COUNTING.replace("memory.request", "mem|ory.request", 1), "memory = Memory(retrieval)", "Declarative memory"),
+        (COUNTING.replace("memory.request", "memory.req|uest", 1), "request(pattern", "Requests the most active chunk"),
+        (COUNTING.replace("task:count", "ta|sk:count", 1), "slot task", "values: start, count"),
+        (COUNTING.replace("task:count", "task:co|unt", 1), "value count", "used in count_on"),
+        (COUNTING.replace("print(now)", "print(n|ow)", 1), "?now", "retrieval's word 2"),
+        (COUNTING.replace("def count_on", "def count|_on"), "production count_on", "goal: task:count number:?now"),
+        (COUNTING.replace("    goal = ", "    go|al = "), "goal = Buffer()", "slots: task, number, last"),
+        (DOORWAY.replace('"pose"', '"po|se"', 1), "value pose", "Senses position"),
+        (DOORWAY.replace("pose x:", "pose x|:"), "slot x", "pose: [m]"),
+        (DOORWAY.replace("width=parameters", "wid|th=parameters"), "", "free width"),
+    ],
+)
+def test_what_is_known_of_a_name(ask: Asked, text: str, title: str, said: str) -> None:
+    found = ask("document", text)
+    assert found["title"].startswith(title)
+    assert said in found["text"]
+    assert found["start"] <= text.index("|") <= found["end"]
+
+
+def test_nothing_is_known_where_there_is_nothing(ask: Asked) -> None:
+    assert ask("document", "x = 1  |  # a comment") is None
+    assert ask("define", '"""| a text"""') is None
+    assert ask("signature", COUNTING.replace("task:count", "task:|count", 1)) == []
+
+
+def test_how_a_function_is_called(ask: Asked) -> None:
+    (found,) = ask("signature", COUNTING.replace("Memory(retrieval)", "Memory(retrieval, latency=|)"))
+    assert (found["name"], found["active"], found["parameters"][0]) == ("Memory", 1, "buffer: Any")
+    assert found["text"].startswith("F in the retrieval time")
+    (field,) = ask("signature", "from actr3d.world import Aperture\nAperture(closing=|)")
+    assert field["text"].startswith("How fast")
+
+
+# -- definitions, renaming, formatting
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (COUNTING.replace("goal.clear()", "go|al.clear()"), "goal = Buffer()"),
+        (COUNTING.replace("print(now)", "print(n|ow)", 1), "now last:!?now"),
+        (COUNTING.replace("last:?now", "la|st:?now"), "last:5"),
+        (COUNTING.replace("model.run()", "mo|del.run()"), "model = Counting()"),
+        (COUNTING.replace("Counting()", "Count|ing()"), "Counting(ACTR)"),
+    ],
+)
+def test_where_a_name_is_defined(ask: Asked, text: str, found: str) -> None:
+    place = ask("define", text)
+    assert place["path"] == "model.py"
+    assert text.replace("|", "").startswith(found, place["at"])
+
+
+def test_where_names_of_other_files_are_defined(ask: Asked) -> None:
+    beside = ask("define", "from beside import helps\nhel|ps(1)")
+    assert (beside["path"], beside["line"]) == ("beside.py", 1)
+    library = ask("define", "from actr3d.actr import Buf|fer")
+    assert (library["path"], library["module"]) == (None, "actr3d.actr.kernel.buffer")
+
+
+def renamed(asked: Asked, text: str, name: str) -> tuple[str, int]:
+    """Returns a text in which a name has been replaced, with `|` in the first place of it, and the number of its places."""
+    plain, changes = text.replace("|", ""), asked("rename", text, name)["changes"]
+    for start, end in reversed(changes):
+        plain = f"{plain[:start]}{'|' if start == changes[0][0] else ''}{name}{plain[end:]}"
+    return plain, len(changes)
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "changed"),
+    [
+        (COUNTING.replace("print(now)", "print(n|ow)", 1), "here", 4),
+        (COUNTING.replace("goal.clear()", "go|al.clear()"), "aim", 8),
+        (COUNTING.replace("number:?now last:!", "num|ber:?now last:!"), "size", 5),
+        (COUNTING.replace("model.run()", "mo|del.run()"), "agent_1", 2),
+    ],
+)
+def test_renaming(ask: Asked, text: str, name: str, changed: int) -> None:
+    old = ask("rename", text)["name"]
+    after, count = renamed(ask, text, name)
+    assert (count, after.count(name) - text.replace("|", "").count(name)) == (changed, changed)
+    again, count = renamed(ask, after, old)
+    assert (count, again.replace("|", "")) == (changed, text.replace("|", ""))
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "why"),
+    [
+        (COUNTING.replace("goal.clear()", "go|al.clear()"), "memory", "there is a part 'memory' already"),
+        (COUNTING.replace("task:count", "ta|sk:count", 1), "last", "there is a slot 'last' already"),
+        (COUNTING.replace("print(now)", "print(n|ow)", 1), "next", "there is a variable 'next' already"),
+        (COUNTING.replace("print(now)", "print(n|ow)", 1), "for", "'for' is not a name for a variable"),
+        (COUNTING.replace("Memory(ret", "Mem|ory(ret"), "Store", "is defined in actr3d.actr.declarative.memory"),
+        (COUNTING.replace("task:count", "task:co|unt", 1), "x", "there is no name here"),
+        ("|", "x", "there is no name here"),
+    ],
+)
+def test_what_cannot_be_renamed(ask: Asked, text: str, name: str, why: str) -> None:
+    with pytest.raises(LanguageError, match=why):
+        ask("rename", text, name)
+
+
+def test_formatting(ask: Asked) -> None:
+    assert ask("format", "x  =  {'a':1}\n") == {"text": 'x = {"a": 1}\n'}
+    with pytest.raises(LanguageError, match=r"line 2: .*xpected"):
+        ask("format", "x = 1\ny = = 2\n")
+
+
+def test_positions_count_as_in_the_page(ask: Asked) -> None:
+    text = "smile = '😀'\nsmile = sm|ile\n"
+    units = text.index("|") + 1  # the page counts the smile twice
+    found = ask.server
+    body = {"ask": "rename", "path": "model.py", "text": text.replace("|", ""), "at": units, "name": "grin"}
+    answer = json.loads(ask._desk.do(found.ask(json.dumps(body).encode())))
+    plain = text.replace("|", "").encode("utf-16-le")
+    assert [plain[2 * start : 2 * end].decode("utf-16-le") for start, end in answer["changes"]] == ["smile"] * 3
+
+
+# -- reading any text
+
+
+@pytest.mark.daily(8)
+@pytest.mark.parametrize("path", sorted(MODELS.rglob("*.py")), ids=lambda path: path.stem)
+def test_the_productions_of_every_model_are_found(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    model = ModelText(text)
+    methods = [method for agent in model.agents.values() for method in agent.methods.values()]
+    assert sorted(method.path for method in methods if method.parameters and method.sees_parts) == sorted(listing_of(text).productions)
+    assert all(text[one.start : one.end] == one.text for one in (*model.names, *model.texts))
+
+
+PIECES = (
+    "class A(ACTR):\n",
+    "    def f(goal='a b:?c",
+    "', x=None):\n",
+    "        goal.set(f'{d} e:1')\n",
+    "\n",
+    "'''",
+    '"',
+    "(",
+    ")",
+    "\\",
+    "\r",
+    "😀",
+    "é",
+)
+
+
+@given(st.lists(st.sampled_from(PIECES)).map("".join) | st.text())
+def test_any_text_is_read(text: str) -> None:
+    model = ModelText(text)
+    assert all(text[one.start : one.end] == one.text for one in (*model.names, *model.texts))
+    assert all(text[one.start : one.end] == one.text for part in model.texts for one in (*part.slots, *part.pieces))
+    explicit = ExplicitText(model)
+    for at in range(len(text) + 1):
+        assert explicit.position(*explicit.place(at)) == at
+    units = CodeUnits(text)
+    for at in range(len(text) + 1):
+        assert units.unit(at) == len(text[:at].encode("utf-16-le", "surrogatepass")) // 2
+        assert units.position(units.unit(at)) == at
+
+
+def test_names_are_written_out_for_tools_that_know_no_actr() -> None:
+    explicit = ExplicitText(ModelText(COUNTING))
+    added = [line.strip() for line in explicit.text.split("\n") if line not in COUNTING.split("\n")]
+    assert len(added) == 4
+    assert added[1].startswith("self = Counting(); goal = Counting.goal; retrieval = Counting.retrieval; memory = Counting.memory; ")
+    compile(explicit.text, "model.py", "exec")
+
+
+# -- safety
+
+
+def test_nothing_is_executed(alone: Asked, tmp_path: Path) -> None:
+    marks = [tmp_path / name for name in ("text", "source", "compiled", "typed")]
+    writes = "from pathlib import Path\nPath({!r}).touch()\n"
+    for name, mark in zip(("helper", "compiled", "jedi", "typing", "sitecustomize"), (*marks[1:], marks[3], marks[3]), strict=True):
+        (tmp_path / f"{name}.py").write_text(writes.format(str(mark)) + "def f(): ...\n", encoding="utf-8")
+    py_compile.compile(str(tmp_path / "compiled.py"), str(tmp_path / "compiled.pyc"))  # jedi would have to import it
+    (tmp_path / "compiled.py").unlink()
+    top = writes.format(str(marks[0])) + "import helper, compiled, jedi\n"
+    assert alone.labels(f"{top}helper.|") == ["Path", "f"] or "f" in alone.labels(f"{top}helper.|")
+    alone("complete", f"{top}compiled.|")
+    alone("document", f"{top}comp|iled.f")
+    alone("define", f"{top}compiled.f|")
+    alone("signature", f"{top}compiled.f(|)")
+    alone("rename", f"{top}he|lper = 1", "other")
+    alone("format", top)
+    assert [mark for mark in marks if mark.exists()] == []
+
+
+def test_no_compiled_module_is_imported_even_if_it_could_be_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    mark = tmp_path / "executed"
+    (tmp_path / "compiled.py").write_text(f"from pathlib import Path\nPath({str(mark)!r}).touch()\n", encoding="utf-8")
+    py_compile.compile(str(tmp_path / "compiled.py"), str(tmp_path / "compiled.pyc"))
+    (tmp_path / "compiled.py").unlink()
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
+    explicit = ExplicitText(ModelText("import compiled\ncompiled."))
+    assert Python(tmp_path).complete(explicit, "model.py", len(explicit.text)) == []
+    assert not mark.exists()
+
+
+def test_modules_are_not_found_in_the_working_directory_or_the_models_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    here, models = tmp_path / "here", tmp_path / "models"
+    for folder in (here, models / "sub"):
+        folder.mkdir(parents=True)
+        monkeypatch.setattr(sys, "path", [str(folder), *sys.path])
+    monkeypatch.chdir(here)
+    paths = safe_path(models)
+    assert {str(here), str(models / "sub"), ""}.isdisjoint(paths)
+    assert paths[-1] == str(MODELS.parent)  # the library itself comes last
+
+
+def test_a_text_that_takes_too_long_is_given_up_and_the_next_is_answered(alone: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "import" in alone.labels("impo|")
+    monkeypatch.setattr(language_server, "ANSWER_TIME", 1.0)
+    with pytest.raises(LanguageError, match="takes longer than 1 s"):
+        alone("complete", f"{'(' * 150_000}|")
+    monkeypatch.undo()
+    assert "import" in alone.labels("impo|")
+
+
+@pytest.mark.slow
+def test_a_process_that_has_ended_is_replaced(alone: Asked, desk: Desk) -> None:
+    alone("complete", "impo|")
+
+    async def killed() -> None:
+        worker = alone.server._worker
+        assert worker is not None
+        asking = asyncio.create_task(alone.server.ask(question("complete", f"{'(' * 150_000}|")))
+        await asyncio.sleep(0)
+        os.kill(worker.pid, signal.SIGKILL)
+        with pytest.raises(LanguageError, match="was ended by SIGKILL"):
+            await asking
+
+    desk.do(killed())
+    assert "import" in alone.labels("impo|")
+
+
+def test_questions_at_once_are_answered_in_turn_and_too_many_refused(alone: Asked, desk: Desk) -> None:
+    async def asked() -> list[Any]:
+        questions = (alone.server.ask(question("complete", f"name_{number} = 1\nname_{number}|")) for number in range(MOST_WAITING + 5))
+        return await asyncio.gather(*questions, return_exceptions=True)
+
+    answers = desk.do(asked())
+    assert [json.loads(answer)["items"][0]["label"] for answer in answers[:MOST_WAITING]] == [f"name_{n}" for n in range(MOST_WAITING)]
+    assert [type(answer) for answer in answers[MOST_WAITING:]] == [TooManyQuestionsError] * 5
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "\0|",
+        "\ud800|",
+        "(" * 3_000 + "|",
+        "\n" * 100_000 + "|",
+        "class A:\n    x: A.x = A.x|",
+        "é😀 = 1\né😀|",
+        "def f(): return f()\nf().|",
+        "\r\r\n|\f",
+    ],
+)
+def test_odd_texts_are_answered_or_refused(ask: Asked, text: str) -> None:
+    for what in ("complete", "document", "signature", "define", "rename", "format"):
+        with suppress(LanguageError):
+            ask(what, text, "new")
+    assert "import" in ask.labels("impo|")
+
+
+def test_the_route_refuses_what_it_cannot_answer(desk: Desk, tmp_path: Path) -> None:
+    app = make_app(tmp_path, GATE)
+    app.state.language = LanguageServer(desk.workers, tmp_path)
+
+    def posted(**more: Any) -> tuple[int, Any]:
+        body = json.dumps({"ask": "format", "path": "model.py", "text": "x=1", **more}).encode()
+        answer = desk.do(call(app, "/api/language", HOST, COOKIE, JSON, OURS, ORIGIN, method="POST", body=body))
+        return answer.status, json.loads(answer.body)
+
+    assert posted() == (200, {"text": "x = 1\n"})
+    assert posted(text="x =") == (409, {"error": "the text was not formatted: line 1: Expected an expression"})
+    for status, more in (
+        (422, {"text": "x" * (LONGEST_TEXT + 1)}),
+        (422, {"ask": "execute"}),
+        (422, {"at": -1}),
+        (400, {"path": "../model.py"}),
+    ):
+        found, said = posted(**more)
+        assert (found, list(said)) == (status, ["error"])
+    desk.do(app.state.language.close())

@@ -1,0 +1,2 @@
+auto_import_modules: list[str]
+allow_unsafe_interpreter_executions: bool

@@ -1,0 +1,376 @@
+"""Answers questions about the ACT-R in a model's text: slots, values, variables, parts and productions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import Protocol
+
+from workbench.language.answers import Completion, Hover, Item, Renaming
+from workbench.language.library_words import Word, answers_of, features_of, words_for
+from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece
+
+
+class Attributes(Protocol):
+    """What Python knows of the attributes of an expression, such as `Agent.part`."""
+
+    def attributes(self, expression: str) -> list[tuple[str, str]]:
+        """Returns them, each with its documentation."""
+        ...
+
+    def parameters(self, expression: str) -> list[tuple[str, str]]:
+        """Returns the parameters of a call of the expression, each with its documentation."""
+        ...
+
+    def is_truth(self, expression: str) -> bool:
+        """Returns whether the expression is True or False."""
+        ...
+
+
+OWN, KNOWN, OTHER = 3, 2, 0
+"""The ranks of completions: used with the same part, given by the library, used with other parts."""
+_SLOT = re.compile(r"(\??[\w.]+):(.*)", re.DOTALL)
+_SIGN = re.compile(r"(!?\??)[<>=]*([\w.-]*)$")
+MOST_NAMED = 8
+"""How many names are listed in a documentation."""
+
+
+# -- completion
+
+
+def complete(model: ModelText, at: int, attributes: Attributes) -> Completion | None:
+    """Returns what may come at a position of a text of chunks or patterns; None if that is not the place."""
+    text = model.text_at(at)
+    if text is None:
+        return None
+    word = re.search(r"\S*$", text.text[: at - text.start])
+    assert word is not None
+    slot = _SLOT.match(word[0])
+    value = slot[2] if slot else word[0]
+    sign = _SIGN.search(value)
+    assert sign is not None
+    start = at - len(sign[2]) - ("?" in sign[1])
+    variables = _variables(model, text, at)
+    if "?" in sign[1]:
+        return Completion(start=start, items=variables)
+    place = len(text.text[: word.start()].split())
+    values = [*_values(model, text, slot[1] if slot else str(place), at, attributes), *variables]
+    if slot or sign[1]:
+        return Completion(start=start, items=distinct(values))
+    named = any(":" in one for one in text.text[: word.start()].split())
+    slots = _slots(model, text, at, attributes)
+    return Completion(start=start, items=distinct([*([] if named else _words(model, text, place)), *slots, *([] if named else values)]))
+
+
+def complete_name(model: ModelText, at: int, attributes: Attributes) -> tuple[list[Item], bool]:
+    """Returns the slots, parts or parameters whose names may come at a position in code, and whether nothing else may.
+
+    Args:
+        model: The text, with a name at the position.
+        at: The position.
+        attributes: Returns the attributes of an expression.
+    """
+    name = model.name_at(at)
+    if name is None or name.before:
+        return [], False
+    if name.agent in model.agents and not name.method and not model.text[: name.start].rpartition("\n")[2].strip():
+        return [
+            Item(label=label, type="property", detail=f"of {name.agent}", boost=KNOWN, text=said, apply=f"{label} = ")
+            for label, said in attributes.attributes(name.agent)
+            if label not in model.parts_of(name.agent)
+        ], False
+    if model.text[: name.start].rstrip()[-1:] not in ("(", ","):
+        return [], False
+    method = model.method(name.method)
+    if method is not None and not name.called and name.text in method.parameters and (method.sees_parts or not name.keyword):
+        if len(method.parameters) > 1 and "self" in method.parameters:
+            return [], False
+        taken = method.parameters.keys()
+        parts = [part for part in model.parts_of(name.agent).values() if part.name not in taken]
+        return [Item(label=part.name, type="variable", detail=part.kind, apply=f'{part.name}="${{}}"', boost=OWN) for part in parts], True
+    if name.called[-1:] == ("modify",) and len(name.called) > 1:
+        about = ChunkText(kind="chunk", part=name.called[-2], agent=name.agent, method=name.method, text="", start=at)
+        slots = distinct(item for item in _slots(model, about, at, attributes) if item.label.isidentifier())
+        return [Item(label=f"{item.label}=", type=item.type, detail=item.detail, boost=item.boost, text=item.text) for item in slots], False
+    return [], False
+
+
+def distinct(items: Iterable[Item]) -> list[Item]:
+    """Returns items without a second one of the same label; the one of the highest rank counts."""
+    best: dict[str, Item] = {}
+    for item in items:
+        if item.label not in best or best[item.label].boost < item.boost:
+            best[item.label] = item
+    return list(best.values())
+
+
+def _elsewhere(texts: Iterable[ChunkText], at: int) -> Iterator[ChunkText]:
+    """Yields texts without the one that is being written: a half-written name is no name yet."""
+    return (one for one in texts if not one.start <= at <= one.end)
+
+
+def _slots(model: ModelText, text: ChunkText, at: int, attributes: Attributes) -> Iterator[Item]:
+    """Yields the slots that a text may name and does not name yet."""
+    used = {slot.text for slot in text.slots if not slot.start <= at <= slot.end}
+    own = model.chunks_of(text.part, text.agent)
+    parts = model.parts_of(text.agent)
+    part = parts.get(text.part)
+    for word, texts in _answers(model, text, attributes):
+        yield from (
+            Item(label=name, type="property", detail=f"slot of {word.word}", boost=KNOWN, text=said, apply=f"{name}:")
+            for name, said in texts.items()
+            if name not in used
+        )
+    if part is not None and part.kind != "Buffer" and text.kind == "pattern":
+        for name, said in attributes.attributes(f"{part.agent}.{part.name}"):
+            yield Item(label=name, type="property", detail=f"of {part.name}, {part.kind}", boost=KNOWN, text=said, apply=f"{name}:")
+    for rank, texts in ((OWN, own), (OTHER, model.texts)):
+        for one in _elsewhere(texts, at):
+            for slot in one.slots:
+                if slot.text not in used:
+                    yield Item(label=slot.text, type="property", detail=f"slot, {one.part}", boost=rank, apply=f"{slot.text}:")
+
+
+def _answers(model: ModelText, text: ChunkText, attributes: Attributes | None = None) -> Iterator[tuple[Word, dict[str, str]]]:
+    """Yields what the library puts into a buffer, or what a module searches for, with the slots; if the text names one, only that."""
+    found: list[Word] = []
+    for part in model.parts_of(text.agent).values():
+        if text.part in part.given and text.kind == "pattern":
+            found += answers_of(part.kind)
+        if text.part in part.given if text.kind == "pattern" else text.part == part.name:
+            found += _features(model, part, attributes)
+    named = {piece.text for piece in text.pieces}
+    for word in [word for word in found if word.word in named] or found:
+        yield word, word.slots
+
+
+def _features(model: ModelText, part: Part, attributes: Attributes | None = None) -> Iterator[Word]:
+    """Yields the features that a module finds: the library's, and those that the text itself defines."""
+    library = features_of(part.kind)
+    for one in library:
+        yield Word(word=one.word, text=one.text, slots={"feature": "", **one.slots})
+    for agent in model.agents.values() if library else ():
+        if "Feature" in agent.bases:
+            slots = dict(attributes.parameters(agent.name)) if attributes is not None else {}
+            yield Word(word=agent.name.lower(), text=f"{agent.name}, in this file", slots={"feature": "", **slots})
+
+
+def _words(model: ModelText, text: ChunkText, place: int) -> Iterator[Item]:
+    """Yields the words of the library that may begin a text."""
+    if place > 0:
+        return
+    parts = model.parts_of(text.agent)
+    part = parts.get(text.part)
+    if part is not None and text.kind != "pattern":
+        for word in words_for(part.kind, "set" if text.kind == "chunk" else "request"):
+            yield Item(label=word.word, type="function", detail=f"({word.takes})" if word.takes else "", boost=OWN, text=word.text)
+    if text.kind == "pattern":
+        for word in (word for one in parts.values() if text.part in one.given for word in answers_of(one.kind)):
+            yield Item(label=word.word, type="function", detail="sensed", boost=OTHER, text=word.text)
+
+
+def _values(model: ModelText, text: ChunkText, slot: str, at: int, attributes: Attributes) -> Iterator[Item]:
+    """Yields the values that the text knows of a slot."""
+    parts = model.parts_of(text.agent)
+    part = parts.get(text.part)
+    if slot == "feature":
+        for one in parts.values():
+            if text.part in one.given or one.name == text.part:
+                for word in _features(model, one):
+                    yield Item(label=word.word, type="constant", detail="feature", boost=OWN, text=word.text)
+    tests_module = part is not None and part.kind != "Buffer" and text.kind == "pattern" and slot.isidentifier()
+    if part is not None and tests_module and attributes.is_truth(f"{part.agent}.{part.name}.{slot}"):
+        yield from (Item(label=word, type="constant", detail=f"{slot} of {part.name}", boost=KNOWN) for word in ("False", "True"))
+    own = model.chunks_of(text.part, text.agent)
+    for rank, texts in ((OWN, own), (OTHER, model.texts if not slot.isdecimal() else ())):
+        for one in _elsewhere(texts, at):
+            for piece in one.pieces:
+                if piece.slot == slot and not piece.is_variable:
+                    detail = f"{slot}, {one.part}" if not slot.isdecimal() else one.part
+                    yield Item(label=piece.text, type="constant", detail=detail, boost=rank)
+
+
+def _variables(model: ModelText, text: ChunkText, at: int) -> list[Item]:
+    """Returns the variables of the method."""
+    names = dict.fromkeys(piece.text for piece in model.variables_of(text.method) if not piece.start <= at <= piece.end)
+    return [Item(label=f"?{name}", type="variable", detail="variable", boost=OTHER) for name in names]
+
+
+# -- documentation
+
+
+def document(model: ModelText, at: int) -> Hover | None:
+    """Returns what the text itself says of a slot, value, variable, part or production at a position."""
+    text = model.text_at(at)
+    if text is not None:
+        return _document_in(model, text, at)
+    name = model.name_at(at)
+    if name is None:
+        return None
+    part = part_of(model, name)
+    if part is not None:
+        return Hover(
+            start=name.start, end=name.end, title=f"{part.name} = {part.kind}({', '.join(part.given)})", text=_of_part(model, part)
+        )
+    method = model.method(name.method)
+    if method is not None and method.start == name.start and method.sees_parts and method.parameters:
+        return Hover(start=name.start, end=name.end, title=f"production {method.name}", text=_of_production(model, method))
+    if is_variable(model, name):
+        return Hover(start=name.start, end=name.end, title=f"?{name.text}", text=_of_variable(model, name.method, name.text))
+    if name.keyword and name.called[-1:] == ("modify",):
+        return Hover(start=name.start, end=name.end, title=f"slot {name.text}", text=_of_slot(model, name.text))
+    return None
+
+
+def _document_in(model: ModelText, text: ChunkText, at: int) -> Hover | None:
+    for slot in text.slots:
+        if slot.start <= at <= slot.end:
+            return Hover(start=slot.start, end=slot.end, title=f"slot {slot.text}", text=_of_slot(model, slot.text, text))
+    for piece in text.pieces:
+        if piece.start - len(piece.sign) <= at <= piece.end:
+            start = piece.start - len(piece.sign)
+            if piece.is_variable:
+                return Hover(start=start, end=piece.end, title=f"?{piece.text}", text=_of_variable(model, text.method, piece.text))
+            return Hover(start=start, end=piece.end, title=f"value {piece.text}", text=_of_value(model, text, piece))
+    return None
+
+
+def _of_slot(model: ModelText, slot: str, text: ChunkText | None = None) -> str:
+    lines: list[str] = []
+    if text is not None:
+        lines += [f"{word.word}: {slots[slot]}" for word, slots in _answers(model, text) if slots.get(slot)]
+    uses = [one for one in model.texts if any(other.text == slot for other in one.slots)]
+    lines.append(_listed("matched in", (one.method.rpartition(".")[2] for one in uses if one.kind == "pattern")))
+    lines.append(_listed("set in", (one.method.rpartition(".")[2] for one in uses if one.kind == "chunk")))
+    lines.append(_listed("requested in", (one.method.rpartition(".")[2] for one in uses if one.kind == "request")))
+    values = (piece.text for one in uses for piece in one.pieces if piece.slot == slot and not piece.is_variable)
+    lines.append(_listed("values:", values))
+    return "\n".join(line for line in lines if line)
+
+
+def _of_value(model: ModelText, text: ChunkText, piece: Piece) -> str:
+    part = model.parts_of(text.agent).get(text.part)
+    known = words_for(part.kind, "set" if text.kind == "chunk" else "request") if part is not None and text.kind != "pattern" else ()
+    lines = [f"{one.word}({one.takes}): {one.text}" for one in known if one.word == piece.text]
+    lines += [f"{word.word}: {word.text}" for word, _ in _answers(model, text) if word.word == piece.text]
+    where = f"in slot {piece.slot}" if not piece.slot.isdecimal() else f"word {int(piece.slot) + 1}"
+    uses = [one for one in model.texts if any(other.text == piece.text and other.slot == piece.slot for other in one.pieces)]
+    lines.append(f"{where}, {_listed('used in', (one.method.rpartition('.')[2] for one in uses))}")
+    return "\n".join(lines)
+
+
+def _of_variable(model: ModelText, method: str, name: str) -> str:
+    bound = [one for one in model.texts if one.method == method and any(p.text == name and p.is_variable for p in one.pieces)]
+    slots = (
+        f"{one.part}'s {f'slot {p.slot}' if not p.slot.isdecimal() else f'word {int(p.slot) + 1}'}"
+        for one in bound
+        for p in one.pieces
+        if p.text == name and p.is_variable
+    )
+    return f"A variable of {method.rpartition('.')[2]}: the same value in all places.\n{_listed('in', slots)}"
+
+
+def _of_part(model: ModelText, part: Part) -> str:
+    own = model.chunks_of(part.name, part.agent)
+    matched = (one.method.rpartition(".")[2] for one in model.texts if one.part == part.name and one.kind == "pattern")
+    fills = (name for name, one in model.parts_of(part.agent).items() if part.name in one.given)
+    slots = (slot.text for one in own for slot in one.slots)
+    words = (piece.text for one in own for piece in one.pieces if piece.slot == "0" and not piece.is_variable)
+    lines = [_listed("filled by", fills), _listed("first words:", words), _listed("slots:", slots), _listed("matched in", matched)]
+    return "\n".join(line for line in lines if line)
+
+
+def _of_production(model: ModelText, method: Method) -> str:
+    patterns = [one for one in model.texts if one.method == method.path and one.kind == "pattern"]
+    return "\n".join(f"{one.part}: {one.text}" for one in patterns)
+
+
+def _listed(what: str, names: Iterable[str]) -> str:
+    """Returns names without repetitions as a line of text; an empty text without names."""
+    distinct = list(dict.fromkeys(name for name in names if name))
+    more = f" and {len(distinct) - MOST_NAMED} more" if len(distinct) > MOST_NAMED else ""
+    return f"{what} {', '.join(distinct[:MOST_NAMED])}{more}" if distinct else ""
+
+
+# -- definition and renaming
+
+
+def part_of(model: ModelText, name: Name) -> Part | None:
+    """Returns the part of an agent that a name in its code means."""
+    parts = model.parts_of(name.agent)
+    if name.text not in parts:
+        return None
+    part = parts[name.text]
+    if name.start == part.start or name.before == ("self",):
+        return part
+    if name.before or (name.called and name.keyword):
+        return None
+    method = model.method(name.method)
+    is_known = method is None or (method.sees_parts and not _is_variable_of(model, name.method, name.text))
+    return part if is_known else None
+
+
+def is_variable(model: ModelText, name: Name) -> bool:
+    """Returns whether a name in the body of a method means a variable of its patterns."""
+    return not name.before and not name.keyword and _is_variable_of(model, name.method, name.text)
+
+
+def _is_variable_of(model: ModelText, method: str, name: str) -> bool:
+    found = model.method(method)
+    return found is not None and found.sees_parts and any(piece.text == name for piece in model.variables_of(method))
+
+
+def define(model: ModelText, at: int) -> int | None:
+    """Returns where a part, a variable or a slot is first written; None if there is none at the position."""
+    renaming = find_uses(model, at)
+    if renaming is None:
+        return None
+    if renaming.what == "part":
+        text, name = model.text_at(at), model.name_at(at)
+        part = model.parts_of((text or name).agent).get(renaming.name) if text or name else None  # type: ignore[union-attr]
+        return None if part is None else part.start
+    if renaming.what == "slot":
+        given = (slot.start for one in model.texts if one.kind == "chunk" for slot in one.slots if slot.text == renaming.name)
+        return next(given, renaming.starts[0])
+    return renaming.starts[0]
+
+
+def find_uses(model: ModelText, at: int) -> Renaming | None:
+    """Returns all places of the slot, variable or part at a position; None if there is none."""
+    text = model.text_at(at)
+    if text is not None:
+        for slot in text.slots:
+            if slot.start <= at <= slot.end:
+                return Renaming(name=slot.text, what="slot", starts=_uses_of_slot(model, slot.text))
+        for piece in text.pieces:
+            if piece.is_variable and piece.start - len(piece.sign) <= at <= piece.end:
+                return Renaming(name=piece.text, what="variable", starts=_uses_of_variable(model, text.method, piece.text))
+        return None
+    name = model.name_at(at)
+    if name is None:
+        return None
+    if is_variable(model, name):
+        return Renaming(name=name.text, what="variable", starts=_uses_of_variable(model, name.method, name.text))
+    part = part_of(model, name)
+    if part is not None:
+        return Renaming(name=name.text, what="part", starts=_uses_of_part(model, part))
+    if name.keyword and name.called[-1:] == ("modify",):
+        return Renaming(name=name.text, what="slot", starts=_uses_of_slot(model, name.text))
+    return None
+
+
+def _uses_of_slot(model: ModelText, slot: str) -> list[int]:
+    named = [one.start for text in model.texts for one in text.slots if one.text == slot]
+    given = [one.start for one in model.names if one.text == slot and one.keyword and one.called[-1:] == ("modify",)]
+    read = [found.start(1) for found in re.finditer(rf"\w\[[\"']({re.escape(slot)})[\"']\]", model.text)]
+    return sorted({*named, *given, *read})
+
+
+def _uses_of_variable(model: ModelText, method: str, variable: str) -> list[int]:
+    inside = [piece.start for piece in model.variables_of(method) if piece.text == variable]
+    used = [one.start for one in model.names if one.method == method and one.text == variable and is_variable(model, one)]
+    return sorted({*inside, *used})
+
+
+def _uses_of_part(model: ModelText, part: Part) -> list[int]:
+    return sorted({part.start, *(one.start for one in model.names if one.text == part.name and part_of(model, one) is part)})

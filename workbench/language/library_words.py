@@ -1,0 +1,73 @@
+"""The words that the library gives to models: what bodies do and sense, what vision finds, and the slots of these answers."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from functools import cache
+
+from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportUnusedImport] # registers the sensor `view`
+from actr3d.vision import DETECTORS
+from actr3d.vision.feature import slot_names
+from actr3d.world.body import ACTUATORS, SENSORS
+from workbench.language.field_texts import texts_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class Word:
+    """A word that begins a request, a command or a chunk."""
+
+    word: str
+    text: str
+    takes: str = ""
+    """Its arguments."""
+    slots: dict[str, str] = dataclasses.field(default_factory=dict[str, str])
+    """The slots of the chunk that answers it, with their meanings."""
+
+
+@cache
+def commands() -> tuple[Word, ...]:
+    """Returns the commands of bodies."""
+    return tuple(Word(word=name, text=one.meaning, takes=one.takes) for name, one in sorted(ACTUATORS.items()))
+
+
+@cache
+def senses() -> tuple[Word, ...]:
+    """Returns what bodies sense."""
+    found: list[Word] = []
+    for name, one in sorted(SENSORS.items()):
+        kind = one.returns
+        slots: dict[str, str] = {}
+        if isinstance(kind, type) and dataclasses.is_dataclass(kind):
+            texts = texts_of(kind)
+            slots = {field.name: texts.get(field.name, "") for field in dataclasses.fields(kind)}
+        found.append(Word(word=name, text=one.meaning, takes=one.takes, slots=slots))
+    return tuple(found)
+
+
+@cache
+def features() -> tuple[Word, ...]:
+    """Returns what vision finds."""
+    found: list[Word] = []
+    for name, one in sorted(DETECTORS.items()):
+        texts = texts_of(one.finds)
+        slots = {slot: texts.get(slot, "") for slot in slot_names(one.finds)}
+        found.append(Word(word=name, text=(one.finds.__doc__ or "").split("\n\n")[0], slots=slots))
+    return tuple(found)
+
+
+def words_for(kind: str, method: str) -> tuple[Word, ...]:
+    """Returns the words that may begin the text of a module's method."""
+    if kind == "BodyPort":
+        return commands() if method == "set" else senses()
+    return ()
+
+
+def answers_of(kind: str) -> tuple[Word, ...]:
+    """Returns the chunks that a module puts into its buffer."""
+    return senses() if kind == "BodyPort" else ()
+
+
+def features_of(kind: str) -> tuple[Word, ...]:
+    """Returns the features that a module searches for, which its requests and chunks name in the slot `feature`."""
+    return features() if kind == "Vision" else ()

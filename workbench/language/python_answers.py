@@ -1,0 +1,193 @@
+"""Answers questions about plain Python by jedi, which reads texts; nothing is imported or executed."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import jedi
+from jedi import settings
+from jedi.api.environment import InterpreterEnvironment
+from jedi.inference.compiled.subprocess import InferenceStateSameProcess
+
+from workbench.language.answers import Definition, Documentation, Item, Signature
+from workbench.language.explicit_names import ExplicitText
+from workbench.language.field_texts import parameter_text, text_at
+
+settings.auto_import_modules = []
+settings.allow_unsafe_interpreter_executions = False
+
+KINDS = {
+    "module": "namespace",
+    "class": "class",
+    "instance": "variable",
+    "function": "function",
+    "param": "property",
+    "property": "property",
+    "keyword": "keyword",
+    "statement": "variable",
+}
+"""The kinds of the page's completions, by jedi's."""
+MOST_ITEMS = 400
+LONGEST_DOCUMENTATION = 4_000
+"""How much of a documentation is shown [characters]."""
+
+
+class _NothingImported(InferenceStateSameProcess):
+    """jedi's access to compiled modules, which it knows by importing them: here only those that this process has already."""
+
+    def load_module(self, dotted_name: str, sys_path: list[str]) -> Any:
+        """Returns a module that is loaded already; None for any other, of which jedi then knows only what its stubs say."""
+        return self.__getattr__("load_module")(dotted_name=dotted_name, sys_path=sys_path) if dotted_name in sys.modules else None
+
+
+class _Environment(InterpreterEnvironment):
+    """This interpreter, and the folders of its installed packages."""
+
+    def get_inference_state_subprocess(self, inference_state: Any) -> InferenceStateSameProcess:
+        """Returns jedi's access to compiled modules."""
+        return _NothingImported(inference_state)
+
+
+class Python:
+    """Answers questions about the texts of a folder.
+
+    Args:
+        folder: The models folder, whose files may import each other.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._environment = _Environment()
+
+    def _script(self, text: str, path: str) -> jedi.Script:
+        where = self._folder / path
+        sources = list(dict.fromkeys([str(where.parent), str(self._folder), *sys.path]))
+        project = jedi.Project(self._folder, sys_path=sources, smart_sys_path=False)
+        return jedi.Script(text, path=where, project=project, environment=self._environment)
+
+    def complete(self, explicit: ExplicitText, path: str, at: int) -> list[Item]:
+        """Returns what may stand at a position; nothing in a string or a comment."""
+        script, (line, column) = self._script(explicit.text, path), explicit.place(at)
+        found = [one for one in script.complete(line, column) if one.type != "path"][:MOST_ITEMS]
+        start = column - len(found[0].name_with_symbols) + len(found[0].complete or "") if found else column
+        owners = (
+            [f"{one.full_name}." for one in script.infer(line, start - 2)] if start > 1 and _before(explicit, line, start) == "." else []
+        )
+        return [_item(one, tuple(owners)) for one in found]
+
+    def document_item(self, explicit: ExplicitText, path: str, at: int, label: str) -> Documentation | None:
+        """Returns the documentation of one of the completions."""
+        found = self._script(explicit.text, path).complete(*explicit.place(at))
+        return next((_documentation(one) for one in found if one.name_with_symbols == label), None)
+
+    def document(self, explicit: ExplicitText, path: str, at: int) -> Documentation | None:
+        """Returns the documentation of the name at a position."""
+        found = self._script(explicit.text, path).help(*explicit.place(at))
+        return next((_documentation(one) for one in found), None)
+
+    def signatures(self, explicit: ExplicitText, path: str, at: int) -> list[Signature]:
+        """Returns how the function may be called in whose parentheses a position is."""
+        return [_signature(one) for one in self._script(explicit.text, path).get_signatures(*explicit.place(at))][:10]
+
+    def after(self, text: str, path: str) -> PythonExpressions:
+        """Returns what is known of expressions that are written after the end of a text."""
+        return PythonExpressions(lambda code: self._script(code, path), text)
+
+    def define(self, explicit: ExplicitText, path: str, at: int) -> Definition | None:
+        """Returns where the name at a position is defined."""
+        script = self._script(explicit.text, path)
+        line, column = explicit.place(at)
+        for one in script.goto(line, column, follow_imports=True, follow_builtin_imports=True):
+            if one.module_path is None or one.line is None:
+                continue
+            if one.module_path == self._folder / path:
+                position = explicit.position(one.line, one.column)
+                if position is not None:
+                    return Definition(path=path, at=position, name=one.name)
+            elif one.module_path.is_relative_to(self._folder):
+                inside = one.module_path.relative_to(self._folder).as_posix()
+                return Definition(path=inside, line=one.line, name=one.name)
+            else:
+                return Definition(path=None, line=one.line, name=one.name, module=one.module_name)
+        return None
+
+    def references(self, explicit: ExplicitText, path: str, at: int) -> list[int]:
+        """Returns the positions of all uses of the name at a position in its text."""
+        line, column = explicit.place(at)
+        found = self._script(explicit.text, path).get_references(line, column, scope="file", include_builtins=False)
+        own = [one for one in found if one.module_path == self._folder / path]
+        places = (explicit.position(one.line, one.column) for one in own if one.line is not None)
+        return sorted({place for place in places if place is not None})
+
+
+class PythonExpressions:
+    """Answers questions about expressions that are written after the end of a text.
+
+    Args:
+        script: Returns jedi's access to some code.
+        text: The text.
+    """
+
+    def __init__(self, script: Callable[[str], jedi.Script], text: str) -> None:
+        self._script = script
+        self._text = text
+
+    def _after(self, expression: str) -> tuple[jedi.Script, int, int]:
+        code = f"{self._text}\n\n{expression}"
+        lines = code.split("\n")
+        return self._script(code), len(lines), len(lines[-1])
+
+    def attributes(self, expression: str) -> list[tuple[str, str]]:
+        """Returns its public attributes, those of its own class or with a documentation, each with that."""
+        script, line, column = self._after(f"{expression}.")
+        owners = tuple(f"{one.full_name}." for one in script.infer(line, column - 2))
+        found = [one for one in script.complete(line, column) if one.type in ("statement", "instance", "property") and one.name[0] != "_"]
+        said = [(one, _field_text(one) or one.docstring(raw=True)) for one in found]
+        return [(one.name, text) for one, text in said if text or (owners and (one.full_name or "").startswith(owners))]
+
+    def parameters(self, expression: str) -> list[tuple[str, str]]:
+        """Returns the parameters of a call of it, each with its documentation."""
+        script, line, column = self._after(f"{expression}(")
+        found = [one for signature in script.get_signatures(line, column) for one in signature.params]
+        return [(one.name, _field_text(one)) for one in found]
+
+    def is_truth(self, expression: str) -> bool:
+        """Returns whether it is True or False."""
+        script, line, column = self._after(expression)
+        return any(one.full_name == "builtins.bool" for one in script.infer(line, column - 1))
+
+
+def _before(explicit: ExplicitText, line: int, column: int) -> str:
+    """Returns the character before a place."""
+    return explicit.text.split("\n")[line - 1][column - 1 : column]
+
+
+def _item(one: jedi.Completion, owners: tuple[str, ...]) -> Item:
+    """Returns a completion; attributes of an object's own class come before those that it inherits."""
+    is_own = bool(owners) and (one.full_name or "").startswith(owners)
+    boost = -2 if one.name.startswith("_") else 2 if one.type == "param" else 1 if is_own else -1 if one.type == "keyword" else 0
+    return Item(label=one.name_with_symbols, type=KINDS.get(one.type, "variable"), boost=boost)
+
+
+def _documentation(one: jedi.BaseName) -> Documentation:
+    signatures = [signature.to_string() for signature in one.get_signatures()]
+    title = "\n".join(signatures[:3]) or (one.description if one.type not in ("module", "keyword") else one.name)
+    text = one.docstring(raw=True) if one.type != "param" else ""
+    return Documentation(title=title[:LONGEST_DOCUMENTATION], text=(text or _field_text(one))[:LONGEST_DOCUMENTATION])
+
+
+def _signature(one: jedi.BaseSignature) -> Signature:
+    parameters = [parameter.to_string() for parameter in one.params]
+    active = one.params[one.index] if one.index is not None and one.index < len(one.params) else None
+    text = one.docstring(raw=True)
+    said = "" if active is None else _field_text(active) or parameter_text(text, active.name)
+    return Signature(name=one.name, parameters=parameters, active=one.index, text=said or text.split("\n\n")[0][:LONGEST_DOCUMENTATION])
+
+
+def _field_text(one: jedi.BaseName) -> str:
+    """Returns the text below the definition of a field of a dataclass, or of any other attribute."""
+    path, line = one.module_path, one.line
+    return text_at(path, line) if path is not None and line is not None and path.suffix == ".py" else ""

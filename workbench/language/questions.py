@@ -1,0 +1,195 @@
+"""The questions of the page about a text, and their answers from ACT-R and Python."""
+
+from __future__ import annotations
+
+import keyword
+import re
+import subprocess
+from dataclasses import asdict, replace
+from typing import Any, Literal
+
+import msgspec
+from ruff import find_ruff_bin
+
+from workbench.language import actr_answers
+from workbench.language.answers import Completion, Definition, Documentation, Hover, Item, LanguageError, Renaming
+from workbench.language.explicit_names import ExplicitText
+from workbench.language.model_text import ModelText
+from workbench.language.python_answers import Python
+
+FORMAT_TIME = 5.0
+"""Maximum time that formatting may take [s]."""
+_MARK = "completed_here"
+"""Takes the place of the name that is not written yet."""
+
+
+class LanguageQuestion(msgspec.Struct, frozen=True, kw_only=True):
+    """A question about a text."""
+
+    ask: Literal["complete", "document item", "document", "signature", "define", "rename", "format"]
+    path: str
+    """The model file inside the folder; the text may differ from it."""
+    text: str
+    at: int = 0
+    """The position: the number of UTF-16 code units before it, as the page counts."""
+    name: str = ""
+    """The label of a completion, or the new name."""
+
+
+class Assistant:
+    """Answers questions about the texts of a folder.
+
+    Args:
+        python: Answers those about plain Python.
+    """
+
+    def __init__(self, python: Python) -> None:
+        self._python = python
+
+    def answer(self, question: LanguageQuestion) -> Any:
+        """Returns the answer, for JSON; None if there is none.
+
+        Raises:
+            LanguageError: If it cannot be given.
+        """
+        if question.ask == "format":
+            return {"text": formatted(question.text)}
+        units = CodeUnits(question.text)
+        at = units.position(question.at)
+        model = ModelText(question.text)
+        if question.ask == "complete":
+            return _plain(self._complete(model, question.path, at), units)
+        if question.ask == "document item":
+            return _plain(self._python.document_item(ExplicitText(model), question.path, at, question.name), units)
+        if question.ask == "document":
+            return _plain(self._document(model, question.path, at), units)
+        if question.ask == "signature":
+            in_text = model.text_at(at) is not None
+            signatures = [] if in_text else self._python.signatures(ExplicitText(model), question.path, at)
+            return [asdict(one) for one in signatures]
+        if question.ask == "define":
+            return _plain(self._define(model, question.path, at), units)
+        renaming = self._rename(model, question.path, at, question.name)
+        size = len(renaming.name.encode("utf-16-le")) // 2
+        starts = [units.unit(start) for start in renaming.starts]
+        return {"name": renaming.name, "what": renaming.what, "changes": [[start, start + size] for start in starts]}
+
+    def _complete(self, model: ModelText, path: str, at: int) -> Completion:
+        attributes = self._python.after(model.text, path)
+        inside = actr_answers.complete(model, at, attributes)
+        if inside is not None:
+            return inside
+        start = at - len(re.search(r"\w*$", model.text[:at])[0])  # type: ignore[index] # it always matches
+        marked = model if start < at else ModelText(f"{model.text[:at]}{_MARK}{model.text[at:]}")
+        own, alone = actr_answers.complete_name(marked, at, attributes)
+        python: list[Item] = [] if alone else self._python.complete(ExplicitText(model), path, at)
+        return Completion(start=start, items=actr_answers.distinct([*own, *python]))
+
+    def _document(self, model: ModelText, path: str, at: int) -> Hover | None:
+        found = actr_answers.document(model, at)
+        name = model.name_at(at)
+        part = actr_answers.part_of(model, name) if name is not None else None
+        if found is not None and part is not None:
+            kind = next((one for one in model.names if one.start > part.start and one.text == part.kind), None)
+            said = None if kind is None else self._python.document(ExplicitText(model), path, kind.start)
+            about = [said.text.split("\n\n")[0]] if said is not None else []
+            return replace(found, text="\n\n".join(text for text in (*about, found.text) if text))
+        if found is not None or model.text_at(at) is not None:
+            return found
+        if name is None:
+            return None
+        said = self._python.document(ExplicitText(model), path, min(at, name.end - 1))
+        return None if said is None else Hover(start=name.start, end=name.end, title=said.title, text=said.text)
+
+    def _define(self, model: ModelText, path: str, at: int) -> Definition | None:
+        place = actr_answers.define(model, at)
+        if place is not None:
+            return Definition(path=path, at=place, name="")
+        if model.text_at(at) is not None or model.name_at(at) is None:
+            return None
+        return self._python.define(ExplicitText(model), path, at)
+
+    def _rename(self, model: ModelText, path: str, at: int, new: str) -> Renaming:
+        found = actr_answers.find_uses(model, at) or self._find_uses(model, path, at)
+        allowed = re.fullmatch(r"[\w.]+", new) if found.what == "slot" else new.isidentifier() and not keyword.iskeyword(new)
+        if not new:  # the page asks what will be renamed
+            return found
+        if not allowed:
+            raise LanguageError(f"'{new}' is not a name for a {found.what}")
+        if new != found.name and self._is_taken(model, found, at, new):
+            raise LanguageError(f"there is a {found.what} '{new}' already")
+        return found
+
+    @staticmethod
+    def _is_taken(model: ModelText, found: Renaming, at: int, new: str) -> bool:
+        """Returns whether a slot, a variable or a part of the new name exists already."""
+        text = model.text_at(at) or model.name_at(at)
+        if text is None or found.what == "name":
+            return False
+        if found.what == "slot":
+            return any(slot.text == new for one in model.texts for slot in one.slots)
+        names = {piece.text for piece in model.variables_of(text.method)} if found.what == "variable" else set[str]()
+        return new in names or new in model.parts_of(text.agent)
+
+    def _find_uses(self, model: ModelText, path: str, at: int) -> Renaming:
+        name = model.name_at(at)
+        if name is None or model.text_at(at) is not None:
+            raise LanguageError("there is no name here that can be renamed")
+        explicit = ExplicitText(model)
+        defined = self._python.define(explicit, path, at)
+        if defined is not None and defined.at is None:
+            raise LanguageError(f"'{name.text}' is defined in {defined.path or defined.module}, and keeps its name here")
+        starts = [start for start in self._python.references(explicit, path, at) if model.text.startswith(name.text, start)]
+        if not starts:
+            raise LanguageError(f"'{name.text}' cannot be renamed: where it is defined is not known")
+        return Renaming(name=name.text, what="name", starts=starts)
+
+
+class CodeUnits:
+    """Converts between numbers of characters and numbers of UTF-16 code units, which the page counts.
+
+    Args:
+        text: The text.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._large = [at for at, character in enumerate(text) if character > "\uffff"] if text and max(text) > "\uffff" else []
+        self._length = len(text)
+
+    def position(self, unit: int) -> int:
+        """Returns the number of characters before a code unit; that of the whole text if it lies behind."""
+        before = sum(1 for number, at in enumerate(self._large) if at + number < unit)
+        return max(0, min(unit - before, self._length))
+
+    def unit(self, position: int) -> int:
+        """Returns the number of code units before a character."""
+        return position + sum(1 for at in self._large if at < position)
+
+
+def _plain(answer: Completion | Definition | Documentation | Hover | None, units: CodeUnits) -> Any:
+    """Returns an answer for JSON, with positions as the page counts them."""
+    if answer is None:
+        return None
+    plain = asdict(answer)
+    for field in ("start", "end", "at"):
+        if plain.get(field) is not None:
+            plain[field] = units.unit(plain[field])
+    return plain
+
+
+def formatted(text: str) -> str:
+    """Returns a text as `ruff format` writes it.
+
+    Raises:
+        LanguageError: If it is not valid Python, or takes too long.
+    """
+    command = [find_ruff_bin(), "format", "--isolated", "--no-cache", "--stdin-filename", "model.py", "-"]
+    try:
+        done = subprocess.run(command, input=text.encode(errors="surrogatepass"), capture_output=True, timeout=FORMAT_TIME, check=False)
+    except subprocess.TimeoutExpired:
+        raise LanguageError("the text was not formatted: that takes too long") from None
+    if done.returncode != 0:
+        said = done.stderr.decode(errors="replace").strip()
+        found = re.search(r"model\.py:(\d+):\d+: (.*)", said)
+        raise LanguageError(f"the text was not formatted: {f'line {found[1]}: {found[2]}' if found else said[:300]}")
+    return done.stdout.decode()
