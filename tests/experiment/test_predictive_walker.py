@@ -80,7 +80,7 @@ def test_of_two_doorways_it_passes_one(model: Any, seed: int) -> None:
 
 BOTH_WAIT = [
     pytest.mark.slow,
-    pytest.mark.xfail(reason="with these seeds somebody waits for ever: an open fault of the walker", strict=True),
+    pytest.mark.xfail(reason="with these seeds somebody is not through after 60 s: an open fault of the walker", strict=True),
 ]
 
 
