@@ -15,6 +15,8 @@ from actr3d.recording import Recorded
 class Beginning(msgspec.Struct, frozen=True, kw_only=True):
     """Holds what a recorded run began with."""
 
+    recording: str
+    """The path of the recording."""
     made_here: bool
     """Whether this installation made the recording and nobody has changed it since; only then has its code been run here before."""
     file: str
@@ -41,6 +43,7 @@ def beginning_of(path: Path) -> Beginning:
         if not isinstance(file, str) or file not in facts.get("sources", {}):
             raise RecordingError("the recording does not say which model file made it")
         facts = {
+            "recording": str(path),
             "made_here": recorded.made_here,
             "file": file,
             "source": facts["sources"][file],

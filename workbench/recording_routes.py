@@ -14,9 +14,8 @@ from pydantic import Field
 
 from actr3d.values import escape_surrogates, to_json
 from workbench.listing import MOST as MOST_LISTED
-from workbench.open_file import OpenFile, gone
+from workbench.open_file import OpenFile, while_wanted
 from workbench.page_commands import Name, PageMessage
-from workbench.readers import while_wanted
 from workbench.retention import stands_alone
 from workbench.routes import Id, sessions_of
 from workbench.sessions import SessionError, Sessions
@@ -88,7 +87,7 @@ async def recording(request: Request, recording: Id) -> Response:
 async def download(request: Request, recording: Id, form: File = "sqlite") -> Response:
     """Returns a file: the recording itself, its events or states as CSV, or an HTML file that plays its scene beside its trace.
 
-    For a run that is still going on, it contains what has been recorded so far. 409 if there is nothing to return, for example no states.
+    For a run that is still going on, it contains what is recorded by now. 409 if there is nothing to return, for example no states.
     """
     sessions = sessions_of(request)
     path = sessions.recordings.path(recording)
@@ -101,7 +100,7 @@ async def download(request: Request, recording: Id, form: File = "sqlite") -> Re
 
 async def _made(request: Request, kind: str, *paths: Path, **options: Any) -> FileIO:
     """Returns an open file that a worker makes from recordings; the work is cancelled if the client disconnects."""
-    return await while_wanted(sessions_of(request).readers.make(kind, *paths, **options), lambda: gone(request.receive))
+    return await while_wanted(sessions_of(request).readers.make(kind, *paths, **options), request.receive)
 
 
 @router.get("/recordings/{recording}/curves")

@@ -72,7 +72,7 @@ class Recordings:
         """
         path, target = self.path(name), self._folder / f"{to}.sqlite"
         if _NAME.fullmatch(to) is None:
-            raise RecordingError("a recording's name has letters, digits, '_', '.' and '-', and no more than 150 of them")
+            raise RecordingError("the name of a recording: must be 1 to 150 letters, digits, '_', '.' or '-'")
         if not stands_alone(path):
             raise RecordingError("the recording is still being written: stop or restart its run first")
         try:

@@ -69,7 +69,7 @@ export function MemoryTable({ answer, words }) {
         ${names.map((name) => html`<${Head} key=${name} text=${partName(name)} title=${name} by=${name} sort=${sort} onSort=${setSort} />`)}`}
       chosen=${at < 0 ? null : at}
       onChoose=${(n) => setChosen(all[n].chunk)}
-      empty=${html`<p class="empty">${words ? "No chunk has all of these words." : "This memory is empty so far."}</p>`}
+      empty=${html`<p class="empty">${words ? "No chunk has all of these words." : "This memory is still empty."}</p>`}
     />
     ${at < 0 ? null : html`<${Chosen} row=${all[at]} names=${names} threshold=${threshold} />`}`;
 }

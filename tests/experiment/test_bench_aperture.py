@@ -203,7 +203,7 @@ def test_a_number_of_trials_that_is_none_is_refused(capsys: Any) -> None:
     with pytest.raises(SystemExit) as refused:
         main(["bench", "aperture", "--trials", "0"])
     assert refused.value.code == 2
-    assert "must be a whole number from 1 on (got 0)" in capsys.readouterr().err
+    assert "must be a whole number >= 1 (got 0)" in capsys.readouterr().err
 
 
 def test_trials_that_fail_are_told_and_count(monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:

@@ -313,7 +313,7 @@ def test_other_versions_are_refused_unless_allowed(tmp_path: Path, capsys: pytes
     text = (folder / "experiment.json").read_text()
     (folder / "experiment.json").write_text(text.replace(f'"mujoco": "{cluster_versions()["mujoco"]}"', '"mujoco": "1.2.3"'))
     assert main(["experiment", str(folder), "--resume"]) == 1
-    assert "the trials so far were run with mujoco 1.2.3 (now" in capsys.readouterr().err
+    assert "its trials until now were run with mujoco 1.2.3 (now" in capsys.readouterr().err
     capsys.readouterr()
     assert main(["experiment", str(folder), "--trial", "0", "--record", str(tmp_path / "again.rec")]) == 0
     assert "it may differ from its row: the experiment was begun with mujoco" in capsys.readouterr().out

@@ -17,7 +17,7 @@ from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.kernel.tree import path_of, subtree
 from actr3d.actr.loading.global_seed import shared_random
-from actr3d.printing import ModelOutput, printing_to
+from actr3d.output import ModelOutput, printing_to
 from actr3d.runner.model_factory import build
 from actr3d.simulation import Simulation
 from actr3d.values import to_json
@@ -27,8 +27,8 @@ from workbench.overlays import OVERLAYS
 from workbench.page_commands import COMMANDS, Question
 from workbench.page_commands.agents import Events, Explain, MemoryRows
 from workbench.page_commands.bodies import BodyState, Curves, View
+from workbench.worker.names import Top
 from workbench.worker.shown import Shown
-from workbench.worker.top_models import Top
 
 MODELS = Path(__file__).parents[2] / "models"
 KINDS = tuple(OVERLAYS)

@@ -82,7 +82,7 @@ class Leave(Message, frozen=True, kw_only=True):
 
 
 class Draw(Message, frozen=True, kw_only=True):
-    """Sets the kinds of overlays whose data each state contains from now on; see `worker.drawings`."""
+    """Sets the kinds of overlays whose data each state contains from now on; see `workbench.overlays`."""
 
     kinds: tuple[str, ...]
 

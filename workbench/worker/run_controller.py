@@ -14,7 +14,7 @@ import msgspec
 from actr3d.actr.kernel.run_limits import EndOfRun
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError
-from actr3d.printing import ModelOutput
+from actr3d.output import ModelOutput
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench.worker.channel import Channel
@@ -226,7 +226,7 @@ class RunController:
         """
         if self.status in ("ended", "failed"):
             raise Actr3dError("the run is over: go back to an earlier time, or restart it")
-        self.watch.begin(**wanted)
+        self.watch = self.watch.renewed(**wanted)
         trace = self.run.trace
         self._seen = 0 if trace is None else len(trace)
         self.status, self.reason = "running", ""
@@ -314,7 +314,7 @@ class RunController:
             self._send(msgspec.structs.replace(last, time=time, furthest=furthest, tick=clock // self.run.period, events=len(trace)), trace)
 
     def send_all(self, ends: bool) -> None:
-        """Records and sends all events so far, from any thread of the model, as it may be about to end its process.
+        """Records and sends all events until now, from any thread of the model, as it may be about to end its process.
 
         Args:
             ends: Whether it surely ends: then a line without a line break is sent, too.
@@ -355,6 +355,6 @@ class RunController:
 
     def _halt(self) -> None:
         self.pacer.halt()
-        self.watch.begin()
+        self.watch = self.watch.renewed()
         self.run.flush()
         self.show()
