@@ -126,6 +126,16 @@ trace_kind(
     text="{production} was chosen, but matches no longer",
 )
 trace_kind(
+    "withdrawn",
+    level="production",
+    source="system",
+    data="production",
+    meaning="a chosen production does not fire, because a user has forbidden it or has another one fire",
+    group="fire",
+    title="withdrawn",
+    text="{production}: by the user",
+)
+trace_kind(
     "compile",
     level="production",
     source="system",
@@ -232,8 +242,9 @@ trace_kind(
 trace_kind(
     "conflict",
     source="system",
-    data="utilities [parts drawn threshold]",
-    meaning="the productions that match, their utilities and the parts of these, the modules that drew noise, and the utility threshold",
+    data="utilities [parts drawn threshold forbidden wanted]",
+    meaning="the productions that match, their utilities and the parts of these, the modules that drew noise, the utility threshold; "
+    "the productions that a user had forbidden, and the one that the user has fire",
     group="choice",
 )
 trace_kind(

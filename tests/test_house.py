@@ -18,7 +18,7 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "configuration", "warnings", "values", "registry", "forks", "weak_cache", "trace_kinds", "trace"}
+BASE = {"errors", "clock", "configuration", "warnings", "values", "registry", "forks", "weak_cache", "trace_kinds", "trace", "change"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
@@ -34,6 +34,7 @@ PARTS: dict[str, set[str]] = {
     "forks": set(),
     "trace_kinds": {"registry"},
     "trace": {"errors", "clock", "values", "trace_kinds"},
+    "change": {"errors", "configuration", "registry"},
     "actr": BASE,
     "jit": set(),
     "world": BASE | {"jit"},

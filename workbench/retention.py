@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 import secrets
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from actr3d.recording.opening import COMPANIONS
+from workbench.labels import Labels
 
 MOST = 500
 """Default maximum number of recordings."""
@@ -34,22 +35,27 @@ class Keeping:
     """Maximum size of all recordings [MB]; 0 for no limit."""
 
 
-def superfluous(files: Sequence[Path], keeping: Keeping) -> list[Path]:
-    """Returns the recordings that exceed the limits: the oldest of those that no user has named.
+def superfluous(files: Sequence[Path], keeping: Keeping, labelled: Collection[str] = ()) -> list[Path]:
+    """Returns the recordings that exceed the limits: the oldest of those that no user has named or labelled.
 
     Args:
         files: All recordings.
         keeping: The limits.
+        labelled: The names of those with a label.
     """
+
+    def is_kept(path: Path) -> bool:
+        return not is_unnamed(path) or path.stem in labelled
+
     newest = sorted(files, key=written, reverse=True)
     number = size = 0
     found: list[Path] = []
-    for path in [path for path in newest if not is_unnamed(path)] + [path for path in newest if is_unnamed(path)]:
+    for path in [path for path in newest if is_kept(path)] + [path for path in newest if not is_kept(path)]:
         own = size_of(path)
         number += 1
         size += own
         much = (keeping.number and number > keeping.number) or (keeping.megabytes and size > keeping.megabytes * 1_000_000)
-        if much and is_unnamed(path):
+        if much and not is_kept(path):
             found.append(path)
             number -= 1
             size -= own
@@ -125,6 +131,8 @@ def branched_at(path: Path) -> float | None:
 
 
 def superfluous_branches(recording: Path) -> list[Path]:
-    """Returns the oldest branches of a run beyond the number that is kept."""
-    found = [path for path in recording.parent.glob(f"{recording.stem}-at-*{recording.suffix}") if branched_at(path) is not None]
+    """Returns the oldest branches of a run beyond the number that is kept; those with a label do not count."""
+    labelled = Labels(recording.parent).all()
+    branches = [path for path in recording.parent.glob(f"{recording.stem}-at-*{recording.suffix}") if branched_at(path) is not None]
+    found = [path for path in branches if path.stem not in labelled]
     return sorted(found, key=written, reverse=True)[MOST_BRANCHES:]

@@ -187,6 +187,7 @@ class Session(Broadcast, Receiver):
         before, worker = self._shown, self._worker
         self._shown, self._loading = launched, None
         useless = before.start.record if before is not None and never_begun(self.state, self.log) else None
+        useless = useless or (None if self.spare_recording is None else str(self.spare_recording))
         if before is not None and worker is not None:
             self._leave(worker, useless)
         self.run += 1
@@ -272,7 +273,10 @@ class Session(Broadcast, Receiver):
 
     async def close(self) -> None:
         """Stops the workers, informs the watchers, and cancels all tasks."""
+        spare = self.spare_recording
         await self.stop()
+        if spare is not None:
+            erase(spare)
         self._notify_watchers(None)
         tasks = list(self._tasks)
         if tasks:
@@ -368,6 +372,14 @@ class Session(Broadcast, Receiver):
         return None if start is None or start.recorded is None else Path(start.recorded)
 
     @property
+    def spare_recording(self) -> Path | None:
+        """The recording of a run that only repeats an opened recording: it is not needed unless a user changes the run."""
+        start = self.start
+        if start is None or start.recorded is None or start.record is None or self.branched is not None:
+            return None
+        return Path(start.record)
+
+    @property
     def alive(self) -> bool:
         """Whether the current run still accepts commands."""
         return self._shown is not None and not self._shown.over
@@ -406,13 +418,15 @@ class Session(Broadcast, Receiver):
             "recording": self._recording,
         }
         if facts is not None:
-            facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters), "world": Raw(facts.world)}
+            facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters)}
+            facts_of_session |= {"world": Raw(facts.world), "changes": Raw(facts.changes)}
         return msgspec.json.encode(facts_of_session)
 
     @property
     def _recording(self) -> str | None:
-        """The name of the recording that its run writes."""
-        return None if self.start is None or self.start.record is None else Path(self.start.record).stem
+        """The name of the recording of the run on screen, as lists show it; None if it is not recorded or not listed."""
+        start = self.start
+        return None if start is None or start.record is None or self.spare_recording is not None else Path(start.record).stem
 
     def summary(self) -> dict[str, Any]:
         """Returns the entry of this session in the list of sessions."""

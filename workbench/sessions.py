@@ -64,6 +64,7 @@ class Sessions:
         self._count = 0
         self._opening = asyncio.Lock()
         self._reopening = asyncio.Lock()
+        recordings.spare = lambda: {path for session in self.all() if (path := session.spare_recording) is not None}
 
     def all(self) -> list[Session]:
         """Returns all sessions, oldest first."""
@@ -169,7 +170,7 @@ class Sessions:
             if not path.is_relative_to(self.folder.root):
                 path = self.folder.root / path.name  # a new run uses the user's own model of that name, if there is one
             shown = path.relative_to(self.folder.root).as_posix()
-            options = RunOptions(settings=began.parameters, seed=began.seed, record=False, repeated=began)
+            options = RunOptions(settings=began.parameters, seed=began.seed, repeated=began)
             return await self._begun(path, shown, options, real_time=real_time)
 
     async def _begun(self, path: Path, model: str, options: RunOptions, *, real_time: bool = False) -> Session:

@@ -70,6 +70,7 @@ _KINDS = {
     "failed": _Kind("a text, or null", lambda value: value is None or isinstance(value, str)),
     "whole": _Kind("true, or null", lambda value: value is True or value is None),
     "branched": _Kind("a number >= 0, or null", lambda value: value is None or _number(value)),
+    "origin": _TEXT,
 }
 """The facts that this library or the workbench reads; other facts may have any values."""
 _SHOWN = 60

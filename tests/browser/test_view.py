@@ -423,7 +423,7 @@ def test_a_body_is_dragged_elsewhere_by_its_handle(pages: Callable[..., Page], v
     page.get_by_label("Camera").select_option(view)
     until(page, lambda: look(page, frame)["view"] == view)
     page.get_by_role("button", name="Overlays").click()
-    page.get_by_label("handles to move bodies").check()
+    page.get_by_label("handles to move things").check()
     page.get_by_role("button", name="Overlays").click()
     until(page, lambda: frame.evaluate("() => '/overlays/handles/0' in window.__viserMutable.nodeRefFromName"))
     drawn(page)
@@ -448,9 +448,9 @@ def test_a_body_is_dragged_elsewhere_by_its_handle(pages: Callable[..., Page], v
       return events.value.list.filter(([, , kind]) => kind === "command").map((event) => event[3]);
     }"""
     (command,) = page.evaluate(commands)
-    assert command["command"] == "teleport"
-    assert command["data"]["body"] == "walker"
-    assert command["data"]["values"][1] == pytest.approx(0.75, abs=0.1)
+    assert command["command"] == "move"
+    assert command["data"]["values"][0] == "walker"
+    assert command["data"]["values"][2] == pytest.approx(0.75, abs=0.1)
 
 
 @pytest.mark.slow

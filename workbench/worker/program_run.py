@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
+from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.kernel.tree import children_of
 from actr3d.actr.loading import run_text
 from actr3d.actr.loading.helper_modules import HelperTexts
@@ -17,17 +18,21 @@ from actr3d.clock import seconds
 from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
+from actr3d.recording.reader import RecordedCommand
 from actr3d.runner.facts import program_facts
 from actr3d.runner.model_stdout import ProgramOutput
+from actr3d.runner.program_changes import ProgramChanges
 from actr3d.runner.traceback_report import failure
 from actr3d.simulation import Simulation
 from actr3d.trace import Run, Trace, TraceEvent, top_path
 from actr3d.values import to_json
 from workbench.curves import joined
 from workbench.loader import ModelListing
+from workbench.worker.change_menu import change_menu
 from workbench.worker.controlled_run import ControlledRun
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
+from workbench.worker.kept_branch import KeptBranch
 from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import Facts
 from workbench.worker.names import Names, Top, names_of_program
@@ -58,6 +63,25 @@ class _RecordedOnce:
         self._recording = recording
         self._left = left
         self._counts: Counter[str] = Counter()
+        self._held: list[Callable[[], object]] | None = None
+        """Writes the items of a change that is being made; None otherwise."""
+
+    @contextmanager
+    def changing(self) -> Generator[None]:
+        """Makes a change of a user in the block; if it succeeds, what an earlier pass has recorded after the present is removed."""
+        recording, counts = self._recording, self._counts.copy()
+        self._held = []
+        try:
+            yield
+            if recording.events > counts["event"] or recording.commands > counts["command"]:
+                recording.cut(self._counts["state"] - 1, counts["event"], self._counts["answer"], counts["command"])
+        except BaseException:
+            self._held.clear()
+            raise
+        finally:
+            held, self._held = self._held, None
+            for write in held:
+                write()
 
     def _is_new(self, sort: str, recorded: int) -> bool:
         """Counts an item of a sort; returns whether it is to be recorded, given how many are recorded already."""
@@ -65,7 +89,10 @@ class _RecordedOnce:
         return self._counts[sort] > recorded and not self._left()
 
     def event(self, event: TraceEvent) -> None:
-        if self._is_new("event", self._recording.events):
+        new = self._is_new("event", self._recording.events)
+        if self._held is not None:
+            self._held.append(lambda: self._recording.event_alone(event))
+        elif new:
             self._recording.event_alone(event)
 
     def state(self, run: int, tick: int, data: bytes) -> None:
@@ -77,7 +104,10 @@ class _RecordedOnce:
             self._recording.answer(run, tick, body, word, value)
 
     def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
-        if self._is_new("command", self._recording.commands):
+        new = self._is_new("command", self._recording.commands)
+        if self._held is not None:
+            self._held.append(lambda: self._recording.command(run, tick, data))
+        elif new:
             self._recording.command(run, tick, data)
 
 
@@ -102,6 +132,8 @@ class ProgramRun(ControlledRun):
         self._rush: int | None = None
         """The time up to which it runs without being shown or paused [us]."""
         self._again = False
+        self._over = False
+        """Whether the program has been at its end."""
         self._introduced = False
         """Whether the server knows that the run has begun."""
         self._begun = 0
@@ -120,6 +152,15 @@ class ProgramRun(ControlledRun):
         """The simulation that was shown last."""
         self._kept: dict[int, Kept] = {}
         """What is kept of the past of simulations, by number; it outlives that the program is run again."""
+        self._commands = [RecordedCommand(*command) for command in start.commands]
+        """The changes of users, which each pass through the program repeats."""
+        self._changes = ProgramChanges(self._limits, self._commands)
+        self._recorded: _RecordedOnce | None = None
+        self._waits: tuple[Scheduler, int, int] | None = None
+        """While a model without a body waits for its time to pass: its scheduler, the time of its latest event [us], and the time of the
+        program then [us]."""
+        self._changed = False
+        """Whether a user has changed something whose effects of the moment have not happened yet."""
         self._helpers: dict[str, Sequence[str]] = dict(start.helpers)
         """The helper modules as they were the first time; see `actr3d.actr.loading.helper_modules`."""
 
@@ -167,7 +208,10 @@ class ProgramRun(ControlledRun):
         parameters = to_json({**known, **self._controller.channel.start.settings}).encode()
         self._scene = mj_model, world = self._scene_now()
         period = seconds(self.period)
-        facts = Facts(kind="program", seed=self._seed, period=period, parameters=parameters, world=world, mj_model=mj_model)
+        changes = change_menu(agents_only=True) if self._shown is None else b"[]"
+        facts = Facts(
+            kind="program", seed=self._seed, period=period, parameters=parameters, world=world, mj_model=mj_model, changes=changes
+        )
         self._controller.channel.post(facts)
 
     def _scene_now(self) -> tuple[bytes | None, bytes]:
@@ -179,12 +223,14 @@ class ProgramRun(ControlledRun):
         self._again = False
         self._clock = self._begun = self._runs = 0
         self._held.clear()
-        self._shown = None
+        self._shown = self._waits = self._recorded = None
+        self._changed = False
         trace = Trace("all")
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
-            limits.recorder = again = _RecordedOnce(self._recording, lambda: self._left)
+            limits.recorder = self._recorded = again = _RecordedOnce(self._recording, lambda: self._left)
             trace.listen(again.event)
+        self._changes = ProgramChanges(limits, self._commands)
         if not self._listing.simulates:  # otherwise it continues until its simulation is at its start
             self._hold_at_start()
         exited: SystemExit | None = None
@@ -248,6 +294,7 @@ class ProgramRun(ControlledRun):
 
     def _end(self, status: Any, reason: str) -> None:
         self._rush = None
+        self._over = True
         self._introduce()
         self._furthest = max(self._furthest, self._clock)
         self._controller.end(status, reason)
@@ -258,18 +305,39 @@ class ProgramRun(ControlledRun):
         if new:
             self._record(helpers=self._helpers)
 
-    def _pass(self, begin: int, end: int) -> None:
-        """Paces a model without a body: delays the program until the controller lets it continue."""
+    def _pass(self, sch: Scheduler, end: int) -> bool:
+        """Paces a model without a body: delays the program until the controller lets it continue; returns whether a user has changed it."""
         controller = self._controller
         if controller.channel.left:
-            return  # in a copy of the process that the model has made, which nobody watches
+            return False  # in a copy of the process that the model has made, which nobody watches
         self._introduce()
         self._hold_models()
-        to = self._clock + end - begin
+        if self._changed:  # its effects of the moment have happened
+            self._changed = False
+            controller.show()
+        due = self._changes.due(sch, end)
+        to = self._clock + (end if due is None else due) - sch.now_us
+        self._waits = sch, sch.now_us, self._clock
+        try:
+            self._wait(to, again=due is not None)
+        finally:
+            self._waits = None
+        if self._changed:
+            return True
+        return due is not None and self._changes.repeat(sch, end)
+
+    def _wait(self, to: int, *, again: bool) -> None:
+        """Waits until the program may continue to a time [us], or a user has changed something before it.
+
+        Args:
+            to: The time.
+            again: Whether a known change is repeated there: whoever goes to that time sees what was before it.
+        """
+        controller = self._controller
         while True:
             self._check_left()
             if self._rush is not None:
-                if to <= self._rush:
+                if to < self._rush or (to == self._rush and not again):
                     self._clock = to
                     return
                 self._clock, self._rush = self._rush, None
@@ -277,6 +345,8 @@ class ProgramRun(ControlledRun):
             controller.attend()
             if self._again or self._rush is not None:
                 continue
+            if self._changed or (again and self._clock == to):
+                return
             goal = controller.watch.goal
             stop = to if goal is None else min(to, goal)
             if not controller.pace(stop):
@@ -284,7 +354,7 @@ class ProgramRun(ControlledRun):
             self._clock = stop
             self._furthest = max(self._furthest, stop)
             controller.show_if_due()
-            if stop == to:
+            if stop == to and not again:
                 return
 
     def _tick(self, simulation: Simulation, passed: int) -> None:
@@ -366,7 +436,31 @@ class ProgramRun(ControlledRun):
         raise _refusal(name)  # a program may hold what the command would change
 
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
-        raise _refusal(word)
+        if self._controller.status in ("ended", "failed"):
+            raise SimulationError("the run is over: go back to an earlier time, or restart it")
+        if self._shown is not None or body is not None:
+            raise _refusal(word)
+        self._changes.check(word)
+        if self._waits is None:
+            raise SimulationError(f"'{word}' cannot be done: the program has not begun, so there is no agent yet; step once first")
+        sch, begin, clock = self._waits
+        before = 0 if self.trace is None else len(self.trace)
+        branch = KeptBranch(self._controller, self._recording, self._clock, self._furthest, drop=drop)
+        try:
+            with self._recorded.changing() if self._recorded is not None else nullcontext():
+                self._changes.make(sch, begin + self._clock - clock, word, values, named)
+        except BaseException:
+            branch.undo()
+            raise
+        self._commands = self._changes.known
+        self._furthest = self._clock
+        self._waits = sch, sch.now_us, self._clock
+        if self._over:
+            self._over = False
+            self._record(ended=None, failed=None)
+        self._changed = True
+        self._controller.interrupt()
+        branch.announce(before)
 
     def go_to(self, time: int) -> None:
         if time > self._furthest:
@@ -422,6 +516,6 @@ class ProgramRun(ControlledRun):
 
 def _refusal(what: str) -> SimulationError:
     return SimulationError(
-        f"'{what}' cannot be done: a program takes no commands while it runs; to change a simulation while it runs, "
+        f"'{what}' cannot be done: of a program, only agents without a body can be changed; to change a simulation while it runs, "
         "let a function `build(parameters) -> Simulation` return it"
     )

@@ -71,6 +71,8 @@ class RunController:
         """The time that the run had reached when it went back [us]: until then it repeats itself."""
         self._seen = 0
         """Number of events that have been checked against the stop conditions."""
+        self._interrupted = False
+        """Whether the run has something to do although it is paused."""
         self._shown = 0.0
         self._drawn: tuple[str, ...] = ()
         """The kinds of overlays to compute; empty if no browser shows the 3D view."""
@@ -123,13 +125,20 @@ class RunController:
         if self.watch.goal is not None and self.run.clock >= self.watch.goal and self.status == "running":
             self.pause(self.watch.goal_reason)
         while True:
+            if self._interrupted:
+                self._interrupted = False
+                return
             held = self.status != "running"
             message = self.channel.receive(None if held else 0)
             if message is None:
                 return
             self._hear(message)
-            if self.status == "running":
+            if self.status == "running" and not self._interrupted:
                 return
+
+    def interrupt(self) -> None:
+        """Ends the present wait of a paused run, which has something to do at its present moment."""
+        self._interrupted = True
 
     def pace(self, clock: int) -> bool:
         """Waits until a moment of the run [us] is due; returns False if a command arrived in the meantime."""

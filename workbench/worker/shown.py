@@ -59,6 +59,7 @@ class Shown:
         return {
             **self.surroundings,
             "openings": self._openings,
+            "objects": [] if parameters is None else self.simulation.world.objects.names,
             "widths": {} if parameters is None else widths(self.surroundings["apertures"], parameters),
         }
 

@@ -14,7 +14,7 @@ from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.clock import MICROSECONDS, microseconds, seconds
-from actr3d.errors import Actr3dError, SimulationError
+from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.runner.facts import built_facts
 from actr3d.runner.model_factory import build
@@ -24,12 +24,13 @@ from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench.loader import ModelListing
-from workbench.retention import new_branch, superfluous_branches
+from workbench.worker.change_menu import change_menu
 from workbench.worker.controlled_run import ControlledRun
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
+from workbench.worker.kept_branch import KeptBranch
 from workbench.worker.known_run import KnownRun
-from workbench.worker.messages import Branched, Facts
+from workbench.worker.messages import Facts
 from workbench.worker.names import Names, Top, names_of
 from workbench.worker.run_controller import RunController
 from workbench.worker.shown import Shown
@@ -100,7 +101,10 @@ class SimulationRun(ControlledRun):
             helpers.heard = partial(self._recording.fact, "helpers")  # an agent may import one later
         if start.recorded is not None:
             self._known_run = known_run = KnownRun(Path(start.recorded), self._shown.kept.states.add)
-            simulation.plan([Command.from_data(tick, data) for tick, data in start.commands], known_run.ticks)
+            if self._recording is not None:
+                for command in start.commands:
+                    self._recording.command(*command)
+            simulation.plan([Command.from_data(tick, data) for _, tick, data in start.commands], known_run.ticks)
             ended: dict[str, Any] | None = known_run.facts.get("ended")
             if ended is not None and ended.get("by") in ENDINGS:
                 self._end = known_run.ticks, str(ended["by"])
@@ -113,6 +117,7 @@ class SimulationRun(ControlledRun):
             parameters=to_json(parameters).encode(),
             world=to_json(self._shown.world(self._listing.parameters)).encode(),
             mj_model=self._shown.mj_model,
+            changes=change_menu(agents_only=False),
         )
 
     def _go_on(self) -> None:
@@ -208,50 +213,18 @@ class SimulationRun(ControlledRun):
             raise SimulationError("the run is over: go back to an earlier time, or restart it")
         trace = self._simulation.trace
         before = 0 if trace is None else len(trace)
-        ahead = self.furthest > self.clock
-        at, until = seconds(self.clock), seconds(self.furthest)
-        repeated = Path(self._start.recorded) if self._start.recorded is not None and self._controller.repeats_recording else None
-        branch = self._keep_branch(at, until, drop=drop) if ahead and repeated is None else None
+        branch = KeptBranch(self._controller, self._recording, self.clock, self.furthest, drop=drop)
         try:
             self._simulation.command(word, *values, body=body, **named)
         except BaseException:
-            if branch is not None:
-                branch.unlink(missing_ok=True)  # nothing has changed
+            branch.undo()
             raise
-        kept = branch or (repeated if ahead else None)  # a repeated run is kept by its own recording
-        if branch is not None:
-            for old in superfluous_branches(Path(self._start.record or "")):
-                old.unlink(missing_ok=True)
         if self._failed:
             self._record_failure(None)
         if self._end is not None:
             self._end = None
             self._record(ended=None, whole=None)
-        if kept is not None:
-            self.flush()  # pages list recordings again when they hear of the branch
-            self._controller.channel.post(Branched(recording=kept.stem, at=at, until=until))
-        kept_as = "the rest was lost" if kept is None else "a branch was kept" if branch else "the recording keeps the rest"
-        self._controller.goes_another_way(before, f"changed at {at:.2f} s; {kept_as}" if ahead else None)
-
-    def _keep_branch(self, at: float, until: float, *, drop: bool) -> Path | None:
-        """Keeps what has been recorded of the run, before something is changed in its past. Returns the file; None where it may be lost.
-
-        Raises:
-            SimulationError: If it cannot be kept, and may not be lost.
-        """
-        ahead = f"what lies ahead, from {at:g} to {until:g} s,"
-        if self._recording is None or self._start.record is None:
-            if drop:
-                return None
-            raise SimulationError(f"the run is not recorded: {ahead} would be lost; go to its newest moment, or allow it with `drop`")
-        path = new_branch(Path(self._start.record), at)
-        try:
-            self._recording.copy_to(path, branched=at)  # unlike the file name, a fact cannot be changed by renaming
-        except Actr3dError as error:
-            if drop:
-                return None
-            raise SimulationError(f"nothing was changed, because {ahead} cannot be kept: {error}; allow to lose it with `drop`") from None
-        return path
+        branch.announce(before)
 
     def _record_failure(self, text: str | None) -> None:
         """Records the exception of the model; None if the run continues differently now."""
