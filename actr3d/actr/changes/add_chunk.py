@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from actr3d.actr.changes.agent_change import AgentChange
-from actr3d.actr.changes.parts import Parts
-from actr3d.actr.changes.set_buffer import chunk_of
+from actr3d.actr.changes.agent_change import AgentChange, Parts, chunk_of
 from actr3d.actr.declarative.memory import Memory
 from actr3d.change import change
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from actr3d.actr.changes.agent_change import AgentChange
-from actr3d.actr.changes.parts import Parts
+from actr3d.actr.changes.agent_change import AgentChange, Parts
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.change import change
 

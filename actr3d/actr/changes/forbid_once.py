@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from actr3d.actr.changes.agent_change import AgentChange
-from actr3d.actr.changes.parts import Parts
+from actr3d.actr.changes.agent_change import AgentChange, Parts
 from actr3d.actr.procedural.production_system import leave_out_once, rules_of
 from actr3d.change import change
 from actr3d.errors import ProductionException

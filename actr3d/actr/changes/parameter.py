@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from actr3d.actr.changes.agent_change import AgentChange
-from actr3d.actr.changes.parts import Parts
+from actr3d.actr.changes.agent_change import AgentChange, Parts
 from actr3d.actr.chunks.chunk import LASTING_TYPES
 from actr3d.actr.kernel.model import Model
 from actr3d.change import change
