@@ -191,7 +191,7 @@ def test_it_prints_all_cells_and_constraints(rise: float, code: int, monkeypatch
     turned = {
         (trial.group, trial.condition, trial.aperture) for trial in experiment("descriptive", 5) if (good(trial).wall_angle_deg or 0) > 5
     }
-    assert told.split("descriptive: angle")[1].count(" (7.0)") == len(turned)
+    assert told.split("descriptive: angle")[1].count(" (6.9)") == len(turned)
     assert "mean margin of agents that turned 6.9 cm left and 7.1 cm right at 40, 6.9 cm left and 7.1 cm right at 45" in told
     assert "5 trials a cell; a trial takes 300 ms of one processor for 11.0 s simulated" in told
     assert main(["bench", "aperture", "--trials", "5", "--json"]) == code
