@@ -241,7 +241,7 @@ def test_a_program_says_what_cannot_be_changed(desk: Desk, tmp_path: Path) -> No
     with pytest.raises(RefusedError, match="the program has not begun, so there is no agent yet; step once first"):
         change(talk, "set_buffer", buffer="goal", chunk="a")
     there(talk, 0.1)
-    with pytest.raises(RefusedError, match="no change 'aperture' for the agents of a program; there are: set_buffer, add_chunk"):
+    with pytest.raises(RefusedError, match="no change 'aperture' for the agents of a program; there are: add_chunk, clear_buffer"):
         talk.say("aperture", width=0.5)
     with pytest.raises(RefusedError, match=r"no buffer 'goa'; did you mean 'goal'\?; there are: goal, retrieval"):
         change(talk, "set_buffer", buffer="goa", chunk="a")
