@@ -200,19 +200,25 @@ def legend_columns(lengths: Sequence[int], width: float) -> int:
     return 1
 
 
+def _save(figure: Any, out: Any, **options: Any) -> None:
+    with matplotlib().rc_context(STYLE):
+        if figure.get_layout_engine() is not None:  # laid out once for all formats
+            figure.draw_without_rendering()
+            figure.set_layout_engine(None)
+        figure.savefig(out, **options)
+
+
 def png(figure: Any) -> bytes:
     """Returns a figure as a PNG file."""
     out = io.BytesIO()
-    with matplotlib().rc_context(STYLE):
-        figure.savefig(out, format="png", dpi=160, metadata={"Software": None})
+    _save(figure, out, format="png", dpi=160, metadata={"Software": None})
     return out.getvalue()
 
 
 def svg(figure: Any) -> str:
     """Returns a figure as an SVG file, whose texts are texts."""
     out = io.StringIO()
-    with matplotlib().rc_context(STYLE):
-        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
+    _save(figure, out, format="svg", metadata={"Date": None, "Creator": None})
     return out.getvalue()
 
 
