@@ -407,7 +407,7 @@ class Person(ACTR):
         b_door.set(f"far:{far} direction:{aside} width:{wide} left:{left} right:{right} near:False free:True")
         b_course.set("steer:yes")
         b_goal.set("do:walk")
-        self.seen_at = self.now()
+        self.seen_at = self.now() + CYCLE  # when it will look again
         motor.walk(self.speed)
 
     def sees(self, far, left, deep):
@@ -434,7 +434,8 @@ class Person(ACTR):
         if waits:
             return
         if far < self.step:
-            self.keep_course()
+            self.b_course.set("steer:no")
+            self.head(0.0)
             return
         aside = atan2(far * sin(radians(left)) - self.middle, far * cos(radians(left)))
         pull = ATTRACTION * aside * (exp(-NEARNESS * far) + LEAST)
@@ -452,10 +453,6 @@ class Person(ACTR):
         aside = far * sin(left)
         return hypot(ahead, aside), degrees(atan2(aside, ahead) - self.rate * elapsed)
 
-    def keep_course(self):
-        self.b_course.set("steer:no")
-        self.head(0.0)
-
     def head(self, rate):
         """Turns the walking direction at a speed [rad/s]."""
         self.motor.turn(speed=degrees(rate) if abs(rate) > SLOWEST else 0)
@@ -469,7 +466,7 @@ class Person(ACTR):
         print(f"{self.now():.2f} s: {self.who}waits")
         motor.stop()
         self.rate = 0.0
-        self.head(self.rate)
+        self.head(0.0)
         b_goal.set("do:wait")
 
     def go_on(b_goal="do:wait", b_door="free:True"):
