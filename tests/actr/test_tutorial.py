@@ -19,6 +19,7 @@ TUTORIAL = [name for name in NAMES if name.startswith("tutorial/")]
 NOISY = {
     "predictive_walker",
     "aperture_passage",
+    "aperture_passage@predictive",
     "aperture_passage@replication",
     "fan_effect",
     "paired_associates",
