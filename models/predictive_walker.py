@@ -10,9 +10,11 @@ it has the more often it touches the wall. The eyes see the doorway with noise, 
 
 Four parallel systems:
 
-- *Steering* (a production of 50 ms for each look and each turn) walks to the middle of the doorway by the law of Fajen & Warren (2003).
-- *Avoiding* notices objects that are nearer than the doorway; the same law turns away from them. Near the doorway it waits if something
-  is before it, or is as near to it on the other side.
+- *Steering* (a production of 50 ms for each look and each turn) walks to the middle of the doorway by the law of Fajen & Warren (2003). A
+  doorway is the opening between two things, however wide it is. If it is hidden, the walker goes where it must be, by its own movement.
+- *Avoiding* notices objects that are nearer than the doorway; the same law turns away from them. Near the doorway the walker waits if
+  something is in it, before it, or as near to it on the other side: for as long as that comes nearer, and then until its patience ends.
+  Then it looks for a doorway again, and goes on; if there is none, it gives up.
 - *Planning* imagines one turn after the other, and keeps the cheapest. It goes on until two steps before the doorway.
 - *Walking* turns the shoulders during these two steps, and turns them back behind the doorway.
 
@@ -26,9 +28,9 @@ What to try
 -----------
 - `aperture = 0.5, speed = 1.8`: a fast walker.
 - `start_aside = 1.0, start_heading = 20.0`: steers to the middle of the doorway.
-- `scene = "pillar", aperture = 1.0`: begins to walk round a pillar, and waits there, because it does not see the doorway behind it.
+- `scene = "pillar", aperture = 1.2`: walks round a pillar.
 - `scene = "two doorways", aperture = 1.0`: chooses one of two.
-- `scene = "two people", aperture = 0.8`: somebody comes from the other side; one of the two lets the other go first.
+- `scene = "two people", aperture = 0.8`: somebody comes from the other side; both wait, and the one whose patience ends first goes first.
 - `closing = 0.065, aperture = 0.9`: the doorway closes while it walks there. It turns for a width that it saw before it decided.
 - `contact_cost = 10.0`: fears to touch the wall.
 - `gait = False`: glides, and so did all the bodies of its experience.
@@ -38,7 +40,7 @@ What to try
 
 from dataclasses import dataclass, replace
 from functools import partial
-from math import atan2, cos, degrees, exp, pi, radians, sin, sqrt
+from math import atan2, cos, degrees, exp, hypot, inf, pi, radians, sin, sqrt
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
@@ -68,9 +70,6 @@ NOTICE = 4.0
 BEFORE, LAG, FORGET = 0.15, 0.5, 0.5
 """Obstacles are nearer than the doorway by more than the first number [m] and the way that it walks in the second [s], as it sees one
 after the other; and count this long after they were last noticed [s]. Source: chosen for this model."""
-GLANCE, BEYOND, SAME = 20.0, 0.5, 0.8
-"""How far from where it was it looks for the doorway: to each side [degrees], and beyond it [m]; and how much of its width it must have
-to be the same. Source: chosen for this model."""
 BETWEEN = 3.2
 """The distance between the middles of two doorways [m]. Source: chosen for this model."""
 HEADING_NOISE = 0.02
@@ -110,12 +109,12 @@ FEELING = 1.0
 """In what time it turns out and back to feel its width, and back behind the doorway [s]. Source: chosen for this model."""
 GRAIN, FELT = 0.001, 4.0
 """How finely it feels its width [m], and after what change of its angles it does again [degrees]. Source: chosen for this model."""
-FIRST, LONGEST = 0.1, 0.3
-"""The time that the first look at the doorway counts for in steering, and the longest that any does [s]. Source: chosen for this model."""
+LONGEST = 0.3
+"""The longest time that a look at the doorway counts for in steering [s]. Source: chosen for this model."""
 YIELD = 3.0
 """At how many steps before the doorway it waits if somebody else is nearer to it. Source: chosen for this model."""
 PATIENCE = (0.5, 3.0)
-"""The least and the greatest time that it waits for somebody in vain [s]. Source: chosen for this model."""
+"""The least and the greatest time that it waits while nobody comes nearer [s]. Source: chosen for this model."""
 PAUSE = 0.4
 """Time between two plans [s]. Source: chosen for this model."""
 MEMORIES = 150
@@ -194,14 +193,18 @@ class Similar(Partial):
 
 
 class Wait(Model):
-    """A timer: `state` is «over» some time after `go`."""
+    """A timer: `state` is «over» some time after the last `go`."""
 
     state = "idle"
+    begun = 0
 
     def go(self, seconds):
         self.state = "on"
+        self.begun += 1
+        mine = self.begun
         yield seconds
-        self.state = "over"
+        if mine == self.begun:
+            self.state = "over"
 
 
 class Steering(ACTR):
@@ -209,26 +212,27 @@ class Steering(ACTR):
 
     production_time = CYCLE
 
-    def look(b_course="steer:yes", vision="busy:False error:False", b_visual=None):
-        """Looks where the doorway was: of two, it keeps to the one that it has chosen."""
-        ahead = self.parent.ahead
-        vision.request(DOOR, direction=f">{ahead - GLANCE:.1f} <{ahead + GLANCE:.1f}", **self.parent.same_doorway())
+    def look(b_course="steer:yes", vision="busy:False error:False", b_visual=None, b_door="left:?left right:?right"):
+        """Looks for the doorway: the opening between the same two things, however wide it is now."""
+        vision.request(DOOR, left="?left", right="?right")
 
-    def steer(b_course="steer:yes", b_visual="feature:opening distance:?far direction:?left width:?wide depth:?deep"):
+    def steer(
+        b_course="steer:yes",
+        b_visual="feature:opening distance:?far direction:?aside width:?wide depth:?deep left:?left right:?right",
+    ):
         b_visual.clear()
-        self.parent.sees(float(far), float(left), float(wide), float(deep))
+        b_door.modify(width=wide, left=left, right=right)
+        self.parent.looks_around = False
+        self.parent.sees(float(far), float(aside), float(deep))
 
-    def look_around(b_course="steer:yes", vision="busy:False error:True", b_door="near:?near"):
-        """It is not where it was: it is elsewhere, or somebody is in it, or its edges are beside the walker."""
-        if not self.parent.looks_around:
-            self.parent.looks_around = True
-            vision.request(DOOR, **self.parent.same_doorway())
-        elif near == "True" and b_goal["do"] != "wait":
-            self.parent.keep_course()
+    def look_around(b_course="steer:yes", vision="busy:False error:True", motor="width:?width", b_door="left:?left right:?right"):
+        """Looks for any opening that is wide enough; without one, something hides the doorway."""
+        self.parent.looks_around = b_goal["do"] == "walk" and not self.parent.looks_around
+        if self.parent.looks_around:
+            vision.request(DOOR, width=f">{width}")
         else:
-            b_door.modify(free="taken")
-            self.parent.taken = self.now()
-            vision.request(DOOR, **self.parent.same_doorway())
+            self.parent.sees(*self.parent.expected(), 0)
+            vision.request(DOOR, left="?left", right="?right")
 
 
 class Avoiding(ACTR):
@@ -267,16 +271,12 @@ class Planning(ACTR):
         b_DM.clear()
         if self.parent.always is not None:
             self.decide(f"turn:{turn} width:{width} middle:{middle} cost:0 free:1 passed:1")
-            b_imagined.clear()
-            pause.go(PAUSE)
             return
         experience.request(f"event:passage room:{float(door) - float(width):.3f} speed:{self.parent.speed:.2f} energy:? free:? passed:?")
         b_imagined.set(f"turn:{turn} door:{door} width:{width} middle:{middle} state:expected")
 
     def know_nothing(b_imagined="state:expected turn:?turn width:?width middle:?middle", experience="error:True"):
         self.decide(f"turn:{TURNS[0]} width:{width} middle:{middle} cost:0 free:1 passed:1")
-        b_imagined.clear()
-        pause.go(PAUSE)
 
     def compare(
         b_imagined="state:expected turn:?turn door:?door width:?width middle:?middle",
@@ -294,8 +294,6 @@ class Planning(ACTR):
             b_imagined.set(f"turn:{further[0]} door:{door} state:new")
         else:
             self.decide(self.cheapest[1])
-            b_imagined.clear()
-            pause.go(PAUSE)
 
     def decide(self, plan):
         """Keeps a plan, unless it has come too late: the walker steers so that the middle of its turned body will be in the middle."""
@@ -303,6 +301,8 @@ class Planning(ACTR):
             self.parent.b_plan.set(plan)
             self.parent.costs = self.costs
             self.parent.middle = float(self.parent.b_plan["middle"])
+        self.parent.b_imagined.clear()
+        self.parent.pause.go(PAUSE)
 
 
 class Person(ACTR):
@@ -328,7 +328,6 @@ class Person(ACTR):
     motor = Motor(memory=DM, size_grid=GRAIN, extreme_step=FELT)
     way = Wait()
     pause = Wait()
-    patience = Wait()
     steering = Steering()
     avoiding = Avoiding()
     planning = Planning()
@@ -344,7 +343,8 @@ class Person(ACTR):
         for passage in self.random.sample(known, min(memories, len(known))):
             experience.add("event:passage " + " ".join(f"{slot}:{value}" for slot, value in passage.items()))
         self.side = self.random.choice([1, -1])
-        self.rate, self.seen_at, self.turned, self.middle, self.obstacle, self.taken = 0.0, None, 0, 0.0, None, 0.0
+        self.rate, self.turned, self.middle, self.obstacle, self.looks_around = 0.0, 0, 0.0, None, False
+        self.taken, self.nearest, self.patient_until = 0.0, inf, 0.0
         self.costs = {}
         b_goal.set("do:feel")
 
@@ -384,7 +384,7 @@ class Person(ACTR):
         vision.request(DOOR)
         b_goal.set("do:judge" if self.only_judges else "do:start")
 
-    def cannot_see(b_goal="do:!feel", vision="error:True", b_course=None, b_door=None):
+    def cannot_see(b_goal="do:!look", vision="error:True", b_course=None, b_door=None):
         print(f"{self.now():.2f} s: {self.who}sees no doorway")
         self.judged = "not at all"
         self.stop()
@@ -402,34 +402,42 @@ class Person(ACTR):
 
     # -- walking
 
-    def set_out(b_goal="do:start", b_visual="feature:opening distance:?far width:?wide direction:?left"):
-        self.ahead, self.looks_around = float(left), False
+    def set_out(b_goal="do:start", b_visual="feature:opening distance:?far width:?wide direction:?aside left:?left right:?right"):
         b_visual.clear()
-        b_door.set(f"far:{far} width:{wide} near:False free:True")
+        b_door.set(f"far:{far} direction:{aside} width:{wide} left:{left} right:{right} near:False free:True")
         b_course.set("steer:yes")
         b_goal.set("do:walk")
+        self.seen_at = self.now() + CYCLE  # when it will look again
         motor.walk(self.speed)
 
-    def sees(self, far, left, wide, deep):
-        """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees]; keeps its course in the last step.
+    def sees(self, far, left, deep):
+        """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees], with free depth behind it [m].
 
-        A near doorway is free if nothing is before it, and nothing behind it is as near to it as the walker.
+        It keeps its course in the last step. Before that, it waits for what has come as near to the doorway as the walker is. Something
+        before the doorway has a depth below 0. Each step that it comes nearer renews the patience.
         """
-        now = self.now()
-        obstructed = self.obstacle is not None and now - self.obstacle[2] < FORGET
-        free = far > YIELD * self.step or (deep > far and not obstructed)
-        if not free:
+        now, waits = self.now(), self.b_goal["do"] == "wait"
+        obstructed = self.obstacle is not None and now - self.obstacle[2] < FORGET and self.obstacle[0] < far - BEFORE
+        if obstructed and abs(self.obstacle[0] * sin(self.obstacle[1] - radians(left))) < float(self.b_door["width"]) / 2:
+            deep = self.obstacle[0] - far
+        comes = False
+        if far < YIELD * self.step and deep < far:
             self.taken = now
-        elif self.b_goal["do"] == "wait":
-            free = now - self.taken > FORGET
-        self.b_door.set(f"far:{far} width:{wide} near:{far < STEPS * self.step} free:{free}")
-        elapsed = FIRST if self.seen_at is None else min(now - self.seen_at, LONGEST)
-        self.seen_at = now
+            comes = deep < self.nearest - BEFORE
+        elif now - self.taken > FORGET:
+            self.nearest = inf
+        if comes:
+            self.nearest, self.patient_until = deep, now + self.random.uniform(*PATIENCE)
+        free = now > min(self.patient_until, self.taken + FORGET) if waits else far < self.step or not comes
+        elapsed, self.seen_at = min(now - self.seen_at, LONGEST), now
+        self.b_door.modify(far=far, direction=left, near=far < STEPS * self.step, free=free)
+        if waits:
+            return
         if far < self.step:
-            self.keep_course()
+            self.b_course.set("steer:no")
+            self.head(0.0)
             return
         aside = atan2(far * sin(radians(left)) - self.middle, far * cos(radians(left)))
-        self.ahead, self.looks_around = left, False
         pull = ATTRACTION * aside * (exp(-NEARNESS * far) + LEAST)
         if obstructed:
             distance, direction, _ = self.obstacle
@@ -437,14 +445,13 @@ class Person(ACTR):
         self.rate += (pull - DAMPING * self.rate) * elapsed + self.random.gauss(0, HEADING_NOISE * sqrt(elapsed))
         self.head(self.rate)
 
-    def same_doorway(self):
-        """Returns what an opening must be to be the doorway that it saw before: as wide, and no farther."""
-        far, wide = float(self.b_door["far"]), float(self.b_door["width"])
-        return {"distance": f"<{far + BEYOND:.2f}", "width": f">{SAME * wide:.3f}"}
-
-    def keep_course(self):
-        self.b_course.set("steer:no")
-        self.head(0.0)
+    def expected(self):
+        """Returns where the doorway must be, by its own movement since it knew it last: distance [m] and direction [degrees]."""
+        far, left = float(self.b_door["far"]), radians(float(self.b_door["direction"]))
+        elapsed = self.now() - self.seen_at
+        ahead = far * cos(left) - (self.speed * elapsed if self.motor.walking else 0)
+        aside = far * sin(left)
+        return hypot(ahead, aside), degrees(atan2(aside, ahead) - self.rate * elapsed)
 
     def head(self, rate):
         """Turns the walking direction at a speed [rad/s]."""
@@ -454,24 +461,19 @@ class Person(ACTR):
         """Returns the work of turning the shoulders by an angle [degrees], there and back [J]: each time they start and stop."""
         return 2 * INERTIA * (radians(turn) / self.turning_time) ** 2
 
-    def wait(b_goal="do:walk", b_door="free:!True"):
-        """Lets somebody else go first, but not for ever."""
+    def wait(b_goal="do:!wait", b_door="free:False"):
+        """Stops for somebody or something at the doorway."""
         print(f"{self.now():.2f} s: {self.who}waits")
         motor.stop()
-        patience.go(self.random.uniform(*PATIENCE))
+        self.rate = 0.0
+        self.head(0.0)
         b_goal.set("do:wait")
 
     def go_on(b_goal="do:wait", b_door="free:True"):
-        self.walk_on()
-
-    def lose_patience(b_goal="do:wait", b_door="free:False", patience="state:over"):
-        """Goes first, if the other one does not."""
-        b_door.modify(free=True)
-        self.walk_on()
-
-    def walk_on(self):
-        self.b_goal.set("do:walk")
-        self.motor.walk(self.speed)
+        """Looks for a doorway again: the way is free, or its patience is over."""
+        b_course.clear()
+        b_door.clear()
+        b_goal.set("do:look")
 
     def commit(b_goal="do:walk", b_door="width:?wide near:True free:True", b_plan="turn:?turn width:?width passed:?passed"):
         self.committed = {"room": round(float(wide) - float(width), 4), "speed": self.speed}

@@ -60,7 +60,6 @@ def test_without_gait_it_steers_as_well(model: Any) -> None:
     assert (result.outcome, result.contacts) == ("passed", 0)
 
 
-@pytest.mark.xfail(strict=True, reason="it takes a doorway that the pillar hides for one that somebody is in, and waits for ever")
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.slow)])
 def test_it_walks_round_a_pillar_and_through_the_doorway_behind_it(model: Any, seed: int) -> None:
     result, _ = walked(model, seed, until=20, aperture=1.2, scene="pillar")
@@ -78,15 +77,9 @@ def test_of_two_doorways_it_passes_one(model: Any, seed: int) -> None:
     assert not simulation.world.bodies["walker"].get("contacts")
 
 
-BOTH_WAIT = [
-    pytest.mark.slow,
-    pytest.mark.xfail(reason="with these seeds somebody is not through after 60 s: an open fault of the walker", strict=True),
-]
-
-
-@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=BOTH_WAIT), pytest.param(3, marks=BOTH_WAIT)])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.slow)])
 def test_of_two_people_one_waits_while_the_other_passes_the_doorway(model: Any, capsys: Any, seed: int) -> None:
-    with RunLimits(seed=seed, until=60):
+    with RunLimits(seed=seed, until=20):
         simulation = model.build(model.Parameters(aperture=0.8, scene="two people"))
         simulation.run()
     told = capsys.readouterr().out.splitlines()
@@ -96,11 +89,27 @@ def test_of_two_people_one_waits_while_the_other_passes_the_doorway(model: Any, 
     assert any(f"{other} waits" in line for line in told)
     place = {name: body.base.place[0] - 7 for name, body in simulation.world.bodies.items()}
     assert place["walker"] * place["other"] > 0, f"the one that waited has not passed: {place}"
+    assert simulation.result().contacts == 0
 
 
-def test_it_turns_before_a_doorway_that_closes(model: Any) -> None:
-    assert walked(model, 1, aperture=0.9)[1].chosen == 0
-    assert walked(model, 1, aperture=0.9, closing=0.065)[1].chosen > 0
+def test_before_a_doorway_that_has_closed_it_waits_and_then_gives_up(model: Any, capsys: Any) -> None:
+    result, walker = walked(model, aperture=0.9, closing=0.15)
+    told = capsys.readouterr().out.splitlines()
+    assert [line.split(" s: ")[1] for line in told] == ["waits", "sees no doorway"]
+    assert walker.judged == "not at all"
+    assert (result.outcome, result.contacts) == ("stopped", 0)
+    assert result.time_s < 6 + model.PATIENCE[1] + 2
+
+
+def test_a_doorway_is_the_same_if_its_width_changes(model: Any, capsys: Any) -> None:
+    for changed in (0.55, 2.0):
+        with RunLimits(seed=1):
+            simulation: Simulation = model.build(model.Parameters(aperture=0.9))
+            simulation.run(4)
+            simulation.command("aperture", changed)
+            simulation.run()
+        assert simulation.result().outcome == "passed"
+    assert "waits" not in capsys.readouterr().out
 
 
 # -- deciding
@@ -109,6 +118,12 @@ def test_it_turns_before_a_doorway_that_closes(model: Any) -> None:
 def chosen(model: Any, seeds: int = 4, **given: Any) -> float:
     """Returns the mean turn that it chooses [degrees]."""
     return sum(walked(model, seed, **given)[1].chosen for seed in range(seeds)) / seeds
+
+
+def test_before_a_doorway_that_closes_it_turns_for_a_width_that_it_saw_before(model: Any) -> None:
+    """It commits itself at 47 cm, by a plan that it began nearly a second before."""
+    assert 0 < chosen(model, 3, aperture=0.9, closing=0.065) < chosen(model, 2, aperture=0.47) - 15
+    assert chosen(model, 1, aperture=0.9) == 0
 
 
 def test_it_turns_the_more_the_narrower_the_doorway_is_and_not_at_all_if_it_is_wide(model: Any) -> None:
