@@ -144,9 +144,20 @@ class Session:
                 return
             if self._loading is not None:
                 self._leave(self._loading.worker)
-            self._loading = launched
-            self._ending = ""
-            self._changed(facts=True)
+            self._await(launched)
+
+    def adopt(self, worker: Worker) -> None:
+        """Shows a run that has been built elsewhere: in the process of a notebook."""
+        self._attempt += 1
+        launched = LaunchedRun(Start(path=str(self.path), attempt=self._attempt, real_time=True), worker)
+        self.run_task(WorkerMonitor(worker, launched.start, self).serve())
+        self._await(launched)
+
+    def _await(self, launched: LaunchedRun) -> None:
+        """Awaits the facts of a run, to show it then."""
+        self._loading = launched
+        self._ending = ""
+        self._changed(facts=True)
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
         """Handles a message from a worker."""

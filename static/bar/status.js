@@ -7,6 +7,7 @@ import { Former } from "../editor/stale_run.js";
 import { Hint } from "./pace.js";
 import { Share } from "./share.js";
 import { runStatus } from "../run_status.js";
+import { embedded } from "../windows.js";
 import { connected, me, session, state } from "../store.js";
 
 const BAD = ["busy", "halted", "failed", "lost", "unloadable"];
@@ -28,9 +29,7 @@ export function StatusLine() {
     <span id="status" role="status" class=${BAD.includes(is) ? "bad" : is} title=${line}>${line}</span>
     <${Hint} />
     <span class="stretch"></span>
-    <${Branch} />
-    <${Former} />
-    <${Share} />
+    ${embedded === null ? html`<${Branch} /><${Former} /><${Share} />` : null}
     ${recording ? html`<span class="fact" title="Kept as this recording">rec ${recording}</span>` : null}
     ${seed !== null && seed !== undefined ? html`<span class="fact" title="The seed of the run">seed ${String(seed)}</span>` : null}
     <span class="fact">${counted(state.value?.events ?? 0, "event")}</span>

@@ -113,8 +113,11 @@ class RunController:
 
     # -- calls from the run
 
-    def attend(self) -> None:
+    def attend(self, *, wait: bool = True) -> None:
         """Carries out the commands that have arrived; while the run is paused, waits for more. Returns when it may continue.
+
+        Args:
+            wait: Whether it waits; otherwise the run may still be paused when it returns.
 
         Raises:
             Leaving: If the worker must end.
@@ -123,7 +126,7 @@ class RunController:
         if self.watch.goal is not None and self.run.clock >= self.watch.goal and self.status == "running":
             self.pause(self.watch.goal_reason)
         while True:
-            held = self.status != "running"
+            held = wait and self.status != "running"
             message = self.channel.receive(None if held else 0)
             if message is None:
                 return
