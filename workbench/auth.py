@@ -267,11 +267,8 @@ def _with_headers(send: Send, gate: Gate) -> Send:
 
 async def _redirect(scope: Scope, send: Send, gate: Gate) -> None:
     """Stores the token in a cookie and redirects the browser to the same page without the token in its address."""
-    rest = {
-        key: values
-        for key, values in parse_qs(scope["query_string"].decode("latin-1")).items()
-        if key not in ("token", "ticket", "embedder")
-    }
+    query = parse_qs(scope["query_string"].decode("latin-1"))
+    rest = {key: values for key, values in query.items() if key not in ("token", "ticket", "embedder")}
     target = scope["path"] + (f"?{urlencode(rest, doseq=True)}" if rest else "")
     cookie = f"{gate.cookie}={gate.token.reveal()}; Path=/; HttpOnly; SameSite=Strict"
     headers = [(b"location", target.encode("ascii", "replace")), (b"set-cookie", cookie.encode()), *HEADERS]

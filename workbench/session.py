@@ -149,7 +149,7 @@ class Session:
     def adopt(self, worker: Worker) -> None:
         """Shows a run that has been built elsewhere: in the process of a notebook."""
         self._attempt += 1
-        launched = LaunchedRun(Start(path=str(self.path), attempt=self._attempt, real_time=True), worker)
+        launched = LaunchedRun(Start(path=str(self.path), folder=str(self.path.parent), attempt=self._attempt, real_time=True), worker)
         self.run_task(WorkerMonitor(worker, launched.start, self).serve())
         self._await(launched)
 

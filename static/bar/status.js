@@ -10,6 +10,7 @@ import { runStatus } from "../run_status.js";
 import { embedded } from "../windows.js";
 import { connected, me, session, state } from "../store.js";
 
+const LOST = embedded === null ? "connection lost; trying again …" : "the kernel does not answer any more: run the cell again";
 const BAD = ["busy", "halted", "failed", "lost", "unloadable"];
 
 /** Returns the number of viewers, which of them this one is, and who sent the last command. */
@@ -35,7 +36,7 @@ export function StatusLine() {
     <span class="fact">${counted(state.value?.events ?? 0, "event")}</span>
     ${watching.length > 1 ? html`<span id="browsers" title=${browsersInFull(watching)}>${browsers(watching, control)}</span>` : null}
     <span id="connection" class=${connected.value === false ? "bad" : ""}>
-      ${connected.value === false ? "connection lost; trying again …" : connected.value ? "connected" : "connecting …"}
+      ${connected.value === false ? LOST : connected.value ? "connected" : "connecting …"}
     </span>
   </footer>`;
 }

@@ -60,7 +60,7 @@ const shownButtons = BUTTONS.filter(({ id }) => embedded === null || !OF_MODELS.
 function isIdle(id) {
   const { alive, loading } = session.value ?? {};
   if (!session.value || (embedded !== null && OF_MODELS.includes(id))) return true;
-  if (id === "run") return loading && !isRestarting();
+  if (id === "run") return embedded === null ? loading && !isRestarting() : !alive;
   if (id === "stop") return !alive && !loading;
   if (id === "back") return !alive || !state.value?.time;
   return ["step", "cycle", "until"].includes(id) && isDone();

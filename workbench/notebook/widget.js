@@ -14,9 +14,13 @@ const STYLE = `
 
 /** Returns whether the notebook is dark behind an element. */
 function isDark(element) {
+  const canvas = new OffscreenCanvas(1, 1).getContext("2d"); // reads colours in every notation
   for (let at = element; at; at = at.parentElement ?? at.getRootNode().host) {
-    const [red, green, blue, alpha = 1] = getComputedStyle(at).backgroundColor.match(/[\d.]+/g)?.map(Number) ?? [0, 0, 0, 0];
-    if (alpha > 0.5) return red + green + blue < 384;
+    canvas.clearRect(0, 0, 1, 1);
+    canvas.fillStyle = getComputedStyle(at).backgroundColor;
+    canvas.fillRect(0, 0, 1, 1);
+    const [red, green, blue, alpha] = canvas.getImageData(0, 0, 1, 1).data;
+    if (alpha > 128) return red + green + blue < 384;
   }
   return matchMedia("(prefers-color-scheme: dark)").matches;
 }
@@ -88,9 +92,8 @@ function render({ model, el }) {
 
   addEventListener("message", hearPage);
   model.on("msg:custom", hearKernel);
-  if (!port) askReplay();
-  else if (LOCAL.includes(location.hostname)) showPage();
-  else explain(unreachable());
+  // The notebook may insert the element only after this function.
+  timer = setTimeout(!port ? askReplay : LOCAL.includes(location.hostname) ? showPage : () => explain(unreachable()));
   return () => {
     clearTimeout(timer);
     removeEventListener("message", hearPage);

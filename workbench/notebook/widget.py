@@ -99,14 +99,15 @@ class Widget(anywidget.AnyWidget):
     def __init__(self, shown: Simulation | Path, **traits: Any) -> None:
         super().__init__(**traits)
         self._shown = ref(shown) if isinstance(shown, Simulation) else lambda: shown
-        self.on_msg(self._send_replay)
+        self.on_msg(self._send_replay)  # pyright: ignore[reportUnknownMemberType] # ipywidgets has no types
 
     def _send_replay(self, *_: object) -> None:
         """Sends the replay of the run up to now; the frontend asks for it."""
         try:
-            self.send({"replay": replay_of(self._shown())})
+            content = {"replay": replay_of(self._shown())}
         except Exception as error:  # noqa: BLE001 - shown in the widget
-            self.send({"error": str(error)})
+            content = {"error": str(error)}
+        self.send(content)  # pyright: ignore[reportUnknownMemberType]
 
 
 def show(what: Simulation | Recorded, *, height: int, trust: bool = False) -> Widget:
