@@ -97,10 +97,9 @@ function NotebookBar() {
     parent.postMessage("workbench", "*"); // says only that the page can be reached
   }, []);
   return html`<header class="bar">
+    <h1>${recorded === null ? "ACT-R 3D" : `Recording of ${model}`}</h1>
     <${Transport} />
     <${Clock} />
-    <span class="stretch"></span>
-    ${recorded === null ? null : html`<span class="quiet">Recording of ${model}</span>`}
   </header>`;
 }
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import os
 import socket
-import sys
 import weakref
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
@@ -42,7 +41,7 @@ class LiveRun(SimulationRun):
 
     def __init__(self, simulation: Simulation, wire: socket.socket, loop: asyncio.AbstractEventLoop) -> None:
         arrived = weakref.WeakMethod(self._arrived)
-        channel = Channel(wire, arrived=lambda: (call := arrived()) and call(), end=sys.exit)
+        channel = Channel(wire, arrived=lambda: (call := arrived()) and call(), end=_stay)
         controller = RunController(channel)
         super().__init__(controller, listing_of("", "notebook"))
         channel.busy = None  # its threads hold nothing of the simulation
@@ -169,8 +168,13 @@ class LiveRun(SimulationRun):
 
 def _end(channel: Channel, wire: socket.socket) -> None:
     """Ends the connection of a simulation that is no more, and its threads."""
+    channel.post(Over())
+    channel.flush(0.2)
     with suppress(OSError):
-        channel.post(Over())
-        channel.flush(0.2)
         wire.shutdown(socket.SHUT_RDWR)
+    wire.close()
     channel.post(Over())  # cannot be sent, which ends the thread that tries
+
+
+def _stay(_: int) -> None:
+    """Leaves the process of the notebook alone."""

@@ -60,11 +60,11 @@ class Channel:
     Args:
         wire: The socket to the server.
         arrived: Called by the thread that reads, after a command has arrived.
-        end: Ends the process with an exit code when the server is gone, or at least the thread that calls it.
+        end: Called when the server is gone, with an exit code for the process; usually ends it. The threads of the channel end anyway.
     """
 
     def __init__(
-        self, wire: socket.socket, *, arrived: Callable[[], object] | None = None, end: Callable[[int], NoReturn] = end_at_once
+        self, wire: socket.socket, *, arrived: Callable[[], object] | None = None, end: Callable[[int], object] = end_at_once
     ) -> None:
         self._wire = wire
         self._arrived = arrived
@@ -130,6 +130,7 @@ class Channel:
                 message = None
             if message is None:
                 self._end(0)  # the server is gone
+                return
             if isinstance(message, Where):
                 if self.busy is not None:
                     self.busy()
@@ -153,6 +154,7 @@ class Channel:
         """Ends the process if the model has closed the connection: its number may belong to another file of the model by now."""
         if _identity(self._wire) != self._identity:
             self._end(WIRE_LOST)
+            raise OSError(WIRE_LOST, "the connection to the server was closed")
 
     # -- sending
 
@@ -253,6 +255,7 @@ class Channel:
                     self._wire.sendall(_bounded(message))
             except OSError:
                 self._end(0)
+                return
 
 
 def _end_copy() -> NoReturn:
