@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.metadata import entry_points
 from typing import Any
 
 from actr3d.errors import NotebookError
@@ -23,6 +22,8 @@ def show_in_notebook(what: Any, **options: Any) -> Any:
     Raises:
         NotebookError: If the packages for notebooks are not installed, or this is not a notebook.
     """
+    from importlib.metadata import entry_points  # 20 ms, which only notebooks need
+
     found = list(entry_points(group=GROUP, name="show"))
     if not found:
         raise NotebookError("show(): no installed package shows notebooks; install this one again")

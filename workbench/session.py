@@ -86,6 +86,8 @@ class Session:
         """
         self._controlled_by = ""
         self._ending = ""
+        self._after_end = "the worker has ended"
+        """What pages say once the worker has ended normally."""
         self._stuck: dict[str, Any] | None = None
         self.speed: float | None = None
         self.real_time = False
@@ -149,6 +151,7 @@ class Session:
     def adopt(self, worker: Worker) -> None:
         """Shows a run that has been built elsewhere: in the process of a notebook."""
         self._attempt += 1
+        self._after_end = "the notebook has no variable for this simulation any more"
         launched = LaunchedRun(Start(path=str(self.path), folder=str(self.path.parent), attempt=self._attempt, real_time=True), worker)
         self.run_task(WorkerMonitor(worker, launched.start, self).serve())
         self._await(launched)
@@ -251,7 +254,7 @@ class Session:
             self._stuck = None
             if self.state is not None and self.state.status not in ("ended", "failed"):
                 status_now = "failed" if self._ending != "stopped" else "ended"
-                reason = self._ending or "the worker has ended"
+                reason = self._ending or self._after_end
                 self.state = msgspec.structs.replace(self.state, status=status_now, reason=reason, measured=None)
                 self.state_version += 1
         self._changed(facts=True)

@@ -19,7 +19,7 @@ from tests.helpers.page import PATIENCE, shows
 from workbench.notebook import widget
 
 KERNEL = """
-import asyncio, json, sys
+import asyncio, gc, json, sys
 from aperture_passage import Parameters, build
 from workbench.notebook.widget import replay_of
 
@@ -152,7 +152,9 @@ def test_the_widget_follows_the_cells_and_says_what_to_do_where_it_cannot(browse
     replay = other.frame_locator("iframe").first
     expect(replay.locator("h1")).to_contain_text("seed")
 
-    kernel.end()
+    kernel.cell("[globals().pop('simulation') and None, gc.collect() and None]")
     lost = page.frame_locator("iframe").first
+    expect(lost.locator("#status")).to_contain_text("the notebook has no variable for this simulation any more")
+    kernel.end()
     expect(lost.locator("#connection")).to_have_text("the kernel does not answer any more: run the cell again")
     expect(lost.locator("#run")).to_be_disabled()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import asyncio
 import gc
+import importlib.metadata
 import json
 import pickle
 import re
@@ -19,7 +20,6 @@ from typing import Any
 
 import pytest
 
-from actr3d import notebook
 from actr3d.actr import ACTR, Buffer, Model
 from actr3d.errors import NotebookError
 from actr3d.recording import Recorded
@@ -221,7 +221,7 @@ def test_the_widget_needs_its_package_and_a_notebook(monkeypatch: pytest.MonkeyP
     def missing(**_: str) -> list[Missing]:
         return [Missing()]
 
-    monkeypatch.setattr(notebook, "entry_points", missing)
+    monkeypatch.setattr(importlib.metadata, "entry_points", missing)
     with pytest.raises(NotebookError, match=r"'anywidget': pip install 'actr3d\[notebook\]'"):
         counter().show()
 

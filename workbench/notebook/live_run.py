@@ -97,7 +97,7 @@ class LiveRun(SimulationRun):
         self._look()
         controller = self._controller
         controller.status, controller.reason = "running", BY_CELL
-        controller.show_if_due()
+        controller.show_if_due(hurried=True)
         if not self._rest_due:
             self._rest_due = True
             self._loop.call_soon(self._rest)

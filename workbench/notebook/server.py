@@ -23,7 +23,7 @@ from workbench.cli import listen
 from workbench.server import serve
 from workbench.session import Session
 from workbench.sessions import Sessions
-from workbench.worker.messages import Leave
+from workbench.worker.messages import FromWorker, Leave
 from workbench.worker.workers import LOST, Worker
 
 LONGEST = 65_536
@@ -43,6 +43,13 @@ class NotebookWorker(Worker):
         nothing_printed = asyncio.StreamReader()
         nothing_printed.feed_eof()
         return cls(0, reader, writer, (nothing_printed, writer.transport))
+
+    async def receive(self) -> FromWorker | None:
+        """Returns the next message; None if the simulation is no more."""
+        message = await super().receive()
+        if message is None:
+            self.kill()
+        return message
 
     async def stop(self) -> None:
         """Leaves the simulation alone from now on."""

@@ -136,6 +136,7 @@ def _page_of(simulation: Simulation, loop: asyncio.AbstractEventLoop) -> dict[st
     if run is not None and not run.left:
         with suppress(NotebookError):  # another server showed it
             return server.ask({"session": run.session})
+        run.left = True
     wire, its_end = socket.socketpair()
     with its_end:
         page = server.ask({}, its_end)

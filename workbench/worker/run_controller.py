@@ -270,10 +270,14 @@ class RunController:
 
     # -- what is sent to the server
 
-    def show_if_due(self) -> None:
-        """Sends the state at regular intervals while the run is going on."""
+    def show_if_due(self, *, hurried: bool = False) -> None:
+        """Sends the state at regular intervals while the run is going on.
+
+        Args:
+            hurried: Whether the run goes as fast as possible, whatever speed is set.
+        """
         now = perf_counter()
-        due = HURRIED if self.pacer.factor is None else SHOWN
+        due = HURRIED if hurried or self.pacer.factor is None else SHOWN
         if now - self._shown >= due and self.status == "running" and self.channel.idle:
             self.show()
 
