@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import asdict
-from functools import partial
+from functools import partial, wraps
 from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
@@ -18,9 +18,8 @@ from actr3d.actr.compat.log_files import finished
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import DesignError, SettingError, did_you_mean
-from actr3d.output import all_written, standard_output
+from actr3d.output import ModelOutput, all_written, printing_to, standard_output
 from actr3d.parameter_schema import Parameter
-from actr3d.printing import ModelOutput, printing_to
 from actr3d.runner.before_exit import before_the_end
 from actr3d.runner.build_check import check_build, has_build
 from actr3d.runner.cli_options import options_help, read_options, read_settings
@@ -182,13 +181,19 @@ def _seconds(text: str) -> float:
 
 def _count(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"must be a whole number from 1 on (got {text})")
+        raise argparse.ArgumentTypeError(f"must be a whole number >= 1 (got {text})")
     return int(text)
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="actr3d", description="Runs cognitive models in bodies, in exact lockstep.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for add in (_add_run, _add_replay, _add_bench, _add_experiment, _add_fit, _add_report, _add_soak):
+        add(commands)
+    return parser
+
+
+def _add_run(commands: Any) -> None:
     run = commands.add_parser(
         "run",
         help="run a model file",
@@ -210,6 +215,9 @@ def _parser() -> argparse.ArgumentParser:
         run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set a parameter of what the file builds"),
     ]
     run.set_defaults(function=run_command, parser=run, general=[name for option in general for name in option.option_strings])
+
+
+def _add_replay(commands: Any) -> None:
     again = commands.add_parser(
         "replay",
         help="run a recording again",
@@ -223,11 +231,17 @@ def _parser() -> argparse.ArgumentParser:
     again.add_argument("--trust", action="store_true", help="run it even though this installation did not make it")
     again.add_argument("--any-version", action="store_true", help="try even though it was made with other versions")
     again.set_defaults(function=replay_command)
+
+
+def _add_bench(commands: Any) -> None:
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
     bench.add_argument("name", metavar="NAME", nargs="?", help="what to measure (unless given, list all benchmarks)")
     bench.add_argument("--trials", type=_count, metavar="N", help="number of trials per cell, for benchmarks that run trials")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
+
+
+def _add_experiment(commands: Any) -> None:
     experiment = commands.add_parser(
         "experiment",
         help="run an experiment with a model",
@@ -237,11 +251,7 @@ def _parser() -> argparse.ArgumentParser:
         "130 it was stopped.",
     )
     experiment.add_argument("name", metavar="NAME|FILE|FOLDER", nargs="?", help="a design, a file with one, or the folder of an experiment")
-    experiment.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="replace levels of a factor, or a value")
-    experiment.add_argument("--participants", type=_count, metavar="N", help="number of participants of each group")
-    experiment.add_argument("--trials", type=_count, metavar="N", help="number of trials of each combination of levels")
-    experiment.add_argument("--workers", type=_count, metavar="N", help="number of workers here (default: one on each processor)")
-    experiment.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
+    _add_design_options(experiment)
     experiment.add_argument("--out", metavar="FOLDER", help="the new folder for the results (default: the name of the design)")
     experiment.add_argument("--resume", action="store_true", help="continue the experiment that is in the folder")
     experiment.add_argument("--any-version", action="store_true", help="continue although packages have other versions now")
@@ -250,6 +260,18 @@ def _parser() -> argparse.ArgumentParser:
     experiment.add_argument("--trial", type=int, metavar="ID", help="run this trial of the experiment in FOLDER again")
     experiment.add_argument("--record", metavar="RECORDING", help="with --trial: record it to this new file")
     experiment.set_defaults(function=_experiment)
+
+
+def _add_design_options(parser: argparse.ArgumentParser) -> None:
+    """Adds the options that change a design, and those that say where its trials run."""
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="replace levels of a factor, or a value")
+    parser.add_argument("--participants", type=_count, metavar="N", help="number of participants of each group")
+    parser.add_argument("--trials", type=_count, metavar="N", help="number of trials of each combination of levels")
+    parser.add_argument("--workers", type=_count, metavar="N", help="number of workers here (default: one on each processor)")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
+
+
+def _add_fit(commands: Any) -> None:
     fit = commands.add_parser(
         "fit",
         help="fit parameters of a model to data",
@@ -266,14 +288,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     fit.add_argument("--ablate", action="append", default=[], metavar="NAME=VALUE", help="show the fit with this part changed")
     fit.add_argument("--recover", type=_count, default=0, metavar="N", help="estimate the known parameters of N simulated data sets")
-    fit.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="replace levels of a factor, or a value")
-    fit.add_argument("--participants", type=_count, metavar="N", help="number of participants of each group")
-    fit.add_argument("--trials", type=_count, metavar="N", help="number of trials of each combination of levels")
-    fit.add_argument("--workers", type=_count, metavar="N", help="number of workers here (default: one on each processor)")
-    fit.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
+    _add_design_options(fit)
     fit.add_argument("--out", metavar="FOLDER", help="the folder for the candidates and the result")
     fit.add_argument("--json", action="store_true", help="print one JSON object a line")
     fit.set_defaults(function=_fit)
+
+
+def _add_report(commands: Any) -> None:
     report = commands.add_parser(
         "report",
         help="write the report of an experiment",
@@ -285,10 +306,12 @@ def _parser() -> argparse.ArgumentParser:
     report.add_argument("--human", metavar="FILE", help="show these human data beside the model (default: those that the design names)")
     report.add_argument("--compare", metavar="FOLDER", help="show another experiment beside this one")
     report.set_defaults(function=_report)
+
+
+def _add_soak(commands: Any) -> None:
     soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
     soak.add_argument("--json", action="store_true", help="print one JSON object")
     soak.set_defaults(function=_soak)
-    return parser
 
 
 def _bench(options: argparse.Namespace) -> int:
@@ -312,72 +335,71 @@ def _bench(options: argparse.Namespace) -> int:
     return function(json_output=options.json, **settings)
 
 
+def _with_packages(work: Callable[[argparse.Namespace], int]) -> Callable[[argparse.Namespace], int]:
+    """Marks a command that needs packages for experiments, which may not be installed, and whose errors are shown to a modeller."""
+
+    @wraps(work)
+    def command(options: argparse.Namespace) -> int:
+        try:
+            return work(options)
+        except ModuleNotFoundError as error:
+            if error.name is None or error.name.startswith("actr3d"):
+                return _complain(error)
+            text = f"needs the package '{error.name}'; install: pip install 'actr3d[experiment]'"
+            print(f"actr3d {options.command}: {text}", file=sys.stderr)
+            return 2
+        except (SettingError, DesignError) as error:
+            print(f"error: {error}", file=sys.stderr)
+            return 2
+        except Exception as error:  # noqa: BLE001 - every error of a model is shown to its author
+            return _complain(error)
+
+    return command
+
+
+@_with_packages
 def _experiment(options: argparse.Namespace) -> int:
-    def work() -> int:
-        from actr3d.experiment import command
+    from actr3d.experiment import command
 
-        out = command.Output(json=options.json)
-        if options.name is None:
-            if any((*_numbers(options).values(), options.trial is not None, options.record, options.out, options.resume, options.check)):
-                raise SettingError("which experiment? name a design, a file or the folder of an experiment before the options")
-            return command.list_designs(out)
-        if options.trial is not None or options.record is not None:
-            if options.trial is None or options.record is None:
-                raise SettingError("--trial ID and --record RECORDING are given together")
-            return command.run_again(options.name, options.trial, options.record, out)
-        numbers = _numbers(options)
-        if options.check:
-            return command.check(options.name, out, **numbers)
-        how = {name: getattr(options, name) for name in ("workers", "scheduler", "resume", "any_version")}
-        if command.is_folder(options.name) and not any((*numbers.values(), *how.values(), options.out)):
-            return command.show_state(options.name, out)
-        return command.run(options.name, out, folder=options.out, **numbers, **how)
-
-    return _with_packages(options, work)
+    out = command.Output(json=options.json)
+    if options.name is None:
+        if any((*_numbers(options).values(), options.trial is not None, options.record, options.out, options.resume, options.check)):
+            raise SettingError("which experiment? name a design, a file or the folder of an experiment before the options")
+        return command.list_designs(out)
+    if options.trial is not None or options.record is not None:
+        if options.trial is None or options.record is None:
+            raise SettingError("--trial ID and --record RECORDING are given together")
+        return command.run_again(options.name, options.trial, options.record, out)
+    numbers = _numbers(options)
+    if options.check:
+        return command.check(options.name, out, **numbers)
+    how = {name: getattr(options, name) for name in ("workers", "scheduler", "resume", "any_version")}
+    if command.is_folder(options.name) and not any((*numbers.values(), *how.values(), options.out)):
+        return command.show_state(options.name, out)
+    return command.run(options.name, out, folder=options.out, **numbers, **how)
 
 
+@_with_packages
 def _fit(options: argparse.Namespace) -> int:
-    def work() -> int:
-        from actr3d.experiment import command
+    from actr3d.experiment import command
 
-        same = ("target", "measure", "candidates", "hold_out", "ablate", "recover", "workers", "scheduler")
-        given = {name: getattr(options, name) for name in same}
-        out = command.Output(json=options.json)
-        return command.fit(options.name, out, ranges=options.parameter, folder=options.out, **_numbers(options), **given)
-
-    return _with_packages(options, work)
+    same = ("target", "measure", "candidates", "hold_out", "ablate", "recover", "workers", "scheduler")
+    given = {name: getattr(options, name) for name in same}
+    out = command.Output(json=options.json)
+    return command.fit(options.name, out, ranges=options.parameter, folder=options.out, **_numbers(options), **given)
 
 
+@_with_packages
 def _report(options: argparse.Namespace) -> int:
-    def work() -> int:
-        from actr3d.experiment.report import command
+    from actr3d.experiment.report import command
 
-        print(command.write_report(options.folder, human=options.human, compare=options.compare))
-        return 0
-
-    return _with_packages(options, work)
+    print(command.write_report(options.folder, human=options.human, compare=options.compare))
+    return 0
 
 
 def _numbers(options: argparse.Namespace) -> dict[str, Any]:
     """Returns the options that change a design."""
     return {"values": read_settings(options.set, ()), "participants": options.participants, "trials": options.trials}
-
-
-def _with_packages(options: argparse.Namespace, work: Callable[[], int]) -> int:
-    """Does work that needs packages for experiments, which may not be installed; returns the exit code."""
-    try:
-        return work()
-    except ModuleNotFoundError as error:
-        if error.name is None or error.name.startswith("actr3d"):
-            return _complain(error)
-        text = f"needs the package '{error.name}'; install: pip install 'actr3d[experiment]'"
-        print(f"actr3d {options.command}: {text}", file=sys.stderr)
-        return 2
-    except (SettingError, DesignError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    except Exception as error:  # noqa: BLE001 - every error of a model is shown to its author
-        return _complain(error)
 
 
 def _soak(options: argparse.Namespace) -> int:

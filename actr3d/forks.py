@@ -1,4 +1,4 @@
-"""Forked copies of the process: what writes or checks a run does so only in the process in which it was created."""
+"""Forked copies of the process: a recording, or a comparison with one, works only in the process that has created it."""
 
 from __future__ import annotations
 

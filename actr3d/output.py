@@ -1,15 +1,168 @@
-"""Standard output of the command: keeps the model's lines and the events of its run apart from all other output."""
+"""Output: captures what a model prints, line by line, and keeps its lines and events apart from all other output of the command."""
 
 from __future__ import annotations
 
 import io
 import os
 import sys
-from collections.abc import Generator
-from contextlib import contextmanager, suppress
-from typing import Any, TextIO
+from collections.abc import Callable, Generator, Iterable
+from contextlib import ExitStack, contextmanager, suppress
+from types import TracebackType
+from typing import Any, Self, TextIO, cast
 
-from actr3d.printing import ModelOutput
+
+class _Lines(io.BufferedIOBase):
+    """Receives UTF-8 bytes, and passes on whole lines of text; closing it has no effect."""
+
+    def __init__(self, take: Callable[[str], None], number: int = 1) -> None:
+        self._take = take
+        self._number = number
+        self._rest = b""
+        self.name = "<stdout>" if number == 1 else "<stderr>"
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any, /) -> int:
+        *lines, self._rest = (self._rest + bytes(data)).split(b"\n")
+        for line in lines:
+            self._take(_text(line))
+        return len(data)
+
+    def fileno(self) -> int:
+        return self._number
+
+    def close(self) -> None:
+        """Does nothing: a wrapper that a model creates and drops would otherwise close this stream."""
+
+    def forget(self) -> None:
+        """Discards an unfinished line."""
+        self._rest = b""
+
+    def finish(self) -> None:
+        """Passes on an unfinished line."""
+        rest, self._rest = self._rest, b""
+        if rest:
+            self._take(_text(rest))
+
+
+class ModelOutput(io.TextIOWrapper):
+    """A `sys.stdout` or `sys.stderr` that passes on what a model writes line by line, including output through `.buffer`.
+
+    Args:
+        take: Called with each line.
+        number: The file descriptor that it replaces.
+    """
+
+    def __init__(self, take: Callable[[str], None], number: int = 1) -> None:
+        self.lines = _Lines(take, number)
+        super().__init__(self.lines, encoding="utf-8", errors="surrogatepass", newline="\n", write_through=True)
+
+    def reconfigure(self, **options: Any) -> None:
+        """Ignores the options: lines of JSON have a fixed encoding."""
+
+    def finish(self) -> None:
+        """Passes on an unfinished line."""
+        self.lines.finish()
+
+
+class _BothBytes(io.BufferedIOBase):
+    """The byte stream of a `TeeOutput`."""
+
+    def __init__(self, tee: TeeOutput, out: Any) -> None:
+        self._tee = tee
+        self._out = out
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any, /) -> int:
+        return self._tee.take(self._out.write, data, bytes(data))
+
+    def flush(self) -> None:
+        self._out.flush()
+
+    def close(self) -> None:
+        """Does nothing, as in `_Lines`."""
+
+
+class TeeOutput:
+    """A `sys.stdout` for a `with` block, which writes to the previous output, and also passes on each line.
+
+    Args:
+        take: Called with each line.
+    """
+
+    def __init__(self, take: Callable[[str], None]) -> None:
+        self._lines = _Lines(take)
+        self._out: Any = sys.stdout
+        self._stack = ExitStack()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._out, name)
+
+    @property
+    def buffer(self) -> Any:
+        """The byte stream of this output."""
+        return _BothBytes(self, self._out.buffer)
+
+    def write(self, text: str, /) -> int:
+        """Writes a text."""
+        return self.take(self._out.write, text, text.encode("utf-8", "surrogatepass"))
+
+    def writelines(self, texts: Iterable[str], /) -> None:
+        """Writes several texts."""
+        for text in texts:
+            self.write(text)
+
+    def take(self, write: Callable[[Any], int], data: Any, encoded: bytes) -> int:
+        """Writes data, and passes on its lines.
+
+        Args:
+            write: The function that writes it.
+            data: The data.
+            encoded: The same data as UTF-8 bytes.
+        """
+        count = write(data)
+        self._lines.write(encoded)
+        return count
+
+    def finish(self) -> None:
+        """Passes on an unfinished line."""
+        self._lines.finish()
+
+    def forget(self) -> None:
+        """Discards an unfinished line."""
+        self._lines.forget()
+
+    def __enter__(self) -> Self:
+        self._stack.enter_context(printing_to(cast("TextIO", self)))
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
+        self._stack.close()
+
+
+@contextmanager
+def printing_to(out: TextIO) -> Generator[None]:
+    """Redirects what a model prints to `out` inside the block."""
+    before = sys.stdout, sys.__stdout__
+    names = sys.__dict__  # type checkers take `sys.__stdout__` for a constant
+    sys.stdout = names["__stdout__"] = out
+    try:
+        yield
+    finally:
+        sys.stdout, names["__stdout__"] = before
+
+
+def _text(line: bytes) -> str:
+    try:
+        return line.decode("utf-8", "surrogatepass")
+    except UnicodeDecodeError:
+        return line.decode("utf-8", "backslashreplace")
+
+
+# -- the command's standard output
 
 
 class StandardOutput(io.TextIOWrapper):

@@ -9,10 +9,11 @@ import ast
 import inspect
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import lru_cache
+from operator import ge, gt, le, lt
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin, get_type_hints
 
@@ -70,6 +71,11 @@ class Parameter:
         """Returns the name of its command-line option."""
         return "--" + self.name.replace("_", "-")
 
+    @property
+    def _bounds(self) -> list[tuple[str, float, Callable[[Any, Any], bool]]]:
+        bounds = ((">", self.above, gt), (">=", self.least, ge), ("<", self.below, lt), ("<=", self.most, le))
+        return [(sign, limit, holds) for sign, limit, holds in bounds if limit is not None]
+
     def value(self, text: str) -> Any:
         """Returns the value of a text; a text that is not a Python literal is itself the value."""
         if text == "None" and self.optional:
@@ -80,8 +86,7 @@ class Parameter:
 
     def domain(self) -> str:
         """Returns the accepted values in one line: `number, > 0, <= 3 [m]`."""
-        signs = ((">", self.above), (">=", self.least), ("<", self.below), ("<=", self.most))
-        bounds = [f"{sign} {limit}" for sign, limit in signs if limit is not None]
+        bounds = [f"{sign} {limit}" for sign, limit, _ in self._bounds]
         says = "True or False" if self.takes == "switch" else ", ".join([self.takes, *bounds])
         if self.choices is not None:
             says = " or ".join(map(str, self.choices))
@@ -100,10 +105,8 @@ class Parameter:
         if self.takes in ("number", "whole number"):
             if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
                 raise ConfigurationError(f"{self.name}: must be a {self.takes} (got {value!r})")
-            bounds = ((self.above, value > (self.above or 0), ">"), (self.least, value >= (self.least or 0), ">="))
-            bounds += ((self.below, value < (self.below or 0), "<"), (self.most, value <= (self.most or 0), "<="))
-            for limit, holds, sign in bounds:
-                if limit is not None and not holds:
+            for sign, limit, holds in self._bounds:
+                if not holds(value, limit):
                     raise ConfigurationError(f"{self.name}: must be {sign} {limit} (got {value!r})")
         elif self.choices is not None and value not in self.choices:
             raise ConfigurationError(f"{self.name}: must be one of {', '.join(map(repr, self.choices))} (got {value!r})")

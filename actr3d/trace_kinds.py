@@ -65,7 +65,7 @@ KINDS: Registry[Kind] = Registry("kind of trace event")
 
 
 def trace_kind(
-    name: str, *, level: str, source: str, data: str, meaning: str, group: str = "other", title: str = "", text: str = ""
+    name: str, *, level: str = "all", source: str, data: str, meaning: str, group: str = "other", title: str = "", text: str = ""
 ) -> None:
     """Registers a kind of event; see the fields of `Kind`. Parts emit it with `Model.emit`.
 
@@ -126,6 +126,16 @@ trace_kind(
     text="{production} was chosen, but matches no longer",
 )
 trace_kind(
+    "withdrawn",
+    level="production",
+    source="system",
+    data="production",
+    meaning="a chosen production does not fire, because a user has forbidden it or has another one fire",
+    group="fire",
+    title="withdrawn",
+    text="{production}: by the user",
+)
+trace_kind(
     "compile",
     level="production",
     source="system",
@@ -165,36 +175,17 @@ trace_kind(
     "as a trace begins",
     group="plan",
 )
-trace_kind(
-    "unit_task",
-    level="production",
-    source="SGOMS buffer",
-    data="name what path",
-    meaning="the same for a unit task",
-    group="plan",
-    title="unit task",
-    text="{name} {what}",
-)
-trace_kind(
-    "method",
-    level="production",
-    source="SGOMS buffer",
-    data="name what path",
-    meaning="the same for a method",
-    group="plan",
-    title="method",
-    text="{name} {what}",
-)
-trace_kind(
-    "operator",
-    level="production",
-    source="SGOMS buffer",
-    data="name what path",
-    meaning="the same for an operator",
-    group="plan",
-    title="operator",
-    text="{name} {what}",
-)
+for _level in ("unit_task", "method", "operator"):
+    trace_kind(
+        _level,
+        level="production",
+        source="SGOMS buffer",
+        data="name what path",
+        meaning=f"the same for {'an' if _level == 'operator' else 'a'} {_level.replace('_', ' ')}",
+        group="plan",
+        title=_level.replace("_", " "),
+        text="{name} {what}",
+    )
 trace_kind(
     "buffer",
     level="buffer",
@@ -203,12 +194,9 @@ trace_kind(
     meaning="the new chunk in a buffer (its slots), or none; `texts`: the text that patterns compare, for values such as lists",
     group="buffer",
 )
-trace_kind(
-    "run", level="all", source="top model", data="limit", meaning="a run begins, for this time [s]; None without a limit", group="run"
-)
+trace_kind("run", source="top model", data="limit", meaning="a run begins, for this time [s]; None without a limit", group="run")
 trace_kind(
     "stop",
-    level="all",
     source="top model",
     data="by [error]",
     meaning="a run ends: «limit», «until», «stop», «done» (nothing is left to do) or «error», with its class",
@@ -216,16 +204,14 @@ trace_kind(
 )
 trace_kind(
     "added",
-    level="all",
     source="parent",
     data="part model [was]",
     meaning="a model joins the tree; `was` is its path before, if it was a run of its own",
     group="run",
 )
-trace_kind("removed", level="all", source="parent", data="part model", meaning="a model leaves the tree", group="run")
+trace_kind("removed", source="parent", data="part model", meaning="a model leaves the tree", group="run")
 trace_kind(
     "state",
-    level="all",
     source="any part",
     data="...",
     meaning="new values of attributes; `size` is the number of chunks in a memory",
@@ -233,7 +219,6 @@ trace_kind(
 )
 trace_kind(
     "productions",
-    level="all",
     source="system",
     data="productions initializers chosen matched drawn [utilities parts threshold]",
     meaning="the contents of a production system: its productions, the methods without parameters, the chosen production, "
@@ -242,7 +227,6 @@ trace_kind(
 )
 trace_kind(
     "initialize",
-    level="all",
     source="system",
     data="method",
     meaning="a method without parameters runs, before the first cycle",
@@ -250,7 +234,6 @@ trace_kind(
 )
 trace_kind(
     "observe",
-    level="all",
     source="system",
     data="...",
     meaning="new values of what else productions see (`name.slot`); None if missing",
@@ -258,15 +241,14 @@ trace_kind(
 )
 trace_kind(
     "conflict",
-    level="all",
     source="system",
-    data="utilities [parts drawn threshold]",
-    meaning="the productions that match, their utilities and the parts of these, the modules that drew noise, and the utility threshold",
+    data="utilities [parts drawn threshold forbidden wanted]",
+    meaning="the productions that match, their utilities and the parts of these, the modules that drew noise, the utility threshold; "
+    "the productions that a user had forbidden, and the one that the user has fire",
     group="choice",
 )
 trace_kind(
     "utility",
-    level="all",
     source="system",
     data="production part value",
     meaning="the new value of a part of a production's utility, after learning",
@@ -276,7 +258,6 @@ trace_kind(
 )
 trace_kind(
     "request",
-    level="all",
     source="module",
     data="...",
     meaning="a request to a module (`call`). For a memory, with all candidates; if it was made before the trace, also "
@@ -285,7 +266,6 @@ trace_kind(
 )
 trace_kind(
     "retrieval",
-    level="all",
     source="memory",
     data="failed [chunk]",
     meaning="a retrieved chunk arrives, or the retrieval fails",
@@ -293,7 +273,6 @@ trace_kind(
 )
 trace_kind(
     "answer",
-    level="all",
     source="port, vision, motor",
     data="word value",
     meaning="a body answers a request",
@@ -303,7 +282,6 @@ trace_kind(
 )
 trace_kind(
     "search",
-    level="all",
     source="vision",
     data="asked bottom_up noticed refused chosen [why]",
     meaning="a view is searched: the features that match, with their saliences; those that do not, with the reason; and the "
@@ -312,7 +290,6 @@ trace_kind(
 )
 trace_kind(
     "sight",
-    level="all",
     source="vision",
     data="bottom_up failed [chunk held]",
     meaning="a found feature is put into the buffer, or the search fails; `held`: the buffer keeps its chunk",
@@ -320,7 +297,6 @@ trace_kind(
 )
 trace_kind(
     "move",
-    level="all",
     source="motor",
     data="movement group speed [to]",
     meaning="a movement of a muscle group begins; speed and target are in radians or metres",
@@ -330,7 +306,6 @@ trace_kind(
 )
 trace_kind(
     "moved",
-    level="all",
     source="motor",
     data="movement group end",
     meaning="a movement ends: «done», «stopped», «limit» or «blocked»",
@@ -340,7 +315,6 @@ trace_kind(
 )
 trace_kind(
     "refused",
-    level="all",
     source="motor",
     data="movement why",
     meaning="a movement is refused: the muscle group is «busy», or its «limit» is nearer",
@@ -350,7 +324,6 @@ trace_kind(
 )
 trace_kind(
     "add",
-    level="all",
     source="memory",
     data="chunk merged size given",
     meaning="a chunk is added to a memory, or strengthens the equal one there (`merged`)",
@@ -358,7 +331,6 @@ trace_kind(
 )
 trace_kind(
     "chunks",
-    level="all",
     source="memory",
     data="by size gone new",
     meaning="a memory's chunks change in another way: the method, and the chunks",

@@ -87,7 +87,7 @@ Source: the original's limits of 20 and 80 (docs/human-data.md)."""
 NECK = 60
 """The greatest turn of the head against a turned body [degrees]; the eye does the rest. Source: the mannequin's limit."""
 BEARING = 19.6
-"""Objects further from the walking direction are no obstacles [degrees]. Source: the original's 100 - acos(0.5 / 3) (docs/human-data.md)."""
+"""Objects further from the walking direction are not obstacles [degrees]. Source: the original's 100 - acos(0.5 / 3) (docs/human-data.md)."""
 TIGHT = 1.03
 """If the walker cannot turn further, it passes an opening this many times its width. Source: chosen for this model."""
 BESIDE = 57.3
@@ -107,7 +107,7 @@ class Parameters(Configuration):
     """The parameters of the model."""
 
     variant: Literal["predictive", "descriptive", "replication"] = "descriptive"
-    """The walker: one whose behaviour follows from gait, perception and experience; one that is told what people do; or a replication
+    """The walker: one whose behaviour follows from gait, perception and experience; one that is given people's behaviour; or a replication
     of the original ACT-R 3D's model."""
 
     aperture: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.5
@@ -534,7 +534,7 @@ class Replication(Walker):
 
 
 class Descriptive(Walker):
-    """A walker that is told what people do.
+    """A walker that is given people's behaviour.
 
     It keeps the same margin in any posture, a fraction of its shoulder width. Three of its numbers are not measured: when it reacts,
     how fast it turns, and how far it continues to turn. Because of the last two it turns more when it walks faster.

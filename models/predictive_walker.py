@@ -115,7 +115,7 @@ FIRST, LONGEST = 0.1, 0.3
 YIELD = 3.0
 """At how many steps before the doorway it waits if somebody else is nearer to it. Source: chosen for this model."""
 PATIENCE = (0.5, 3.0)
-"""How long it waits for somebody who does not come, at least and at most [s]. Source: chosen for this model."""
+"""The least and the greatest time that it waits for somebody in vain [s]. Source: chosen for this model."""
 PAUSE = 0.4
 """Time between two plans [s]. Source: chosen for this model."""
 MEMORIES = 150
@@ -250,7 +250,7 @@ class Avoiding(ACTR):
 class Planning(ACTR):
     """Imagines turns of the shoulders, one after the other, and keeps the cheapest; some time later it begins again.
 
-    It ends when the effort of a larger turn alone would cost more than the cheapest so far.
+    It ends when the effort of a larger turn alone would cost more than the cheapest until then.
     """
 
     production_time = CYCLE

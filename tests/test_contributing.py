@@ -27,6 +27,13 @@ CHECKS = {
         from actr3d.world import Ball, Floor, Scene, World
         assert World(Scene(parts=(Floor(), Ball(radius=0.2)))).bodies["ball"].get("top") == 0.4
     """,
+    "actr3d/world/changes/open_wide.py": """
+        from actr3d.simulation import Simulation
+        from actr3d.world import Aperture, Floor, Scene
+        simulation = Simulation(Scene(parts=(Floor(), Aperture())), seed=1)
+        simulation.command("open_wide")
+        assert abs(simulation.world.aperture_width() - 3.0) < 1e-9
+    """,
     "actr3d/actr/modules/alarm.py": """
         from actr3d.actr import *
         from actr3d.trace_kinds import KINDS

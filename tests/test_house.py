@@ -18,7 +18,7 @@ import actr3d
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
 
-BASE = {"errors", "clock", "configuration", "warnings", "values", "registry", "forks", "weak_cache", "trace_kinds", "trace"}
+BASE = {"errors", "clock", "configuration", "warnings", "values", "registry", "forks", "weak_cache", "trace_kinds", "trace", "change"}
 BODILY = {"actr", "world", "camera"}
 SENSES = {"vision", "motor", "sgoms"}
 RUNNING = {"simulation", "recording"}
@@ -35,6 +35,7 @@ PARTS: dict[str, set[str]] = {
     "forks": set(),
     "trace_kinds": {"registry"},
     "trace": {"errors", "clock", "values", "trace_kinds"},
+    "change": {"errors", "configuration", "registry"},
     "actr": BASE,
     "jit": set(),
     "world": BASE | {"jit"},
@@ -43,14 +44,13 @@ PARTS: dict[str, set[str]] = {
     "motor": BASE | BODILY,
     "sgoms": BASE | {"actr"},
     "recording": BASE | BODILY | {"notebook"},
-    "simulation": BASE | BODILY | SENSES | {"recording", "printing", "notebook"},
-    "runner": BASE | BODILY | SENSES | RUNNING | {"printing", "parameter_schema"},
+    "simulation": BASE | BODILY | SENSES | {"recording", "output", "notebook"},
+    "runner": BASE | BODILY | SENSES | RUNNING | {"output", "parameter_schema"},
     "benchmark": {"registry"},
-    "experiment": BASE | {"jit"} | BODILY | SENSES | RUNNING | {"parameter_schema", "printing", "runner", "benchmark"},
+    "experiment": BASE | {"jit"} | BODILY | SENSES | RUNNING | {"parameter_schema", "output", "runner", "benchmark"},
     "bench": BASE | BODILY | SENSES | RUNNING | {"runner", "experiment", "benchmark"},
-    "printing": set(),
-    "output": {"printing"},
-    "cli": BASE | BODILY | SENSES | RUNNING | {"parameter_schema", "runner", "experiment", "bench", "benchmark", "output", "printing"},
+    "output": set(),
+    "cli": BASE | BODILY | SENSES | RUNNING | {"parameter_schema", "runner", "experiment", "bench", "benchmark", "output"},
     "__main__": {"cli"},
 }
 """Every part of the library, and the parts that it may import."""

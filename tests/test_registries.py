@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import inspect
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ import actr3d.world
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.modules import MODULES
 from actr3d.bench import find_benchmarks
+from actr3d.change import CHANGES, change
 from actr3d.errors import SimulationError, WorldError
 from actr3d.simulation import Simulation
 from actr3d.simulation.measure import MEASURES
@@ -24,7 +26,7 @@ from actr3d.vision import DETECTORS
 from actr3d.world import Body, Car, Floor, ImportedBody, Scene, World
 from actr3d.world.anatomy import BODY_KINDS, Anatomy, Embodied, body_kind
 from actr3d.world.body import ACTUATORS, SENSORS, actuator, sensor
-from actr3d.world.world import WORLD_COMMANDS, world_command
+from actr3d.world.changes import WorldChange
 
 ARM = """<mujoco><worldbody><body name="arm"><joint name="elbow" axis="0 0 1"/><geom size="0.1"/><site name="eye"/></body></worldbody>
   <actuator><motor name="turn" joint="elbow"/></actuator></mujoco>"""
@@ -39,7 +41,7 @@ def example(kind: str) -> Embodied:
 @pytest.fixture
 def registered() -> Iterator[None]:
     """Forgets after a test what it has registered."""
-    before = [(registry, dict(registry)) for registry in (ACTUATORS, SENSORS, BODY_KINDS, WORLD_COMMANDS)]
+    before = [(registry, dict(registry)) for registry in (ACTUATORS, SENSORS, BODY_KINDS, CHANGES)]
     yield
     for registry, known in before:
         registry.clear()
@@ -124,17 +126,27 @@ def test_no_part_of_the_library_asks_for_a_kind_of_body() -> None:
 
 
 @pytest.mark.usefixtures("registered")
-def test_a_new_command_to_the_world_reaches_it_from_a_simulation() -> None:
-    @world_command
-    def lower(world: World, metres: float) -> None:
+def test_a_new_change_of_the_world_reaches_it_from_a_simulation() -> None:
+    @change
+    @dataclass(frozen=True)
+    class Lower(WorldChange):
         """Lowers the floor."""
-        heights.append((world, metres))
+
+        word = "lower"
+        of = "object"
+        title = "Lower"
+        text = "the floor by {metres} m"
+
+        metres: float
+
+        def carry_out(self, on: World) -> None:
+            heights.append((on, self.metres))
 
     heights: list[tuple[World, float]] = []
     simulation = Simulation(Scene(parts=(Floor(),)), {})
     simulation.command("lower", 0.5)
-    with pytest.raises(SimulationError, match=r"command 'lower': .*missing 1 required"):
-        simulation.command(lower.__name__)
+    with pytest.raises(SimulationError, match=r"command 'lower': missing a required argument: 'metres'; it takes \(metres\)"):
+        simulation.command(Lower.word)
     assert heights == [(simulation.world, 0.5)]
 
 

@@ -12,8 +12,10 @@ from typing import Any
 import pytest
 
 from actr3d.actr import ACTR, Buffer, Memory, Model
+from actr3d.actr.changes import Parts
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text, run_text
+from actr3d.change import CHANGES
 from actr3d.cli import event_line
 from actr3d.errors import ParameterError
 from actr3d.experiment.aperture import Passage
@@ -82,6 +84,11 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     trace = world.traced()
     world.run(2)
     trace.command("pause", {"why": "lunch"})
+    changed = module.Agent()
+    by_hand = changed.traced()
+    changed.run(0.02)
+    CHANGES["forbid_once"]("top", "ask").carry_out(Parts([changed]))  # pyright: ignore[reportCallIssue] # a dataclass
+    changed.run(0.1)
     file = tmp_path_factory.mktemp("model") / "everything.py"
     file.write_text(EVERYTHING + "\nAgent().run(1)\nprint('seen')\n", encoding="utf-8")
     arguments = [sys.executable, "-m", "actr3d.cli", "run", str(file), "--json", "--seed", "1"]
@@ -95,7 +102,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     motor.rotate_torso(2)
     motor.rotate_torso(1)
     mover.step(5)
-    return [*trace, *printed, *(simulation.trace or ()), *(mover.trace or ()), *seeing_for(0.2)]
+    return [*trace, *by_hand, *printed, *(simulation.trace or ()), *(mover.trace or ()), *seeing_for(0.2)]
 
 
 def test_every_kind_is_told_and_no_other(recorded: list[TraceEvent]) -> None:

@@ -6,23 +6,20 @@ import asyncio
 import hmac
 import re
 import secrets
-from collections.abc import Awaitable, Callable, MutableMapping
 from dataclasses import dataclass, field
-from http.cookies import CookieError, SimpleCookie
-from typing import Any
 from urllib.parse import parse_qs, urlencode
 
-Scope = MutableMapping[str, Any]
-Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
-Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
-App = Callable[[Scope, Receive, Send], Awaitable[None]]
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import PlainTextResponse, RedirectResponse, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 LOOPBACK = frozenset({"127.0.0.1", "localhost", "[::1]"})
-HEADER = b"x-workbench"
+HEADER = "x-workbench"
 """Every request that changes something must have this header; a form of another site cannot send it."""
 SAFE = frozenset({"GET", "HEAD"})
 LARGEST = 2_000_000
 """Maximum size of a request's body [bytes]."""
+TOO_LARGE = f"the body of a request: must be <= {LARGEST:,} bytes"
 BODY_TIME = 30.0
 """Maximum time in which a request's body must arrive [s]."""
 LONGEST_PATH = 4_000
@@ -30,20 +27,20 @@ LONGEST_PATH = 4_000
 _LOCAL_ORIGIN = re.compile(r"https?://(localhost|127\.0\.0\.1)(:\d{1,5})?")
 _HOST = re.compile(r"(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.\-]+)(?::(\d{1,5}))?")
 
-HEADERS = (
-    (b"x-content-type-options", b"nosniff"),
-    (b"referrer-policy", b"no-referrer"),
-    (b"cross-origin-resource-policy", b"same-origin"),
-    (b"cross-origin-opener-policy", b"same-origin"),
-    (b"x-frame-options", b"SAMEORIGIN"),
-    (b"cache-control", b"no-store"),
-)
+HEADERS = {
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cross-origin-resource-policy": "same-origin",
+    "cross-origin-opener-policy": "same-origin",
+    "x-frame-options": "SAMEORIGIN",
+    "cache-control": "no-store",
+}
 POLICY = (
-    b"default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
-    b"connect-src 'self'; frame-src 'self'; worker-src 'self' blob:; form-action 'none'; base-uri 'none'; frame-ancestors 'self'"
+    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
+    "connect-src 'self'; frame-src 'self'; worker-src 'self' blob:; form-action 'none'; base-uri 'none'; frame-ancestors 'self'"
 )
 """What the workbench's pages may load and do: nothing from other servers, no inline scripts."""
-_ANCESTORS = b"frame-ancestors 'self'"
+_ANCESTORS = "frame-ancestors 'self'"
 
 
 class Token:
@@ -117,7 +114,7 @@ class Guard:
         gate: Grants or refuses access.
     """
 
-    def __init__(self, app: App, gate: Gate) -> None:
+    def __init__(self, app: ASGIApp, gate: Gate) -> None:
         self._app = app
         self._gate = gate
 
@@ -136,23 +133,21 @@ class Guard:
             else:
                 await self._app(_without_secrets(scope), receive, send)
             return
-        if status == 303:
-            await _redirect(scope, send, self._gate)
-        elif status != 200:
-            await _refuse(send, status, reason)
-        else:
+        body = b""
+        if status == 200:
             body, status, reason = await _body(receive)
-            if status == 200:
-                await self._app(_without_secrets(scope), _given(body, receive), _with_headers(send, self._gate))
-            else:
-                await _refuse(send, status, reason)
+        if status == 200:
+            await self._app(_without_secrets(scope), _given(body, receive), _with_headers(send, self._gate))
+        else:
+            response = _redirect(scope, self._gate) if status == 303 else _refusal(status, reason)
+            await response(scope, receive, send)
 
     def _judge(self, scope: Scope) -> tuple[int, str]:
         """Returns 200 to admit a request, 303 if the address contains the token, or else the status and reason of the refusal."""
-        gate, headers = self._gate, _Headers(scope)
-        host, origin = headers.one("host"), headers.one("origin")
+        gate, headers = self._gate, Headers(scope=scope)
+        host, origin = _one(headers, "host"), _one(headers, "origin")
         if host is None or not gate.knows_host(host):
-            return 421, "this server does not go by that name"
+            return 421, "Host: must be a name of this server; add other names with --name"
         socket = scope["type"] == "websocket"
         method = "GET" if socket else scope["method"]
         if len(scope.get("raw_path") or b"") + len(scope["query_string"]) > LONGEST_PATH:
@@ -160,61 +155,48 @@ class Guard:
         query = parse_qs(scope["query_string"].decode("latin-1")) if not socket and method == "GET" and scope["path"] == "/" else {}
         brought = query.get("token", [])
         if brought:
-            return (303, "") if len(brought) == 1 and gate.token.equals(brought[0]) else (401, "that is not the token of this server")
-        known = any(gate.token.equals(value) for value in headers.cookies(gate.cookie))
+            return (303, "") if len(brought) == 1 and gate.token.equals(brought[0]) else (401, "token: must be that of this server")
+        known = any(gate.token.equals(value) for value in _cookies(headers, gate.cookie))
         if "ticket" in query:
             admitted = gate.use_ticket(query["ticket"][0], query.get("embedder", [""])[0]) or known
-            return (303, "") if admitted else (401, "this address has been used already")
-        bearer = headers.one("authorization") or ""
+            return (303, "") if admitted else (401, "ticket: must not have been used before")
+        bearer = _one(headers, "authorization") or ""
         by_header = bearer.startswith("Bearer ") and gate.token.equals(bearer.removeprefix("Bearer "))
         if not by_header and not known:
             return 401, "open the address with the token that the workbench printed when it was started"
         if origin is not None and not gate.is_own_origin(origin, host):
-            return 403, "another page asks"
+            return 403, "Origin: must be that of the workbench's own page"
         if origin is None and not by_header and (socket or method not in SAFE):
-            return 403, "the request has no Origin header, so it is not known which page sent it"
-        if headers.one("sec-fetch-site") in ("cross-site", "same-site") and headers.one("sec-fetch-mode") != "navigate":
-            return 403, "another page asks"
+            return 403, "Origin: this header is missing, so it is not known which page sent the request"
+        if _one(headers, "sec-fetch-site") in ("cross-site", "same-site") and _one(headers, "sec-fetch-mode") != "navigate":
+            return 403, "Origin: must be that of the workbench's own page"
         if not socket and method not in SAFE:
             return _judge_change(headers)
         return 200, ""
 
 
-def _judge_change(headers: _Headers) -> tuple[int, str]:
+def _judge_change(headers: Headers) -> tuple[int, str]:
     """Checks a request that changes something: it must be JSON, have the workbench's header, and not be too large."""
-    if (headers.one("content-type") or "").partition(";")[0].strip().lower() != "application/json":
-        return 415, "what changes something is sent as application/json"
-    if headers.one(HEADER.decode()) is None:
-        return 403, f"what changes something is sent with the header {HEADER.decode()}"
-    length = headers.one("content-length") or "0"
+    if (_one(headers, "content-type") or "").partition(";")[0].strip().lower() != "application/json":
+        return 415, "Content-Type: must be application/json for a request that changes something"
+    if _one(headers, HEADER) is None:
+        return 403, f"{HEADER}: this header is missing from a request that changes something"
+    length = _one(headers, "content-length") or "0"
     if not (length.isascii() and length.isdigit()):
-        return 400, "the length of the request is not a number"
-    return (413, f"no request has more than {LARGEST:,} bytes") if int(length) > LARGEST else (200, "")
+        return 400, "Content-Length: must be a number"
+    return (413, TOO_LARGE) if int(length) > LARGEST else (200, "")
 
 
-class _Headers:
-    """Holds the headers of a request."""
+def _one(headers: Headers, name: str) -> str | None:
+    """Returns the value of a header; a repeated header gives a value that never matches."""
+    found = headers.getlist(name)
+    return None if not found else found[0] if len(found) == 1 else "\0twice"
 
-    def __init__(self, scope: Scope) -> None:
-        self._headers: list[tuple[bytes, bytes]] = scope["headers"]
 
-    def one(self, name: str) -> str | None:
-        """Returns the value of a header; a repeated header gives a value that never matches."""
-        found = [value for key, value in self._headers if key == name.encode()]
-        return None if not found else found[0].decode("latin-1") if len(found) == 1 else "\0twice"
-
-    def cookies(self, name: str) -> list[str]:
-        """Returns the values of all cookies with a name."""
-        values: list[str] = []
-        for key, value in self._headers:
-            if key == b"cookie":
-                for part in value.decode("latin-1").split(";"):
-                    try:
-                        cookie = SimpleCookie(part)
-                    except CookieError:
-                        continue
-                    values += [morsel.value for known, morsel in cookie.items() if known == name]
-        return values
+def _cookies(headers: Headers, name: str) -> list[str]:
+    """Returns the values of all cookies with a name: another server of this computer may have set one of the same name."""
+    pairs = [part.strip().partition("=") for value in headers.getlist("cookie") for part in value.split(";")]
+    return [value for known, _, value in pairs if known == name]
 
 
 async def _body(receive: Receive) -> tuple[bytes, int, str]:
@@ -226,18 +208,18 @@ async def _body(receive: Receive) -> tuple[bytes, int, str]:
                 message = await receive()
                 body += message.get("body", b"")
                 if len(body) > LARGEST:
-                    return b"", 413, f"no request has more than {LARGEST:,} bytes"
+                    return b"", 413, TOO_LARGE
                 if message["type"] == "http.disconnect" or not message.get("more_body", False):
                     return bytes(body), 200, ""
     except TimeoutError:
-        return b"", 408, f"the request did not come as a whole within {BODY_TIME:g} s"
+        return b"", 408, f"the body of a request: must arrive within {BODY_TIME:g} s"
 
 
 def _given(body: bytes, receive: Receive) -> Receive:
     """Returns a `receive` that first returns a body already read, and then the messages that follow."""
     waiting = [body]
 
-    async def give() -> MutableMapping[str, Any]:
+    async def give() -> Message:
         if waiting:
             return {"type": "http.request", "body": waiting.pop(), "more_body": False}
         return await receive()
@@ -252,31 +234,27 @@ def _without_secrets(scope: Scope) -> Scope:
 
 
 def _with_headers(send: Send, gate: Gate) -> Send:
-    async def send_with_headers(message: MutableMapping[str, Any]) -> None:
+    async def send_with_headers(message: Message) -> None:
         if message["type"] == "http.response.start":
-            there = {key for key, _ in message.get("headers", ())}
-            more = [header for header in (*HEADERS, (b"content-security-policy", POLICY)) if header[0] not in there]
-            message = {**message, "headers": [*message.get("headers", ()), *more]}
+            headers = MutableHeaders(scope=message)
+            for name, value in {**HEADERS, "content-security-policy": POLICY}.items():
+                headers.setdefault(name, value)
             if gate.embedders:  # browsers ignore x-frame-options where the policy names ancestors
-                allowed = " ".join([_ANCESTORS.decode(), *sorted(gate.embedders)]).encode()
-                message["headers"] = [(key, value.replace(_ANCESTORS, allowed)) for key, value in message["headers"]]
+                allowed = " ".join([_ANCESTORS, *sorted(gate.embedders)])
+                headers["content-security-policy"] = headers["content-security-policy"].replace(_ANCESTORS, allowed)
         await send(message)
 
     return send_with_headers
 
 
-async def _redirect(scope: Scope, send: Send, gate: Gate) -> None:
+def _redirect(scope: Scope, gate: Gate) -> Response:
     """Stores the token in a cookie and redirects the browser to the same page without the token in its address."""
     query = parse_qs(scope["query_string"].decode("latin-1"))
     rest = {key: values for key, values in query.items() if key not in ("token", "ticket", "embedder")}
     target = scope["path"] + (f"?{urlencode(rest, doseq=True)}" if rest else "")
     cookie = f"{gate.cookie}={gate.token.reveal()}; Path=/; HttpOnly; SameSite=Strict"
-    headers = [(b"location", target.encode("ascii", "replace")), (b"set-cookie", cookie.encode()), *HEADERS]
-    await send({"type": "http.response.start", "status": 303, "headers": headers})
-    await send({"type": "http.response.body", "body": b""})
+    return RedirectResponse(target, 303, {**HEADERS, "set-cookie": cookie})
 
 
-async def _refuse(send: Send, status: int, reason: str) -> None:
-    headers = [(b"content-type", b"text/plain; charset=utf-8"), *HEADERS, (b"content-security-policy", b"default-src 'none'")]
-    await send({"type": "http.response.start", "status": status, "headers": headers})
-    await send({"type": "http.response.body", "body": f"{reason}\n".encode()})
+def _refusal(status: int, reason: str) -> Response:
+    return PlainTextResponse(f"{reason}\n", status, {**HEADERS, "content-security-policy": "default-src 'none'"})

@@ -25,6 +25,18 @@ READ_TIME = 20.0
 """How long a browser may take to start and to read the file that redirects it here [s]."""
 
 
+def _count(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"must be a whole number >= 0 (got {text})")
+    return int(text)
+
+
+def _port(text: str) -> int:
+    if _count(text) >= 65536:
+        raise argparse.ArgumentTypeError(f"must be < 65536 (got {text})")
+    return int(text)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="workbench",
@@ -32,18 +44,18 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("models", nargs="?", type=Path, metavar="MODELS_FOLDER", help="the models (default: ./models, or a folder at home)")
     parser.add_argument("--host", default="127.0.0.1", help="where to listen; anything but loopback lets others reach it")
-    parser.add_argument("--port", type=int, default=0, help="the port (default 0: any free one)")
+    parser.add_argument("--port", type=_port, default=0, help="the port (default 0: any free one)")
     parser.add_argument("--name", action="append", default=[], metavar="NAME", help="another name by which browsers may call this server")
     parser.add_argument("--no-browser", action="store_true", help="do not open the browser")
     parser.add_argument(
-        "--memory", type=int, default=MEMORY, metavar="MB", help=f"how much memory a model may take (default {MEMORY}; 0: any)"
+        "--memory", type=_count, default=MEMORY, metavar="MB", help=f"how much memory a model may take (default {MEMORY}; 0: any)"
     )
     parser.add_argument(
-        "--recordings", type=int, default=KEPT, metavar="N", help=f"how many recordings are kept (default {KEPT}; 0: any number)"
+        "--recordings", type=_count, default=KEPT, metavar="N", help=f"how many recordings are kept (default {KEPT}; 0: any number)"
     )
     parser.add_argument(
         "--recordings-size",
-        type=int,
+        type=_count,
         default=MOST_MEGABYTES,
         metavar="MB",
         help=f"and how much of them (default {MOST_MEGABYTES}; 0: any size); the oldest that nobody has named go at the start",
@@ -76,9 +88,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGINT, interrupt)
-    if not 0 <= options.port < 65536 or min(options.memory, options.recordings, options.recordings_size) < 0:
-        print("error: a port is a number from 0 to 65535, and memory and recordings not below 0", file=sys.stderr)
-        return 2
     try:
         folder = models_folder(options.models, Path.cwd(), Path.home())
         listening = listen(options.host, options.port)

@@ -3,121 +3,54 @@
 from __future__ import annotations
 
 import asyncio
+from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Sequence
-from itertools import islice
-from typing import Any, Protocol
+from typing import Any
 
 import msgspec
 
-MOST_EVENTS = 50_000
-"""How many events of a run the server keeps in memory; older events are in the worker's trace and in the recording."""
-MOST_KEPT = 50_000_000
-"""Maximum total size of these events [bytes]."""
+from workbench.event_log import EventLog
+
 MOST_NOTICES = 500
 MOST_REPLIES = 1_000
 """How many replies may wait for a browser; one that keeps asking without reading is disconnected."""
-AT_ONCE = 2_000
-"""Maximum number of events in one message."""
-
-MOST_BYTES = 500_000
-"""Maximum size of the events in one message [bytes]; a single larger event is sent alone."""
-
 Raw = msgspec.Raw
 
 
-class EventLog:
-    """Holds the latest events of one run, numbered from 0."""
+class Broadcast(ABC):
+    """What is sent to all browsers that watch: events and notices with numbers, state and facts with versions. A session is one.
 
-    def __init__(self) -> None:
-        self.first = 0
-        self._events: deque[bytes] = deque()
-        self._size = 0
-        """Total size of the events [bytes]."""
+    Args:
+        name: The name of the session.
+    """
 
-    @property
-    def next(self) -> int:
-        """The number of the next event."""
-        return self.first + len(self._events)
-
-    def add(self, first: int, events: Sequence[bytes]) -> None:
-        """Adds events; known ones are skipped, and after a gap the log starts again."""
-        if first > self.next:
-            self._events.clear()
-            self._size = 0
-            self.first = first
-        new = events[self.next - first :]
-        self._events.extend(new)
-        self._size += sum(map(len, new))
-        while len(self._events) > MOST_EVENTS or self._size > MOST_KEPT:
-            self._size -= len(self._events.popleft())
-            self.first += 1
-
-    def cut(self, number: int) -> None:
-        """Removes the events from a number on."""
-        while self._events and self.next > number:
-            self._size -= len(self._events.pop())
-        if not self._events:
-            self.first = number
-
-    def since(self, number: int, most: int = AT_ONCE) -> tuple[int, list[bytes]]:
-        """Returns events from a number on, and the number of the first; it is higher if older events are gone."""
-        begin = max(0, number - self.first)
-        found: list[bytes] = []
-        size = 0
-        for event in islice(self._events, begin, begin + most):
-            size += len(event)
-            if found and size > MOST_BYTES:
-                break
-            found.append(event)
-        return self.first + begin, found
-
-
-class FeedSource(Protocol):
-    """The part of a session that a feed sends; `Session` itself imports this module."""
-
-    @property
-    def name(self) -> str:
-        """The name of the session."""
-        ...
-
-    @property
-    def run(self) -> int:
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.feeds: list[Feed] = []
+        self.run: int = 0
         """The number of the run on screen."""
-        ...
-
-    @property
-    def epoch(self) -> int:
+        self.epoch: int = 0
         """Counts how often the run has been replaced, or cut and continued differently."""
-        ...
-
-    @property
-    def log(self) -> EventLog:
+        self.log = EventLog()
         """The events of the run."""
-        ...
-
-    @property
-    def notices(self) -> deque[tuple[int, bytes]]:
+        self.notices: deque[tuple[int, bytes]] = deque(maxlen=MOST_NOTICES)
         """The notices to the user, numbered, as JSON."""
-        ...
+        self.state_version: int = 0
+        self.facts_version: int = 0
 
-    @property
-    def state_version(self) -> int:
-        """The version of the state: increases with each new state."""
-        ...
-
-    @property
-    def facts_version(self) -> int:
-        """The version of the facts about the session and its run."""
-        ...
-
+    @abstractmethod
     def state_json(self) -> bytes:
         """Returns the newest state as JSON."""
-        ...
 
+    @abstractmethod
     def facts_json(self) -> bytes:
         """Returns the facts about the session and its run as JSON."""
-        ...
+
+    def changed(self, *, facts: bool = False) -> None:
+        """Signals all browsers that there is something new to send, such as other facts."""
+        self.facts_version += facts
+        for feed in self.feeds:
+            feed.wake()
 
 
 class Feed:
@@ -128,7 +61,7 @@ class Feed:
         name: The browser's name, as other users see it.
     """
 
-    def __init__(self, shown: FeedSource, name: str) -> None:
+    def __init__(self, shown: Broadcast, name: str) -> None:
         self.name = name
         self._shown = shown
         self._changed = asyncio.Event()

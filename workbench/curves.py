@@ -6,7 +6,8 @@ import math
 from abc import ABC, abstractmethod
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -19,7 +20,8 @@ INTEGRATION = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 Values = Sequence[float | None]
 
 
-class Curve(NamedTuple):
+@dataclass(frozen=True)
+class Curve:
     """Describes one curve."""
 
     name: str
@@ -184,7 +186,7 @@ class CurveReader:
     @property
     def names(self) -> list[dict[str, str]]:
         """All curves with name, unit and group."""
-        return [curve._asdict() for source in self._sources for curve in source.curves]
+        return [asdict(curve) for source in self._sources for curve in source.curves]
 
     def sampled(self, moments: Iterable[tuple[float, bytes]], names: Sequence[str] | None) -> dict[str, Any]:
         """Returns `names` (all curves with unit and group), `times` [s], and `curves` (values by name).

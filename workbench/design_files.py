@@ -1,22 +1,33 @@
-"""Finds designs of experiments in the texts of files, without running them: those of the library, and those of the user's model files."""
+"""Finds designs of experiments, of the library and in the user's model files, without running them; and what users want of them."""
 
 from __future__ import annotations
 
 import ast
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import Field
 
 import actr3d
 from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError, ModelFileError, did_you_mean
 from actr3d.values import escape_surrogates
-from workbench.files import LARGEST, ModelFolder
+from workbench.files import LARGEST, ModelFolder, file_stamp
+from workbench.loader import last_name
+from workbench.page_commands import PageMessage
 
 LIBRARY = Path(actr3d.__file__).parent / "experiment" / "designs"
 """The folder of the library's own designs; importing them would load what only experiments need."""
+
+
+Identifier = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
+Whole = Annotated[int, Field(ge=-(2**63), lt=2**63)]
+Level = bool | Whole | Annotated[float, Field(allow_inf_nan=False)] | Annotated[str, Field(max_length=1_000)] | None
+Count = Annotated[int, Field(ge=1, le=1_000_000)]
+Workers = Annotated[int, Field(ge=1, le=256)]
 
 
 class NoSuchDesignError(Actr3dError):
@@ -71,29 +82,24 @@ def stamp_of(folder: ModelFolder, design: str) -> Any:
     """Returns a value that changes whenever the file of a design changes, or another file in its folder."""
     file, colon, _ = design.rpartition(":")
     beside = folder.locate(file).parent.glob("*.py") if colon else ()
-    return sorted((path.name, *_stamp(path)) for path in beside if path.is_file())
+    return sorted((path.name, *file_stamp(path)) for path in beside if path.is_file())
 
 
 def _in_file(path: Path, file: str | None) -> list[DesignOutline]:
+    stamp = file_stamp(path)
     try:
-        stamp = _stamp(path)
-        return list(_read(path, file, stamp)) if stamp[1] <= LARGEST else []
+        return list(_read(path, file, stamp)) if stamp and stamp[-1] <= LARGEST else []
     except (OSError, ModelFileError):
         return []
 
 
-def _stamp(path: Path) -> tuple[int, int]:
-    now = path.stat()
-    return now.st_mtime_ns, now.st_size
-
-
 @lru_cache(maxsize=1000)
-def _read(path: Path, file: str | None, _: tuple[int, int]) -> tuple[DesignOutline, ...]:
-    """Reads a file; the numbers change when the file changes."""
+def _read(path: Path, file: str | None, _: tuple[int, ...]) -> tuple[DesignOutline, ...]:
+    """Reads a file; the stamp changes when the file changes."""
     text = read_source(path)
     if "design" not in text:
         return ()
-    marked = [node for node in syntax_tree(text).body if isinstance(node, ast.FunctionDef) and any(map(_marks, node.decorator_list))]
+    functions = [node for node in syntax_tree(text).body if isinstance(node, ast.FunctionDef)]
     return tuple(
         DesignOutline(
             id=node.name if file is None else f"{file}:{node.name}",
@@ -101,15 +107,42 @@ def _read(path: Path, file: str | None, _: tuple[int, int]) -> tuple[DesignOutli
             file=file,
             description=escape_surrogates(ast.get_docstring(node) or ""),
         )
-        for node in marked
+        for node in functions
+        if "design" in map(last_name, node.decorator_list)  # also as `@experiment.design`
     )
 
 
-def _marks(mark: ast.expr) -> bool:
-    """Returns whether a decorator is `@design`, also as `@experiment.design`."""
-    return (mark.attr if isinstance(mark, ast.Attribute) else mark.id if isinstance(mark, ast.Name) else "") == "design"
+# -- what a user wants of a design
 
 
-def described(folder: ModelFolder) -> list[dict[str, Any]]:
-    """Returns the designs as plain values."""
-    return [asdict(outline) for outline in designs_of(folder)]
+class WantedDesign(PageMessage):
+    """A design, with what replaces some of it."""
+
+    design: Annotated[str, Field(min_length=1, max_length=500)]
+    """The name of one of the library's, or `FILE:NAME`."""
+    values: dict[Identifier, Level | Annotated[list[Level], Field(max_length=200)]] = Field(default_factory=dict, max_length=100)
+    """New levels of factors, or values of other parameters."""
+    participants: Count | None = None
+    """The number of participants of each group; null for that of the design."""
+    trials: Count | None = None
+    """The number of trials of each combination of levels; null for that of the design."""
+
+    def options(self) -> list[str]:
+        """Returns what replaces some of the design, as options of the command; values as literals of Python, in ASCII."""
+        counts = (("participants", self.participants), ("trials", self.trials))
+        sets = [f"--set={name}={value!a}" for name, value in self.values.items()]
+        return [f"--{name}={count}" for name, count in counts if count is not None] + sets
+
+
+class Checking(WantedDesign):
+    """A design to check."""
+
+    trial: bool = False
+    """Whether a trial is run as well, which finds out how long it takes."""
+
+
+class Starting(WantedDesign):
+    """A design to run."""
+
+    workers: Workers | None = None
+    """The number of processes that run trials; null for one on each processor."""

@@ -1,4 +1,4 @@
-"""Runs the command `actr3d` in a process of its own: the server itself loads nothing of what experiments need."""
+"""Runs the command `actr3d` in a process of its own, and reads its messages: the server itself loads nothing of what experiments need."""
 
 from __future__ import annotations
 
@@ -10,20 +10,89 @@ from collections import deque
 from collections.abc import AsyncGenerator, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
 from actr3d.errors import Actr3dError
-from workbench.experiment_messages import EVENTS, AnyExperimentEvent
 
 NICENESS = 10
-"""How far its processes stand back behind the server and the sessions, from 0 to 19."""
+"""The niceness of its processes, so that the server and the sessions have priority: 0 to 19."""
 LONGEST_LINE = 4_000_000
 """Maximum length of a line of its output [bytes]."""
 LAST_LINES = 60
 """How many lines of its messages are kept."""
 PART = 4_000
 """How much of a message is read at a time, and shown at most [characters]."""
+
+
+# -- the messages of `actr3d experiment --json`, one JSON object a line; see `actr3d.experiment.command`
+
+
+class ExperimentEvent(msgspec.Struct, frozen=True, kw_only=True, tag_field="event"):
+    """Base of all messages."""
+
+
+class ExperimentFacts(ExperimentEvent, frozen=True, kw_only=True, tag="facts"):
+    """What is known of an experiment before it runs."""
+
+    name: str
+    """That of the design."""
+    description: str
+    trials: int
+    """Their number."""
+    trials_a_cell: int
+    factors: dict[str, list[Any]]
+    """Levels by name."""
+    groups: dict[str, int]
+    """Numbers of participants by name."""
+    group_parameters: dict[str, dict[str, Any]] = {}
+    """Values of parameters by group and name; a text for a distribution."""
+    settings: dict[str, Any] = {}
+    """Values of other parameters by name."""
+    changed: dict[str, Any] = {}
+    """The values and numbers that replace those of the design."""
+    measures: list[dict[str, Any]] = []
+    """The measures that the design names: name, unit, meaning, over."""
+    seed: int = 0
+    model: str = ""
+    """The model file."""
+    parameters: list[dict[str, Any]] = []
+    """The parameters of the model: name, help, unit, default, choices."""
+
+
+class TriedFacts(ExperimentFacts, frozen=True, kw_only=True, tag="check"):
+    """The facts of an experiment of which a trial was run."""
+
+    seconds_a_trial: float
+    """Its duration on one processor [s]."""
+    error: str | None = None
+    """The traceback of the trial, if it failed."""
+
+
+class ExperimentProgress(ExperimentEvent, frozen=True, kw_only=True, tag="progress"):
+    """How far an experiment is."""
+
+    done: int
+    total: int
+    failures: int
+    workers: int = 0
+
+
+class ExperimentEnd(ExperimentEvent, frozen=True, kw_only=True, tag="end"):
+    """An experiment has ended in order: all trials have run, or it was stopped."""
+
+    done: int
+    total: int
+    failures: int
+
+
+AnyExperimentEvent = ExperimentFacts | TriedFacts | ExperimentProgress | ExperimentEnd
+EVENTS: msgspec.json.Decoder[AnyExperimentEvent] = msgspec.json.Decoder(AnyExperimentEvent)
+"""Decodes a message; other ones raise an error."""
+
+
+# -- the process
 
 
 class ExperimentRunError(Actr3dError):
@@ -56,7 +125,7 @@ class ExperimentCommand:
         Raises:
             OSError: If no process can be started.
         """
-        # A file of the user must not stand in for a package: with a safe path, Python does not search the working folder.
+        # A file of the user must not replace a package: with a safe path, Python does not search the working folder.
         environment = {**os.environ, "PYTHONSAFEPATH": "1", "PYTHONUNBUFFERED": "1"}
         pipe = asyncio.subprocess.PIPE
         process = await asyncio.create_subprocess_exec(

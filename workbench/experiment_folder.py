@@ -5,7 +5,6 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import json
-import secrets
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, cast
@@ -13,8 +12,8 @@ from typing import Any, cast
 import msgspec
 
 from actr3d.recording.key import is_sealed, make_key, seal
-from workbench.experiment_command import ExperimentRunError
-from workbench.experiment_messages import ExperimentFacts
+from workbench.experiment_command import ExperimentFacts, ExperimentRunError
+from workbench.files import file_stamp, replace_file
 
 SPECIFICATION, FACTS, TABLE, LOCK, NOTES = "experiment.json", "facts.json", "trials.sqlite", "lock", "workbench.json"
 """The files of an experiment's folder; the workbench writes only the last one."""
@@ -85,14 +84,7 @@ class ExperimentFolder:
     def table_stamp(self) -> Any:
         """A value that changes whenever the table changes; None if there is none."""
         table = self.table
-        if table is None:
-            return None
-        found: list[Any] = []
-        for each in (table, table.with_name(f"{table.name}-wal")):
-            with suppress(OSError):
-                now = each.stat()
-                found.append((now.st_mtime_ns, now.st_size, now.st_ino))
-        return found
+        return None if table is None else file_stamp(table, table.with_name(f"{table.name}-wal"))
 
     @property
     def report_made(self) -> float | None:
@@ -142,13 +134,8 @@ class ExperimentFolder:
     def note(self, **changes: Any) -> None:
         """Changes notes; does nothing if the folder is gone or cannot be written, because they are not needed to run an experiment."""
         notes = msgspec.structs.replace(self.notes, **changes)
-        part = self.path / f".{NOTES}.{secrets.token_hex(4)}"
         with suppress(OSError):
-            try:
-                part.write_bytes(msgspec.json.encode(notes))
-                part.replace(self.path / NOTES)
-            finally:
-                part.unlink(missing_ok=True)
+            replace_file(self.path / NOTES, msgspec.json.encode(notes))
 
     @property
     def made_here(self) -> bool:
@@ -172,7 +159,7 @@ class ExperimentFolder:
     def _read(self, name: str) -> bytes:
         path = self.path / name
         if not is_plain(path) or path.stat().st_size > LARGEST:
-            raise ValueError(f"{name} is no file, or too large")
+            raise ValueError(f"{name} is not a file, or is too large")
         return path.read_bytes()
 
 

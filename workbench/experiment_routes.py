@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import asdict
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request
@@ -10,14 +11,12 @@ from fastapi.responses import Response
 from pydantic import Field, TypeAdapter, ValidationError
 
 from actr3d.values import escape_surrogates, to_json
-from workbench.design_files import described
+from workbench.design_files import Checking, Level, Starting, Workers, designs_of
 from workbench.experiment_command import ExperimentRunError
 from workbench.experiment_folder import PAGE, REPORT_FILES
 from workbench.experiments import Experiments
-from workbench.open_file import OpenFile, gone
-from workbench.page_commands import PageMessage
+from workbench.open_file import OpenFile, while_wanted
 from workbench.protocol import problem_of
-from workbench.readers import while_wanted
 from workbench.recording_routes import Trusting
 from workbench.routes import Id, sessions_of
 
@@ -31,45 +30,14 @@ REPORT_POLICY = (
 )
 """What a report may do: show itself, and keep its files, for which it has the page's origin and cookie; its code does not run."""
 
-Identifier = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
-Whole = Annotated[int, Field(ge=-(2**63), lt=2**63)]
-Level = bool | Whole | Annotated[float, Field(allow_inf_nan=False)] | Annotated[str, Field(max_length=1_000)] | None
 Column = Annotated[str, Query(min_length=1, max_length=200)]
-Count = Annotated[int, Field(ge=1, le=1_000_000)]
 WHERE: TypeAdapter[dict[str, Level]] = TypeAdapter(Annotated[dict[str, Level], Field(max_length=10)])
-
-
-class WantedDesign(PageMessage):
-    """A design, with what replaces some of it."""
-
-    design: Annotated[str, Field(min_length=1, max_length=500)]
-    """The name of one of the library's, or `FILE:NAME`."""
-    values: dict[Identifier, Level | Annotated[list[Level], Field(max_length=200)]] = Field(default_factory=dict, max_length=100)
-    """New levels of factors, or values of other parameters."""
-    participants: Count | None = None
-    """The number of participants of each group; null for that of the design."""
-    trials: Count | None = None
-    """The number of trials of each combination of levels; null for that of the design."""
-
-
-class Checking(WantedDesign):
-    """A design to check."""
-
-    trial: bool = False
-    """Whether a trial is run as well, which finds out how long it takes."""
-
-
-class Starting(WantedDesign):
-    """A design to run."""
-
-    workers: Annotated[int, Field(ge=1, le=256)] | None = None
-    """The number of processes that run trials; null for one on each processor."""
 
 
 class Continuing(Trusting):
     """How an experiment is continued."""
 
-    workers: Annotated[int, Field(ge=1, le=256)] | None = None
+    workers: Workers | None = None
     """The number of processes that run trials; null for one on each processor."""
 
 
@@ -90,14 +58,14 @@ def experiments_of(request: Request) -> Experiments:
 @router.get("/designs")
 def designs(request: Request) -> dict[str, Any]:
     """Lists the designs of the library and of the model files, without executing them; `processors` is how many this computer has."""
-    return {"designs": described(sessions_of(request).folder), "processors": os.cpu_count() or 1}
+    return {"designs": [asdict(outline) for outline in designs_of(sessions_of(request).folder)], "processors": os.cpu_count() or 1}
 
 
 @router.post("/designs/check")
 async def check_design(request: Request, body: Checking) -> Response:
     """Checks a design and returns its facts; with `trial`, also `seconds_a_trial`, which takes longer. 422 if it is not valid."""
-    work = experiments_of(request).check(body.design, body.values, body.participants, body.trials, trial=body.trial)
-    return _json(await while_wanted(work, lambda: gone(request.receive)))
+    work = experiments_of(request).check(body)
+    return _json(await while_wanted(work, request.receive))
 
 
 # -- experiments
@@ -112,7 +80,7 @@ async def experiments(request: Request) -> Response:
 @router.post("/experiments", status_code=201)
 async def start_experiment(request: Request, body: Starting) -> Response:
     """Starts an experiment, and returns its `id` once its design has been checked; 422 if it is not valid."""
-    name = await experiments_of(request).start(body.design, body.values, body.participants, body.trials, body.workers)
+    name = await experiments_of(request).start(body)
     return _json(await experiments_of(request).one(name), 201)
 
 
@@ -195,15 +163,13 @@ async def means(
 async def record_trial(request: Request, experiment: Id, body: TrialWanted) -> dict[str, Any]:
     """Runs a trial again, records it, and returns the name of the recording; 403 as for `resume`."""
     work = experiments_of(request).record(experiment, body.number, trust=body.trust)
-    return {"recording": await while_wanted(work, lambda: gone(request.receive))}
+    return {"recording": await while_wanted(work, request.receive)}
 
 
 @router.post("/experiments/{experiment}/report")
 async def make_report(request: Request, experiment: Id, body: Trusting | None = None) -> dict[str, Any]:
     """Makes the report of an experiment with `actr3d report`; 409 if that fails; 403 as for `resume`."""
-    await while_wanted(
-        experiments_of(request).make_report(experiment, trust=body is not None and body.trust), lambda: gone(request.receive)
-    )
+    await while_wanted(experiments_of(request).make_report(experiment, trust=body is not None and body.trust), request.receive)
     return {"report": experiment}
 
 
@@ -235,7 +201,7 @@ async def _made(request: Request, form: str, name: str, empty: dict[str, Any], *
     if table is None:
         return _json(empty)
     work = experiments.readers.make(form, table, **options)
-    return OpenFile(await while_wanted(work, lambda: gone(request.receive)), "application/json")
+    return OpenFile(await while_wanted(work, request.receive), "application/json")
 
 
 def _where(text: str) -> dict[str, Any]:

@@ -5,20 +5,26 @@ from __future__ import annotations
 import asyncio
 import json
 import re
-import secrets
 import time
 from collections import OrderedDict, deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 from actr3d.errors import Actr3dError
-from workbench.design_files import design_argument, stamp_of
-from workbench.experiment_command import ExperimentCommand, ExperimentRunError
+from workbench.design_files import Checking, Starting, design_argument, stamp_of
+from workbench.experiment_command import (
+    AnyExperimentEvent,
+    ExperimentCommand,
+    ExperimentEvent,
+    ExperimentFacts,
+    ExperimentProgress,
+    ExperimentRunError,
+    TriedFacts,
+)
 from workbench.experiment_folder import ExperimentFolder, as_values
-from workbench.experiment_messages import AnyExperimentEvent, ExperimentEvent, ExperimentFacts, ExperimentProgress, TriedFacts
-from workbench.files import OWN
+from workbench.files import OWN, move_to_trash
 from workbench.retention import begun, stamp
 from workbench.sessions import Sessions, UntrustedError
 
@@ -210,29 +216,20 @@ class Experiments:
 
     # -- checking
 
-    async def check(
-        self, design: str, values: Mapping[str, Any], participants: int | None, trials: int | None, *, trial: bool
-    ) -> dict[str, Any]:
+    async def check(self, wanted: Checking) -> dict[str, Any]:
         """Checks a design, and returns its facts.
-
-        Args:
-            design: The design.
-            values: Values that replace those of the design.
-            participants: The number of participants of each group; None for that of the design.
-            trials: The number of trials of each combination of levels; None for that of the design.
-            trial: Whether a trial is run as well, which finds out how long it takes.
 
         Raises:
             Actr3dError: If there is no such design.
             RefusedDesignError: If the design is not valid.
             OSError: If no process can be started.
         """
-        argument = design_argument(self._models, design)
-        arguments = ["experiment", argument, "--check", "--json", *_options(values, participants, trials)]
-        key = json.dumps([arguments, trial, stamp_of(self._models, design)])
+        argument = design_argument(self._models, wanted.design)
+        arguments = ["experiment", argument, "--check", "--json", *wanted.options()]
+        key = json.dumps([arguments, wanted.trial, stamp_of(self._models, wanted.design)])
         if key not in self._checked:
             async with self._turns:
-                kind, patience = (TriedFacts, WORK_TIME) if trial else (ExperimentFacts, START_TIME)
+                kind, patience = (TriedFacts, WORK_TIME) if wanted.trial else (ExperimentFacts, START_TIME)
                 self._checked[key] = await self._first(arguments, kind, patience)
         self._checked.move_to_end(key)
         while len(self._checked) > KEPT:
@@ -260,15 +257,8 @@ class Experiments:
 
     # -- running
 
-    async def start(self, design: str, values: Mapping[str, Any], participants: int | None, trials: int | None, workers: int | None) -> str:
+    async def start(self, wanted: Starting) -> str:
         """Starts a new experiment; returns its name once its design has been checked and its folder made.
-
-        Args:
-            design: The design.
-            values: Values that replace those of the design.
-            participants: The number of participants of each group; None for that of the design.
-            trials: The number of trials of each combination of levels; None for that of the design.
-            workers: The number of processes that run trials; None for one on each processor.
 
         Raises:
             Actr3dError: If there is no such design.
@@ -276,10 +266,10 @@ class Experiments:
             ExperimentRunError: If too many experiments run.
             OSError: If no process can be started.
         """
-        argument = design_argument(self._models, design)
+        argument = design_argument(self._models, wanted.design)
         name = f"{re.sub(r'[^A-Za-z0-9_]', '_', argument.rpartition(':')[2])[:60]}-{stamp()}"
-        arguments = ["experiment", argument, "--json", "--out", str(self._made_root() / name), *_options(values, participants, trials)]
-        await self._begin(name, [*arguments, *_workers(workers)], new=True)
+        arguments = ["experiment", argument, "--json", "--out", str(self._made_root() / name), *wanted.options()]
+        await self._begin(name, [*arguments, *_workers(wanted.workers)], new=True)
         return name
 
     async def resume(self, name: str, workers: int | None, *, trust: bool) -> None:
@@ -452,11 +442,7 @@ class Experiments:
         folder = self.folder(name)
         if name in self._running or folder.is_locked:
             raise ExperimentRunError("this experiment runs: stop it, then delete it")
-        trash = self._models.root / OWN / "trash" / time.strftime("%Y%m%d-%H%M%S")
-        trash.mkdir(parents=True, exist_ok=True)
-        target = trash / f"{secrets.token_hex(2)}-{name}"
-        folder.path.rename(target)
-        return target.relative_to(self._models.root).as_posix()
+        return move_to_trash(self._models.root, folder.path)
 
     def _trusted(self, name: str, *, trust: bool) -> ExperimentFolder:
         """Returns the folder of an experiment whose code may be run.
@@ -485,16 +471,6 @@ _NOTHING: dict[str, Any] = {"done": 0, "failures": 0, "problem": None}
 def _end_late(run: RunningExperiment) -> None:
     if run.task is not None:
         run.task.cancel()
-
-
-def _options(values: Mapping[str, Any], participants: int | None, trials: int | None) -> list[str]:
-    counts = [f"--{name}={count}" for name, count in (("participants", participants), ("trials", trials)) if count is not None]
-    return counts + [f"--set={name}={_literal(value)}" for name, value in values.items()]
-
-
-def _literal(value: Any) -> str:
-    """Returns a value as the command reads it: as a literal of Python, in ASCII."""
-    return ascii(list(cast("Sequence[Any]", value)) if isinstance(value, (list, tuple)) else value)
 
 
 def _workers(number: int | None) -> list[str]:

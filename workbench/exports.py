@@ -1,4 +1,4 @@
-"""Creates files from recordings: each kind of file has one function that writes it. These functions run in workers, never in the server.
+"""The files that are made from recordings, each by one function. They run in workers, never in the server.
 
 A recording may come from anybody. Reading it or loading its compiled scene may take too long, use too much memory or crash, which
 must not harm the server.
@@ -7,7 +7,7 @@ must not harm the server.
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -17,24 +17,15 @@ from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.recording.opening import opened
 from actr3d.values import to_json
-
-Maker = Callable[..., None]
-"""Called with the path of each recording, the path of the new file, and options by name."""
-EXPORTS: dict[str, Maker] = {}
-"""The functions by the kinds of files that they write."""
-
-
-def export(kind: str) -> Callable[[Maker], Maker]:
-    """Registers a function that writes files of a kind."""
-
-    def add(maker: Maker) -> Maker:
-        EXPORTS[kind] = maker
-        return maker
-
-    return add
+from actr3d.world.compiled import from_text, loaded
+from workbench.csv_files import write_events_csv, write_states_csv
+from workbench.curves import NOTHING, CurveReader, stretch, stride
+from workbench.experiment_table import Table, counts
+from workbench.html_replay.make import write_replay
+from workbench.recorded_start import beginning_of, written
+from workbench.recording_diff import compare
 
 
-@export("sqlite")
 def copy(path: Path, to: Path) -> None:
     """Copies a recording that may still be written, page by page including any damage, without blocking the run that writes it.
 
@@ -51,54 +42,19 @@ def copy(path: Path, to: Path) -> None:
         raise RecordingError(f"the recording cannot be copied: {reason}") from None
 
 
-@export("events.csv")
-def events_csv(path: Path, to: Path) -> None:
-    """Writes a recording's events as CSV."""
-    from workbench.csv_files import write_events_csv
-
-    write_events_csv(path, to)
-
-
-@export("states.csv")
-def states_csv(path: Path, to: Path) -> None:
-    """Writes a recording's states as CSV."""
-    from workbench.csv_files import write_states_csv
-
-    write_states_csv(path, to)
-
-
-@export("replay.html")
-def replay_html(path: Path, to: Path) -> None:
-    """Writes one HTML file that plays a recording's scene beside its trace."""
-    from workbench.html_replay.make import write_replay
-
-    write_replay(path, to)
-
-
-@export("curves")
-def curves(path: Path, to: Path, *, names: Sequence[str] | None, first: float, most: int, last: float | None) -> None:
-    """Writes the curves of a recorded run over time as JSON, even if the run is still going on; see `protocol.Curves`.
+def curves_of(path: Path, *, names: Sequence[str] | None, first: float, most: int, last: float | None = None) -> dict[str, Any]:
+    """Returns the curves of a recorded run over time, even if the run is still going on; see `workbench.page_commands.bodies.Curves`.
 
     Args:
         path: The recording.
-        to: The new file.
         names: Which curves; None for all.
         first: The start of the interval [s].
         most: Maximum number of times, evenly spaced; the last moment is included.
         last: The end of the interval [s]; None for the end of the recording.
-    """
-    to.write_text(to_json(curves_of(path, names, first, most, last)), encoding="utf-8")
-
-
-def curves_of(path: Path, names: Sequence[str] | None, first: float, most: int, last: float | None = None) -> dict[str, Any]:
-    """Returns the curves of a recorded run over time; see `curves`.
 
     Raises:
         RecordingError: If the recording cannot be read.
     """
-    from actr3d.world.compiled import from_text, loaded
-    from workbench.curves import NOTHING, CurveReader, stretch, stride
-
     with Recorded(path) as recorded:
         facts = recorded.facts
         if "compiled" not in facts:
@@ -112,44 +68,36 @@ def curves_of(path: Path, names: Sequence[str] | None, first: float, most: int, 
         return CurveReader(loaded(from_text(facts["compiled"])), facts["world"]).sampled(moments, names)
 
 
-@export("comparison")
-def comparison(first: Path, second: Path, to: Path, *, kinds: Collection[str]) -> None:
-    """Writes the differences of two recordings as JSON; see `compare`."""
-    from workbench.recording_diff import compare
+def _from_table(what: Callable[..., Any]) -> Callable[..., Any]:
+    """Returns a function of the path of a table of trials, and of the options of a method of `Table`."""
 
-    to.write_text(to_json(compare(first, second, kinds)), encoding="utf-8")
+    def read(path: Path, **options: Any) -> Any:
+        with closing(Table(path)) as table:
+            return what(table, **options)
 
-
-@export("beginning")
-def beginning(path: Path, to: Path) -> None:
-    """Writes what a recorded run began with and the commands of users, as JSON; see `Beginning`."""
-    from workbench.recorded_start import beginning_of, written
-
-    to.write_text(written(beginning_of(path)), encoding="utf-8")
+    return read
 
 
-@export("trial counts")
-def trial_counts(*paths: Path) -> None:
-    """Writes the numbers of finished and of failed trials of experiments as JSON; the last path is that of the new file."""
-    from workbench.experiment_table import counts
+def _write(make: Callable[..., Any], as_text: Callable[[Any], str] = to_json) -> Callable[..., None]:
+    """Returns a function that writes what `make` returns to a file, whose path is its last argument; by default as JSON."""
 
-    *tables, to = paths
-    to.write_text(to_json(counts(*tables)), encoding="utf-8")
+    def write(*paths: Path, **options: Any) -> None:
+        *sources, to = paths
+        to.write_text(as_text(make(*sources, **options)), encoding="utf-8")
 
-
-@export("trial rows")
-def trial_rows(path: Path, to: Path, **options: Any) -> None:
-    """Writes rows of an experiment as JSON; the options are those of `Table.rows`."""
-    from workbench.experiment_table import Table
-
-    with closing(Table(path)) as table:
-        to.write_text(to_json(table.rows(**options)), encoding="utf-8")
+    return write
 
 
-@export("trial means")
-def trial_means(path: Path, to: Path, **options: Any) -> None:
-    """Writes the means of a measure of an experiment as JSON; the options are those of `Table.means`."""
-    from workbench.experiment_table import Table
-
-    with closing(Table(path)) as table:
-        to.write_text(to_json(table.means(**options)), encoding="utf-8")
+EXPORTS: dict[str, Callable[..., None]] = {
+    "sqlite": copy,
+    "events.csv": write_events_csv,
+    "states.csv": write_states_csv,
+    "replay.html": write_replay,
+    "curves": _write(curves_of),
+    "comparison": _write(compare),
+    "beginning": _write(beginning_of, written),
+    "trial counts": _write(lambda *tables: counts(*tables)),
+    "trial rows": _write(_from_table(Table.rows)),
+    "trial means": _write(_from_table(Table.means)),
+}
+"""By the kind of file, the function that writes it: called with the paths of recordings or tables, that of the new file, and options."""

@@ -76,7 +76,7 @@ class ModelFolder:
     def _walk(self, folder: Path) -> Iterator[Path]:
         try:
             inside = sorted(folder.iterdir()) if folder.is_dir() else []
-        except OSError:  # not readable, or deleted in the meantime: the other folders are listed all the same
+        except OSError:  # not readable, or deleted in the meantime: the other folders are still listed
             return
         for path in inside:
             if path.name[0] in "._":
@@ -94,11 +94,11 @@ class ModelFolder:
         """
         parts = path.split("/")
         if not path or "\0" in path or "\\" in path or len(path.encode("utf-8", "replace")) > 400:
-            raise FileError("that is not a name for a model file")
+            raise FileError("the path of a model file: must be a path with slashes, of at most 400 bytes")
         if any(part in ("", ".", "..") or part[0] == "." or len(part.encode("utf-8", "replace")) > 200 for part in parts):
-            raise FileError("a model file lies inside the models folder, and no part of its path is hidden")
+            raise FileError("the path of a model file: must lie inside the models folder, without hidden parts")
         if not path.endswith(".py") or any(unicodedata.category(c)[0] == "C" for c in path) or ":" in path:
-            raise FileError("a model file's name ends in .py, and has no special characters")
+            raise FileError("the path of a model file: must end in .py, without control characters and colons")
         where = self.root.joinpath(*parts)
         try:
             inside = where.resolve().is_relative_to(self.root)
@@ -142,7 +142,7 @@ class ModelFolder:
         where = self.locate(path)
         data = _encoded(text, self._line_end(where))
         if len(data) > LARGEST:
-            raise FileError(f"a model file has no more than {LARGEST:,} bytes")
+            raise FileError(f"the size of a model file: must be <= {LARGEST:,} bytes (got {len(data):,})")
         now = self.version(where) if where.is_file() else None
         if now != version:
             reason = (
@@ -153,7 +153,7 @@ class ModelFolder:
             if where.exists() and not _writable(where):
                 raise FileError(f"cannot write '{path}': it is read-only")
             where.parent.mkdir(parents=True, exist_ok=True)
-            self._write(where, data)
+            replace_file(where.resolve(), data)  # a link inside the folder stays a link
         except OSError as error:
             raise FileError(f"cannot write '{path}': {error.strerror}") from None
         return ModelFile(path=path, text=text, version=self.version(where))
@@ -163,21 +163,6 @@ class ModelFolder:
         with contextlib.suppress(OSError), where.open("rb") as file:
             return "\r\n" if file.readline(LARGEST).endswith(b"\r\n") else "\n"
         return "\n"
-
-    def _write(self, where: Path, data: bytes) -> None:
-        """Writes a file atomically: completely or not at all."""
-        target = where.resolve()  # a link inside the folder stays a link
-        beside = target.with_name(f".{secrets.token_hex(8)}.tmp")
-        try:
-            with beside.open("xb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-            if target.exists():
-                beside.chmod(target.stat().st_mode)
-            beside.replace(target)
-        finally:
-            beside.unlink(missing_ok=True)
 
     def copy(self, path: str, to: str) -> ModelFile:
         """Writes a copy of a model file under another name.
@@ -211,23 +196,52 @@ class ModelFolder:
             FileError: If the file does not exist or cannot be moved.
         """
         where = self._existing(path)
-        trash = self.root / OWN / "trash" / time.strftime("%Y%m%d-%H%M%S")
-        target = trash / f"{secrets.token_hex(2)}-{where.name}"
         try:
-            trash.mkdir(parents=True, exist_ok=True)
-            where.rename(target)
+            trash = move_to_trash(self.root, where)
         except OSError as error:
             raise FileError(f"cannot delete '{path}': {error.strerror}") from None
         with contextlib.suppress(OSError):
             if where.parent != self.root:
                 where.parent.rmdir()  # succeeds only if the folder is empty
-        return target.relative_to(self.root).as_posix()
+        return trash
 
     def _existing(self, path: str) -> Path:
         where = self.locate(path)
         if not where.is_file():
             raise NoSuchFileError(f"there is no '{path}'")
         return where
+
+
+def file_stamp(*paths: Path) -> tuple[int, ...]:
+    """Returns numbers that change whenever one of some files changes; the last one is the size of the last file that exists."""
+    numbers: list[int] = []
+    for path in paths:
+        with contextlib.suppress(OSError):
+            now = path.stat()
+            numbers += now.st_ino, now.st_mtime_ns, now.st_size
+    return tuple(numbers)
+
+
+def replace_file(target: Path, data: bytes) -> None:
+    """Writes a file atomically: completely or not at all."""
+    beside = target.with_name(f".{secrets.token_hex(8)}.tmp")
+    try:
+        with beside.open("xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        if target.exists():
+            beside.chmod(target.stat().st_mode)
+        beside.replace(target)
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+def move_to_trash(root: Path, path: Path) -> str:
+    """Moves a file or folder to the trash folder of a models folder; returns its new path inside the models folder."""
+    trash = root / OWN / "trash" / time.strftime("%Y%m%d-%H%M%S")
+    trash.mkdir(parents=True, exist_ok=True)
+    return path.rename(trash / f"{secrets.token_hex(2)}-{path.name}").relative_to(root).as_posix()
 
 
 def _writable(where: Path) -> bool:

@@ -11,7 +11,7 @@ from actr3d.errors import Actr3dError
 from workbench.client_feed import MOST_NOTICES
 from workbench.worker.messages import FromWorker, Notice, Reply, Share, Start
 from workbench.worker.workers import Worker, Workers
-from workbench.worker_monitor import WorkerMonitor, subject_of
+from workbench.worker_monitor import Receiver, WorkerMonitor, subject_of
 
 PATIENCE = 120.0
 """Maximum time without progress before a worker is ended [s]."""
@@ -25,7 +25,7 @@ class StuckError(Actr3dError):
     status = 409
 
 
-class Job:
+class Job(Receiver):
     """Tracks the progress and the result of one job."""
 
     def __init__(self) -> None:
@@ -69,7 +69,6 @@ class Job:
         return errors[-1] if errors else self.ending or f"{self.subject} has ended"
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
-        """Processes a message of the worker."""
         if isinstance(message, Share):
             self.share = message.done
         elif isinstance(message, Reply):
@@ -101,8 +100,7 @@ class Job:
             worker.kill()
 
     def busy(self, worker: Worker) -> bool:
-        """Returns False: no user watches a job, so silence is not reported."""
-        return False
+        return False  # no user watches a job, so silence is not reported
 
 
 @asynccontextmanager

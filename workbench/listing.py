@@ -9,6 +9,7 @@ from pathlib import Path
 
 import msgspec
 
+from workbench.files import file_stamp
 from workbench.jobs import Job, doing
 from workbench.readers import MEMORY
 from workbench.recording_index import Summary, unreadable
@@ -23,6 +24,7 @@ LONGEST = 10.0
 MOST_READERS = 4
 """Maximum number of workers that read summaries at the same time."""
 _Stamp = tuple[int, ...]
+"""See `file_stamp`; during a run, new data are in the -wal file beside a recording."""
 
 
 class Listing:
@@ -73,7 +75,7 @@ class Listing:
         return summary
 
     async def _of(self, paths: Sequence[Path]) -> list[tuple[Path, Summary]]:
-        stamps = await asyncio.to_thread(lambda: {path: _stamp(path) for path in paths})
+        stamps = await asyncio.to_thread(lambda: {path: file_stamp(path, path.with_name(f"{path.name}-wal")) for path in paths})
         there: dict[Path, Summary] = {}
         fresh: list[Path] = []
         for path, stamp in stamps.items():
@@ -158,15 +160,3 @@ class _Reading(Job):
             with suppress(TimeoutError):
                 await asyncio.wait_for(self.over.wait(), LONGEST)
                 self.over_by_itself = True
-
-
-def _stamp(path: Path) -> _Stamp:
-    """Returns numbers that change when the file changes; during a run, new data is in the -wal file beside it."""
-    numbers: list[int] = []
-    for each in (path, path.with_name(f"{path.name}-wal")):
-        try:
-            status = each.lstat()
-        except OSError:
-            continue
-        numbers += status.st_ino, status.st_mtime_ns, status.st_size
-    return tuple(numbers)

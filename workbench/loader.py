@@ -7,14 +7,17 @@ import re
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
 
 from actr3d.actr.kernel.source_code import syntax_tree
-from actr3d.actr.loading.source_text import compile_source
+from actr3d.actr.loading.source_text import compile_source, read_source
 from actr3d.actr.loading.sweep import parameters as first_lines
 from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
 from actr3d.parameter_schema import Parameter, default_of, parameters_in
 from actr3d.runner.build_check import build_of, has_build, problem_of_build
 from actr3d.values import escape_surrogates
+from workbench.files import LARGEST, MOST_FILES, file_stamp
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,10 +92,34 @@ def listing_of(source: str, filename: str = "model.py") -> ModelListing:
         text=text,
         kind="simulation" if builds else "program",
         parameters=tuple(parameters_in(tree, build_of(tree)) if builds else _of_first_lines(source)),
-        simulates=any(isinstance(node, ast.Call) and _last_name(node.func) == "Simulation" for node in ast.walk(tree)),
+        simulates=any(isinstance(node, ast.Call) and last_name(node.func) == "Simulation" for node in ast.walk(tree)),
         agents=tuple(_agents(tree)),
         problems=problems,
     )
+
+
+@dataclass(frozen=True)
+class Outline:
+    """Holds what a list shows of a model file."""
+
+    title: str = ""
+    kind: str = "program"
+
+
+def outline_of(path: Path) -> Outline:
+    """Returns the outline of a file, which is read again only when it has changed; an empty one if the file cannot be read."""
+    stamp = file_stamp(path)
+    try:
+        return _outline(path, stamp) if stamp and stamp[-1] <= LARGEST else Outline()
+    except (OSError, ModelFileError):
+        return Outline()
+
+
+@lru_cache(maxsize=2 * MOST_FILES)
+def _outline(path: Path, _: tuple[int, ...]) -> Outline:
+    """Reads a file; the stamp changes when the file changes, so that the cache is not used for an old version."""
+    listing = listing_of(read_source(path), path.name)
+    return Outline(listing.title, listing.kind)
 
 
 def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
@@ -128,7 +155,8 @@ def _of_first_lines(source: str) -> Iterator[Parameter]:
             yield Parameter(name=name, takes=takes, **default, optional=value is None, line=node.lineno)
 
 
-def _last_name(node: ast.expr) -> str:
+def last_name(node: ast.expr) -> str:
+    """Returns a name without the names before its last dot; an empty text for any other expression."""
     return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
 
@@ -145,7 +173,7 @@ def _agents(tree: ast.Module) -> Iterator[WrittenAgent]:
 def _parts(kind: ast.ClassDef) -> Iterator[WrittenPart]:
     """Yields the parts that a class body makes: `goal = Buffer()`."""
     for node in kind.body:
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and _last_name(node.value.func):
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and last_name(node.value.func):
             for target in node.targets:
                 if isinstance(target, ast.Name):
-                    yield WrittenPart(name=escape_surrogates(target.id), made_by=escape_surrogates(_last_name(node.value.func)))
+                    yield WrittenPart(name=escape_surrogates(target.id), made_by=escape_surrogates(last_name(node.value.func)))

@@ -1,17 +1,29 @@
-"""Sends a file that is already open: the response is complete even if the file is renamed or deleted in the meantime."""
+"""Sends a file that is already open, complete even if it is renamed or deleted meanwhile; and ends work whose client has disconnected."""
 
 from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Mapping
+from collections.abc import Coroutine, Mapping
+from contextlib import suppress
 from io import FileIO
+from typing import Any, TypeVar
 
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
+from actr3d.errors import Actr3dError
+
+T = TypeVar("T")
+
 PART = 256 * 1024
 """How much is read and sent at a time [bytes]."""
+
+
+class DisconnectedError(Actr3dError):
+    """The client of a request has disconnected."""
+
+    status = 409
 
 
 class OpenFile(Response):
@@ -34,15 +46,10 @@ class OpenFile(Response):
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Sends the response."""
-        sending, leaving = asyncio.ensure_future(self._send(send)), asyncio.ensure_future(gone(receive))
         try:
-            await asyncio.wait([sending, leaving], return_when=asyncio.FIRST_COMPLETED)
-            if sending.done():
-                sending.result()
+            with suppress(DisconnectedError):
+                await while_wanted(self._send(send), receive)
         finally:
-            sending.cancel()
-            leaving.cancel()
-            await asyncio.gather(sending, leaving, return_exceptions=True)
             self._file.close()
 
     async def _send(self, send: Send) -> None:
@@ -63,7 +70,29 @@ class OpenFile(Response):
         await send({"type": "http.response.body", "body": b"", "more_body": False})
 
 
-async def gone(receive: Receive) -> None:
+async def while_wanted(work: Coroutine[Any, Any, T], receive: Receive) -> T:
+    """Returns the result of some work, which is cancelled when the client of a request disconnects.
+
+    Args:
+        work: The work.
+        receive: Receives messages of the request.
+
+    Raises:
+        DisconnectedError: If the client has disconnected.
+    """
+    working, leaving = asyncio.create_task(work), asyncio.create_task(_gone(receive))
+    try:
+        await asyncio.wait([working, leaving], return_when=asyncio.FIRST_COMPLETED)
+        if working.done():
+            return working.result()
+        raise DisconnectedError("nobody waits for it any more")
+    finally:
+        working.cancel()
+        leaving.cancel()
+        await asyncio.gather(working, leaving, return_exceptions=True)
+
+
+async def _gone(receive: Receive) -> None:
     """Waits until the client of a request has disconnected."""
     while (await receive())["type"] != "http.disconnect":
         pass

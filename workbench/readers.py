@@ -1,4 +1,4 @@
-"""Reads recordings in workers: the server itself opens none of them, so that no file can block, fill or crash it."""
+"""Reads recordings and runs them again, in workers: the server itself opens none of them, so that no file can block, fill or crash it."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ import tempfile
 from collections.abc import Awaitable, Callable
 from io import FileIO
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 from weakref import WeakValueDictionary
+
+import msgspec
 
 from actr3d.errors import Actr3dError
 from workbench.jobs import Job, StuckError, doing
@@ -17,13 +19,14 @@ from workbench.recordings import NoSuchRecordingError
 from workbench.worker.messages import Start
 from workbench.worker.workers import Workers
 
-T = TypeVar("T")
 MEMORY = 2_000
 """How much memory reading a recording may take [MB]."""
 MOST = 8
 """Maximum number of files made at once; others wait."""
 MOST_OF_ONE = 2
 """Maximum number of those for one recording, so that a slow one does not delay others."""
+MOST_REPLAYS = 2
+"""Maximum number of recordings run again at once; each takes a processor."""
 
 
 class ReadingError(Actr3dError):
@@ -32,11 +35,17 @@ class ReadingError(Actr3dError):
     status = 409
 
 
+class BusyError(Actr3dError):
+    """Enough recordings are run again already."""
+
+    status = 409
+
+
 class Readers:
     """Reads recordings in workers, which write the results to files.
 
     Args:
-        workers: Who gives workers.
+        workers: The pool that starts workers.
     """
 
     def __init__(self, workers: Workers) -> None:
@@ -45,7 +54,7 @@ class Readers:
         self._turns_of: WeakValueDictionary[Path, asyncio.Semaphore] = WeakValueDictionary()
 
     async def make(self, kind: str, *paths: Path, **options: Any) -> FileIO:
-        """Returns an open file with what was made of recordings; it has no name any more, and is gone when it is closed.
+        """Returns an open file with the result; its name is deleted already, so that the file is deleted when it is closed.
 
         Args:
             kind: The kind of file to make, one of `workbench.exports`.
@@ -53,9 +62,9 @@ class Readers:
             options: The options of that kind of file.
 
         Raises:
-            NoSuchRecordingError: If one of them is gone meanwhile.
+            NoSuchRecordingError: If one of them was deleted in the meantime.
             ReadingError: If it cannot be made.
-            OSError: If no file or worker can be had.
+            OSError: If no file can be created, or no worker started.
         """
         turns = self._turns_of.setdefault(paths[0], asyncio.Semaphore(MOST_OF_ONE))
         async with turns, self._turns:
@@ -90,23 +99,49 @@ def _size(path: str) -> int:
         return 0
 
 
-async def while_wanted(work: Awaitable[T], gone: Callable[[], Awaitable[Any]]) -> T:
-    """Returns the result of some work, which is cancelled when the client disconnects.
+class Reruns:
+    """The recordings that are being run again.
 
     Args:
-        work: The work.
-        gone: Waits until who asked for it has gone.
-
-    Raises:
-        ReadingError: If who asked has gone.
+        workers: The pool that starts workers.
     """
-    working, going = asyncio.ensure_future(work), asyncio.ensure_future(gone())
+
+    def __init__(self, workers: Workers) -> None:
+        self._workers = workers
+        self._going_on: list[tuple[Path, Job]] = []
+
+    def share(self, path: Path) -> float | None:
+        """Returns the share of a recording that has been run again, from 0 to 1; None if it is not being run again."""
+        return max((job.share for other, job in self._going_on if other == path), default=None)
+
+    async def run(self, path: Path, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
+        """Returns whether every byte agrees (None if that is unknown), and the text of the comparison.
+
+        Args:
+            path: The recording.
+            left: Returns whether the client has disconnected; then the replay is ended.
+
+        Raises:
+            BusyError: If enough are run again already.
+            OSError: If no worker can be started.
+        """
+        if len(self._going_on) >= MOST_REPLAYS:
+            raise BusyError(f"{MOST_REPLAYS} recordings are run again already; wait for one of them, or cancel it")
+        job = Job()
+        self._going_on.append((path, job))
+        try:
+            with tempfile.TemporaryDirectory(prefix="actr3d-replay-", ignore_cleanup_errors=True) as folder:  # a model may end its worker
+                async with doing(self._workers, Start(job="replay", path=str(path), to=folder), job):
+                    return await _outcome(job, left)
+        finally:
+            self._going_on.remove((path, job))
+
+
+async def _outcome(job: Job, left: Callable[[], Awaitable[bool]]) -> dict[str, Any]:
     try:
-        await asyncio.wait([working, going], return_when=asyncio.FIRST_COMPLETED)
-        if working.done():
-            return working.result()
-        raise ReadingError("nobody waits for it any more")
-    finally:
-        for task in (working, going):
-            task.cancel()
-        await asyncio.gather(working, going, return_exceptions=True)
+        async for _ in job.stages(lambda: job.share):
+            if not job.over.is_set() and await left():
+                return {"agrees": None, "text": "cancelled"}
+    except StuckError as error:
+        return {"agrees": None, "text": str(error)}
+    return {"agrees": None, "text": f"no verdict: {job.problem}"} if job.result is None else msgspec.json.decode(job.result)

@@ -10,11 +10,14 @@ import msgspec
 
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
+from actr3d.runner.program_changes import of_user
 
 
 class Beginning(msgspec.Struct, frozen=True, kw_only=True):
     """Holds what a recorded run began with."""
 
+    recording: str
+    """The path of the recording."""
     made_here: bool
     """Whether this installation made the recording and nobody has changed it since; only then has its code been run here before."""
     file: str
@@ -24,8 +27,8 @@ class Beginning(msgspec.Struct, frozen=True, kw_only=True):
     parameters: dict[str, Any]
     helpers: dict[str, tuple[str, str]]
     """The file and text of each helper module, by name."""
-    commands: list[tuple[int, dict[str, Any]]]
-    """The commands of users: tick after which each was given, and the command."""
+    commands: list[tuple[int, int, dict[str, Any]]]
+    """The commands of users: the run, the tick after which each was given (for a program: the time [us]), and the command."""
 
 
 def beginning_of(path: Path) -> Beginning:
@@ -40,14 +43,16 @@ def beginning_of(path: Path) -> Beginning:
         file = facts.get("file")
         if not isinstance(file, str) or file not in facts.get("sources", {}):
             raise RecordingError("the recording does not say which model file made it")
+        recorded_commands = list(recorded.commands())
         facts = {
+            "recording": str(path),
             "made_here": recorded.made_here,
             "file": file,
             "source": facts["sources"][file],
             "seed": facts["program_seed"] if "program_seed" in facts else facts["seed"],
             "parameters": facts.get("parameters", {}),
             "helpers": facts.get("helpers", {}),
-            "commands": [(command.tick, command.data) for command in recorded.commands()],
+            "commands": recorded_commands if facts["kind"] == "simulation" else of_user(recorded_commands),
         }
     return msgspec.convert(facts, Beginning)
 

@@ -43,6 +43,8 @@ class Summary:
     """The parameters that differ from the defaults in the model's text."""
     branched: float | None = None
     """For a branch: the time at which the past of its run was changed [s]."""
+    origin: str | None = None
+    """For a branch: the recording that has the other way of its run."""
     ended: str | None = None
     """How the run ended; None if it was broken off, or is still going on."""
     failed: str | None = None
@@ -114,6 +116,7 @@ def _read(recorded: Recorded, size: int) -> Summary:
         parameters=parameters,
         different=_different(parameters, facts.get("sources", {}).get(file, "")),
         branched=facts.get("branched"),
+        origin=facts.get("origin"),
         ended=None if ended is None else str(ended["by"]),
         failed=None if facts.get("failed") is None else str(facts["failed"]),
         result=_result(last),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
 from io import FileIO
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -13,10 +14,11 @@ from fastapi.responses import Response
 from pydantic import Field
 
 from actr3d.values import escape_surrogates, to_json
+from workbench.labels import Label
 from workbench.listing import MOST as MOST_LISTED
-from workbench.open_file import OpenFile, gone
+from workbench.open_file import OpenFile, while_wanted
 from workbench.page_commands import Name, PageMessage
-from workbench.readers import while_wanted
+from workbench.recording_index import Summary
 from workbench.retention import stands_alone
 from workbench.routes import Id, sessions_of
 from workbench.sessions import SessionError, Sessions
@@ -38,6 +40,14 @@ class Naming(PageMessage):
     """A new name for a recording."""
 
     to: Annotated[str, Field(min_length=1, max_length=150)]
+
+
+class Labelling(PageMessage):
+    """What a user writes about a recording."""
+
+    name: Annotated[str, Field(max_length=100)] = ""
+    note: Annotated[str, Field(max_length=2_000)] = ""
+    tags: tuple[Annotated[str, Field(max_length=40)], ...] = Field(default=(), max_length=20)
 
 
 class Trusting(PageMessage):
@@ -74,7 +84,8 @@ async def recordings(
     sessions = sessions_of(request)
     total, found = await sessions.listing.some(first, most)
     writing = sessions.writing()
-    page = {"total": total, "recordings": [{**vars(summary), "session": writing.get(summary.id)} for summary in found]}
+    labels = await asyncio.to_thread(sessions.recordings.labels.all)
+    page = {"total": total, "recordings": [_listed(summary, writing, labels) for summary in found]}
     return Response(await asyncio.to_thread(to_json, page), media_type="application/json")
 
 
@@ -88,7 +99,7 @@ async def recording(request: Request, recording: Id) -> Response:
 async def download(request: Request, recording: Id, form: File = "sqlite") -> Response:
     """Returns a file: the recording itself, its events or states as CSV, or an HTML file that plays its scene beside its trace.
 
-    For a run that is still going on, it contains what has been recorded so far. 409 if there is nothing to return, for example no states.
+    For a run that is still going on, it contains what is recorded by now. 409 if there is nothing to return, for example no states.
     """
     sessions = sessions_of(request)
     path = sessions.recordings.path(recording)
@@ -101,7 +112,7 @@ async def download(request: Request, recording: Id, form: File = "sqlite") -> Re
 
 async def _made(request: Request, kind: str, *paths: Path, **options: Any) -> FileIO:
     """Returns an open file that a worker makes from recordings; the work is cancelled if the client disconnects."""
-    return await while_wanted(sessions_of(request).readers.make(kind, *paths, **options), lambda: gone(request.receive))
+    return await while_wanted(sessions_of(request).readers.make(kind, *paths, **options), request.receive)
 
 
 @router.get("/recordings/{recording}/curves")
@@ -173,6 +184,18 @@ def rename_recording(request: Request, recording: Id, body: Naming) -> dict[str,
     return {"renamed": body.to}
 
 
+@router.post("/recordings/{recording}/label")
+def label_recording(request: Request, recording: Id, body: Labelling) -> dict[str, Any]:
+    """Sets the name, the note and the tags of a recording, even of one that is being written; it is then never deleted automatically."""
+    recordings = sessions_of(request).recordings
+    recordings.path(recording)
+    label = Label(
+        name=body.name.strip(), note=body.note.strip(), tags=tuple(dict.fromkeys(tag.strip() for tag in body.tags if tag.strip()))
+    )
+    recordings.labels.set(recording, label)
+    return {"label": msgspec.structs.asdict(label)}
+
+
 @router.post("/recordings/{recording}/delete")
 def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
     """Deletes a recording; 409 while a run is still writing it."""
@@ -197,4 +220,10 @@ async def compare_recordings(request: Request, body: Pair) -> Response:
 
 async def _recording(sessions: Sessions, name: str) -> dict[str, Any]:
     """Returns the summary of a recording and the session that is writing it."""
-    return {**vars(await sessions.listing.one(name)), "session": sessions.writing().get(name)}
+    labels = await asyncio.to_thread(sessions.recordings.labels.all)
+    return _listed(await sessions.listing.one(name), sessions.writing(), labels)
+
+
+def _listed(summary: Summary, writing: Mapping[str, str], labels: Mapping[str, Label]) -> dict[str, Any]:
+    label = msgspec.structs.asdict(labels.get(summary.id, Label()))
+    return {**vars(summary), "session": writing.get(summary.id), "label": label}

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from io import FileIO
 from pathlib import Path
 
 from actr3d.errors import Actr3dError, RecordingError
 from workbench.files import OWN
+from workbench.labels import Labels
 from workbench.retention import Keeping, begun, erase, stamp, stands_alone, superfluous
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
@@ -33,6 +34,10 @@ class Recordings:
 
     def __init__(self, root: Path) -> None:
         self._folder = root / OWN / "recordings"
+        self.labels = Labels(self._folder)
+        """What users have written about them."""
+        self.spare: Callable[[], Collection[Path]] = tuple
+        """Returns the files of opened recordings whose runs do not differ from them: these are not listed."""
 
     def new(self, model: str) -> Path:
         """Returns a new file path for a run of a model."""
@@ -56,12 +61,16 @@ class Recordings:
         return sorted(self._files(), key=lambda path: (begun(path), path.name), reverse=True)
 
     def _files(self) -> Sequence[Path]:
-        return [path for path in self._folder.glob("*.sqlite") if _NAME.fullmatch(path.stem) and path.is_file() and not path.is_symlink()]
+        spare = self.spare()
+        files = [path for path in self._folder.glob("*.sqlite") if path not in spare]
+        return [path for path in files if _NAME.fullmatch(path.stem) and path.is_file() and not path.is_symlink()]
 
     def tidy(self, keeping: Keeping) -> None:
         """Deletes the oldest recordings that no user has named, if the limits are exceeded."""
-        for path in superfluous(self._files(), keeping):
+        erased = superfluous(self._files(), keeping, self.labels.all().keys())
+        for path in erased:
             erase(path)
+        self.labels.forget(path.stem for path in erased)
 
     def rename(self, name: str, to: str) -> None:
         """Renames a recording; a recording that a user has named is kept until a user deletes it.
@@ -72,12 +81,13 @@ class Recordings:
         """
         path, target = self.path(name), self._folder / f"{to}.sqlite"
         if _NAME.fullmatch(to) is None:
-            raise RecordingError("a recording's name has letters, digits, '_', '.' and '-', and no more than 150 of them")
+            raise RecordingError("the name of a recording: must be 1 to 150 letters, digits, '_', '.' or '-'")
         if not stands_alone(path):
             raise RecordingError("the recording is still being written: stop or restart its run first")
         try:
             os.link(path, target, follow_symlinks=False)  # unlike rename, this never replaces an existing file
             path.unlink()
+            self.labels.move(name, to)
         except FileExistsError:
             raise RecordingError(f"there is a recording '{to}' already") from None
         except FileNotFoundError:
@@ -105,3 +115,4 @@ class Recordings:
             NoSuchRecordingError: If there is no recording of that name.
         """
         erase(self.path(name))
+        self.labels.forget([name])

@@ -5,24 +5,24 @@ from __future__ import annotations
 import re
 import secrets
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-import msgspec
-
 from actr3d.recording.opening import COMPANIONS
-from workbench.client_feed import EventLog
-from workbench.worker.messages import State
+from workbench.labels import Labels
 
 MOST = 500
 """Default maximum number of recordings."""
 MOST_MEGABYTES = 4_000
 """Default maximum size of all recordings [MB]."""
+MOST_BRANCHES = 20
+"""How many of the newest branches of one run are kept; a branch that a user has renamed does not count."""
 _BEGUN = re.compile(r"-(\d{8}-\d{6})-[0-9a-f]{4}")
 _UNNAMED = re.compile(r".*-\d{8}-\d{6}-[0-9a-f]{4}")
 """The form of the name that a run gives its recording; any other name was given by a user."""
+_BRANCH = re.compile(r"(.+)-at-(\d+\.\d+)s-\d{8}-\d{6}-[0-9a-f]{4}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,22 +35,27 @@ class Keeping:
     """Maximum size of all recordings [MB]; 0 for no limit."""
 
 
-def superfluous(files: Sequence[Path], keeping: Keeping) -> list[Path]:
-    """Returns the recordings that exceed the limits: the oldest of those that no user has named.
+def superfluous(files: Sequence[Path], keeping: Keeping, labelled: Collection[str] = ()) -> list[Path]:
+    """Returns the recordings that exceed the limits: the oldest of those that no user has named or labelled.
 
     Args:
         files: All recordings.
         keeping: The limits.
+        labelled: The names of those with a label.
     """
+
+    def is_kept(path: Path) -> bool:
+        return not is_unnamed(path) or path.stem in labelled
+
     newest = sorted(files, key=written, reverse=True)
     number = size = 0
     found: list[Path] = []
-    for path in [path for path in newest if not is_unnamed(path)] + [path for path in newest if is_unnamed(path)]:
+    for path in [path for path in newest if is_kept(path)] + [path for path in newest if not is_kept(path)]:
         own = size_of(path)
         number += 1
         size += own
         much = (keeping.number and number > keeping.number) or (keeping.megabytes and size > keeping.megabytes * 1_000_000)
-        if much and is_unnamed(path):
+        if much and not is_kept(path):
             found.append(path)
             number -= 1
             size -= own
@@ -86,19 +91,6 @@ def is_unnamed(path: Path) -> bool:
     return _UNNAMED.fullmatch(path.stem) is not None
 
 
-def never_begun(state: State | None, log: EventLog) -> bool:
-    """Returns whether a run has never left its start, printed nothing and received no command: its recording is useless.
-
-    Args:
-        state: Its newest state; None if it has not sent any.
-        log: Its events.
-    """
-    if state is None or state.furthest > 0 or state.status != "paused":
-        return False
-    _, events = log.since(0)
-    return not any(msgspec.json.decode(event)[2] in ("output", "command") for event in events)
-
-
 def size_of(path: Path) -> int:
     """Returns the size of a recording with its companion files (as during writing) [bytes]; 0 if it no longer exists."""
     size = 0
@@ -117,3 +109,30 @@ def erase(path: Path) -> None:
     """Deletes a recording and its companion files."""
     for each in (path, *(path.with_name(path.name + end) for end in COMPANIONS)):
         each.unlink(missing_ok=True)
+
+
+# -- branches: copies of a run, kept because a user has changed something in its past
+
+
+def new_branch(recording: Path, moment: float) -> Path:
+    """Returns the file for a new branch of a run.
+
+    Args:
+        recording: The recording of the run.
+        moment: The time at which the past was changed [s].
+    """
+    return recording.with_name(f"{recording.stem}-at-{moment:.3f}s-{stamp()}{recording.suffix}")
+
+
+def branched_at(path: Path) -> float | None:
+    """Returns the time at which the past of a branch's run was changed [s]; None if the file is not a branch."""
+    found = _BRANCH.fullmatch(path.stem)
+    return None if found is None else float(found[2])
+
+
+def superfluous_branches(recording: Path) -> list[Path]:
+    """Returns the oldest branches of a run beyond the number that is kept; those with a label do not count."""
+    labelled = Labels(recording.parent).all()
+    branches = [path for path in recording.parent.glob(f"{recording.stem}-at-*{recording.suffix}") if branched_at(path) is not None]
+    found = [path for path in branches if path.stem not in labelled]
+    return sorted(found, key=written, reverse=True)[MOST_BRANCHES:]

@@ -15,8 +15,7 @@ from pydantic import Field
 from actr3d.values import escape_surrogates
 from workbench.about import about_of
 from workbench.files import ModelFile
-from workbench.loader import listing_of
-from workbench.outlines import outline_of
+from workbench.loader import listing_of, outline_of
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions
@@ -209,7 +208,7 @@ async def command(request: Request, session: Id, body: CommandRequest) -> Respon
 
     409 if it fails; 202 if it is not done yet, for example because the model is busy.
     """
-    work = asyncio.create_task(sessions_of(request).get(session).carry_out(body.command, "API"))
+    work = asyncio.create_task(body.command.submit(sessions_of(request).get(session), "API"))
     done, _ = await asyncio.wait([work], timeout=ANSWER_TIME)
     if not done:
         return Response(

@@ -1,4 +1,4 @@
-"""Describes a run that is to be started: the options it starts with, and the worker that is given to it."""
+"""Describes a run that is to be started: its options, the worker that is given to it, and the texts that it is made from."""
 
 from __future__ import annotations
 
@@ -8,26 +8,14 @@ from typing import Any
 
 from actr3d.actr.kernel.run_limits import fresh_seed
 from actr3d.actr.loading.source_text import read_source
+from actr3d.errors import Actr3dError
 from workbench.files import ModelFolder
-from workbench.source_versions import SourceVersions
-from workbench.worker.messages import Start, digest_of
+from workbench.recorded_start import Beginning
+from workbench.worker.messages import Loaded, Start, digest_of
 from workbench.worker.workers import Worker
 
-
-@dataclass(frozen=True, kw_only=True)
-class RepeatedRun:
-    """Describes an earlier run that is to be repeated."""
-
-    file: str
-    """The path of the model file at that time; it is not read."""
-    source: str
-    """The model's text at that time."""
-    commands: list[tuple[int, dict[str, Any]]]
-    """The commands of users, which are applied again: tick after which each was given, and the command."""
-    recording: Path
-    """The recording of the run."""
-    helpers: dict[str, tuple[str, str]]
-    """Its helper modules, as `actr3d.actr.loading.helper_modules` keeps them."""
+MOST_HELPERS = 100
+"""Maximum number of helper modules that are watched."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +29,7 @@ class RunOptions:
     record: bool = True
     run: bool = False
     """Whether the run starts going at once, instead of paused."""
-    repeated: RepeatedRun | None = None
+    repeated: Beginning | None = None
     """The earlier run to repeat; None for a new run of the current file."""
 
 
@@ -55,7 +43,7 @@ def start_of(path: Path, options: RunOptions, **more: Any) -> Start:
 
     Raises:
         ModelFileError: If the file cannot be read.
-        OSError: If the file has been removed or cannot be read any more.
+        OSError: If the file has been removed or can no longer be read.
     """
     repeated = options.repeated
     if repeated is None:
@@ -63,21 +51,49 @@ def start_of(path: Path, options: RunOptions, **more: Any) -> Start:
     else:
         path = Path(repeated.file)
         more |= {"source": repeated.source, "version": digest_of(repeated.source)}
-        more |= {"commands": repeated.commands, "helpers": repeated.helpers, "recorded": str(repeated.recording)}
+        more |= {"commands": repeated.commands, "helpers": repeated.helpers, "recorded": repeated.recording}
     seed = fresh_seed() if options.seed is None else options.seed
     return Start(path=str(path), folder=str(path.parent), settings=options.settings, seed=seed, run=options.run, **more)
 
 
-@dataclass(eq=False)
 class LaunchedRun:
-    """Holds a run and its worker, from the moment the run is started."""
+    """Holds a run and its worker, from the moment the run is started, and the versions of the texts that it is made from.
 
-    start: Start
-    worker: Worker
-    versions: SourceVersions = field(init=False)
-    """The versions of the texts that the run is made of."""
-    over: bool = False
-    """Whether the worker has ended."""
+    Args:
+        start: What the run began with. Its helper modules, if any, are those of the earlier run that it repeats.
+        worker: Its worker.
+    """
 
-    def __post_init__(self) -> None:
-        self.versions = SourceVersions(self.start)
+    def __init__(self, start: Start, worker: Worker) -> None:
+        self.start = start
+        self.worker = worker
+        self.over = False
+        """Whether the worker has ended."""
+        self._helpers: dict[Path, str] = {}
+        for file, text in list(start.helpers.values())[:MOST_HELPERS]:
+            self._helpers[(Path(start.folder) / file).resolve()] = digest_of(text)
+
+    def add_helper(self, loaded: Loaded) -> None:
+        """Records a helper module that the run has loaded."""
+        path = Path(loaded.file).resolve()
+        if path in self._helpers or len(self._helpers) < MOST_HELPERS:
+            self._helpers[path] = loaded.digest
+
+    def has_helper(self, path: Path) -> bool:
+        """Returns whether a file is one of the helper modules."""
+        return path.resolve() in self._helpers
+
+    def is_stale(self, path: Path) -> bool:
+        """Returns whether any of the files has changed.
+
+        Args:
+            path: The current path of the model.
+        """
+        try:
+            # Reading something other than a regular file may never end.
+            if not all(each.is_file() for each in (path, *self._helpers)):
+                return True
+            is_other = read_source(path) != self.start.source
+            return is_other or any(digest_of(read_source(each)) != then for each, then in self._helpers.items())
+        except (Actr3dError, OSError):
+            return True

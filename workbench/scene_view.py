@@ -16,10 +16,9 @@ from mujoco import MjData, MjModel
 from actr3d.world.compiled import loaded
 from workbench.backdrop import Outlines, Shades, lay_grounds, light
 from workbench.curves import INTEGRATION
-from workbench.overlays import OVERLAYS, Drawn, Overlay
+from workbench.overlays import OVERLAYS, Drawn, Overlay, ViewSettings
 from workbench.overlays.frustum import Frustum
 from workbench.scene_framing import SceneFraming
-from workbench.view_settings import ViewSettings
 from workbench.viser_panel import Panel
 from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, Moments, header_of, send_scene_data, start_viser
 from workbench.worker.messages import Facts, State
@@ -151,7 +150,7 @@ class SceneView:
         """Sends a command from the panel or an overlay to the session, which runs in another thread."""
 
         def notify() -> None:
-            self._session.run_task(self._session.carry_out(command, "3D view"))
+            self._session.run_task(command.submit(self._session, "3D view"))
 
         self._loop.call_soon_threadsafe(notify)
 

@@ -7,37 +7,25 @@ import time
 from collections import deque
 from collections.abc import Callable, Coroutine
 from pathlib import Path
-from typing import Any, ClassVar, Protocol
+from typing import Any
 
 import msgspec
 
-from actr3d.errors import Actr3dError
-from workbench.client_feed import MOST_NOTICES, EventLog, Feed, Raw
+from workbench.client_feed import MOST_NOTICES, Broadcast, Feed, Raw
+from workbench.event_log import EventLog
+from workbench.overlays import ViewSettings
 from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
-from workbench.retention import erase, never_begun
+from workbench.retention import erase
 from workbench.run_request import LaunchedRun, RunOptions, start_of
-from workbench.view_settings import ViewSettings
 from workbench.worker.messages import At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
-from workbench.worker_monitor import WorkerMonitor
-
-
-class Command(Protocol):
-    """A page command, as a session sees it; `PageCommand` itself imports this module."""
-
-    takes_control: ClassVar[bool]
-    of_shown_run: ClassVar[bool]
-
-    async def serve(self, session: Any) -> Reply:
-        """Does in the server what the command is for."""
-        ...
-
+from workbench.worker_monitor import Receiver, WorkerMonitor
 
 Watcher = Callable[[Facts | State | ViewSettings | None], None]
 
 
-class Session:
+class Session(Broadcast, Receiver):
     """Runs one model, as often as users ask, and reports to all who watch it.
 
     Args:
@@ -49,19 +37,12 @@ class Session:
     """
 
     def __init__(self, name: str, path: Path, workers: Workers, recording: Callable[[str], Path], shown_path: str) -> None:
-        self.name = name
+        super().__init__(name)
         self.path = path
         self.model = shown_path
-        self.feeds: list[Feed] = []
         self.watchers: list[Watcher] = []
         """Called with the facts of each new run, each state, each change of the view settings, and None at the end."""
         self.look = ViewSettings()
-        self.run: int = 0
-        self.epoch: int = 0
-        self.state_version: int = 0
-        self.facts_version: int = 0
-        self.log = EventLog()
-        self.notices: deque[tuple[int, bytes]] = deque(maxlen=MOST_NOTICES)
         self.state: State | None = None
         self.facts: Facts | None = None
         self.breakpoints: tuple[str, ...] = ()
@@ -133,12 +114,12 @@ class Session:
             self._attempt = start.attempt
             # Without a process ready to fork, this takes until everything that models need is loaded.
             self._launching = True
-            self._changed(facts=True)
+            self.changed(facts=True)
             try:
                 launched = LaunchedRun(start, await self._workers.launch())
             finally:
                 self._launching = False
-                self._changed(facts=True)
+                self.changed(facts=True)
             self.run_task(WorkerMonitor(launched.worker, start, self).serve())
             if start.attempt <= self._given_up:  # stopped in the meantime
                 self._asked.add(launched.worker)
@@ -160,10 +141,9 @@ class Session:
         """Awaits the facts of a run, to show it then."""
         self._loading = launched
         self._ending = ""
-        self._changed(facts=True)
+        self.changed(facts=True)
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
-        """Handles a message from a worker."""
         if isinstance(message, Reply):
             self._waiting.take(message)
             return
@@ -177,7 +157,7 @@ class Session:
             case Facts() if shown and message is not self.facts:
                 self.facts = message
                 self._notify_watchers(message)
-                self._changed(facts=True)
+                self.changed(facts=True)
             case State() if shown:
                 self._take_state(message)
             case News() if shown:
@@ -186,28 +166,28 @@ class Session:
                 self.epoch += 1
                 self.log.cut(message.events)
                 self._cuts.append((self._notice_number, message.events))
-                self._changed(facts=True)
+                self.changed(facts=True)
                 for feed in self.feeds:
                     feed.cut(message.events)
             case Branched() if shown:
                 self.branched = message
-                self._changed(facts=True)
+                self.changed(facts=True)
             case Loaded():
-                launched.versions.add(message)
-                self._changed(facts=shown)
+                launched.add_helper(message)
+                self.changed(facts=shown)
             case Notice():
                 self.add_notice(message, start)
             case At():
                 self._stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
-                self._changed(facts=True)
+                self.changed(facts=True)
             case _:
                 pass
-        self._changed()
+        self.changed()
 
     def _take_state(self, state: State) -> None:
         if self._stuck is not None:
             self._stuck = None
-            self._changed(facts=True)
+            self.changed(facts=True)
         self.state = state
         self.state_version += 1
         self._notify_watchers(state)
@@ -221,6 +201,7 @@ class Session:
         before, worker = self._shown, self._worker
         self._shown, self._loading = launched, None
         useless = before.start.record if before is not None and never_begun(self.state, self.log) else None
+        useless = useless or (None if self.spare_recording is None else str(self.spare_recording))
         if before is not None and worker is not None:
             self._leave(worker, useless)
         self.run += 1
@@ -231,10 +212,9 @@ class Session:
         if self._drawn:
             launched.worker.send(Draw(kinds=self._drawn))
         self._notify_watchers(facts)
-        self._changed(facts=True)
+        self.changed(facts=True)
 
     def take_end(self, worker: Worker, ending: str) -> None:
-        """Handles the end of a worker and reports it; `ending` is empty if it ended normally."""
         self._waiting.end(worker)
         asked = worker in self._asked
         self._asked.discard(worker)
@@ -257,7 +237,7 @@ class Session:
                 reason = self._ending or self._after_end
                 self.state = msgspec.structs.replace(self.state, status=status_now, reason=reason, measured=None)
                 self.state_version += 1
-        self._changed(facts=True)
+        self.changed(facts=True)
 
     @property
     def is_loading(self) -> bool:
@@ -270,17 +250,15 @@ class Session:
         return not self.alive and not self.is_loading
 
     def halt(self, worker: Worker, name: str) -> None:
-        """Records that a signal with this name has stopped (paused) a worker; an empty name means that it runs again."""
         if self._run_of(worker) is None:
             return
         self._stuck = {"file": None, "line": None, "function": "", "signal": name} if name else None
         if name:
             text = f"the model's process was stopped by {name}: SIGCONT to process {worker.pid} continues it, Stop ends it"
             self.add_notice(Notice(level="warning", text=text))
-        self._changed(facts=True)
+        self.changed(facts=True)
 
     def busy(self, worker: Worker) -> bool:
-        """Returns whether a worker is expected to send messages."""
         loading = self._loading is not None and worker is self._loading.worker
         return loading or (worker is self._worker and (self.going_on or self._waiting.on(worker)))
 
@@ -309,7 +287,10 @@ class Session:
 
     async def close(self) -> None:
         """Stops the workers, informs the watchers, and cancels all tasks."""
+        spare = self.spare_recording
         await self.stop()
+        if spare is not None:
+            erase(spare)
         self._notify_watchers(None)
         tasks = list(self._tasks)
         if tasks:
@@ -320,20 +301,11 @@ class Session:
 
     # -- commands and questions
 
-    async def carry_out(self, command: Command, who: str = "") -> Reply:
-        """Carries out a command or answers a question; the reply holds the result or the error.
-
-        Args:
-            command: The command or question.
-            who: The name of the user, as other users see it.
-        """
-        if command.takes_control and who and who != self._controlled_by:
+    def take_control(self, who: str) -> None:
+        """Shows others that a user controls the session, as the sender of the latest command."""
+        if who and who != self._controlled_by:
             self._controlled_by = who
-            self._changed(facts=True)
-        try:
-            return await command.serve(self)
-        except (Actr3dError, OSError) as error:
-            return Reply(id=0, error=str(error))
+            self.changed(facts=True)
 
     async def restart(
         self, settings: dict[str, Any] | None, seed: int | str | None, *, new_seed: bool = False, record: bool = True, run: bool = False
@@ -360,27 +332,27 @@ class Session:
     def set_breakpoints(self, productions: tuple[str, ...]) -> None:
         """Stores the breakpoints for this and later runs."""
         self.breakpoints = productions
-        self._changed(facts=True)
+        self.changed(facts=True)
 
     def show_overlay(self, name: str, shown: bool) -> None:
         """Shows or hides an overlay of the 3D view."""
         self.look = self.look.with_overlay(name, shown)
         self._notify_watchers(self.look)
-        self._changed(facts=True)
+        self.changed(facts=True)
 
-    async def ask(self, command: Command) -> Reply:
-        """Sends a command to a worker: that of the run on screen if the command is for that run, otherwise that of the newest run.
+    async def ask(self, command: object, *, of_shown_run: bool = False) -> Reply:
+        """Sends a page command to a worker: that of the run on screen if the command is for that run, otherwise that of the newest run.
 
         After a user has started a new run, commands go to it, although the previous run is on screen until the new one is built.
         """
-        if not command.of_shown_run:
+        if not of_shown_run:
             async with self._beginning:
                 loading = self._loading
             if loading is not None:
                 return await self._waiting.ask(loading.worker, command)
         return await self._waiting.ask(self._worker, command)
 
-    async def ask_all(self, command: Command) -> Reply:
+    async def ask_all(self, command: object) -> Reply:
         """Sends a command to the worker of the run on screen, and to that of the run being built."""
         async with self._beginning:
             loading = self._loading
@@ -414,6 +386,14 @@ class Session:
         return None if start is None or start.recorded is None else Path(start.recorded)
 
     @property
+    def spare_recording(self) -> Path | None:
+        """The recording of a run that only repeats an opened recording: it is not needed unless a user changes the run."""
+        start = self.start
+        if start is None or start.recorded is None or start.record is None or self.branched is not None:
+            return None
+        return Path(start.record)
+
+    @property
     def alive(self) -> bool:
         """Whether the current run still accepts commands."""
         return self._shown is not None and not self._shown.over
@@ -429,7 +409,6 @@ class Session:
     # -- what pages see of it
 
     def facts_json(self) -> bytes:
-        """Returns the facts about the session and its run as JSON."""
         facts, start = self.facts, self.start
         facts_of_session: dict[str, Any] = {
             **self.summary(),
@@ -442,7 +421,7 @@ class Session:
             "breakpoints": self.breakpoints,
             "settings": start.settings if start is not None else {},
             "seed": None if facts is None else _exactly(facts.seed),
-            "stale": self._shown is not None and self._shown.versions.differ(self.path),
+            "stale": self._shown is not None and self._shown.is_stale(self.path),
             "gone": not self.path.is_file(),
             "attempt": self._attempt,
             "shown_attempt": start.attempt if start is not None else None,
@@ -453,13 +432,15 @@ class Session:
             "recording": self._recording,
         }
         if facts is not None:
-            facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters), "world": Raw(facts.world)}
+            facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters)}
+            facts_of_session |= {"world": Raw(facts.world), "changes": Raw(facts.changes)}
         return msgspec.json.encode(facts_of_session)
 
     @property
     def _recording(self) -> str | None:
-        """The name of the recording that its run writes."""
-        return None if self.start is None or self.start.record is None else Path(self.start.record).stem
+        """The name of the recording of the run on screen, as lists show it; None if it is not recorded or not listed."""
+        start = self.start
+        return None if start is None or start.record is None or self.spare_recording is not None else Path(start.record).stem
 
     def summary(self) -> dict[str, Any]:
         """Returns the entry of this session in the list of sessions."""
@@ -478,7 +459,6 @@ class Session:
         }
 
     def state_json(self) -> bytes:
-        """Returns the newest state as JSON."""
         state = self.state
         if state is None:
             return b"null"
@@ -497,7 +477,7 @@ class Session:
         """Adds a browser that watches."""
         feed = Feed(self, name)
         self.feeds.append(feed)
-        self._changed(facts=True)
+        self.changed(facts=True)
         return feed
 
     def part(self, feed: Feed) -> None:
@@ -505,7 +485,7 @@ class Session:
         self.feeds.remove(feed)
         if feed.name == self._controlled_by:
             self._controlled_by = ""
-        self._changed(facts=True)
+        self.changed(facts=True)
 
     def add_notice(self, notice: Notice, start: Start | None = None) -> None:
         """Sends a notice to all who watch, with the number of its attempt and the version of the model's text at that time."""
@@ -516,27 +496,22 @@ class Session:
         shown |= {"attempt": self._attempt if start is None else start.attempt, "version": start and start.version}
         self.notices.append((self._notice_number, msgspec.json.encode(shown)))
         self._notice_number += 1
-        self._changed()
+        self.changed()
 
     def scene_ready(self) -> None:
         """Records that the 3D view is ready."""
         self.has_scene = True
-        self._changed(facts=True)
+        self.changed(facts=True)
 
     def file_changed(self, path: Path) -> None:
         """Informs pages that a file may have changed: a run that was made from it is stale."""
-        if path == self.path or (self._shown is not None and self._shown.versions.has_helper(path)):
-            self._changed(facts=True)
+        if path == self.path or (self._shown is not None and self._shown.has_helper(path)):
+            self.changed(facts=True)
 
     def renamed(self, path: Path, model: str) -> None:
         """Records the new name of the model's file."""
         self.path, self.model = path, model
-        self._changed(facts=True)
-
-    def _changed(self, *, facts: bool = False) -> None:
-        self.facts_version += facts
-        for feed in self.feeds:
-            feed.wake()
+        self.changed(facts=True)
 
     def _notify_watchers(self, what: Facts | State | ViewSettings | None) -> None:
         for watcher in self.watchers:
@@ -546,3 +521,16 @@ class Session:
 def _exactly(seed: int | str) -> int | str:
     """Returns a seed in a form that a page can read without loss: as text if it exceeds JavaScript's exact integers."""
     return seed if isinstance(seed, int) and abs(seed) < 2**53 else str(seed)
+
+
+def never_begun(state: State | None, log: EventLog) -> bool:
+    """Returns whether a run has never left its start, printed nothing and received no command: its recording is useless.
+
+    Args:
+        state: Its newest state; None if it has not sent any.
+        log: Its events.
+    """
+    if state is None or state.furthest > 0 or state.status != "paused":
+        return False
+    _, events = log.since(0)
+    return not any(msgspec.json.decode(event)[2] in ("output", "command") for event in events)

@@ -10,11 +10,10 @@ from actr3d.errors import Actr3dError, ModelFileError
 from workbench.files import ModelFolder
 from workbench.jobs import doing
 from workbench.listing import Listing
-from workbench.readers import Readers
+from workbench.readers import Readers, Reruns
 from workbench.recorded_start import Beginning, parsed
 from workbench.recordings import Recordings
-from workbench.replays import Reruns
-from workbench.run_request import RepeatedRun, RunOptions
+from workbench.run_request import RunOptions
 from workbench.scene_view import SceneView
 from workbench.session import Session
 from workbench.worker.messages import Start
@@ -65,6 +64,7 @@ class Sessions:
         self._count = 0
         self._opening = asyncio.Lock()
         self._reopening = asyncio.Lock()
+        recordings.spare = lambda: {path for session in self.all() if (path := session.spare_recording) is not None}
 
     def all(self) -> list[Session]:
         """Returns all sessions, oldest first."""
@@ -170,8 +170,7 @@ class Sessions:
             if not path.is_relative_to(self.folder.root):
                 path = self.folder.root / path.name  # a new run uses the user's own model of that name, if there is one
             shown = path.relative_to(self.folder.root).as_posix()
-            repeated = RepeatedRun(file=began.file, source=began.source, commands=began.commands, helpers=began.helpers, recording=where)
-            options = RunOptions(settings=began.parameters, seed=began.seed, record=False, repeated=repeated)
+            options = RunOptions(settings=began.parameters, seed=began.seed, repeated=began)
             return await self._begun(path, shown, options, real_time=real_time)
 
     async def adopt(self, worker: Worker, name: str) -> Session:

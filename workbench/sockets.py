@@ -176,7 +176,7 @@ class _Page:
                 await self._websocket.send_text((await feed.next()).decode())
 
     async def _carry_out(self, session: Any, feed: Feed, request: protocol.Request) -> None:
-        reply = await session.carry_out(request.command, self._name)
+        reply = await request.command.submit(session, self._name)
         feed.reply(_reply(request.id, reply.result, reply.error))
 
     async def _refuse(self, problem: str) -> None:

@@ -6,12 +6,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from workbench.overlays import OVERLAYS
+from workbench.overlays import OVERLAYS, ViewSettings
 from workbench.page_commands.changes import Aperture
-from workbench.page_commands.moving import Back
-from workbench.page_commands.running import Pause, Run, Step
+from workbench.page_commands.running import Back, Pause, Run, Step
 from workbench.page_commands.session import ShowOverlay
-from workbench.view_settings import ViewSettings
 from workbench.worker.messages import State
 
 WORDS: dict[str, Callable[[], Any]] = {"run": Run, "pause": Pause, "step": Step, "back": Back}

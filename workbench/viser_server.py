@@ -29,7 +29,7 @@ def start_viser(secret: str) -> Any:
 
     rich.get_console().quiet = True  # viser prints its own address, which users must not open
     server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    inner: Any = server._websock_server  # pyright: ignore[reportPrivateUsage] # viser has no other way
+    inner = _inner(server)
 
     async def check(client: Any) -> None:
         if not secrets.compare_digest(header_of(server, client, BRIDGE_HEADER), secret):
@@ -58,7 +58,7 @@ def send_scene_data(server: Any, name: str, value: Any) -> None:
     message = _messages.RunJavascriptMessage(f"scene.receive({json.dumps(name)},{json.dumps(value, allow_nan=False)})")
     # Viser keeps every message of this type for later browsers, as they may differ; with one key, newer ones replace older ones.
     message.redundancy_key = lambda: f"scene {name}"
-    server._websock_server.queue_message(message)
+    _inner(server).queue_message(message)
 
 
 class Moments:
@@ -98,5 +98,10 @@ class Moments:
 
 def header_of(server: Any, client: Any, name: str) -> str:
     """Returns a header that a client sent when it connected; empty if the client is gone or did not send it."""
-    connection = server._websock_server._live_connections.get(client.client_id)
+    connection = _inner(server)._live_connections.get(client.client_id)
     return connection.request.headers.get(name, "") if connection is not None else ""
+
+
+def _inner(server: Any) -> Any:
+    """Returns the websocket server inside viser's server. Viser has no other way to check clients, or to send them other messages."""
+    return server._websock_server

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import signal
 import time
-from typing import Protocol
+from abc import ABC, abstractmethod
 
 import msgspec
 
+from actr3d.runner.before_exit import signal_name
 from workbench.worker.channel import WIRE_LOST
 from workbench.worker.memory import TOO_MUCH_MEMORY
 from workbench.worker.messages import MOST_PRINTED, At, FromWorker, Notice, Over, Start, Where, notice
@@ -28,28 +28,28 @@ _MEANINGS = {
 """Explanations of signals, added to their names."""
 
 
-class Receiver(Protocol):
-    """Receives what a monitor reports: a session, or a job without one (see `workbench.jobs`)."""
+class Receiver(ABC):
+    """Base of what a monitor reports to: a session, or a job without one (see `workbench.jobs`)."""
 
+    @abstractmethod
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
         """Handles a message from a worker."""
-        ...
 
+    @abstractmethod
     def take_end(self, worker: Worker, ending: str) -> None:
         """Handles the end of a worker; `ending` is empty if it ended normally."""
-        ...
 
+    @abstractmethod
     def add_notice(self, notice: Notice) -> None:
         """Sends a notice to the user."""
-        ...
 
+    @abstractmethod
     def busy(self, worker: Worker) -> bool:
         """Returns whether a worker is expected to send messages."""
-        ...
 
+    @abstractmethod
     def halt(self, worker: Worker, name: str) -> None:
         """Records that a signal with this name has stopped (paused) a worker; an empty name means that it runs again."""
-        ...
 
 
 class WorkerMonitor:
@@ -142,7 +142,7 @@ class WorkerMonitor:
             await asyncio.sleep(SILENT / 4)
             if self._worker.halted != halted:
                 halted, since = self._worker.halted, None
-                self._receiver.halt(self._worker, _name_of(halted) if halted else "")
+                self._receiver.halt(self._worker, signal_name(halted) if halted else "")
             if halted:
                 self._heard = time.monotonic()
                 continue
@@ -164,7 +164,7 @@ def subject_of(start: Start) -> str:
 
 
 def _why(status: int, subject: str) -> str:
-    """Returns why a process ended that nobody asked to end.
+    """Returns why a process ended that was not asked to end.
 
     Args:
         status: Its exit code, or the negative number of a signal.
@@ -178,10 +178,5 @@ def _why(status: int, subject: str) -> str:
         return f"{subject} was ended: it used more memory than it may"
     if status >= 0:
         return f"{subject} ended with exit code {status}"
-    name = _name_of(-status)
+    name = signal_name(-status)
     return f"{subject} was ended by {name}{_MEANINGS.get(name, '')}; what it printed or recorded last may be missing"
-
-
-def _name_of(number: int) -> str:
-    """Returns the name of a signal."""
-    return signal.Signals(number).name if number in set(signal.Signals) else f"signal {number}"

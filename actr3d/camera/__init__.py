@@ -1,11 +1,9 @@
 """The Geometric Camera: computes the exact edges of what an eye sees, without pixels and without meanings."""
 
-from actr3d.camera.eye_pose import Stand, stand_of
 from actr3d.camera.geometric import GeometricCamera
-from actr3d.camera.glance import glance
 from actr3d.camera.kernel.dtypes import EXTENT_FIELDS, ExtentField
 from actr3d.camera.parameters import CameraParameters
 from actr3d.camera.view import View
-from actr3d.camera.view_sensor import Sight
+from actr3d.camera.view_sensor import Sight, Stand, glance, stand_of
 
 __all__ = ["EXTENT_FIELDS", "CameraParameters", "ExtentField", "GeometricCamera", "Sight", "Stand", "View", "glance", "stand_of"]

@@ -11,12 +11,11 @@ from mujoco import MjData, MjModel
 from numpy.typing import NDArray
 
 from actr3d.camera.eye import Eye, Kind, names_of
-from actr3d.camera.intrinsics import optics_of
 from actr3d.camera.kernel.dtypes import EXTENT
 from actr3d.camera.kernel.lower_envelope import room_for
 from actr3d.camera.kernel.scan import MOST_PIECES_OF_A_PATCH, scan
 from actr3d.camera.kernel.scene import room_for_scene
-from actr3d.camera.parameters import CameraParameters
+from actr3d.camera.parameters import CameraParameters, optics_of
 from actr3d.camera.topology import geoms_of, objects_of, topology_of
 from actr3d.camera.view import View
 from actr3d.errors import CameraError

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from actr3d.camera.intrinsics import optics_of
-from actr3d.camera.parameters import CameraParameters
+from actr3d.camera.parameters import CameraParameters, optics_of
 from actr3d.errors import CameraError, did_you_mean
 
 NOISY = ("x1", "x2", "d1", "d2", "a1", "a2")

@@ -1,19 +1,47 @@
-"""The sensor `view`: returns what a body's eye sees."""
+"""The sensor `view`: returns what a body's eye sees; and what observers get of it, who do not change the labels that the agent knows."""
 
 from __future__ import annotations
 
 from contextlib import suppress
-from typing import Any
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
-from actr3d.camera.eye_pose import Stand, stand_of
+from mujoco import mj_name2id, mjtObj
+
 from actr3d.camera.geometric import GeometricCamera
 from actr3d.camera.parameters import CameraParameters
 from actr3d.camera.view import View
+from actr3d.errors import CameraError
 from actr3d.world.body import Body, sensor
+from actr3d.world.frames import heading_of
 
 USUAL = CameraParameters()
 """The parameters that are used if no options are given."""
+
+
+class Stand(NamedTuple):
+    """The position of an eye and the heading of its body, in the world frame; for observers, agents never receive it."""
+
+    x: float
+    """[m]"""
+    y: float
+    """[m]"""
+    z: float
+    """[m]"""
+    heading: float
+    """[rad]"""
+
+
+def stand_of(body: Body, data: Any) -> Stand:
+    """Returns the pose of a body's eye in simulation data whose geometry is up to date.
+
+    Args:
+        body: A body with an eye.
+        data: The `mj_data` of the world, or a copy in another state.
+    """
+    site = mj_name2id(body.physics.mj_model, mjtObj.mjOBJ_SITE, body.eye or "")
+    x, y, z = data.site_xpos[site].tolist()
+    return Stand(x, y, z, heading_of(data.xmat[body.root]))
 
 
 class Sight:
@@ -87,3 +115,26 @@ def _meant(value: Any) -> Any:
         with suppress(ValueError):
             return kind(value)
     return value
+
+
+def glance(body: Body, parameters: CameraParameters | None = None) -> View:
+    """Returns what is visible now, with the labels that the agent knows. Objects not seen before may get other labels later.
+
+    Args:
+        body: The body whose eye is used.
+        parameters: How it sees; None for the parameters of its first view sense, or the default if it has none.
+
+    Raises:
+        CameraError: If the body has no eye, or the poses are not finite.
+    """
+    if body.eye is None:
+        raise CameraError(f"body '{body.name}' has no eye")
+    if parameters is None:
+        parameters = next((sense.parameters for sense in body.senses if isinstance(sense, Sight)), CameraParameters())
+    eye = body.unused_sense(Sight, parameters)
+    labels = eye.state()
+    try:
+        return eye.look()
+    finally:
+        if eye.state() != labels:
+            eye.restore(labels)

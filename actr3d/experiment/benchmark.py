@@ -20,7 +20,7 @@ import mujoco
 from actr3d.benchmark import Figure, benchmark, processor_time_of, ratio, report
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.trial import parameters_for, record_trial, run_trial
-from actr3d.printing import ModelOutput, printing_to
+from actr3d.output import ModelOutput, printing_to
 
 DESIGN = "warren_whang_1987"
 SAMPLE = 8

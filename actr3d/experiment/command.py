@@ -337,7 +337,7 @@ def _other_versions(there: Specification) -> list[str]:
 def _check_versions(there: Specification, *, any_version: bool) -> None:
     different = _other_versions(there)
     if different and not any_version:
-        raise ExperimentError(f"the trials so far were run with {', '.join(different)}; install these versions, or add --any-version")
+        raise ExperimentError(f"its trials until now were run with {', '.join(different)}; install these versions, or add --any-version")
 
 
 def _show_failures(store: Store, out: Output) -> None:

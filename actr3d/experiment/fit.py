@@ -286,7 +286,7 @@ class Fit:
             return cells_of_rows(store.rows(), experiment.design.measure(measure or self.measure), columns)
 
     def _surface(self, target: Mapping[Cell, float]) -> QuadraticSurface:
-        """Returns the surface of the sums of squares of all candidates so far."""
+        """Returns the surface of the sums of squares of all candidates until now."""
         points = [[(point[one.name] - one.low) / (one.high - one.low) for one in self._ranges] for point in self._points]
         return QuadraticSurface(np.array(points), [len(target) * rmse(means, target) ** 2 for means in self._means], len(target))
 

@@ -31,8 +31,8 @@ from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, did_you_mean
 from actr3d.experiment import designs
 from actr3d.experiment.design import Design, Measured, is_design
+from actr3d.output import ModelOutput, printing_to
 from actr3d.parameter_schema import Parameter
-from actr3d.printing import ModelOutput, printing_to
 from actr3d.recording.schema import versions
 from actr3d.runner.build_check import check_build, has_build
 from actr3d.runner.model_factory import Blueprint

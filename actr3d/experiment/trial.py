@@ -17,8 +17,8 @@ from actr3d.actr.loading.sweep import with_values
 from actr3d.errors import ExperimentError, did_you_mean
 from actr3d.experiment.design import OWN_COLUMNS, Measured, Trial
 from actr3d.experiment.specification import Experiment
+from actr3d.output import ModelOutput, printing_to
 from actr3d.parameter_schema import parameters_of
-from actr3d.printing import ModelOutput, printing_to
 from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.run import run_source
 from actr3d.runner.traceback_report import traceback_report

@@ -15,7 +15,7 @@ _CHECKED: WeakSet[type] = WeakSet()
 
 def check_patterns(motor: Model) -> None:
     """Warns, once for each class of agent, of patterns that name a muscle group, joint or state that does not exist."""
-    known = [name for name in motor.__dict__ if name[0] != "_"]
+    known = [name for name in vars(motor) if name[0] != "_"]
     for system in subtree(top_of(motor)):
         if not isinstance(system, ProductionSystem) or type(system) in _CHECKED:
             continue

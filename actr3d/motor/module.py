@@ -588,5 +588,5 @@ class Motor(WithParameters, Port):
 
     def _become(self, name: str, value: Any) -> None:
         """Sets an attribute if its value changes."""
-        if self.__dict__.get(name, _NOTHING) != value:
+        if vars(self).get(name, _NOTHING) != value:  # without what the class has under this name
             Model.__setattr__(self, name, value)

@@ -43,7 +43,7 @@ class BodySchema:
     def feel(self, positions: Mapping[str, float]) -> Sequence[str]:
         """Updates the felt positions of some joints [rad] or [m], and their values on the grid.
 
-        Rounding keeps the order of numbers: a position between two others with one value has the same value, and is no new extreme.
+        Rounding keeps the order of numbers: a position between two others with one value has the same value, and is not a new extreme.
 
         Returns:
             The joints whose positions are not between such others.

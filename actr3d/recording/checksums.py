@@ -35,7 +35,7 @@ class Checksums:
         self.facts[name] = _digest(value)
 
     def whole(self) -> bytes:
-        """Returns the checksum of the whole recording so far."""
+        """Returns the checksum of the whole recording up to now."""
         facts = [part for fact in sorted(self.facts.items()) for part in fact]
         return _digest(FORMAT, *self.last.values(), *facts)
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from math import isfinite
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 from actr3d.errors import RecordingError
 
@@ -12,105 +13,66 @@ LARGEST = 2**63
 """No number of a recording is as large."""
 
 
-class _Kind(NamedTuple):
+@dataclass(frozen=True)
+class _Kind:
     words: str
     fits: Callable[[Any], bool]
 
 
-def _text(value: Any) -> bool:
-    return isinstance(value, str)
-
-
 def _number(value: Any) -> bool:
-    return type(value) in (int, float) and isfinite(value) and 0 < value < LARGEST
+    return type(value) in (int, float) and isfinite(value) and 0 <= value < LARGEST
 
 
-def _whole(value: Any) -> bool:
-    return type(value) is int and 0 < value < LARGEST
-
-
-def _dict(value: Any) -> bool:
-    return isinstance(value, dict)
-
-
-def _flag(value: Any) -> bool:
-    return isinstance(value, bool)
-
-
-def _true(value: Any) -> bool:
-    return value is True or value is None
-
-
-def _run_kind(value: Any) -> bool:
-    return value in ("simulation", "program")
-
-
-def _until(value: Any) -> bool:
-    return value is None or _number(value)
-
-
-def _failed(value: Any) -> bool:
-    return value is None or _text(value)
-
-
-def _time(value: Any) -> bool:
-    return value is None or (type(value) in (int, float) and isfinite(value) and 0 <= value < LARGEST)
-
-
-def _seed(value: Any) -> bool:
-    return isinstance(value, str) or type(value) is int
-
-
-def _plain(value: Any) -> bool:
-    """Returns whether something is a text that may name a file or be the source of a program: no NUL character is in it."""
-    return isinstance(value, str) and "\0" not in value
+def _plain(*values: Any) -> bool:
+    """Returns whether values are texts that may name a file or be the source of a program: without NUL characters."""
+    return all(isinstance(value, str) and "\0" not in value for value in values)
 
 
 def _texts(value: Any) -> bool:
-    return isinstance(value, dict) and all(_plain(part) for entry in cast("dict[str, Any]", value).items() for part in entry)
+    return isinstance(value, dict) and all(_plain(*entry) for entry in cast("dict[str, Any]", value).items())
+
+
+def _pair(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) and len(cast("list[Any]", value)) == 2 and _plain(*cast("list[Any]", value))
 
 
 def _modules(value: Any) -> bool:
     return isinstance(value, dict) and all(_plain(name) and _pair(texts) for name, texts in cast("dict[str, Any]", value).items())
 
 
-def _pair(value: Any) -> bool:
-    return isinstance(value, (list, tuple)) and len(cast("list[Any]", value)) == 2 and all(map(_plain, cast("list[Any]", value)))
-
-
 def _ended(value: Any) -> bool:
-    return value is None or (isinstance(value, dict) and _text(cast("dict[str, Any]", value).get("by")))
+    return value is None or (isinstance(value, dict) and isinstance(cast("dict[str, Any]", value).get("by"), str))
 
 
-_TEXT = _Kind("a text", _text)
+_TEXT = _Kind("a text", lambda value: isinstance(value, str))
 _TEXTS = _Kind("texts by their names, without NUL characters", _texts)
-_SEED = _Kind("a whole number or a text", _seed)
-_PERIOD = _Kind("a whole number > 0", _whole)
-_DICT = _Kind("values by their names", _dict)
-_FLAG = _Kind("true or false", _flag)
+_SEED = _Kind("a whole number or a text", lambda value: isinstance(value, str) or type(value) is int)
+_PERIOD = _Kind("a whole number > 0", lambda value: type(value) is int and 0 < value < LARGEST)
+_DICT = _Kind("values by their names", lambda value: isinstance(value, dict))
 _KINDS = {
     "form": _TEXT,
     "versions": _TEXTS,
-    "kind": _Kind("'simulation' or 'program'", _run_kind),
+    "kind": _Kind("'simulation' or 'program'", lambda value: value in ("simulation", "program")),
     "file": _Kind("a text without NUL characters", _plain),
     "sources": _TEXTS,
     "helpers": _Kind("a file and a text by the names of modules, without NUL characters", _modules),
     "parameters": _DICT,
-    "built": _FLAG,
+    "built": _Kind("true or false", lambda value: isinstance(value, bool)),
     "seed": _SEED,
     "program_seed": _SEED,
-    "until": _Kind("a number > 0, or null", _until),
+    "until": _Kind("a number > 0, or null", lambda value: value is None or (_number(value) and value > 0)),
     "period_us": _PERIOD,
     "timestep_us": _PERIOD,
     "scene": _TEXT,
     "compiled": _TEXT,
     "world": _DICT,
     "ended": _Kind('{"by": a text}, or null', _ended),
-    "failed": _Kind("a text, or null", _failed),
-    "whole": _Kind("true, or null", _true),
-    "branched": _Kind("a number >= 0, or null", _time),
+    "failed": _Kind("a text, or null", lambda value: value is None or isinstance(value, str)),
+    "whole": _Kind("true, or null", lambda value: value is True or value is None),
+    "branched": _Kind("a number >= 0, or null", lambda value: value is None or _number(value)),
+    "origin": _TEXT,
 }
-"""Facts that this library or the workbench reads; what others are, whoever writes them knows."""
+"""The facts that this library or the workbench reads; other facts may have any values."""
 _SHOWN = 60
 """No more of a wrong value is quoted [characters]."""
 

@@ -1,4 +1,7 @@
-"""The secret key of this installation, used to seal its own recordings and to recognize them later."""
+"""The secret key of this installation, used to seal its own recordings and to recognize them later.
+
+The folder is not taken from platformdirs: it is one path, and an existing key must be found there on every system.
+"""
 
 from __future__ import annotations
 

@@ -207,7 +207,7 @@ class Recorded:
                     raise ValueError(f"a row of its {table} has {len(things)} where it says {count}")
                 for thing in things:
                     if len(thing) != size or _types(*thing[: len(kinds)]) != kinds or abs(thing[0]) >= LARGEST:
-                        raise ValueError(f"{_short(thing)} is none of its {table}")
+                        raise ValueError(f"{_short(thing)} is not one of its {table}")
                     yield thing
 
     def _rows(self, table: str) -> Iterator[tuple[Any, ...]]:

@@ -51,7 +51,7 @@ class Recording:
         self._period = all_facts.get("period_us", USUAL_PERIOD)
         detach_in_copies(self)
         self.events = self.answers = self.commands = self.states = 0
-        """The number of items of each sort received so far."""
+        """The number of items of each sort that it has received."""
         self._over = {"ended": False, "failed": False}
         """Whether each of these facts has been written, and holds."""
         self.ending: Callable[[], None] | None = None
@@ -140,7 +140,7 @@ class Recording:
             raise writer.failure
 
     def flush(self) -> None:
-        """Writes all items received so far; does nothing if the file can no longer be written."""
+        """Writes all items that it has received; does nothing if the file can no longer be written."""
         self._writer.flush()
 
     def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
@@ -154,7 +154,7 @@ class Recording:
         self.check()
 
     def copy_to(self, path: Path | str, **facts: Any) -> None:
-        """Writes everything recorded so far to a new file: a closed recording of a run that was left at this point.
+        """Writes everything recorded until now to a new file: a closed recording of a run that was left at this point.
 
         The run and this recording continue; nothing is shared with the copy. If the run was not over yet, the copy states
         that it ended by «left».

@@ -127,7 +127,7 @@ class Writer:
         self._thread.start()
 
     def flush(self) -> None:
-        """Writes all items received so far."""
+        """Writes all items that it has received."""
         self._attempt(self._write)
 
     def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
@@ -136,7 +136,7 @@ class Writer:
         self._attempt(self._cut, {"states": ticks + 1, "events": events, "answers": answers, "commands": commands})
 
     def copy_to(self, path: Path, facts: Sequence[tuple[str, str]] = ()) -> None:
-        """Writes all items received so far, and a closed copy of everything to a new file.
+        """Writes all items that it has received, and a closed copy of everything to a new file.
 
         Args:
             path: The new file.
@@ -227,13 +227,13 @@ class Writer:
         self._seal(self._file, self._checksums)
 
     def _write(self) -> None:
-        """Writes all items received so far in one transaction."""
+        """Writes all items that it has received in one transaction."""
         # States first: all events up to them are then in the queue already.
         states, facts, commands = _all_of(self.states), _all_of(self.facts), _all_of(self.commands)
         answers, events = _all_of(self.answers), _all_of(self.events)
         if not (states or facts or commands or answers or events):
             return
-        rows = [(part, _events_text(part)) for part in _parts(events, MOST_EVENTS)]
+        rows = [(part, plain_to_json(part, _one_by_one)) for part in _parts(events, MOST_EVENTS)]
         self._transact(self._insert_all, rows, states, facts, commands, answers)
 
     def _insert_all(
@@ -365,12 +365,8 @@ def _parts(things: list[Any], most: int) -> list[list[Any]]:
     return [things[start : start + most] for start in range(0, len(things), most)]
 
 
-def _events_text(events: list[TraceEvent]) -> str:
-    """Returns events as one JSON list; values that JSON cannot represent are converted as in `TraceEvent.to_json`."""
-    return plain_to_json(events, _one_by_one)
-
-
 def _one_by_one(events: list[TraceEvent]) -> str:
+    """Returns events as one JSON list; values that JSON cannot represent are converted as in `TraceEvent.to_json`."""
     return f"[{', '.join(plain_to_json(event, _converted) for event in events)}]"
 
 

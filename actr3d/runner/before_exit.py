@@ -32,6 +32,11 @@ def _raises(number: int) -> bool:
     return default and signal.Signals(number).name not in _NOT_FATAL
 
 
+def signal_name(number: int) -> str:
+    """Returns the name of a signal."""
+    return signal.Signals(number).name if number in set(signal.Signals) else f"signal {number}"
+
+
 def _kills(process: int, number: int) -> bool:
     return process == os.getpid() and _raises(number)
 
@@ -59,7 +64,7 @@ def before_the_end(keep: Callable[[bool], object]) -> Generator[None]:
     Only in this process: a forked copy of it has nothing to keep. What ends the process from outside, or in compiled code, is not noticed.
 
     Args:
-        keep: Writes or sends everything so far; called with whether the program surely ends now. Its errors are ignored.
+        keep: Writes or sends what has been done until now; called with whether the program surely ends now. Its errors are ignored.
     """
     process = os.getpid()
     before = [(module, name, getattr(module, name)) for module, name, _ in _ENDS]

@@ -30,7 +30,7 @@ def check_build(source: str, filename: str) -> None:
     """Checks what a model's source defines as `build`.
 
     Raises:
-        ModelFileError: If it is meant to build a simulation, and cannot; names the line, what was found, and what would be right.
+        ModelFileError: If it is meant to build a simulation, and cannot; the message names the line, what was found, and what is right.
     """
     found = problem_of_build(source)
     if found is not None:

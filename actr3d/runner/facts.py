@@ -12,15 +12,12 @@ END = ("failed", "ended", "whole")
 """The facts of how a run ended."""
 CHECKED_BEFORE = frozenset({"form", "versions"})
 """Facts that are not compared here: a file of another format is not opened, and other versions are refused or allowed before the run."""
-UNCHECKED = frozenset({"branched"})
-"""Facts that running a recording again cannot show: `branched` says that a user of the workbench kept the run as a branch."""
-PROGRAM = frozenset({"kind", "file", "sources", "seed", "until", "helpers", "failed", "ended"}) | CHECKED_BEFORE
+UNCHECKED = frozenset({"branched", "origin"})
+"""Facts that running a recording again cannot show: when a user of the workbench made another way of a run (`branched`), and which
+recording has the other one (`origin`)."""
+PROGRAM = frozenset({"kind", "file", "sources", "seed", "until", "helpers", "failed", "ended"}) | CHECKED_BEFORE | UNCHECKED
 """The facts that the recording of a program can have."""
-BUILT = (
-    PROGRAM
-    | {"whole", "parameters", "built", "program_seed", "period_us", "timestep_us", "scene", "compiled", "world"}
-    | UNCHECKED
-)  # fmt: skip
+BUILT = PROGRAM | {"whole", "parameters", "built", "program_seed", "period_us", "timestep_us", "scene", "compiled", "world"}
 """The facts that the recording of a simulation that a model file builds can have."""
 
 

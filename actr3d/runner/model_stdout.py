@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.kernel.run_limits import RunLimits
-from actr3d.printing import TeeOutput
+from actr3d.output import TeeOutput
 
 if TYPE_CHECKING:
     from actr3d.simulation import Simulation
@@ -38,7 +38,7 @@ class BuiltOutput(TeeOutput):
         self._voice: StdoutCapture | None = None
 
     def lead_to(self, simulation: Simulation) -> None:
-        """Sends all lines so far, and all later ones, to this simulation."""
+        """Sends all earlier and later lines to this simulation."""
         self.finish()
         for text in self._early:
             simulation.event_log.preface(text)

@@ -14,10 +14,11 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sealed import sealed
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, RecordingError
-from actr3d.printing import ModelOutput, printing_to
+from actr3d.output import ModelOutput, printing_to
 from actr3d.recording import Recorded
 from actr3d.runner.facts import CHECKED_BEFORE, END, UNCHECKED, built_facts, first_difference, program_facts
 from actr3d.runner.model_stdout import BuiltOutput, ProgramOutput
+from actr3d.runner.program_changes import ProgramChanges, of_user
 from actr3d.runner.replay_diff import Comparator, Comparison, Differs
 from actr3d.runner.replayable import check_replayable
 from actr3d.runner.run import play_program, recorded_failure
@@ -116,6 +117,9 @@ def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress
     count = max(1, recorded.event_count)
     trace.listen(lambda _: progress(min(1.0, comparator.events / count)))
     limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace)
+    changes = ProgramChanges(limits, of_user(recorded.commands()))
+    if changes.known:
+        limits.passing = changes.repeat
     trouble = ""
     try:
         with ProgramOutput(limits) as output:
@@ -271,6 +275,6 @@ def _recorded_end(recorded: Recorded) -> str | None:
     if _failed(recorded):
         return f"the run failed after {at:g} s ({facts['failed']})"
     if facts.get("ended") is None and facts.get("whole") and not facts.get("built"):
-        return None  # of a run that a program makes, nobody records how it ended
+        return None  # the end of a run that a program makes is not recorded
     how = "left" if facts.get("ended") is not None else "stopped" if facts.get("whole") else "broken off"
     return f"the recording says that the run was {how} at {at:g} s, which cannot be checked"

@@ -15,8 +15,8 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import ParameterError, SettingError
+from actr3d.output import TeeOutput
 from actr3d.parameter_schema import Parameter
-from actr3d.printing import TeeOutput
 from actr3d.recording import Recording
 from actr3d.runner.before_exit import before_the_end
 from actr3d.runner.build_check import check_build, has_build
@@ -189,7 +189,7 @@ def play_program(
 
 
 def _keep_all(recording: Recording, output: TeeOutput, ends: bool) -> None:
-    """Writes everything so far, as the model may be about to end its process; also a line without a line break, if it surely ends."""
+    """Writes what has been recorded, as the model may be about to end its process; also an unfinished line, if it surely ends."""
     if ends:
         output.finish()
     # In a thread, for which this waits no longer than it must: a signal handler of the model may have interrupted `flush` itself.

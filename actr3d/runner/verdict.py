@@ -1,4 +1,4 @@
-"""Runs a recording again in a process of its own: what the recorded program does to its process cannot be mistaken for a verdict."""
+"""Runs a recording again in a process of its own: nothing that the recorded program does to its process can look like a verdict."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from typing import Any, NoReturn, TypeVar
 
 from actr3d.errors import Actr3dError, UntrustedError
 from actr3d.recording import Recorded
+from actr3d.runner.before_exit import signal_name
 from actr3d.runner.replayable import check_replayable
 from actr3d.runner.traceback_report import traceback_report
 
@@ -62,7 +63,7 @@ def verdict_of(file: str, *, trust: bool, any_version: bool) -> Verdict:
     with _ended_in_order(), tempfile.TemporaryDirectory(prefix="actr3d-verdict-") as folder:
         to = Path(folder, "verdict")
         order = {"path": sys.path, "file": file, "to": str(to), "trust": trust, "any_version": any_version}
-        flags: list[str] = subprocess._args_from_interpreter_flags()  # pyright: ignore # it is there for this, though without a public name
+        flags: list[str] = subprocess._args_from_interpreter_flags()  # pyright: ignore # made for this purpose, but not public
         command: list[str] = [sys.executable, *flags, "-P", "-c", _CHILD, json.dumps(order)]
         process = subprocess.Popen(command, env={**os.environ, "PYTHONHASHSEED": "0"})
         try:
@@ -115,8 +116,7 @@ def _ended(status: int) -> str:
     """Says how a process ended that has given no verdict."""
     if status >= 0:
         return f"the model's process ended with exit code {status}"
-    name = signal.Signals(-status).name if -status in set(signal.Signals) else f"signal {-status}"
-    return f"the model's process was ended by {name}"
+    return f"the model's process was ended by {signal_name(-status)}"
 
 
 @contextmanager

@@ -78,11 +78,11 @@ class SGOMS(ACTR):
 
     def _convert_info(self, objects: dict[str, Any], methods: dict[str, Method]) -> None:
         units = {name: thing for name, thing in objects.items() if isinstance(thing, (Ordered, Situated))}
-        self.__dict__["_plans"] = Plans(type(self).__name__, units)
+        vars(self)["_plans"] = Plans(type(self).__name__, units)
         if "DM" not in objects:  # not in the class, where all agents would share what a modeller adds to it
             objects["DM"] = Memory(objects["b_DM"])
         self._check_members(objects)
-        options = {**objects, **self.__dict__}
+        options = {**objects, **vars(self)}
         for name in IN_BUFFER if options["place_kept_in"] == "memory" else IN_MEMORY:
             methods.pop(name, None)
         for name, unit in units.items():
@@ -91,7 +91,7 @@ class SGOMS(ACTR):
 
     def _check_members(self, objects: dict[str, Any]) -> None:
         kind = type(self).__name__
-        options = {**objects, **self.__dict__}
+        options = {**objects, **vars(self)}
         for name, known in (("place_kept_in", ("memory", "buffer")), ("resume_at", ("unit_task", "method"))):
             if options[name] not in known:
                 raise PlanError(f"{kind}.{name}: must be {' or '.join(map(repr, known))} (got {options[name]!r})")

@@ -23,7 +23,7 @@ def _agent_of(buffer: Buffer) -> Any:
     Raises:
         PlanError: If its agent has not started: until then the buffer is that of the class.
     """
-    agent = buffer.__dict__.get("parent")
+    agent = vars(buffer).get("parent")
     if agent is None:
         raise PlanError("a buffer of SGOMS is set before its agent has started; do it in the agent's init(), or after its run(0)")
     return agent
@@ -51,21 +51,18 @@ class Level(Buffer):
         """The traced chunk."""
         self._beginning = "begun"
 
-    def _agent(self) -> Any:
-        return _agent_of(self)
-
     def set(self, chunk: object) -> None:
         """Sets the chunk.
 
         Raises:
             PlanError: If its agent has not started.
         """
-        self._agent()
+        _agent_of(self)
         super().set(chunk)
 
     def _made(self, chunk: object) -> Chunk:
         """Returns the chunk for `set`."""
-        self._agent()
+        _agent_of(self)
         return Chunk(chunk, self.sch.bound)
 
     def put_back(self, slots: dict[str, Any], beginning: str) -> None:
@@ -127,7 +124,7 @@ class Level(Buffer):
         """Returns the levels above or below this one, from the top."""
         place = LEVELS.index(self.name)
         names = LEVELS[place + 1 :] if below else LEVELS[:place]
-        found = [self._agent().__dict__.get(name) for name in names]
+        found = [_agent_of(self).__dict__.get(name) for name in names]  # of this agent, not of its class
         return [level for level in found if isinstance(level, Level)]
 
 
@@ -155,7 +152,7 @@ class PlanUnitLevel(Level):
         if "planning_unit" not in made:
             raise PlanError(f"b_plan_unit: '{made}' names no planning unit; write 'planning_unit:…'")
         name = as_text(made["planning_unit"])
-        made.setdefault("type", plans_of(self._agent()).unit(name, "b_plan_unit").kind)
+        made.setdefault("type", plans_of(_agent_of(self)).unit(name, "b_plan_unit").kind)
         for slot, value in (("cuelag", BEFORE), ("cue", BEFORE), ("unit_task", START), ("state", "begin")):
             made.setdefault(slot, value)
         for slot in ("interrupted", "place", "lost"):
@@ -171,7 +168,7 @@ class PlanUnitLevel(Level):
         """
         if self.chunk:
             if "planning_unit" in args:
-                plans_of(self._agent()).unit(as_text(args["planning_unit"]), "b_plan_unit")
+                plans_of(_agent_of(self)).unit(as_text(args["planning_unit"]), "b_plan_unit")
             self._check({**self.chunk, **args})
             if args.get("state", "lost") != "lost" and self.chunk["lost"] != "none":
                 args["lost"] = "none"
@@ -179,7 +176,7 @@ class PlanUnitLevel(Level):
 
     def _check(self, slots: Any) -> None:
         name, state = as_text(slots["planning_unit"]), as_text(slots["state"])
-        kind = plans_of(self._agent()).unit(name, "b_plan_unit").kind
+        kind = plans_of(_agent_of(self)).unit(name, "b_plan_unit").kind
         if slots["type"] != kind:
             given = as_text(slots["type"])
             raise PlanError(f"b_plan_unit: '{name}' is of type '{kind}', not '{given}'; begin it with 'planning_unit:{name}'")
@@ -207,7 +204,7 @@ class UnitTaskLevel(Level):
         made = self._made(chunk)
         if "unit_task" not in made:
             raise PlanError(f"b_unit_task: '{made}' names no unit task; write 'unit_task:…'")
-        agent = self._agent()
+        agent = _agent_of(self)
         plans_of(agent).check_unit_task(as_text(made["unit_task"]))
         plan: dict[Any, Any] = agent.b_plan_unit.chunk or {}
         made.setdefault("planning_unit", plan.get("planning_unit", "none"))
@@ -224,7 +221,7 @@ class UnitTaskLevel(Level):
             PlanError: If no planning unit has such a unit task, or its state is a misspelt «finished».
         """
         if "unit_task" in args:
-            plans_of(self._agent()).check_unit_task(as_text(args["unit_task"]))
+            plans_of(_agent_of(self)).check_unit_task(as_text(args["unit_task"]))
         self._check_state(args.get("state", START))
         super().modify(**args)
 
@@ -234,7 +231,7 @@ class UnitTaskLevel(Level):
         Raises:
             PlanError: If the planning unit waits for the end of the unit task.
         """
-        plan: dict[Any, Any] = self._agent().b_plan_unit.chunk or {}
+        plan: dict[Any, Any] = _agent_of(self).b_plan_unit.chunk or {}
         if self.chunk and plan.get("state") == "running":
             raise PlanError(
                 f"b_unit_task: '{self.chunk['unit_task']}' is cleared, and nothing would follow it; "

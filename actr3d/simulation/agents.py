@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from actr3d.actr.chunks.chunk import LASTING_TYPES
+from actr3d.actr.changes import Parts
 from actr3d.actr.kernel.model import Model, attach_trace, ensure_converted, is_converted
 from actr3d.actr.kernel.run_limits import RunLimits
-from actr3d.actr.kernel.tree import path_of
 from actr3d.actr.loading.global_seed import seed_shared
 from actr3d.actr.modules.port import Embodiment, Request
 from actr3d.clock import MICROSECONDS
-from actr3d.errors import SimulationError, did_you_mean
+from actr3d.errors import SimulationError
 from actr3d.trace import Trace
 
 Factory = Callable[[], Any]
@@ -120,25 +119,10 @@ class Agents:
         if trace.production:
             trace.emit(self._sch.now_us, "top", kind, data)
 
-    def set_parameter(self, path: Any, value: Any) -> None:
-        """Sets a parameter of an agent that is a number, a text, True, False or None: `walker.memory.latency`.
-
-        Raises:
-            SimulationError: If there is no such parameter.
-        """
-        if not isinstance(path, str):
-            raise SimulationError(f"a parameter is named by a text such as 'walker.memory.latency' (got {path!r})")
-        *places, name = path.split(".")
-        part: Any = self.environment
-        for place in places:
-            inner = {child.name: child for child in part.get_children()}
-            if place not in inner:
-                raise SimulationError(f"no parameter '{path}': '{path_of(part)}' has no part '{place}'{did_you_mean(place, inner)}")
-            part = inner[place]
-        known = [known for known, now in part.__dict__.items() if known[0] != "_" and type(now) in LASTING_TYPES]
-        if name not in known:
-            raise SimulationError(f"no parameter '{path}': '{path_of(part)}' has no '{name}'{did_you_mean(name, known)}")
-        setattr(part, name, value)
+    @property
+    def parts(self) -> Parts:
+        """The parts of all agents, which a user can change."""
+        return Parts([self.environment])
 
 
 def _made(name: str, factory: Factory) -> Model:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Any, cast
 
+from actr3d.actr.changes import AgentChange
 from actr3d.actr.chunks.chunk import LASTING_TYPES
+from actr3d.change import CHANGES
 from actr3d.errors import SimulationError, did_you_mean
 from actr3d.simulation.agents import Agents
-from actr3d.world.world import WORLD_COMMANDS, World
-
-Carry = Callable[..., None]
+from actr3d.world import World
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class Command:
     tick: int
     """Number of ticks before it."""
     word: str
-    """A command to the world (`WORLD_COMMANDS`), to the agents (`ON_AGENTS`), or to a body."""
+    """A change of the world or of an agent (`CHANGES`), or a command of a body."""
     values: tuple[Any, ...]
     """Its positional arguments."""
     named: Mapping[str, Any]
@@ -53,27 +53,15 @@ class Command:
             SimulationError: If there is no such command, or a value is wrong.
             Exception: What a body raises.
         """
-        if self.body is None and self.word in ON_AGENTS:
-            self._call(ON_AGENTS[self.word], agents)
-        elif not only_agents:
-            if self.body is None:
-                self._call(WORLD_COMMANDS[self.word], world)
-            else:
+        if self.body is not None:
+            if not only_agents:
                 world.bodies[self.body].set(self.word, *self.values, **self.named)
-
-    def _call(self, carry: Carry, on: World | Agents) -> None:
-        try:
-            carry(on, *self.values, **self.named)
-        except TypeError as error:
-            raise SimulationError(f"command '{self.word}': {error}") from error
-
-
-def _parameter(agents: Agents, path: str, value: Any) -> None:
-    agents.set_parameter(path, value)
-
-
-ON_AGENTS: dict[str, Carry] = {"parameter": _parameter}
-"""Commands to the agents by name."""
+            return
+        change = CHANGES[self.word].of_arguments(self.values, self.named)
+        if isinstance(change, AgentChange):
+            change.carry_out(agents.parts)
+        elif not only_agents:
+            change.carry_out(world)
 
 
 def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, world: World) -> Command:
@@ -87,11 +75,10 @@ def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str
     for text in given:
         if not isinstance(text, str):
             raise SimulationError(f"command and body must be text (got {text!r})")
-    if body is None and word not in WORLD_COMMANDS and word not in ON_AGENTS:
+    if body is None and word not in CHANGES:
         if len(bodies) != 1:
-            known = [*WORLD_COMMANDS, *ON_AGENTS]
-            say = f"name its body: {', '.join(bodies)}" if bodies else f"there are: {', '.join(known)}"
-            raise SimulationError(f"no command '{word}'{did_you_mean(word, known)}; {say}")
+            say = f"name its body: {', '.join(bodies)}" if bodies else f"there are: {', '.join(CHANGES)}"
+            raise SimulationError(f"no command '{word}'{did_you_mean(word, CHANGES)}; {say}")
         (body,) = bodies
     if body is not None and body not in bodies:
         raise SimulationError(f"command '{word}': no body '{body}'{did_you_mean(body, bodies)}; there are: {', '.join(bodies) or 'none'}")

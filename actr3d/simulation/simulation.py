@@ -271,9 +271,9 @@ class Simulation:
     def command(self, word: str, /, *values: Any, body: str | None = None, **named: Any) -> None:
         """Carries out a command at once, between two ticks: `command("aperture", 0.6)`, `command("walk", 1.2, body="walker")`.
 
-        It is a command to the world (see `actr3d.world.world.WORLD_COMMANDS`), to the agents (`parameter`, a path and a value),
-        or to a body. It is recorded with its tick, and repeated at the same tick when the run goes back and forward again. After the run
-        went back, a new command starts another future: what came after the present is forgotten, also by the recording.
+        It is a change of the world or of an agent (see `actr3d.change.CHANGES`), or a command of a body. It is recorded with its
+        tick, and repeated at the same tick when the run goes back and forward again. After the run went back, a new command starts
+        another future: what came after the present is forgotten, also by the recording.
 
         Args:
             word: The command.

@@ -9,7 +9,7 @@ from threading import get_ident
 from types import TracebackType
 from typing import Any, Self
 
-from actr3d.printing import TeeOutput
+from actr3d.output import TeeOutput
 
 
 class StdoutCapture(TeeOutput):

@@ -88,8 +88,7 @@ class Feature:
     def with_values(self, **values: Any) -> Self:
         """Returns a copy with other values; like `replace`, in a tenth of its time, because every view needs it."""
         copy = object.__new__(type(self))
-        copy.__dict__.update(self.__dict__)
-        copy.__dict__.update(values)
+        vars(copy).update(vars(self), **values)
         return copy
 
 

@@ -122,7 +122,7 @@ class Vision(WithParameters, Searching):
         self._last: dict[bool, Search] = {}
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if "_last" in self.__dict__:  # it has been made
+        if "_last" in vars(self):  # it has been made
             if name == "salience":
                 self._saliences = saliences_of(value, self._detectors)
             elif name == "encoding":

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from operator import ge, gt, le, lt
 from typing import Any, NamedTuple
 
 from actr3d.actr.chunks.chunk import as_text, parse_slots, variable_value
@@ -16,6 +17,8 @@ from actr3d.vision.feature import Feature, slot_names
 from actr3d.vision.units import FLAG, LABEL, PLAIN, Unit, units_of
 
 _PIECE = re.compile(r"(>=|<=|>|<|!)?(\?\w+|[\w.+-]+)$")
+HOLDS: dict[str, Callable[[Any, Any], bool]] = {">": gt, ">=": ge, "<": lt, "<=": le}
+"""The comparisons by their signs."""
 SIGN_TEXTS = {">": "above ", ">=": "at least ", "<": "below ", "<=": "at most ", "is": "", "!": "other than "}
 
 
@@ -55,7 +58,7 @@ class Query:
             elif isinstance(wanted, str):
                 if (as_text(value) == wanted) != (sign == "is"):
                     return test
-            elif not _holds(sign, feature.at_most(slot, value) if sign[0] == ">" else value, wanted):
+            elif not HOLDS[sign](feature.at_most(slot, value) if sign[0] == ">" else value, wanted):
                 return test
         return None
 
@@ -66,18 +69,6 @@ def refusal(test: Test, feature: Feature) -> str:
     if value is None:
         return f"its {test.slot} is not known"
     return f"its {test.slot} is {as_text(value)}, not {SIGN_TEXTS[test.sign]}{as_text(test.value)}"
-
-
-def _holds(sign: str, value: float, wanted: float) -> bool:
-    match sign:
-        case ">":
-            return value > wanted
-        case ">=":
-            return value >= wanted
-        case "<":
-            return value < wanted
-        case _:
-            return value <= wanted
 
 
 def read_request(

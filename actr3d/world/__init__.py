@@ -1,6 +1,6 @@
 """The physical side: scenes, bodies, sensors, actuators. The only place that compiles a MuJoCo model."""
 
-from actr3d.world import actuators, sensors
+from actr3d.world import actuators, changes, sensors
 from actr3d.world.anatomy import BODY_KINDS
 from actr3d.world.bodies import Car, ImportedBody, Load, Mannequin
 from actr3d.world.body import Body, BodyState
@@ -32,6 +32,7 @@ __all__ = [
     "World",
     "WorldState",
     "actuators",
+    "changes",
     "sensors",
 ]
 

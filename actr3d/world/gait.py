@@ -1,6 +1,6 @@
 """Gait: how legs, arms and trunk of a walking body move, from the speed of its base alone.
 
-It is kinematic: no balance is kept and no force drives the body forward. The base moves as it is commanded; sway, rotation and
+It is kinematic: no balance is kept and no force drives the body forward. The base moves as commanded; sway, rotation and
 steps are movements of the joints that it carries, held by their servos, so that obstacles stop them too.
 """
 

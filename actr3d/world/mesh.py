@@ -129,7 +129,8 @@ class Mesh(Configuration):
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds a body with one visible geom and, unless collision is none, others for contacts."""
         triangles, ordered = _read(self._source)
-        body = mj_spec.worldbody.add_body(name=self.name, pos=self.position, quat=orientation("", self.heading, self.quaternion))
+        turned, fixed = orientation("", self.heading, self.quaternion), self.mass is None
+        body = mj_spec.worldbody.add_body(name=self.name, pos=self.position, quat=turned, mocap=fixed)
         if self.mass is not None:
             body.add_freejoint(name=self.name)
             centre, inertia = ordered.mass_properties(self.mass)

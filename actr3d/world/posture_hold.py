@@ -270,6 +270,10 @@ class PostureHold:
         if not self._struck:
             self._struck = self._contacts.any_in_step()
 
+    def strike(self) -> None:
+        """Notes that a user pushes the body: like a contact, this is met with no more than the strength of the servos."""
+        self._struck = True
+
     def _without_deviation(self) -> None:
         """Ends a correction, if there was one."""
         self.calm, self._struck = not self._struck, False

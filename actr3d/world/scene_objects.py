@@ -86,12 +86,13 @@ class Wall(Configuration):
             raise ConfigurationError(f"Wall '{self.name}': start and end are the same point {self.start}")
 
     def add_to(self, mj_spec: MjSpec) -> None:
-        """Adds a fixed body with one box."""
+        """Adds a body with one box, which only a user can move."""
         (x1, y1), (x2, y2) = self.start, self.end
         body = mj_spec.worldbody.add_body(
             name=self.name,
             pos=[(x1 + x2) / 2, (y1 + y2) / 2, self.height / 2],
             quat=yaw_quaternion(math.atan2(y2 - y1, x2 - x1)),
+            mocap=True,
         )
         size = [math.dist(self.start, self.end) / 2, self.thickness / 2, self.height / 2]
         body.add_geom(name=self.name, type=mjtGeom.mjGEOM_BOX, size=size, rgba=self.colour, solref=WALL_SOLREF)
@@ -262,9 +263,10 @@ class Loose(Configuration):
             raise ConfigurationError(f"Loose '{self.name}'.size: a {self.shape} takes {meaning} (got {self.size!r})")
 
     def add_to(self, mj_spec: MjSpec) -> None:
-        """Adds a body with one geom, and a free joint unless it is fixed."""
-        body = mj_spec.worldbody.add_body(name=self.name, pos=self.position, quat=yaw_quaternion(self.heading))
-        if self.mass is not None:
+        """Adds a body with one geom, and a free joint unless it is fixed: then only a user can move it."""
+        fixed = self.mass is None
+        body = mj_spec.worldbody.add_body(name=self.name, pos=self.position, quat=yaw_quaternion(self.heading), mocap=fixed)
+        if not fixed:
             body.add_freejoint(name=self.name)
         kind, _, _ = SHAPES[self.shape]
         body.add_geom(name=self.name, type=kind, size=half_sizes(self.shape, self.size), rgba=self.colour, mass=self.mass or 0)

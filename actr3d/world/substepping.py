@@ -15,6 +15,7 @@ from actr3d.clock import seconds
 from actr3d.errors import WorldError
 from actr3d.world.body import Body
 from actr3d.world.kernel import fastest, near
+from actr3d.world.objects import Pushes
 from actr3d.world.physics import Physics
 from actr3d.world.reach import radius
 
@@ -35,12 +36,14 @@ class Substepping:
     Args:
         physics: The compiled scene and its state.
         bodies: Those that must not pass through anything.
+        pushes: The forces by which a user pushes objects.
     """
 
-    def __init__(self, physics: Physics, bodies: list[Body]) -> None:
+    def __init__(self, physics: Physics, bodies: list[Body], pushes: Pushes) -> None:
         model = physics.mj_model
         self._physics = physics
         self._bodies = bodies
+        self._pushes = pushes
         self._holds = [body.hold for body in bodies]
         self._hands = [hand for body in bodies for hand in body.hands.values()]
         self._whole = physics.timestep
@@ -70,7 +73,10 @@ class Substepping:
         """
         model, data = cast("Any", self._physics.mj_model), self._physics.mj_data
         for count in self.stretches(steps):
-            fine = self._prepare(count)
+            pushed = bool(self._pushes)
+            fine = self._prepare(count) or pushed  # a push may make it fast at once
+            if pushed:
+                self._pushes.begin(count)
             for _ in range(count):
                 parts = self._needed() if fine else 1
                 try:
@@ -85,6 +91,8 @@ class Substepping:
                 finally:
                     if parts > 1:
                         model.opt.timestep = self._whole
+            if pushed:
+                self._pushes.end(count)
             self._physics.changed()
 
     def _prepare(self, count: int) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 import numpy as np
 from mujoco import MjData, MjModel
@@ -16,29 +15,13 @@ from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
 from actr3d.world.model_changes import Changes, ModelChanges
 from actr3d.world.motion_commands import MotionCommands
+from actr3d.world.objects import PRESSED, Objects, Pushes
 from actr3d.world.physics import Physics
 from actr3d.world.scene import Scene
 from actr3d.world.scene_objects import Aperture
 from actr3d.world.sensors.touch import step_and_feel
 from actr3d.world.substepping import Substepping
 from actr3d.world.velocity_servo import fit_servos
-
-PRESSED = 0.01
-"""Greatest depth of an aperture's walls in another object when its width is set [m]: contacts as stiff as theirs push that out
-at less than 3 m/s, but fling away, or crush without bounds, what is deeper. Source: chosen for this library."""
-
-F = TypeVar("F", bound=Callable[..., None])
-WORLD_COMMANDS: dict[str, Callable[..., None]] = {}
-"""By name, the commands that a user can give to a world during a run; `world_command` registers them."""
-
-
-def world_command(function: F) -> F:
-    """Registers a command under the function's name; its first argument is the world.
-
-    It may change the state of the world only, not the compiled model, so that a stored state contains its effect.
-    """
-    WORLD_COMMANDS[function.__name__] = function
-    return function
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,6 +42,9 @@ class WorldState:
 
     compiled: Changes = ()
     """Changes of the compiled model since the start; see `ModelChanges`."""
+
+    pushes: tuple[tuple[int, float, float, int], ...] = ()
+    """What is left of pushes by hand, from `Pushes.state`."""
 
 
 class World:
@@ -91,8 +77,12 @@ class World:
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
         self.bodies: dict[str, Body] = {part.name: Body(self.physics, part, seed) for part in described}
+        segments = frozenset(f"{name}_{side}" for name in self._apertures for side in ("left", "right"))
+        self.objects = Objects(self.physics, self.bodies, segments)
+        """What can be moved by hand."""
+        self._pushes = Pushes(self.physics, self.objects)
         self._changes = ModelChanges(self.mj_model)
-        self._substepping = Substepping(self.physics, list(self.bodies.values()))
+        self._substepping = Substepping(self.physics, list(self.bodies.values()), self._pushes)
         self.watchers: list[Callable[[], None]] = []
         """Called after every physics step, or part of one; they change nothing. The geometry, contacts and forces of `mj_data` are
         those of the step's beginning then, `time` and `opt.timestep` are its end and its length."""
@@ -171,7 +161,14 @@ class World:
         """Returns a copy of the present state; later steps do not change it."""
         bodies = tuple((name, body.state()) for name, body in self.bodies.items())
         numbers, changes = self.physics.integration_state(), self._changes.changes()
-        return WorldState(steps=self.physics.steps, scene=self.fingerprint, mj_state=numbers, bodies=bodies, compiled=changes)
+        return WorldState(
+            steps=self.physics.steps,
+            scene=self.fingerprint,
+            mj_state=numbers,
+            bodies=bodies,
+            compiled=changes,
+            pushes=self._pushes.state(),
+        )
 
     def state_bytes(self) -> bytes:
         """Returns the numbers of the present state, without the count of steps, as a recording stores them."""
@@ -193,7 +190,28 @@ class World:
         self.physics.steps = state.steps
         for name, body_state in state.bodies:
             self.bodies[name].restore(body_state)
+        self._pushes.restore(state.pushes)
         self.changed()
+
+    # -- objects moved by hand
+
+    def move(self, name: str, x: float, y: float, heading: float | None = None) -> None:
+        """Puts a body, a wall or another object at (x, y) [m], with a heading [rad] or its present one, at once.
+
+        Raises:
+            WorldError: If there is no such object, or it would be inside another one; it stays then.
+        """
+        self.objects.move(name, x, y, heading)
+
+    def push(self, name: str, x: float, y: float = 0.0, time: float = 0.1) -> None:
+        """Pushes a body or a loose object with a force (x, y) [N] for a time [s], from the next physics step on.
+
+        The force acts at the centre of the object, or of the base of a body; a body holds its place with the strength that it has.
+
+        Raises:
+            WorldError: If there is no such object, or it cannot be pushed.
+        """
+        self._pushes.add(name, x, y, max(1, round(time / self.scene.timestep)))
 
     # -- apertures
 
@@ -252,9 +270,3 @@ class World:
     def _mocap(self, name: str) -> int:
         body = self.mj_model.body(name)
         return int(self.mj_model.body_mocapid[int(body.id)])
-
-
-@world_command
-def aperture(world: World, width: float, name: str = "aperture") -> None:
-    """Sets the free width of an aperture [m]."""
-    world.set_aperture_width(width, name)

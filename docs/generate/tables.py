@@ -15,6 +15,7 @@ from unittest import mock
 
 import actr3d.cli
 import workbench.cli
+from actr3d.change import CHANGES
 from actr3d.motor import Motor
 from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportUnusedImport] # registers the sensor `view`
 from actr3d.trace_kinds import KINDS
@@ -121,6 +122,16 @@ def motor_commands() -> str:
         takes = ", ".join(str(parameter.replace(annotation=inspect.Parameter.empty)) for parameter in parameters)
         rows.append((_code(f"{command.__name__}({takes})"), _first_sentence(command)))
     return _rows(("Command", "Meaning"), rows)
+
+
+@_registered
+def changes() -> str:
+    """Returns the table of all changes that a user can make by hand."""
+    rows: list[Sequence[str]] = []
+    for word, kind in CHANGES.items():
+        takes = ", ".join(str(one.replace(annotation=one.empty)) for one in inspect.signature(kind).parameters.values())
+        rows.append((_code(f"{word}({takes})"), _first_sentence(kind)))
+    return _rows(("Command", "What it does"), rows)
 
 
 @_registered

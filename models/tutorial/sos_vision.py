@@ -51,7 +51,7 @@ class Observer(ACTR):
         counts["nothing"] += 1
         self.go_on()
 
-    # No pattern, but a parameter: this is no production, only a method that productions call.
+    # No pattern, but a parameter: this is not a production, only a method that productions call.
     def go_on(self):
         self.remaining -= 1
         if self.remaining > 0:

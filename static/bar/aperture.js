@@ -36,7 +36,7 @@ export function Aperture() {
   const { bodies = {}, widths = {} } = session.value?.world ?? {};
   const shoulders = Object.values(bodies).find((body) => body.shoulders)?.shoulders;
   const reading = html`<output id="width">${cm.toFixed(0)} cm${shoulders ? html` <span class="quiet">A/S ${(cm / 100 / shoulders).toFixed(2)}</span>` : null}</output>`;
-  if (!widths[name.value]) return html`<span class="aperture" title="The free width of the doorway; a program takes no commands while it runs"><span>${name}</span> ${reading}</span>`;
+  if (!widths[name.value]) return html`<span class="aperture" title="The free width of the doorway; that of a program cannot be changed by hand"><span>${name}</span> ${reading}</span>`;
   const [least, most] = widths[name.value];
   return html`<label class="aperture" title="The free width of the doorway; it changes while the run goes on, and is recorded">
     <span>${name}</span>

@@ -54,7 +54,7 @@ export function Branch() {
   if (closed.value.includes(which)) return null;
   const where = `the recording ${recording}, which is listed in Runs`;
   if (recording === recorded) {
-    const title = `Changed at ${seconds(at)}; how it had gone on is still in ${where}. What follows is not recorded.`;
+    const title = `Changed at ${seconds(at)}; how it had gone on is still in ${where}. What follows is recorded as a branch of it.`;
     return html`<${Notice} key=${which} which=${which} title=${title}>The recording is unchanged: it still has the run up to ${seconds(until)}<//>`;
   }
   const open = () => openRun({ id: recording, model, made: Date.now() / 1000 });

@@ -48,9 +48,9 @@ export function RecordingBanner() {
   return html`<div class="recording-banner" role="status">
     <b>Recording</b>
     <span title=${recorded}>${fileOf(model)}, made ${whenInFull(made)} <span class="mono quiet">${recorded}</span></span>
-    <span class="quiet" title=${changed ? "What follows is new, and is not recorded." : "Running it shows again what happened."}>
+    <span class="quiet" title=${changed ? "What follows is new, and is recorded as a branch of it." : "Running it shows again what happened."}>
       ${changed
-        ? "You have changed its course: what follows is new, and is not recorded."
+        ? "You have changed its course: what follows is recorded as a branch of it"
         : `${(state.value?.furthest ?? 0).toFixed(2)} s are known`}
     </span>
     <span class="stretch"></span>

@@ -9,7 +9,7 @@ const MOST = 2n ** 63n - 1n;
 /** Returns why a text is not a valid seed; null if it is one. */
 export function seedProblem(text) {
   const written = text.trim();
-  if (!/^\d+$/.test(written)) return `a seed is a whole number from 0 on (got «${written.slice(0, 40)}»)`;
+  if (!/^\d+$/.test(written)) return `the seed must be a whole number >= 0 (got «${written.slice(0, 40)}»)`;
   return written.length > 19 || BigInt(written) > MOST ? `a seed is at most ${MOST} (got ${written.slice(0, 40)})` : null;
 }
 

@@ -204,7 +204,7 @@ export function save(document, over = undefined) {
 
 async function saveNow(document, over) {
   if (new TextEncoder().encode(document.text).length > LARGEST) {
-    complain(`${document.path} was not saved: a model file has no more than ${LARGEST.toLocaleString("en")} bytes.`);
+    complain(`${document.path} was not saved: the size of a model file must be <= ${LARGEST.toLocaleString("en")} bytes.`);
     return false;
   }
   document.saving.value = true;

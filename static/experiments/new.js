@@ -25,7 +25,7 @@ function change(design, changes) {
   drafts.value = { ...drafts.value, [design]: { ...draftOf(design), ...changes } };
 }
 
-/** Returns a whole number from 1 on; null for an empty text, NaN for any other. */
+/** Returns a whole number >= 1; null for an empty text, NaN for any other. */
 function readCount(text) {
   return text.trim() === "" ? null : /^[1-9]\d{0,5}$/.test(text.trim()) ? Number(text) : NaN;
 }
@@ -43,7 +43,7 @@ function wantedOf(design, facts) {
   }
   for (const [name, text] of Object.entries(counts)) {
     const count = readCount(text);
-    if (Number.isNaN(count)) problem ??= `${name}: a whole number from 1 on`;
+    if (Number.isNaN(count)) problem ??= `${name}: must be a whole number >= 1`;
     else if (count !== null) wanted[name] = count;
   }
   if (!facts || problem) return { wanted, problem, trials: null };

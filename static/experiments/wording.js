@@ -50,7 +50,7 @@ function readLevel(text) {
   return { true: true, false: false, none: null, True: true, False: false, None: null }[text] ?? (/^[Nn]one$/.test(text) ? null : text);
 }
 
-/** Returns the levels that a text lists, separated by commas; texts may stand in quotes. Returns null if it lists none, or one twice. */
+/** Returns the levels that a text lists, separated by commas; texts may be in quotes. Returns null if it lists none, or one twice. */
 export function readLevels(text) {
   const parts = text.match(/\s*(?:"(?:[^"\\]|\\.)*"|[^,;"]+)\s*(?:[,;]|$)/g) ?? [];
   if (parts.join("").trim() !== text.trim() || parts.length === 0) return null;

@@ -1,6 +1,7 @@
 // All productions: which match, which is chosen, where breakpoints are; one of them is explained.
 
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { ChangeMenu } from "../changes/changes.js";
 import { counted } from "../parts/count.js";
 import { systemsOf } from "./agents.js";
 import { at, production } from "./asked.js";
@@ -37,6 +38,10 @@ export function explained(all) {
   return wanted ?? all.toSorted((one, other) => rank(one) - rank(other))[0] ?? null;
 }
 
+function isForbidden(system, name) {
+  return state.value?.parts[system]?.forbidden?.includes(name) ?? false;
+}
+
 function Item({ item, chosen, several }) {
   const { system, name, reason } = item;
   const [kind, sign, words] = howItStands(reason);
@@ -49,7 +54,9 @@ function Item({ item, chosen, several }) {
     <button class="dot" tabindex="-1" aria-pressed=${marked} aria-label="Breakpoint on ${name}" title="${marked ? "Remove the breakpoint" : "Pause whenever it fires"} (B)" onClick=${() => toggleBreakpoint(name)}></button>
     <button class="name" tabindex=${chosen ? 0 : -1} aria-current=${chosen} title="${several ? `${system}: ` : ""}${name}${words ? `: ${words}` : ""}" onClick=${() => (production.value = { system, name })}>
       <span class="sign" role="img" aria-label=${words}>${sign}</span><span class="text">${name}</span>
+      ${isForbidden(system, name) ? html`<span class="quiet" title="The user has forbidden it: it is left out of the next choice for which it matches">forbidden once</span>` : null}
     </button>
+    <${ChangeMenu} of="production" given=${{ system, production: name }} label=${name} />
   </li>`;
 }
 

@@ -1,6 +1,7 @@
 // A memory as a table: chunks with their activations and the components of these, sorted as the user chooses.
 
 import { html, useMemo, useState } from "../vendor/preact.js";
+import { ChangeButtons } from "../changes/changes.js";
 import { Chunk, chunkText, valueText } from "../parts/chunk.js";
 import { fixed, Part, partName } from "./part_names.js";
 import { Rows } from "./rows.js";
@@ -28,7 +29,7 @@ function Head({ text, title, by, sort, onSort }) {
   </th>`;
 }
 
-function Chosen({ row, names, threshold }) {
+function Chosen({ memory, row, names, threshold }) {
   const sum = row.activation === null ? "not known before a retrieval" : fixed(row.activation);
   return html`<section class="one-chunk" aria-label="The chosen chunk">
     <p class="mono">${Object.entries(row.slots).map(([slot, value]) => html`<span key=${slot} class="slot">${/^\d+$/.test(slot) ? null : html`<b>${slot}</b>`}${valueText(value)}</span>`)}</p>
@@ -37,6 +38,7 @@ function Chosen({ row, names, threshold }) {
       ${names.length ? html`<span class="quiet"> = ${names.map((name, n) => html`${n ? " + " : ""}${partName(name)} <${Part} value=${row.parts[name]} />`)}</span>` : null}
       ${threshold !== null ? html`, threshold ${valueText(threshold)}` : null}
     </p>
+    <p><${ChangeButtons} of="chunk" given=${{ memory, chunk: row.chunk }} /></p>
   </section>`;
 }
 
@@ -69,7 +71,7 @@ export function MemoryTable({ answer, words }) {
         ${names.map((name) => html`<${Head} key=${name} text=${partName(name)} title=${name} by=${name} sort=${sort} onSort=${setSort} />`)}`}
       chosen=${at < 0 ? null : at}
       onChoose=${(n) => setChosen(all[n].chunk)}
-      empty=${html`<p class="empty">${words ? "No chunk has all of these words." : "This memory is empty so far."}</p>`}
+      empty=${html`<p class="empty">${words ? "No chunk has all of these words." : "This memory is still empty."}</p>`}
     />
-    ${at < 0 ? null : html`<${Chosen} row=${all[at]} names=${names} threshold=${threshold} />`}`;
+    ${at < 0 ? null : html`<${Chosen} memory=${memory} row=${all[at]} names=${names} threshold=${threshold} />`}`;
 }

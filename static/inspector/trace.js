@@ -105,7 +105,7 @@ export function FiringTrace() {
     return html`<${Row} key=${number} number=${number} event=${event} ahead=${number < 0 ? event[0] > time : number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} />`;
   };
   const open = (n) => (mixed.numberAt(n) < 0 ? seek(mixed.at(mixed.numberAt(n))[0] / 1e6) : goTo(mixed.numberAt(n)));
-  const nothing = list.length === 0 ? nothingYet() : "All events so far are filtered out.";
+  const nothing = list.length === 0 ? nothingYet() : "All events are filtered out.";
   return html`<section class="trace">
     <div class="tools">
       <input type="search" aria-label="Filter the trace" placeholder="Filter" value=${wantedWords.value} onInput=${(event) => (wantedWords.value = event.currentTarget.value)} />

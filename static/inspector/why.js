@@ -1,6 +1,7 @@
 // Explains why a production matches or not: condition by condition, and the components of its utility.
 
 import { html } from "../vendor/preact.js";
+import { ChangeButtons } from "../changes/changes.js";
 import { valueText } from "../parts/chunk.js";
 import { runStatus } from "../run_status.js";
 import { howItStands } from "./list.js";
@@ -53,6 +54,7 @@ export function Why({ item }) {
   const [kind, , words] = howItStands(reason);
   const bound = Object.entries(reason.bindings);
   return html`<h3 class=${kind}><span class="mono">${name}</span>: ${words}</h3>
+    <p><${ChangeButtons} key=${`${item.system} ${name}`} of="production" given=${{ system: item.system, production: name }} /></p>
     ${reason.verdict ? html`<p>${reason.verdict}</p>` : null}
     <${Conditions} reason=${reason} />
     ${bound.length

@@ -8,10 +8,11 @@ import { Flash } from "../inspector/flash.js";
 import { Module, Plain, useRequests } from "../inspector/modules.js";
 import { Result } from "../inspector/result.js";
 import { Icon } from "../parts/icon.js";
-import { chunkText, slotsOf } from "../parts/chunk.js";
+import { chunkText, slotsOf, writtenChunk } from "../parts/chunk.js";
+import { changesOf, Problem, useChange } from "../changes/changes.js";
 import { counted } from "../parts/count.js";
 import { nothing, runStatus } from "../run_status.js";
-import { running, session, state } from "../store.js";
+import { alive, running, session, state } from "../store.js";
 
 const LINES = 3; // the number of lines of a chunk shown unless expanded
 const KEPT = 1000; // how long a row keeps its height while the run is active [ms]
@@ -37,25 +38,54 @@ function useLines(text, open) {
   return { box, content, lines: running.value ? kept : needed.lines, more: needed.more };
 }
 
-/** A buffer: the first lines of its chunk, or all of it if expanded. */
+/** The field in which a buffer is edited: Enter sets it, or clears it if it is empty; a problem is shown below. */
+function Edit({ path, name, chunk, onDone }) {
+  const { problem, send, forget } = useChange();
+  const line = useRef(null);
+  useLayoutEffect(() => line.current.select(), []);
+
+  async function press(event) {
+    event.stopPropagation();
+    const text = line.current.value.trim();
+    if (event.key === "Escape") onDone();
+    else if (event.key !== "Enter") forget();
+    else if (text ? await send("set_buffer", { buffer: path, chunk: text }) : await send("clear_buffer", { buffer: path })) onDone();
+  }
+
+  return html`<input class="mono edit" ref=${line} aria-label="Chunk of ${name}" aria-invalid=${problem !== null} defaultValue=${writtenChunk(chunk)} placeholder="empty" maxlength="10000" onKeyDown=${press} onBlur=${() => problem === null && onDone()} />
+    <${Problem} text=${problem} />`;
+}
+
+/** A buffer: its chunk, or the field in which it is edited. */
 function Buffer({ path, name, chunk }) {
+  const [edits, setEdits] = useState(false);
+  const row = useRef(null);
+  const canEdit = alive.value && changesOf("buffer").some(({ word }) => word === "set_buffer");
+  const edit = () => canEdit && setEdits(true);
+  const done = () => (setEdits(false), requestAnimationFrame(() => row.current?.querySelector(".pen")?.focus()));
+  return html`<tr ref=${row} data-path=${path} onDblClick=${edit}>
+    <th scope="row" class="mono" title=${path}>${name}</th>
+    <td class=${edits ? "edits" : ""}>
+      ${edits ? html`<${Edit} path=${path} name=${name} chunk=${chunk} onDone=${done} />` : html`<${Shown} name=${name} chunk=${chunk} onEdit=${canEdit ? edit : null} />`}
+    </td>
+  </tr>`;
+}
+
+/** The first lines of a chunk, or all of it if expanded. */
+function Shown({ name, chunk, onEdit }) {
   const [open, setOpen] = useState(false);
   const slots = slotsOf(chunk);
   const { box, content, lines, more } = useLines(chunkText(chunk), open);
-  return html`<tr data-path=${path}>
-    <th scope="row" class="mono" title=${path}>${name}</th>
-    <td>
-      ${more || open
-        ? html`<button class="bare" aria-expanded=${open} aria-label="All of ${name}" title=${open ? "A few lines only" : "All of it"} onClick=${() => setOpen(!open)}><${Icon} name="down" /></button>`
-        : null}
-      <div class="chunk" ref=${box} style=${{ minHeight: `calc(${lines} * var(--row))`, maxHeight: open ? "none" : `calc(${LINES} * var(--row))` }}>
-        <div ref=${content}>
-          <${Flash} text=${chunk ? "" : "empty"}>${chunk ? null : html`<span class="empty">empty</span>`}<//>
-          ${slots.map(([slot, text], n) => html`<${Flash} key=${slot || n} class="slot" text=${text}>${slot ? html`<b>${slot}</b>` : null}${text}<//>`)}
-        </div>
+  return html`${onEdit ? html`<button class="bare pen" aria-label="Edit ${name}" title="Edit this buffer (double-click)" onClick=${onEdit}><${Icon} name="pen" /></button>` : null}
+    ${more || open
+      ? html`<button class="bare" aria-expanded=${open} aria-label="All of ${name}" title=${open ? "A few lines only" : "All of it"} onClick=${() => setOpen(!open)}><${Icon} name="down" /></button>`
+      : null}
+    <div class="chunk" ref=${box} style=${{ minHeight: `calc(${lines} * var(--row))`, maxHeight: open ? "none" : `calc(${LINES} * var(--row))` }}>
+      <div ref=${content}>
+        <${Flash} text=${chunk ? "" : "empty"}>${chunk ? null : html`<span class="empty">empty</span>`}<//>
+        ${slots.map(([slot, text], n) => html`<${Flash} key=${slot || n} class="slot" text=${text}>${slot ? html`<b>${slot}</b>` : null}${text}<//>`)}
       </div>
-    </td>
-  </tr>`;
+    </div>`;
 }
 
 function Others({ agent = null, paths, parts }) {

@@ -1,4 +1,4 @@
-// The model's output as it is printed, with the warnings and errors of the run between its lines; goes back with the run.
+// The model's output, line by line, with the warnings and errors of the run between its lines; goes back with the run.
 
 import { html, useEffect, useMemo } from "../vendor/preact.js";
 import { clear, fillGaps, printed, printedVersion } from "../inspector/printed.js";

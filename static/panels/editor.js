@@ -12,8 +12,9 @@ import { ACTIONS, Menu } from "../editor/menu.js";
 import { Problems } from "../editor/problems.js";
 import { saveAndRun } from "../editor/stale_run.js";
 import { Strip } from "../editor/banner.js";
-import { command } from "../commands.js";
+import { command, commandsOf } from "../commands.js";
 import { noteKey } from "../keys.js";
+import { openTab } from "../open_tab.js";
 import { Icon } from "../parts/icon.js";
 import { session } from "../store.js";
 
@@ -45,6 +46,15 @@ noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone inde
 const onShown = (work) => () => shownDocument() && work(shownDocument());
 Object.assign(keys, { define: onShown(define), rename: onShown(renameName), format: onShown(format) });
 for (const { key, text } of ACTIONS) noteKey(key, text.replace(" …", ""), "Editor");
+commandsOf(() =>
+  ACTIONS.map(({ key, text, work }) => {
+    const inText = () => {
+      openTab.value = "editor";
+      requestAnimationFrame(work); // once the text is visible
+    };
+    return { text, key, group: "Editor", work: inText, ready: hasText };
+  }),
+);
 noteKey("Mod+Click", "Go to the definition", "Editor");
 
 /** Applies the user's choice between two versions. */

@@ -1,6 +1,7 @@
 // Declarative memory: its chunks with their activations, the body schema in it, and what the eyes found last.
 
 import { html, signal, useEffect, useState } from "../vendor/preact.js";
+import { changesOf, Problem, useChange } from "../changes/changes.js";
 import { AtStart } from "../inspector/at_start.js";
 import { MemoryTable } from "../inspector/memory_table.js";
 import { Search } from "../inspector/retrievals.js";
@@ -11,7 +12,7 @@ import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { remembered } from "../local_storage.js";
 import { nothing } from "../run_status.js";
-import { running, session, state } from "../store.js";
+import { alive, running, session, state } from "../store.js";
 
 const MOST = 5000; // the maximum number of chunks requested
 const LIVE = 150; // a memory with at most this many chunks is also shown while the run is active
@@ -38,6 +39,22 @@ function Note({ result, schema }) {
   return html`<span class="quiet">${schema ? counted(schema.length, "posture") : `${found}${cut}${threshold === null ? "" : `, threshold ${valueText(threshold)}`}`}</span>`;
 }
 
+/** The field in which a chunk is added to the memory: Enter adds it. */
+function AddChunk({ memory }) {
+  const { problem, send, forget } = useChange();
+  if (!changesOf("memory").some(({ word }) => word === "add_chunk")) return null;
+
+  async function press(event) {
+    const field = event.currentTarget;
+    const chunk = field.value.trim();
+    if (event.key !== "Enter") forget();
+    else if (chunk && (await send("add_chunk", { memory, chunk }))) field.value = "";
+  }
+
+  return html`<input class="mono add-chunk" aria-label="Add a chunk" aria-invalid=${problem !== null} placeholder="Add a chunk, such as item:cup" title="Enter adds it, or strengthens the equal chunk that is there" maxlength="10000" disabled=${!alive.value} onKeyDown=${press} />
+    <${Problem} text=${problem} />`;
+}
+
 function Chunks({ memory, schema }) {
   const [typed, setTyped] = useState("");
   const [words, setWords] = useState("");
@@ -53,6 +70,7 @@ function Chunks({ memory, schema }) {
   return html`<div class="tools">
       <input type="search" aria-label="Search the memory" placeholder="Search" value=${typed} onInput=${(event) => setTyped(event.currentTarget.value)} />
       <${Note} result=${result} schema=${found} />
+      ${schema ? null : html`<${AddChunk} memory=${memory} />`}
       ${running.value && !live ? html`<span class="quiet" role="status">as at the last pause</span>` : null}
     </div>
     <${Waiting} answer=${mine ? { ...result, waiting: false } : result} />

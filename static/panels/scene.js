@@ -1,10 +1,12 @@
 // The 3D view: viser's page in a frame that never moves, because moving it would reload it; and the buttons on its edge.
 
 import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
+import { askAndMake, changesOf } from "../changes/changes.js";
 import { RetinaInset } from "../eye/inset.js";
 import { command, commandsOf } from "../commands.js";
 import { hearKeys, noteKey, buttonTitle } from "../keys.js";
 import { AreaMenu } from "../parts/area_menu.js";
+import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
 import { optimistic } from "../parts/optimistic_value.js";
@@ -13,7 +15,7 @@ import { frameBudget } from "../frame_budget.js";
 import { VIEWS } from "../scene/stage.js";
 import { runStatus } from "../run_status.js";
 import { openWindow } from "../windows.js";
-import { running, session, state } from "../store.js";
+import { alive, running, session, state } from "../store.js";
 
 const open = remembered("overlays open", false);
 const view = remembered("view", "follow");
@@ -42,6 +44,7 @@ function ViewBar() {
         ${Object.entries(VIEWS).map(([id, title]) => html`<option key=${id} value=${id}>${title}</option>`)}
       </select>
       <button aria-label="Reset view" title=${buttonTitle(reset)} onClick=${resetView}><${Icon} name="restart" /></button>
+      ${canMove() ? html`<button title="Move or push a body or an object of the scene" onClick=${moveOrPush}>Move, push …</button>` : null}
       <button aria-expanded=${open.value} title="What is drawn over the scene" onClick=${() => (open.value = !open.value)}>Overlays</button>
       <${ManualLink} page="scene" title="3D view" />
       <${AreaMenu} area="scene" opening=${openScene} />
@@ -54,6 +57,19 @@ function ViewBar() {
         </label>`,
       )}
     </div>`}`;
+}
+
+function canMove() {
+  return alive.value && changesOf("object").length > 0 && session.value.world?.objects?.length > 0;
+}
+
+/** Asks which change is to be made, and for the rest. */
+async function moveOrPush() {
+  const list = changesOf("object");
+  const actions = [{ text: "Cancel", value: null }, ...list.map((one) => ({ text: `${one.title} …`, value: one }))];
+  const body = html`<dl class="change-help">${list.map((one) => html`<dt>${one.title}</dt><dd>${one.help}</dd>`)}</dl><p class="quiet">The overlay «handles» moves things with the mouse.</p>`;
+  const chosen = await dialog({ title: "Change by hand", body, actions });
+  if (chosen) askAndMake(chosen);
 }
 
 /** Moves the camera back to the start of the chosen view. */

@@ -5,6 +5,7 @@ import { nothingYet } from "../run_status.js";
 import { curvesVersion, names } from "../timeline/curves.js";
 import { lanes, lanesVersion } from "../timeline/record.js";
 import { column } from "../timeline/rows.js";
+import { Branches } from "../timeline/branches.js";
 import { Stage } from "../timeline/canvas.js";
 import { Tools } from "../timeline/tools.js";
 
@@ -18,6 +19,7 @@ const nothing = computed(() => {
 export function Timeline() {
   return html`<div class="timeline">
     <${Tools} />
+    <${Branches} />
     <div class="timeline-body">
       <${Stage} />
       ${nothing.value ? html`<p class="empty timeline-nothing" style=${{ left: `${column.value}px` }}>${nothing.value}</p>` : null}

@@ -22,6 +22,20 @@ export function chunkText(chunk) {
     .join(" ");
 }
 
+/** Returns a chunk as a model writes it, with full numbers: a positional slot is the word at its place. */
+export function writtenChunk(chunk) {
+  const exact = (value) => (typeof value === "number" ? String(value) : valueText(value));
+  const left = { ...chunk };
+  const words = [];
+  while (Object.keys(left).length > 0) {
+    const named = Object.keys(left).find((slot) => !/^\d+$/.test(slot));
+    const slot = String(words.length) in left ? String(words.length) : named ?? Object.keys(left)[0];
+    words.push(slot === String(words.length) ? exact(left[slot]) : `${slot}:${exact(left[slot])}`);
+    delete left[slot];
+  }
+  return words.join(" ");
+}
+
 export function Chunk({ chunk }) {
   if (!chunk) return html`<span class="empty">empty</span>`;
   return html`<span class="chunk">

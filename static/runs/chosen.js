@@ -7,6 +7,7 @@ import { remembered } from "../local_storage.js";
 import { compareRuns } from "../compare/compare.js";
 import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./actions.js";
 import { download, Downloads } from "./downloads.js";
+import { labelRun } from "./label.js";
 import { present } from "./list.js";
 import { endedText, labelOf, measureText, outcomeText, whenInFull } from "./wording.js";
 
@@ -83,6 +84,7 @@ function One({ run }) {
       <button class="primary" disabled=${idle} title="Live through it again (double-click)" onClick=${() => openRun(run)}>Open</button>
       <button disabled=${idle || Boolean(replays.value[run.id]?.since)} title="Run it again in a process of its own, and compare every byte" onClick=${() => replayRun(run)}>Replay</button>
       <button disabled=${idle || own || !present.value} title=${noCompare} onClick=${() => compareRuns(run.id, present.value)}>Compare with the present run</button>
+      <button disabled=${Boolean(run.problem)} title="Give it a name, a note and tags; it is then never deleted automatically" onClick=${() => labelRun(run)}>Name …</button>
       <span class="stretch"></span>
       <button class="danger bare" aria-label="Delete" title="Delete (Del)" disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /></button>
     </div>
@@ -90,6 +92,7 @@ function One({ run }) {
       <${DownloadLinks} run=${run} />
       ${run.problem ? null : html`<button class="bare" aria-expanded=${withFacts.value} title="Result, parameters, seed, events and file" onClick=${() => (withFacts.value = !withFacts.value)}>Details ${withFacts.value ? "▾" : "▸"}</button>`}
     </div>
+    ${run.label?.note ? html`<p class="run-note">${run.label.note}</p>` : null}
     <${Replayed} run=${run} key=${run.id} />
     ${run.problem ? html`<p class="problem bad">This recording cannot be opened: ${run.problem}</p>` : withFacts.value ? html`<${Facts} run=${run} />` : null}
   `;

@@ -30,9 +30,9 @@ export function whenInFull(made) {
   return FULL.format(new Date(1000 * made));
 }
 
-/** Returns the name of a recording: its model, and when it began. */
+/** Returns the name of a recording: what the user has called it, else its model, and when it began. */
 export function nameOf(run) {
-  return `${run.model || run.id} ${whenText(run.made)}`;
+  return run.label?.name || `${run.model || run.id} ${whenText(run.made)}`;
 }
 
 /** Returns how long ago something was, as text. */
@@ -100,6 +100,6 @@ export function measureText(name, value) {
 
 /** Returns all text that a search includes. */
 export function textOf(run) {
-  const own = [run.id, run.model, `seed ${run.seed}`, outcomeText(run), endedText(run), run.branched === null ? "" : "branch", whenText(run.made)];
+  const own = [run.id, run.model, `seed ${run.seed}`, outcomeText(run), endedText(run), run.branched === null ? "" : "branch", whenText(run.made), run.label?.name ?? "", run.label?.note ?? "", ...(run.label?.tags ?? [])];
   return [...own, ...Object.entries(run.parameters).map(([name, value]) => `${name} ${valueText(value)}`)].join("  ").toLowerCase();
 }

@@ -1,51 +1,92 @@
-// Users' changes as text: `aperture 50 -> 40 cm`.
+// Users' changes as text: `aperture 50 -> 40 cm`, `set goal count 2 -> count 3`.
 
-import { valueText } from "../parts/chunk.js";
+import { changes } from "../changes/changes.js";
+import { chunkText, valueText } from "../parts/chunk.js";
 import { session } from "../store.js";
 
-const before = new WeakMap(); // by event: the previous width [m]
+const before = new WeakMap(); // by event: the value that the change has replaced, as text
 
-/** Stores the widths of apertures, from event to event. */
-export class Widths {
-  #widths = new Map();
+/** Stores the values that users' changes replace, from event to event. */
+export class Former {
+  #values = new Map();
+  #buffers = new Map();
+
+  /** Stores the chunk of a buffer: [present, the one before]. */
+  hold(source, chunk) {
+    this.#buffers.set(source, [chunkText(chunk), this.#buffers.get(source)?.[0] ?? ""]);
+  }
 
   /** Stores the effect of a command; called in order. */
   take(event) {
-    const change = changeOf(event[3]);
-    if (!change) return;
-    const known = this.#widths.get(change.name) ?? session.peek()?.world?.openings?.[change.name];
+    const { of, key, text } = settingOf(event[3]) ?? {};
+    if (key === undefined) return;
+    const known = of === "buffer" ? this.#buffers.get(named(event[3]).buffer)?.[1] || "empty" : (this.#values.get(key) ?? startOf(of, event[3]));
     if (known !== undefined) before.set(event, known);
-    this.#widths.set(change.name, change.width);
+    this.#values.set(key, text);
   }
-}
-
-/** Returns {name, width} of the aperture that a command changes; null for other commands. */
-function changeOf({ command, data }) {
-  if (command !== "aperture" || typeof data?.values?.[0] !== "number") return null;
-  return { name: data.named?.name ?? "aperture", width: data.values[0] };
 }
 
 const cm = (width) => String(Number((100 * width).toFixed(1)));
 
+/** Returns the width of an aperture at the start of the run as text; undefined for other values. */
+function startOf(of, { data }) {
+  const width = of === "aperture" ? session.peek()?.world?.openings?.[data?.named?.name ?? "aperture"] : undefined;
+  return width === undefined ? undefined : cm(width);
+}
+
+function changeOf({ command, data }) {
+  return data?.body ? undefined : changes.peek().find(({ word }) => word === command);
+}
+
+/** Returns the arguments of a change by the names of its fields. */
+function named({ command, data }) {
+  const { fields = [] } = changeOf({ command, data }) ?? {};
+  const given = Object.fromEntries((data?.values ?? []).map((value, n) => [fields[n]?.name ?? `${n + 1}`, value]));
+  return { ...Object.fromEntries(fields.filter(({ default: first }) => first !== null).map(({ name, default: first }) => [name, first])), ...given, ...data?.named };
+}
+
+/** Returns what a command sets, and to which value: {of, key, text}; null for a command that sets no value. */
+function settingOf(command) {
+  const { of } = changeOf(command) ?? {};
+  const values = named(command);
+  if (command.command === "aperture") return typeof values.width === "number" ? { of: "aperture", key: `aperture ${values.name}`, text: cm(values.width) } : null;
+  if (of === "parameter") return { of, key: `parameter ${values.path}`, text: valueText(values.value) };
+  if (of === "buffer") return { of, key: `buffer ${values.buffer}`, text: values.chunk ?? "empty" };
+  if (command.command === "move") return { of: "place", key: `move ${values.object}`, text: placeText(values) };
+  return null;
+}
+
+function placeText({ x, y, heading }) {
+  const turned = typeof heading === "number" ? `, ${((180 / Math.PI) * heading).toFixed(0)}°` : "";
+  return `(${valueText(x)}, ${valueText(y)}) m${turned}`;
+}
+
 /** Returns a command as text, without its name. With `first`, it covers all commands from that one on, for example of one drag. */
 function dataText(event, first) {
-  const [, , , { data }] = event;
-  const change = changeOf(event[3]);
-  if (change) {
-    const other = change.name === "aperture" ? "" : `${change.name} `;
-    return `${other}${before.has(first) ? `${cm(before.get(first))} -> ` : ""}${cm(change.width)} cm`;
+  const command = event[3];
+  const setting = settingOf(command);
+  const values = named(command);
+  if (setting) {
+    const was = before.has(first) ? `${before.get(first)} -> ` : "";
+    if (setting.of === "aperture") return `${values.name === "aperture" ? "" : `${values.name} `}${was}${setting.text} cm`;
+    if (setting.of === "place") return `${values.object} ${was || "to "}${setting.text}`;
+    return `${values.buffer ?? values.path} ${was}${setting.text}`;
   }
-  const named = Object.entries(data?.named ?? {}).map(([name, value]) => `${name}: ${valueText(value)}`);
-  return [...(data?.values ?? []).map(valueText), ...named].join(" ");
+  const { text } = changeOf(command) ?? {};
+  if (text) return text.replace(/\{(\w+)\}/g, (_, name) => valueText(values[name]));
+  const { data } = command;
+  const more = Object.entries(data?.named ?? {}).map(([name, value]) => `${name}: ${valueText(value)}`);
+  return [...(data?.body ? [data.body] : []), ...(data?.values ?? []).map(valueText), ...more].join(" ");
 }
 
 /** Returns [name, arguments] of a command. */
 export function commandText(event, first = event) {
-  return [event[3].command, dataText(event, first)];
+  const { command } = event[3];
+  return [changeOf(event[3]) && command !== "aperture" ? command.replaceAll("_", " ") : command, dataText(event, first)];
 }
 
 /** Whether two commands set the same value. */
 export function setTheSame(event, other) {
-  const [one, two] = [changeOf(event[3]), changeOf(other[3])];
-  return one !== null && two !== null && one.name === two.name;
+  const [one, two] = [settingOf(event[3]), settingOf(other[3])];
+  return one !== null && two !== null && one.key === two.key;
 }

@@ -50,6 +50,7 @@ function changed(lanes, time, source) {
 }
 
 function buffer(lanes, time, source, { chunk }) {
+  lanes.former.hold(source, chunk);
   const lane = lanes.lane(`buffer ${source}`, "buffers", source);
   if (chunk) lane.begin(time, { chunk, tone: "series-3" });
   else lane.close(time);
@@ -108,7 +109,7 @@ function output(lanes, time, _source, { text }) {
 
 /** Of several changes of one value at the same moment, only the last has an effect: they are merged. */
 function command(lanes, time, _source, _data, event) {
-  lanes.widths.take(event);
+  lanes.former.take(event);
   const lane = lanes.lane("commands", "marks", "commands");
   const last = lane.bands.at(-1);
   const first = last?.from === time && setTheSame(event, last.first) ? last.first : event;
@@ -135,6 +136,7 @@ export const TAKERS = {
   select,
   fire,
   changed,
+  withdrawn: changed,
   buffer,
   request,
   state,

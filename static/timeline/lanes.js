@@ -1,7 +1,7 @@
 // Lanes made of a run's events as they arrive: a row for each thing with states, with a band for each state; and curves of their numbers.
 
 import { chunkText } from "../parts/chunk.js";
-import { Widths } from "./commands.js";
+import { Former } from "./commands.js";
 import { firstWhere } from "./search.js";
 import { TAKERS } from "./lane_builders.js";
 import { Numbers } from "./numbers.js";
@@ -104,7 +104,7 @@ export class Lanes {
     this.tones = new Map();
     this.clocks = new Map();
     this.asked = new Map();
-    this.widths = new Widths();
+    this.former = new Former();
     this.numbers = new Numbers();
     this.now = 0;
     this.begin = null;

@@ -22,6 +22,7 @@ LAYERS: dict[str, set[str]] = {
     "declarative": {"chunks", "kernel"},
     "modules": {"chunks", "kernel", "declarative"},
     "explain": {"reasons", "chunks", "kernel", "procedural", "declarative", "modules"},
+    "changes": {"chunks", "kernel", "procedural", "declarative", "explain"},
     "lint": {"chunks", "kernel", "procedural", "declarative", "modules"},
     "compat": {"kernel"},
     "loading": {"kernel", "compat"},

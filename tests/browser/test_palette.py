@@ -58,6 +58,12 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
     page.keyboard.press("Enter")
     expect(page.get_by_label("Model", exact=True)).to_have_value("counting.py")
     shows(page, "#status", "at its start")
+    page.get_by_role("tab", name="Editor").click()
+    expect(page.locator(".cm-content")).to_contain_text("class")
+    page.get_by_role("tab", name="About").click()
+    search(page, "editor go to a line")
+    page.keyboard.press("Enter")
+    expect(page.locator(".cm-gotoLine, .cm-panel")).to_contain_text("Go to line")
     names, keys = page.evaluate(
         """async () => {
           const { permanent, present } = await import("/static/commands.js");
@@ -71,6 +77,7 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
         "Run: Speed: 2 x",
         "Page: Theme: light, dark, or as the system has it",
         "Editor: Save the text",
+        "Editor: Format",
         "Model: doorway.py",
         "Recording: doorway",
     ):

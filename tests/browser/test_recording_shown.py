@@ -138,7 +138,7 @@ def test_from_a_recording_one_can_go_to_any_run_that_is_open(pages: Pages, workb
 
 
 @pytest.mark.slow
-def test_before_the_rest_of_a_changed_recording_is_lost_it_is_asked_and_what_two_drag_is_the_same_for_both(
+def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_and_what_two_drag_is_the_same_for_both(
     pages: Pages, workbench: Served
 ) -> None:
     name = recorded(workbench, "doorway.py")
@@ -161,6 +161,14 @@ def test_before_the_rest_of_a_changed_recording_is_lost_it_is_asked_and_what_two
     drag("End")
     shows(page, "#status", r"paused: changed at 1\.00 s; the recording keeps the rest")  # without a question
     expect(page.locator(".recording-banner")).to_contain_text("You have changed its course")
+    width = page.locator("#width").inner_text()
+    order("until", 2)
+    order("seek", 1.5)
+    drag("Home")
+    shows(page, "#status", r"paused: changed at 1\.50 s; a branch was kept")  # also without a question
+    expect(page.locator("#width")).not_to_have_text(width)
+    page.evaluate("async () => (await import('/static/server.js')).order({ type: 'restart', record: false })")
+    shows(page, "#status", "at its start")
     width = page.locator("#width").inner_text()
     order("until", 2)
     order("seek", 1.5)

@@ -175,7 +175,7 @@ def test_the_retina_has_the_colours_of_the_edges_in_the_scene(blank: Page) -> No
 # -- the picture itself
 
 AT = """() => {
-    const { camera, nodeRefFromName } = window.__viserMutable, { now, stage } = window.scene.facts;
+    const { camera, nodeRefFromName } = window.__viserMutable, { shown: now, facts: { stage } } = window.scene;
     const at = (place) => camera.position.clone().set(...place).applyMatrix4(nodeRefFromName[""].matrixWorld).project(camera).toArray();
     const middle = now.body.map((x, axis) => x + stage.middle[axis]);
     return { middle: at(middle), x: now.body[0], view: window.scene.camera.view, position: camera.position.toArray(),
@@ -190,7 +190,7 @@ def frame_of(page: Page) -> Frame:
     assert found is not None
     frame = found.content_frame()
     assert frame is not None
-    frame.wait_for_function("() => window.scene?.camera", timeout=PATIENCE)
+    frame.wait_for_function("() => window.scene?.camera && window.scene.shown", timeout=PATIENCE)
     return frame
 
 
@@ -209,9 +209,9 @@ def in_the_middle(page: Page, frame: Frame) -> dict[str, Any]:
 
 def steps(page: Page, frame: Frame, ticks: int) -> None:
     """Runs on for some ticks, and waits until the 3D view shows that."""
-    before = frame.evaluate("() => window.scene.facts.now.body[0]")
+    before = frame.evaluate("() => window.scene.shown.body[0]")
     page.evaluate("async (ticks) => (await import('/static/server.js')).order({ type: 'step', ticks })", ticks)
-    until(page, lambda: frame.evaluate("() => window.scene.facts.now.body[0]") > before)
+    until(page, lambda: frame.evaluate("() => window.scene.shown.body[0]") > before)
 
 
 def drag(page: Page, x: float, y: float, button: Any = "left") -> None:
@@ -255,7 +255,7 @@ def test_with_the_body_it_stays_in_the_middle_whatever_the_user_does(pages: Call
         in_the_middle(page, frame)
     page.click("#restart")
     shows(page, "#time", "t = 0.00 s")
-    until(page, lambda: abs(frame.evaluate("() => window.scene.facts.now.body[0]")) < 0.01)
+    until(page, lambda: abs(frame.evaluate("() => window.scene.shown.body[0]")) < 0.01)
     in_the_middle(page, frame)
     page.reload()
     frame = frame_of(page)
@@ -423,7 +423,7 @@ def test_a_body_is_dragged_elsewhere_by_its_handle(pages: Callable[..., Page], v
     page.get_by_label("Camera").select_option(view)
     until(page, lambda: look(page, frame)["view"] == view)
     page.get_by_role("button", name="Overlays").click()
-    page.get_by_label("handles to move bodies").check()
+    page.get_by_label("handles to move things").check()
     page.get_by_role("button", name="Overlays").click()
     until(page, lambda: frame.evaluate("() => '/overlays/handles/0' in window.__viserMutable.nodeRefFromName"))
     drawn(page)
@@ -448,9 +448,9 @@ def test_a_body_is_dragged_elsewhere_by_its_handle(pages: Callable[..., Page], v
       return events.value.list.filter(([, , kind]) => kind === "command").map((event) => event[3]);
     }"""
     (command,) = page.evaluate(commands)
-    assert command["command"] == "teleport"
-    assert command["data"]["body"] == "walker"
-    assert command["data"]["values"][1] == pytest.approx(0.75, abs=0.1)
+    assert command["command"] == "move"
+    assert command["data"]["values"][0] == "walker"
+    assert command["data"]["values"][2] == pytest.approx(0.75, abs=0.1)
 
 
 @pytest.mark.slow

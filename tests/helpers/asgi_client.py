@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Awaitable, Callable, Iterable, MutableMapping
 from typing import Any
 
-from workbench.auth import App, Gate, Token
+from workbench.auth import ASGIApp, Gate, Token
 
 TOKEN = "a-token-of-24-or-more-bytes-for-tests"
 GATE = Gate(token=Token(TOKEN), port=8000)
@@ -64,14 +64,14 @@ class Answer:
 
 
 def ask(
-    app: App, path: str, *headers: Header, query: str = "", method: str = "GET", body: bytes = b"", parts: Iterable[bytes] | None = None
+    app: ASGIApp, path: str, *headers: Header, query: str = "", method: str = "GET", body: bytes = b"", parts: Iterable[bytes] | None = None
 ) -> Answer:
     """Sends a request and returns the answer."""
     return asyncio.run(call(app, path, *headers, query=query, method=method, body=body, parts=parts))
 
 
 async def call(
-    app: App,
+    app: ASGIApp,
     path: str,
     *headers: Header,
     query: str = "",
@@ -99,14 +99,14 @@ async def call(
     return await _call(app, _scope("http", path, headers, query, method), waiting, leaving, first)
 
 
-def connect(app: App, path: str, *headers: Header) -> Answer:
+def connect(app: ASGIApp, path: str, *headers: Header) -> Answer:
     """Opens a websocket, and says nothing more."""
     waiting: list[dict[str, Any]] = [{"type": "websocket.connect"}, {"type": "websocket.disconnect", "code": 1001}]
     return asyncio.run(_call(app, _scope("websocket", path, headers, "", ""), waiting))
 
 
 async def _call(
-    app: App,
+    app: ASGIApp,
     scope: dict[str, Any],
     waiting: list[dict[str, Any]],
     leaving: asyncio.Event | None = None,

@@ -95,7 +95,7 @@ class Talk:
 
     def say(self, kind: str, **more: Any) -> Any:
         """Says something; returns the result, or raises what went wrong."""
-        reply = self.desk.do(self.session.carry_out(COMMAND.validate_python({"type": kind, **more}), "test"))
+        reply = self.desk.do(COMMAND.validate_python({"type": kind, **more}).submit(self.session, "test"))
         if reply.error is not None:
             raise RefusedError(reply.error)
         return json.loads(reply.result)

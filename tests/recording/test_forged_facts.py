@@ -119,7 +119,6 @@ FORGERIES: list[tuple[str, tuple[Forgery, ...]]] = [
     *((run, (put("period_us", 20_000),)) for run in BUILT_RUNS),
     ("failed", (put("failed", "ZeroDivisionError: other"),)),
     ("failed", (put("whole", True),)),
-    ("program", (put("branched", 0.1),)),
     ("program", (put("ended", by("exit")),)),
     ("program", (put("ended", by("limits")),)),
     ("program", (put("failed", "ValueError: no"),)),

@@ -19,7 +19,7 @@ from starlette.websockets import WebSocket
 from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, TOKEN, Answer, Header, ask, connect
 from workbench import cli
 from workbench.app import make_app
-from workbench.auth import LARGEST, Gate, Guard, MutableMapping, Receive, Scope, Send, Token
+from workbench.auth import LARGEST, Gate, Guard, Message, Receive, Scope, Send, Token
 from workbench.files import ModelFolder
 from workbench.viser_bridge import Bridge
 
@@ -36,7 +36,7 @@ async def echo(scope: Scope, receive: Receive, send: Send) -> None:
         return
     body = b""
     while True:
-        message: MutableMapping[str, Any] = await receive()
+        message: Message = await receive()
         body += message.get("body", b"")
         if not message.get("more_body"):
             break
@@ -284,10 +284,10 @@ def test_the_bridge_tells_viser_nothing_of_who_asks() -> None:
             scope: dict[str, Any] = {"type": "websocket", "path": "/viser/s1", "query_string": b"", "subprotocols": [], "headers": []}
             scope["headers"] = [(name.encode(), value.encode()) for name, value in (HOST, ORIGIN, COOKIE, ("authorization", TOKEN))]
 
-            async def receive() -> MutableMapping[str, Any]:
+            async def receive() -> Message:
                 return waiting.pop() if waiting else await asyncio.Future()
 
-            async def send(_: MutableMapping[str, Any]) -> None: ...
+            async def send(_: Message) -> None: ...
 
             view: Any = _View(server.sockets[0].getsockname()[1])
             await Bridge().carry(WebSocket(scope, receive, send), view)

@@ -43,7 +43,7 @@ def begun(desk: Desk, session: Session, *commands: dict[str, Any]) -> list[async
     """Says things one after the other, without waiting for what comes of them."""
 
     async def begin() -> list[asyncio.Task[Any]]:
-        tasks = [asyncio.create_task(session.carry_out(COMMAND.validate_python(command), "test")) for command in commands]
+        tasks = [asyncio.create_task(COMMAND.validate_python(command).submit(session, "test")) for command in commands]
         await asyncio.sleep(0.05)
         return tasks
 

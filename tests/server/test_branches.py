@@ -10,9 +10,8 @@ import pytest
 from actr3d.recording import Recorded
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from tests.server.test_curves import PUSHED
-from workbench import branches
+from workbench import retention
 from workbench.recording_index import summary_json
-from workbench.retention import is_unnamed
 
 STOPPED = PUSHED.replace(
     """        goal.set("on")
@@ -35,7 +34,7 @@ def folder(talk: Talk) -> Path:
 
 
 def found(talk: Talk) -> list[Path]:
-    return sorted(path for path in folder(talk).glob("*.sqlite") if branches.branched_at(path) is not None)
+    return sorted(path for path in folder(talk).glob("*.sqlite") if retention.branched_at(path) is not None)
 
 
 def there(talk: Talk, tick: int) -> None:
@@ -70,7 +69,7 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
     assert b'"branched":0.1' in summary_json(renamed)
     renamed.rename(branch)
     assert b'"branched":null' in summary_json(branch.with_name(f"{origin}.sqlite"))
-    assert is_unnamed(branch)  # so that it goes, one day
+    assert retention.is_unnamed(branch)  # so that it goes, one day
     there(talk, 50)
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.5
     with Recorded(branch) as recorded:
@@ -143,15 +142,15 @@ def test_on_a_full_disk_nothing_is_changed_and_the_known_part_of_the_run_can_sti
 
 def test_branches_of_one_run_are_not_without_number(tmp_path: Path) -> None:
     origin = tmp_path / "doorway-20260101-101010-abcd.sqlite"
-    made = [branches.new_branch(origin, 0.01 * n) for n in range(branches.MOST + 3)]
+    made = [retention.new_branch(origin, 0.01 * n) for n in range(retention.MOST_BRANCHES + 3)]
     for path in (
         *made,
         origin,
         tmp_path / "doorway-20260101-101010-abcd-at-home.sqlite",
-        branches.new_branch(tmp_path / "other.sqlite", 1.0),
+        retention.new_branch(tmp_path / "other.sqlite", 1.0),
     ):
         path.touch()
-    assert len(branches.superfluous_branches(origin)) == 3
-    assert set(branches.superfluous_branches(origin)) <= set(made)
-    assert branches.branched_at(made[2]) == 0.02
-    assert branches.branched_at(origin) is None
+    assert len(retention.superfluous_branches(origin)) == 3
+    assert set(retention.superfluous_branches(origin)) <= set(made)
+    assert retention.branched_at(made[2]) == 0.02
+    assert retention.branched_at(origin) is None

@@ -66,11 +66,11 @@ def test_curves_of_a_passage_agree_with_its_result_live_and_recorded(desk: Desk,
     assert way == pytest.approx(0.01 * sum(of["walker speed"]), rel=0.02)
     assert set(of["walker contact force"]) == {0.0}
     path = recording(desk, talk)
-    assert curves_of(path, None, 0.0, 5000) == told
-    part = curves_of(path, ["walker speed"], 0.995, 5000, last=1.234)
+    assert curves_of(path, names=None, first=0.0, most=5000) == told
+    part = curves_of(path, names=["walker speed"], first=0.995, most=5000, last=1.234)
     assert part["times"] == told["times"][100:124]
     assert part["curves"]["walker speed"] == of["walker speed"][100:124]
-    assert curves_of(path, None, 1.0, 3, last=0.5)["times"] == []
+    assert curves_of(path, names=None, first=1.0, most=3, last=0.5)["times"] == []
 
 
 def test_the_force_of_a_wall_is_told_and_that_of_the_ground_is_not(desk: Desk, tmp_path: Path) -> None:
@@ -150,7 +150,7 @@ def test_a_program_has_no_curves(desk: Desk, tmp_path: Path) -> None:
     talk.say("run")
     talk.until("ended")
     assert talk.say("curves") == NOTHING
-    assert curves_of(recording(desk, talk), None, 0.0, 100) == NOTHING
+    assert curves_of(recording(desk, talk), names=None, first=0.0, most=100) == NOTHING
 
 
 class Steady:

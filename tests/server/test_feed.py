@@ -4,27 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections import deque
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
-from workbench import client_feed as feeds
-from workbench.client_feed import EventLog, Feed
+from workbench import event_log
+from workbench.client_feed import Broadcast, Feed
+from workbench.event_log import EventLog
 
 
-class Shown:
+class Shown(Broadcast):
     """A session as a feed sees it."""
 
     def __init__(self) -> None:
-        self.name = "s1"
-        self.run = 1
-        self.epoch = 1
-        self.log = EventLog()
-        self.notices: deque[tuple[int, bytes]] = deque()
-        self.state_version = 1
-        self.facts_version = 1
+        super().__init__("s1")
+        self.run = self.epoch = self.state_version = self.facts_version = 1
 
     def state_json(self) -> bytes:
         return json.dumps({"version": self.state_version}).encode()
@@ -67,10 +62,15 @@ def test_the_log_keeps_events_by_number() -> None:
     assert log.since(0) == (7, numbered(7, 8))
     log.cut(3)
     assert log.next == 3
+    log.cut(9)
+    assert log.next == 3
+    log.add(3, numbered(3, 4, 5))
+    log.drop(5)
+    assert (len(log), log.since(0)) == (1, (5, numbered(5)))
 
 
 def test_the_log_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(feeds, "MOST_EVENTS", 10)
+    monkeypatch.setattr(event_log, "MOST_EVENTS", 10)
     log = EventLog()
     for number in range(25):
         log.add(number, numbered(number))
@@ -126,7 +126,7 @@ def test_a_run_that_goes_another_way_takes_events_back() -> None:
 
 
 def test_a_slow_browser_is_told_of_its_gap(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(feeds, "MOST_EVENTS", 4)
+    monkeypatch.setattr(event_log, "MOST_EVENTS", 4)
     shown = Shown()
     shown.add(0)
     feed = Feed(shown, "page 1")

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from actr3d.actr.loading.source_text import read_source
-from workbench import outlines
+from workbench import loader
 from workbench.files import LARGEST, ConflictError, FileError, ModelFolder, NoSuchFileError
-from workbench.outlines import Outline, outline_of
+from workbench.loader import Outline, outline_of
 from workbench.shipped import models_folder, shipped
 
 
@@ -135,7 +135,7 @@ def test_what_is_no_text_or_too_large_is_refused(folder: ModelFolder) -> None:
     (folder.root / "bytes.py").write_bytes(b"x = '\xff'\n")
     with pytest.raises(Exception, match="line 1 is not UTF-8"):
         folder.read("bytes.py")
-    with pytest.raises(FileError, match="no more than"):
+    with pytest.raises(FileError, match="must be <= 1,000,000 bytes"):
         folder.save("large.py", "x" * (LARGEST + 1), None)
     with pytest.raises(FileError, match="unpaired surrogate character"):
         folder.save("half.py", "\ud800", None)
@@ -229,7 +229,7 @@ def test_what_a_list_tells_of_a_file_is_read_when_it_has_changed_and_not_again(t
         read.append(path)
         return read_source(path)
 
-    monkeypatch.setattr(outlines, "read_source", reading)
+    monkeypatch.setattr(loader, "read_source", reading)
     file = tmp_path / "model.py"
     for text, outline in (
         ("'''Counts.'''", Outline("Counts.", "program")),

@@ -63,7 +63,7 @@ def test_what_a_user_has_named_stays(recordings: Recordings, tmp_path: Path) -> 
 def test_names_are_names_and_nothing_is_replaced(recordings: Recordings, tmp_path: Path) -> None:
     one, other, *_ = [path.stem for path in (tmp_path / OWN / "recordings").glob("*.sqlite")]
     for name in ("", "..", "../x", "a/b", "x" * 200, ".hidden", "a b"):
-        with pytest.raises(RecordingError, match="a recording's name has"):
+        with pytest.raises(RecordingError, match="the name of a recording: must be"):
             recordings.rename(one, name)
     with pytest.raises(RecordingError, match="there is a recording"):
         recordings.rename(one, other)
@@ -120,8 +120,8 @@ def test_a_run_that_never_began_leaves_no_recording(desk: Desk, tmp_path: Path) 
 
 
 def test_what_was_printed_before_the_first_tick_is_kept(desk: Desk, tmp_path: Path) -> None:
-    from workbench.client_feed import EventLog
-    from workbench.retention import never_begun
+    from workbench.event_log import EventLog
+    from workbench.session import never_begun
 
     talk = desk.begin(tmp_path, "x = 1\n", record=True)
     state = talk.session.state

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from starlette.types import Receive, Scope, Send
 
 from actr3d.actr import ACTR, Buffer, Model
 from actr3d.errors import NotebookError
@@ -27,7 +28,7 @@ from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Scene
 from tests.helpers.asgi_client import HOST, Answer, ask
 from tests.helpers.manual import FENCE, ROOT, compare
-from workbench.auth import Gate, Guard, Receive, Scope, Send, Token
+from workbench.auth import Gate, Guard, Token
 from workbench.notebook import widget
 from workbench.notebook.live_run import LiveRun
 from workbench.page_commands.running import Pause, Run, Step

@@ -16,12 +16,11 @@ from actr3d.world import Car, Floor, Mannequin, Scene, World
 from tests.helpers.sessions import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
 from tests.server.test_reopened import reopened
-from workbench.overlays import OVERLAYS, Drawn, Observed, Overlay
+from workbench.overlays import OVERLAYS, Drawn, Observed, Overlay, ViewSettings
 from workbench.overlays.frustum import Frustum
 from workbench.overlays.overlay import overlay
 from workbench.palette import channels, label_colours, palette
 from workbench.protocol import COMMAND
-from workbench.view_settings import ViewSettings
 
 LOOKING = """from actr3d.actr import *
 from actr3d.motor import Motor

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.sessions import PATIENCE, Desk
-from workbench.replays import BusyError, Reruns
+from workbench.readers import BusyError, Reruns
 
 BUILT = """import os, time
 from pathlib import Path

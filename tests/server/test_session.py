@@ -274,7 +274,7 @@ def test_a_program_goes_back_after_its_end_and_forth(desk: Desk, tmp_path: Path)
         talk.until("paused", time=time)
     with pytest.raises(RefusedError, match="has only reached"):
         talk.say("seek", time=99.0)
-    with pytest.raises(RefusedError, match="takes no commands"):
+    with pytest.raises(RefusedError, match="no change 'aperture' for the agents of a program"):
         talk.say("aperture", width=1)
     ended(talk)
     assert len(talk.events) == count

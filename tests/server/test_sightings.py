@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from actr3d.camera.eye_pose import Stand
+from actr3d.camera import Stand
 from actr3d.vision import Feature, Sighting
 from actr3d.vision.units import Metres
 from workbench.overlays.contours import Places

@@ -143,9 +143,9 @@ def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_
         from workbench.page_commands.agents import Explain
         from workbench.page_commands.session import Stop
 
-        asking = asyncio.create_task(talk.session.carry_out(Explain()))
+        asking = asyncio.create_task(Explain().submit(talk.session))
         await asyncio.sleep(0.1)
-        return await talk.session.carry_out(Stop()), await asking
+        return await Stop().submit(talk.session), await asking
 
     _, explained = desk.do(both())
     assert explained.error == "the run has ended"

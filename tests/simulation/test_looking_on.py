@@ -12,6 +12,7 @@ from actr3d.actr import ACTR, Buffer, DMBaseLevel, DMNoise, DMSpreading, Memory,
 from actr3d.actr.declarative.activation import MemorySubModule
 from actr3d.actr.explain.memory_table import memory_rows
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits
+from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.loading import run_text
 from actr3d.camera import CameraParameters, glance
 from actr3d.configuration import Live
@@ -176,8 +177,8 @@ def test_who_has_no_eye_cannot_glance() -> None:
 def test_a_program_is_told_when_its_time_goes_on() -> None:
     passed: list[tuple[int, int]] = []
 
-    def note(start: int, end: int) -> None:
-        passed.append((start, end))
+    def note(sch: Scheduler, end: int) -> None:
+        passed.append((sch.now_us, end))
 
     limits = RunLimits(seed=1, passing=note)
     run_text(f"{CLOCK}clock = Clock()\nclock.run(0.6)\nclock.run(0.5)\nModel().run(1)", limits=limits)
@@ -186,7 +187,7 @@ def test_a_program_is_told_when_its_time_goes_on() -> None:
 
 
 def test_a_program_can_be_ended_there() -> None:
-    def end(_: int, to: int) -> None:
+    def end(_: Scheduler, to: int) -> None:
         if to > 500_000:
             raise EndOfRun
 

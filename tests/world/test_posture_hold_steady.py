@@ -74,7 +74,7 @@ def test_how_fast_it_is_as_told_is_a_bound_on_all_its_points() -> None:
     world, body = standing()
     fastest = body.hold.before_step(0.01)
     assert 1.0 <= fastest < 1.001
-    assert fastest >= Substepping(world.physics, [body])._fastest(0.0)  # pyright: ignore[reportPrivateUsage]
+    assert fastest >= Substepping(world.physics, [body], world._pushes)._fastest(0.0)  # pyright: ignore[reportPrivateUsage]
     body.set("walk", 1.0, 2.0)
     world.step(10)
     assert body.hold.before_step(0.01) > 1.0 + 2.0 * 0.2

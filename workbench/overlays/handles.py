@@ -18,11 +18,11 @@ ABOVE = 0.02
 """Height of the handles above the ground [m]."""
 
 
-@overlay("handles", "handles to move bodies")
+@overlay("handles", "handles to move things")
 class Handles(Overlay):
-    """Shows arrows and an arc at the feet of each body that can be moved: dragging them puts the body elsewhere, or turns it.
+    """Shows arrows and an arc at the foot of each body, wall or object that can be moved: dragging them puts it elsewhere, or turns it.
 
-    A body moves when its handle is released. It is a command of the user like any other: recorded, and undone by going back.
+    It moves when its handle is released. It is a change of the user like any other: recorded, and undone by going back.
     """
 
     def __init__(self, drawn: Drawn) -> None:
@@ -32,16 +32,12 @@ class Handles(Overlay):
 
     @staticmethod
     def data(observed: Observed) -> dict[str, Any]:
-        """Returns the position [m] and heading [rad] of each body that can be moved: (x, y, heading)."""
-        from actr3d.world.actuators import ACTUATORS
-        from actr3d.world.sensors import SENSORS
-
-        bodies = observed.simulation.world.bodies
-        poses = {name: SENSORS["pose"](body) for name, body in bodies.items() if ACTUATORS["teleport"].available(body)}
-        return {name: [pose.x, pose.y, pose.heading] for name, pose in poses.items()}
+        """Returns the position [m] and heading [rad] of each thing that can be moved: (x, y, heading)."""
+        objects = observed.simulation.world.objects
+        return {name: list(objects.pose(name)) for name in objects.names}
 
     def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
-        """Draws the handles at the bodies; one that is being dragged stays where it is."""
+        """Draws the handles; one that is being dragged stays where it is."""
         for name, (x, y, heading) in (drawn or {}).items():
             handle = self._handles.get(name) or self._add(name)
             if name not in self._held:
@@ -50,7 +46,7 @@ class Handles(Overlay):
         self.switch()
 
     def _add(self, name: str) -> Any:
-        """Adds the handle of a body."""
+        """Adds the handle of a body or object."""
         handle = self._server.scene.add_transform_controls(
             f"/overlays/handles/{len(self._handles)}", scale=SIZE, active_axes=(True, True, False), depth_test=False, visible=False
         )
@@ -65,12 +61,12 @@ class Handles(Overlay):
         self._held.add(name)
 
     def _release(self, name: str, event: Any) -> None:
-        """Moves a body to where its handle was released."""
+        """Moves a body or object to where its handle was released."""
         self._held.discard(name)
         x, y, _ = (float(value) for value in event.target.position)
         w, _, _, z = (float(value) for value in event.target.wxyz)
-        values = (round(x, 3), round(y, 3), round(2 * math.atan2(z, w), 4))
-        self._send(SimulationCommand(word="teleport", values=values, body=name))
+        values = (name, round(x, 3), round(y, 3), round(2 * math.atan2(z, w), 4))
+        self._send(SimulationCommand(word="move", values=values))
 
     def switch(self) -> None:
         """Shows or hides the handles."""

@@ -1,9 +1,10 @@
-"""Defines the base of all overlays, their registry, and lines that they share."""
+"""Defines the base of all overlays, their registry, which of them are shown, and lines that they share."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -110,6 +111,21 @@ def overlay(name: str, title: str, *, shown: bool = False) -> Callable[[type[Kin
         return cls
 
     return register
+
+
+@dataclass(frozen=True)
+class ViewSettings:
+    """The overlays that a session's 3D view shows. They are the same for all who watch; each browser chooses its own camera."""
+
+    shown: frozenset[str] = field(default_factory=lambda: frozenset(n for n, one in OVERLAYS.items() if one.shown_at_first))
+
+    def with_overlay(self, name: str, shown: bool) -> ViewSettings:
+        """Returns the settings with an overlay shown or hidden."""
+        return replace(self, shown=self.shown | {name} if shown else self.shown - {name})
+
+    def as_dict(self) -> dict[str, Any]:
+        """Returns the entry for pages: `overlays`, each with `name`, `title` and whether it is `shown`."""
+        return {"overlays": [{"name": name, "title": overlay.title, "shown": name in self.shown} for name, overlay in OVERLAYS.items()]}
 
 
 class Lines:

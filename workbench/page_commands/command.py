@@ -9,11 +9,11 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from actr3d.errors import Actr3dError, did_you_mean
 from actr3d.registry import Registry
+from workbench.worker.messages import Reply
 
 if TYPE_CHECKING:
     from workbench.session import Session
     from workbench.worker.controlled_run import ControlledRun
-    from workbench.worker.messages import Reply
     from workbench.worker.run_controller import RunController
 
 Name = Annotated[str, Field(min_length=1, max_length=200)]
@@ -40,13 +40,27 @@ class PageCommand(PageMessage):
     of_shown_run: ClassVar[bool] = False
     """Whether it is for the run on screen even if a newer run is being built; otherwise it is for the newest run."""
 
+    async def submit(self, session: Session, who: str = "") -> Reply:
+        """Does what the command is for; the reply holds the result or the error.
+
+        Args:
+            session: The session.
+            who: The name of the user, as other users see it.
+        """
+        if self.takes_control:
+            session.take_control(who)
+        try:
+            return await self.serve(session)
+        except (Actr3dError, OSError) as error:
+            return Reply(id=0, error=str(error))
+
     async def serve(self, session: Session) -> Reply:
         """Does in the server what the command is for: by default, the worker of the run carries it out.
 
         Raises:
             Actr3dError: If it cannot be done.
         """
-        return await session.ask(self)
+        return await session.ask(self, of_shown_run=self.of_shown_run)
 
     def carry_out(self, controller: RunController) -> Any:
         """Does in the worker, between two ticks, what the command is for; returns plain values.

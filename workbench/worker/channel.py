@@ -1,4 +1,7 @@
-"""The worker's end of its wire to the server: one thread reads, one writes, and the run waits for neither."""
+"""The worker's end of its wire to the server: one thread reads, one writes, and the run waits for neither.
+
+It is not a `multiprocessing.connection.Connection`: before each part of a message, it checks that the model has not replaced the socket.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +21,7 @@ from typing import NoReturn
 import msgspec
 
 from actr3d.runner.before_exit import end_at_once
+from workbench.event_log import EventLog
 from workbench.worker.messages import (
     LENGTH,
     LONGEST,
@@ -41,12 +45,6 @@ from workbench.worker.messages import (
 
 WIRE_LOST = 88
 """The exit code of a worker whose model has closed the connection to the server, or has replaced it."""
-MOST_EVENTS = 50_000
-"""The maximum number of events that wait to be sent; beyond it the oldest are left out, which the numbers show."""
-MOST_BYTES = 50_000_000
-"""The maximum size of these events [bytes]."""
-AT_ONCE = 2_000
-"""The maximum number of events in one message."""
 MOST_MESSAGES = 1_000
 """The maximum number of messages that wait to be sent; beyond it warnings are left out."""
 
@@ -71,11 +69,8 @@ class Channel:
         self._end = end
         self.inbox: queue.SimpleQueue[Do | Draw | Leave] = queue.SimpleQueue()
         self._messages: deque[Message] = deque()
-        self._events: deque[bytes] = deque()
-        self._size = 0
-        """Their size [bytes]."""
-        self._first = 0
-        """The number of the first event that waits."""
+        self._events = EventLog()
+        """The events that wait; if there are too many, the oldest are left out, which the numbers show."""
         self._state: State | None = None
         self._something = threading.Condition()
         self._sending = False
@@ -175,30 +170,20 @@ class Channel:
     def show(self, state: State, first: int, events: Sequence[bytes]) -> None:
         """Sends new events, the first of which has this number, and the newest state, which replaces one that still waits."""
         with self._something:
-            self._add(first, events)
+            self._events.add(first, events)
             self._state = state
             self._something.notify()
 
     def send_events(self, first: int, events: Sequence[bytes]) -> None:
         """Sends new events, the first of which has this number, without a state."""
         with self._something:
-            self._add(first, events)
+            self._events.add(first, events)
             self._something.notify()
-
-    def _add(self, first: int, events: Sequence[bytes]) -> None:
-        if not self._events:
-            self._first = first
-        self._events.extend(events)
-        self._size += sum(map(len, events))
-        while len(self._events) > MOST_EVENTS or self._size > MOST_BYTES:
-            self._size -= len(self._events.popleft())
-            self._first += 1
 
     def cut(self, message: Message, events: int) -> None:
         """Withdraws events from a number on, and sends the message that says so."""
         with self._something:
-            while self._events and self._first + len(self._events) > events:
-                self._size -= len(self._events.pop())
+            self._events.cut(events)
             self._flush_events()
             self._messages.append(message)
             self._something.notify()
@@ -230,10 +215,9 @@ class Channel:
     def _flush_events(self) -> None:
         """Puts waiting events among the messages."""
         while self._events:
-            some = [self._events.popleft() for _ in range(min(AT_ONCE, len(self._events)))]
-            self._messages.append(News(first=self._first, events=some))
-            self._first += len(some)
-        self._size = 0
+            first, some = self._events.since(self._events.first)
+            self._messages.append(News(first=first, events=some))
+            self._events.drop(first + len(some))
 
     def _write(self) -> None:
         while True:

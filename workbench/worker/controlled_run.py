@@ -1,62 +1,68 @@
-"""Defines what a controller needs of a run, whether it is a simulation or a program."""
+"""Defines what a controller needs of a run, whether it is a simulation or a program, and what both have in common."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any
 
+from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.parameter_schema import LiveCommand
+from actr3d.recording import Recording
 from actr3d.trace import Trace
-from workbench.worker.names import Names
+from workbench.worker.names import Names, Top
 from workbench.worker.shown import Shown
 from workbench.worker.stop_conditions import Touches
-from workbench.worker.top_models import Top
 
 
-class ControlledRun(Protocol):
+class ControlledRun(ABC):
     """A run that a controller controls."""
 
-    @property
-    def clock(self) -> int:
-        """The time since the start of the run [us]."""
-        ...
+    _recording: Recording | None = None
 
     @property
+    @abstractmethod
+    def clock(self) -> int:
+        """The time since the start of the run; for a program, in all its runs [us]."""
+
+    @property
+    @abstractmethod
     def furthest(self) -> int:
         """The furthest time that the run has reached [us]."""
-        ...
 
     @property
+    @abstractmethod
     def period(self) -> int:
         """The length of a tick [us]."""
-        ...
 
     @property
+    @abstractmethod
     def trace(self) -> Trace | None:
-        """The trace so far."""
-        ...
+        """The trace up to now."""
 
     @property
+    @abstractmethod
     def shown(self) -> Shown | None:
-        """What is shown of the current simulation, if there is one."""
-        ...
+        """What is shown of the current simulation; for a program, of the one that has ticked last, if any."""
 
+    @abstractmethod
     def go_to(self, time: int) -> None:
-        """Goes to another time of the run [us].
+        """Goes to another time of the run [us]; a simulation goes to the nearest tick.
 
         Raises:
-            SimulationError: If the run has not been there.
+            SimulationError: If the run has not been there, or does not repeat what it did; then it has failed.
+            EndOfRun: To leave a program, which is then run again.
         """
-        ...
 
+    @abstractmethod
     def live_parameter(self, name: str, value: Any) -> LiveCommand:
         """Returns how a parameter is changed during the run, after checking its new value.
 
         Raises:
             Actr3dError: If there is no such parameter, it cannot change during a run, or it cannot have this value.
         """
-        ...
 
+    @abstractmethod
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
         """Sends the simulation a command; the future of the run is kept as a branch.
 
@@ -68,50 +74,68 @@ class ControlledRun(Protocol):
             drop: Whether what lies ahead may be lost if it cannot be kept.
 
         Raises:
-            Exception: If the command cannot be carried out; its text says why.
+            SimulationError: If the run is over, or what lies ahead cannot be kept and may not be lost.
+            Exception: What the world, a body or an agent raises.
         """
-        ...
 
+    @abstractmethod
     def finish_output(self) -> None:
         """Traces an unfinished line, as nothing more will be printed."""
-        ...
 
-    def flush(self) -> None:
-        """Writes buffered data to the recording, so that a paused run's recording is complete up to that moment."""
-        ...
-
+    @abstractmethod
     def forget_ahead(self) -> None:
         """Removes the knowledge of times after the present."""
-        ...
 
+    @abstractmethod
     def tops(self) -> Sequence[Top]:
-        """Returns the top models, or the agents of a simulation."""
-        ...
+        """Returns the latest top models, or the agents of a simulation."""
 
+    @abstractmethod
     def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
         """Returns curves of the known run; see `workbench.page_commands.bodies.Curves`."""
-        ...
+
+    @abstractmethod
+    def names(self) -> Names:
+        """Returns the names at which the run can be stopped."""
+
+    # -- what is shown
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
         """Returns the state of the physics, and the widths of apertures [m]."""
-        ...
+        return (None, {}) if self.shown is None else self.shown.scene()
 
     def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
         """Returns the current data of overlays, by kind."""
-        ...
+        return {} if self.shown is None else self.shown.drawn(kinds)
 
     def result(self) -> dict[str, Any] | None:
         """Returns the measured result of the run, if any."""
-        ...
-
-    def parts(self) -> dict[str, dict[str, Any]]:
-        """Returns the current state of all parts."""
-        ...
-
-    def names(self) -> Names:
-        """Returns the names at which the run can be stopped."""
-        ...
+        return None if self.shown is None else self.shown.result()
 
     def touches(self) -> Touches:
         """Returns the current contacts of bodies with anything but the ground."""
-        ...
+        return frozenset() if self.shown is None else self.shown.touches()
+
+    def parts(self) -> dict[str, dict[str, Any]]:
+        """Returns the current state of all parts."""
+        return {top.name(path): part for top in self.tops() for path, part in snapshot_of(top.model).items()}
+
+    # -- the recording
+
+    def flush(self) -> None:
+        """Writes buffered data to the recording, so that a paused run's recording is complete up to that moment."""
+        if self._recording is not None:
+            self._recording.flush()
+
+    def _record(self, **facts: Any) -> None:
+        """Records facts, if the run is recorded."""
+        for name, value in facts.items():
+            if self._recording is not None:
+                self._recording.fact(name, value)
+
+    def _close_recording(self, *, left: bool) -> None:
+        """Closes the recording; `left` says that the user leaves the run, which may not be over."""
+        if self._recording is not None:
+            if left:
+                self._recording.leave()
+            self._recording.close()

@@ -3,6 +3,9 @@
 Requests arrive on a socket: each has two file descriptors (the connection and the output of a new worker) and the maximum memory
 of its model. The replies are the worker's process id and later its exit status. When the server is gone, this process ends all workers
 and itself.
+
+It is not that of `multiprocessing`, whose workers have no output and process group of their own, and which reports neither that a signal
+has stopped one nor ends what they leave behind.
 """
 
 from __future__ import annotations
@@ -37,8 +40,7 @@ def main(number: int) -> None:
         number: The file descriptor of the socket to the server.
     """
     gc.disable()  # nothing that is loaded here is garbage
-    import workbench.worker.preload  # pyright: ignore[reportUnusedImport] # noqa: F401
-
+    _preload()
     gc.enable()
     adopt()
     control = socket.socket(fileno=number)
@@ -70,6 +72,21 @@ def main(number: int) -> None:
         children.add(pid)
         _answer(control, BORN, pid, 0)
     _end_all(control, children)
+
+
+def _preload() -> None:
+    """Imports and compiles what models need, so that runs start at once."""
+    import actr3d.runner.model_factory  # pyright: ignore[reportUnusedImport] # noqa: F401
+    from actr3d.camera import glance
+    from actr3d.world import Floor, Mannequin, Scene, World
+
+    world = World(Scene(parts=(Floor(), Mannequin(name="walker"))))
+    walker = world.bodies["walker"]
+    # The first view compiles the camera or loads it from its cache; so do the first steps what is computed in every tick.
+    glance(walker)
+    walker.get("proprioception")
+    walker.set("joint", "torso_yaw", 8.0)
+    world.step(10)
 
 
 def _end_all(control: socket.socket, children: set[int]) -> None:

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 
 from actr3d.actr.kernel.run_limits import EndOfRun
 from actr3d.actr.loading.source_text import compile_source
-from actr3d.printing import ModelOutput
+from actr3d.output import ModelOutput
 from actr3d.runner.before_exit import before_the_end, end_at_once
 from actr3d.runner.build_check import check_build
 from actr3d.values import to_json
@@ -174,7 +174,7 @@ class _PastPrint(io.RawIOBase):
     def flush(self) -> None:
         if self._rest:
             rest, self._rest = self._rest, b""
-            self._pass_on(rest + b"\n")  # passed on as a line, whatever follows
+            self._pass_on(rest + b"\n")  # passed on as a complete line
 
     def _pass_on(self, data: bytes) -> None:
         with suppress(OSError):  # the model may have closed the file

@@ -52,8 +52,9 @@ class Start(Message, frozen=True, kw_only=True):
     settings: dict[str, Any] = {}
     seed: int | str | None = None
     record: str | None = None
-    commands: list[tuple[int, dict[str, Any]]] = []
-    """The commands of users in an earlier run, to be applied again: tick after which each was given, and its data (`Command.to_data`)."""
+    commands: list[tuple[int, int, dict[str, Any]]] = []
+    """The commands of users in an earlier run, to be applied again: the run, the tick (of a program: the time [us]) after
+    which each was given, and its data (`Command.to_data`)."""
     recorded: str | None = None
     """The recording of the earlier run that is repeated; None for a new run."""
     helpers: dict[str, tuple[str, str]] = {}
@@ -82,7 +83,7 @@ class Leave(Message, frozen=True, kw_only=True):
 
 
 class Draw(Message, frozen=True, kw_only=True):
-    """Sets the kinds of overlays whose data each state contains from now on; see `worker.drawings`."""
+    """Sets the kinds of overlays whose data each state contains from now on; see `workbench.overlays`."""
 
     kinds: tuple[str, ...]
 
@@ -104,7 +105,9 @@ class Facts(Message, frozen=True, kw_only=True):
     parameters: bytes
     """JSON: the values of parameters by name."""
     world: bytes
-    """JSON: bodies and apertures; null without a world."""
+    """JSON: bodies, apertures and objects; null without a world."""
+    changes: bytes = b"[]"
+    """JSON: the changes that a user can make by hand; see `worker.change_menu`."""
     mj_model: bytes | None
     """The compiled scene in MuJoCo's binary format; None without a world."""
 

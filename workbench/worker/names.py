@@ -1,4 +1,4 @@
-"""Collects the names of productions, buffers and bodies at which a run can be stopped, and checks names against them."""
+"""The names of things in a run: those of parts in its trace, and those of productions, buffers and bodies at which it can be stopped."""
 
 from __future__ import annotations
 
@@ -7,17 +7,51 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from actr3d.actr.kernel.buffer import Buffer
+from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.source_code import syntax_tree
-from actr3d.actr.procedural.production_system import ProductionSystem
+from actr3d.actr.kernel.tree import path_of, subtree
+from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
 from actr3d.errors import Actr3dError, did_you_mean
 from workbench.loader import ModelListing
 from workbench.worker.messages import Notice, notice
-from workbench.worker.top_models import Top
 
 MOST_NAMES = 12
 """Maximum number of known names in an error message about an unknown one."""
+
+
+PATHS = frozenset(("agent", "system", "memory", "module"))
+"""The keys under which answers contain paths of parts."""
+
+
+class Top(NamedTuple):
+    """Holds a top model, or an agent of a simulation."""
+
+    model: Model
+    prefix: str = ""
+    """The prefix of its parts' paths in the trace of a program, such as `top#2` for its second run if that is a simulation."""
+
+    def parts(self) -> Iterator[tuple[str, Any]]:
+        """Yields all its parts with their names."""
+        for part in subtree(self.model):
+            yield self.name(path_of(part)), part
+
+    def name(self, path: str) -> str:
+        """Returns the name of the part at a path."""
+        return path if not self.prefix else self.prefix if path == "top" else f"{self.prefix}.{path}"
+
+    def named(self, answer: Any) -> Any:
+        """Returns an answer in plain values in which the paths of parts are replaced by their names."""
+        if not self.prefix:
+            return answer
+        if isinstance(answer, dict):
+            entries: list[tuple[str, Any]] = list(answer.items())  # pyright: ignore[reportUnknownArgumentType,reportUnknownVariableType]
+            return {key: self.name(value) if key in PATHS and isinstance(value, str) else self.named(value) for key, value in entries}
+        if isinstance(answer, (list, tuple)):
+            return [self.named(one) for one in answer]  # pyright: ignore[reportUnknownVariableType]
+        return answer
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,9 +160,9 @@ def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
             if type(part) is not Buffer:
                 held.add(id(part))
         elif isinstance(part, ProductionSystem):
-            productions.update(production.name for production in part.__dict__.get("_productions", ()))
+            productions.update(production.name for production in rules_of(part).productions)
         else:
-            held.update(id(value) for value in part.__dict__.values() if isinstance(value, Buffer))
+            held.update(id(value) for value in part.__dict__.values() if isinstance(value, Buffer))  # no code of the model
     return Names(
         productions=frozenset(productions),
         buffers=frozenset(buffers),
@@ -142,7 +176,7 @@ def names_of_program(tops: Iterable[Top], bodies: Iterable[str], listing: ModelL
     """Returns the names of the things in a program, as far as it has run.
 
     Args:
-        tops: The models created so far.
+        tops: The models that have been created.
         bodies: The bodies of the simulation on screen.
         listing: The description read from its text.
         source: Its text.

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections import Counter, deque
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
-from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
+from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.kernel.tree import children_of
 from actr3d.actr.loading import run_text
 from actr3d.actr.loading.helper_modules import HelperTexts
@@ -18,24 +18,26 @@ from actr3d.clock import seconds
 from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
+from actr3d.recording.reader import RecordedCommand
 from actr3d.runner.facts import program_facts
 from actr3d.runner.model_stdout import ProgramOutput
+from actr3d.runner.program_changes import ProgramChanges
 from actr3d.runner.traceback_report import failure
 from actr3d.simulation import Simulation
-from actr3d.trace import Run, Trace, top_path
+from actr3d.trace import Run, Trace, TraceEvent, top_path
 from actr3d.values import to_json
 from workbench.curves import joined
 from workbench.loader import ModelListing
+from workbench.worker.change_menu import change_menu
+from workbench.worker.controlled_run import ControlledRun
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
+from workbench.worker.kept_branch import KeptBranch
 from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import Facts
-from workbench.worker.names import Names, names_of_program
-from workbench.worker.recorded_once import RecordedOnce
+from workbench.worker.names import Names, Top, names_of_program
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.shown import Kept, Shown
-from workbench.worker.stop_conditions import Touches
-from workbench.worker.top_models import Top
 
 PERIOD = 10_000
 """The length of a step [us]: that of a tick of a simulation."""
@@ -49,12 +51,72 @@ class _Again(EndOfRun):
     """Ends a program so that it can be run again up to an earlier time."""
 
 
-class ProgramRun:
+class _RecordedOnce:
+    """Passes what a program does to its recording, except what an earlier pass through it has recorded; the order is always the same.
+
+    Args:
+        recording: The recording with the items of earlier passes.
+        left: Returns whether the program is being left: what it does then, as in `finally`, is not recorded.
+    """
+
+    def __init__(self, recording: Recording, left: Callable[[], bool]) -> None:
+        self._recording = recording
+        self._left = left
+        self._counts: Counter[str] = Counter()
+        self._held: list[Callable[[], object]] | None = None
+        """Writes the items of a change that is being made; None otherwise."""
+
+    @contextmanager
+    def changing(self) -> Generator[None]:
+        """Makes a change of a user in the block; if it succeeds, what an earlier pass has recorded after the present is removed."""
+        recording, counts = self._recording, self._counts.copy()
+        self._held = []
+        try:
+            yield
+            if recording.events > counts["event"] or recording.commands > counts["command"]:
+                recording.cut(self._counts["state"] - 1, counts["event"], self._counts["answer"], counts["command"])
+        except BaseException:
+            self._held.clear()
+            raise
+        finally:
+            held, self._held = self._held, None
+            for write in held:
+                write()
+
+    def _is_new(self, sort: str, recorded: int) -> bool:
+        """Counts an item of a sort; returns whether it is to be recorded, given how many are recorded already."""
+        self._counts[sort] += 1
+        return self._counts[sort] > recorded and not self._left()
+
+    def event(self, event: TraceEvent) -> None:
+        new = self._is_new("event", self._recording.events)
+        if self._held is not None:
+            self._held.append(lambda: self._recording.event_alone(event))
+        elif new:
+            self._recording.event_alone(event)
+
+    def state(self, run: int, tick: int, data: bytes) -> None:
+        if self._is_new("state", self._recording.states):
+            self._recording.state(run, tick, data)
+
+    def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
+        if self._is_new("answer", self._recording.answers):
+            self._recording.answer(run, tick, body, word, value)
+
+    def command(self, run: int, tick: int, data: Mapping[str, Any]) -> None:
+        new = self._is_new("command", self._recording.commands)
+        if self._held is not None:
+            self._held.append(lambda: self._recording.command(run, tick, data))
+        elif new:
+            self._recording.command(run, tick, data)
+
+
+class ProgramRun(ControlledRun):
     """Runs a program under a controller; its time is that of all its runs, one after the other.
 
     Args:
         controller: Decides when it continues.
-        listing: What the model's text says of itself.
+        listing: The description read from the model's text.
     """
 
     def __init__(self, controller: RunController, listing: ModelListing) -> None:
@@ -63,7 +125,6 @@ class ProgramRun:
         self._listing = listing
         self._source = with_values(start.source, start.settings)
         self._seed = fresh_seed() if start.seed is None else start.seed
-        self._recording: Recording | None = None
         self._limits = RunLimits()
         self._output: ProgramOutput | None = None
         self._clock: int = 0
@@ -71,6 +132,8 @@ class ProgramRun:
         self._rush: int | None = None
         """The time up to which it runs without being shown or paused [us]."""
         self._again = False
+        self._over = False
+        """Whether the program has been at its end."""
         self._introduced = False
         """Whether the server knows that the run has begun."""
         self._begun = 0
@@ -89,6 +152,15 @@ class ProgramRun:
         """The simulation that was shown last."""
         self._kept: dict[int, Kept] = {}
         """What is kept of the past of simulations, by number; it outlives that the program is run again."""
+        self._commands = [RecordedCommand(*command) for command in start.commands]
+        """The changes of users, which each pass through the program repeats."""
+        self._changes = ProgramChanges(self._limits, self._commands)
+        self._recorded: _RecordedOnce | None = None
+        self._waits: tuple[Scheduler, int, int] | None = None
+        """While a model without a body waits for its time to pass: its scheduler, the time of its latest event [us], and the time of the
+        program then [us]."""
+        self._changed = False
+        """Whether a user has changed something whose effects of the moment have not happened yet."""
         self._helpers: dict[str, Sequence[str]] = dict(start.helpers)
         """The helper modules as they were the first time; see `actr3d.actr.loading.helper_modules`."""
 
@@ -108,10 +180,7 @@ class ProgramRun:
         except Leaving:
             pass
         finally:
-            if self._recording is not None:
-                if controller.leaving:
-                    self._recording.leave()
-                self._recording.close()
+            self._close_recording(left=controller.leaving)
 
     def _show_recorded(self) -> None:
         """Shows the whole timeline of a recorded run that is run again."""
@@ -132,14 +201,17 @@ class ProgramRun:
             self._show_recorded()
             if self._listing.simulates:
                 self._controller.show()
-                self._controller.channel.flush()  # whatever the program does next, that it has begun is known
+                self._controller.channel.flush()  # before the program does anything that could prevent it
 
     def _send_facts(self) -> None:
         known = {parameter.name: parameter.default for parameter in self._listing.parameters}
         parameters = to_json({**known, **self._controller.channel.start.settings}).encode()
         self._scene = mj_model, world = self._scene_now()
         period = seconds(self.period)
-        facts = Facts(kind="program", seed=self._seed, period=period, parameters=parameters, world=world, mj_model=mj_model)
+        changes = change_menu(agents_only=True) if self._shown is None else b"[]"
+        facts = Facts(
+            kind="program", seed=self._seed, period=period, parameters=parameters, world=world, mj_model=mj_model, changes=changes
+        )
         self._controller.channel.post(facts)
 
     def _scene_now(self) -> tuple[bytes | None, bytes]:
@@ -151,12 +223,14 @@ class ProgramRun:
         self._again = False
         self._clock = self._begun = self._runs = 0
         self._held.clear()
-        self._shown = None
+        self._shown = self._waits = self._recorded = None
+        self._changed = False
         trace = Trace("all")
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
-            limits.recorder = again = RecordedOnce(self._recording, lambda: self._left)
+            limits.recorder = self._recorded = again = _RecordedOnce(self._recording, lambda: self._left)
             trace.listen(again.event)
+        self._changes = ProgramChanges(limits, self._commands)
         if not self._listing.simulates:  # otherwise it continues until its simulation is at its start
             self._hold_at_start()
         exited: SystemExit | None = None
@@ -177,14 +251,12 @@ class ProgramRun:
                 return
             self._introduce()
             controller.channel.post(notice_of(error))
-            if self._recording is not None:
-                self._recording.fact("failed", failure(error))
+            self._record(failed=failure(error))
             self._end("failed", describe_error(error))
             return
         if self._left:
             return
-        if self._recording is not None:
-            self._recording.fact("ended", {"by": "end" if exited is None else "exit"})
+        self._record(ended={"by": "end" if exited is None else "exit"})
         if exited is None or not exited.code:
             self._end("ended", "the program is over")
         else:
@@ -200,7 +272,7 @@ class ProgramRun:
             controller.went_back()
         if self._rush is None:
             controller.show()
-            controller.channel.flush()  # whatever the program does next, that it has begun is known
+            controller.channel.flush()  # before the program does anything that could prevent it
             with suppress(_Again):
                 controller.attend()
 
@@ -217,11 +289,12 @@ class ProgramRun:
 
     @property
     def _left(self) -> bool:
-        """Whether it did not come to its end by itself."""
+        """Whether it is ended from outside, before its own end."""
         return self._again or self._controller.leaving
 
     def _end(self, status: Any, reason: str) -> None:
         self._rush = None
+        self._over = True
         self._introduce()
         self._furthest = max(self._furthest, self._clock)
         self._controller.end(status, reason)
@@ -229,21 +302,42 @@ class ProgramRun:
     def _keep_helpers(self, loaded: Mapping[str, Sequence[str]]) -> None:
         new = {name: text for name, text in loaded.items() if name not in self._helpers}
         self._helpers |= new
-        if new and self._recording is not None:
-            self._recording.fact("helpers", self._helpers)
+        if new:
+            self._record(helpers=self._helpers)
 
-    def _pass(self, begin: int, end: int) -> None:
-        """Paces a model without a body: delays the program until the controller lets it continue."""
+    def _pass(self, sch: Scheduler, end: int) -> bool:
+        """Paces a model without a body: delays the program until the controller lets it continue; returns whether a user has changed it."""
         controller = self._controller
         if controller.channel.left:
-            return  # in a copy of the process that the model has made, which nobody watches
+            return False  # in a copy of the process that the model has made, which nobody watches
         self._introduce()
         self._hold_models()
-        to = self._clock + end - begin
+        if self._changed:  # its effects of the moment have happened
+            self._changed = False
+            controller.show()
+        due = self._changes.due(sch, end)
+        to = self._clock + (end if due is None else due) - sch.now_us
+        self._waits = sch, sch.now_us, self._clock
+        try:
+            self._wait(to, again=due is not None)
+        finally:
+            self._waits = None
+        if self._changed:
+            return True
+        return due is not None and self._changes.repeat(sch, end)
+
+    def _wait(self, to: int, *, again: bool) -> None:
+        """Waits until the program may continue to a time [us], or a user has changed something before it.
+
+        Args:
+            to: The time.
+            again: Whether a known change is repeated there: whoever goes to that time sees what was before it.
+        """
+        controller = self._controller
         while True:
             self._check_left()
             if self._rush is not None:
-                if to <= self._rush:
+                if to < self._rush or (to == self._rush and not again):
                     self._clock = to
                     return
                 self._clock, self._rush = self._rush, None
@@ -251,6 +345,8 @@ class ProgramRun:
             controller.attend()
             if self._again or self._rush is not None:
                 continue
+            if self._changed or (again and self._clock == to):
+                return
             goal = controller.watch.goal
             stop = to if goal is None else min(to, goal)
             if not controller.pace(stop):
@@ -258,7 +354,7 @@ class ProgramRun:
             self._clock = stop
             self._furthest = max(self._furthest, stop)
             controller.show_if_due()
-            if stop == to:
+            if stop == to and not again:
                 return
 
     def _tick(self, simulation: Simulation, passed: int) -> None:
@@ -314,56 +410,59 @@ class ProgramRun:
             if len(self._simulations) > MOST_SIMULATIONS:
                 del self._simulations[max(self._simulations, key=lambda number: abs(number - self._begun))]
 
-    # -- calls from the controller
+    # -- calls from the controller; `ControlledRun` describes them
 
     @property
     def clock(self) -> int:
-        """How much time has passed in all its runs [us]."""
         return self._clock
 
     @property
     def furthest(self) -> int:
-        """How far it has come [us]."""
         return self._furthest
 
     @property
     def period(self) -> int:
-        """What a step is [us]: a tick of the simulation that is shown."""
         return PERIOD if self._shown is None else self._shown.period
 
     @property
     def trace(self) -> Trace | None:
-        """The trace of all its runs."""
         return self._limits.trace
 
     @property
     def shown(self) -> Shown | None:
-        """What is shown of the simulation that has ticked last."""
         return self._shown
 
     def live_parameter(self, name: str, value: Any) -> LiveCommand:
-        """Refuses to change a parameter: a program may hold what it would change.
-
-        Raises:
-            SimulationError: Always.
-        """
-        raise _refusal(name)
+        raise _refusal(name)  # a program may hold what the command would change
 
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
-        """Refuses the command: a program may hold what it would change.
-
-        Raises:
-            SimulationError: Always.
-        """
-        raise _refusal(word)
+        if self._controller.status in ("ended", "failed"):
+            raise SimulationError("the run is over: go back to an earlier time, or restart it")
+        if self._shown is not None or body is not None:
+            raise _refusal(word)
+        self._changes.check(word)
+        if self._waits is None:
+            raise SimulationError(f"'{word}' cannot be done: the program has not begun, so there is no agent yet; step once first")
+        sch, begin, clock = self._waits
+        before = 0 if self.trace is None else len(self.trace)
+        branch = KeptBranch(self._controller, self._recording, self._clock, self._furthest, drop=drop)
+        try:
+            with self._recorded.changing() if self._recorded is not None else nullcontext():
+                self._changes.make(sch, begin + self._clock - clock, word, values, named)
+        except BaseException:
+            branch.undo()
+            raise
+        self._commands = self._changes.known
+        self._furthest = self._clock
+        self._waits = sch, sch.now_us, self._clock
+        if self._over:
+            self._over = False
+            self._record(ended=None, failed=None)
+        self._changed = True
+        self._controller.interrupt()
+        branch.announce(before)
 
     def go_to(self, time: int) -> None:
-        """Goes to another time [us].
-
-        Raises:
-            SimulationError: If the run has not been there.
-            EndOfRun: To leave the program.
-        """
         if time > self._furthest:
             raise SimulationError(f"the run has only reached {seconds(self._furthest):g} s; continue it instead")
         over = self._controller.status in ("ended", "failed")
@@ -374,25 +473,23 @@ class ProgramRun:
             raise _Again
 
     def finish_output(self) -> None:
-        """Traces an unfinished line."""
         if self._output is not None:
             self._output.finish()
 
-    def flush(self) -> None:
-        """Writes everything that is not written yet."""
-        if self._recording is not None:
-            self._recording.flush()
-
     def forget_ahead(self) -> None:
-        """Forgets that it has been further than it is now."""
         self._furthest = self._clock
 
     def tops(self) -> list[Top]:
-        """Returns the latest models."""
-        return list(self._tops())
+        self._hold_models()
+        found: list[Top] = []
+        for number, run, made in self._held:
+            model = run.model or made
+            # The environment of a simulation is its own; its children are agents.
+            prefix = top_path(number) if number > 1 else ""
+            found += [Top(agent, prefix) for agent in children_of(model)] if model.sch.in_lockstep else [Top(model)]
+        return found
 
     def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
-        """Returns curves of the known run; see `workbench.page_commands.bodies.Curves`."""
         return joined(shown.curves(names, first, last, most, begin) for _, (shown, begin) in sorted(self._simulations.items()))
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:
@@ -401,42 +498,11 @@ class ProgramRun:
             self._scene_of = self._shown
             if self._scene_now() != self._scene:
                 self._send_facts()
-        return (None, {}) if self._shown is None else self._shown.scene()
-
-    def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
-        """Returns the current data of overlays, by kind."""
-        return {} if self._shown is None else self._shown.drawn(kinds)
-
-    def result(self) -> dict[str, Any] | None:
-        """Returns the measured result of the simulation that is shown, if any."""
-        return None if self._shown is None else self._shown.result()
-
-    def parts(self) -> dict[str, dict[str, Any]]:
-        """Returns the current state of all parts of its latest models."""
-        parts: dict[str, dict[str, Any]] = {}
-        for top in self._tops():
-            parts |= {top.name(path): part for path, part in snapshot_of(top.model).items()}
-        return parts
+        return super().scene()
 
     def names(self) -> Names:
-        """Returns the names at which the run can be stopped."""
         bodies = () if self._shown is None else self._shown.simulation.world.bodies
-        return names_of_program(self._tops(), bodies, self._listing, self._source, Path(self._controller.channel.start.folder))
-
-    def touches(self) -> Touches:
-        """Returns what touches a body now, the ground left out."""
-        return frozenset() if self._shown is None else self._shown.touches()
-
-    def _tops(self) -> Iterator[Top]:
-        """Yields the latest models."""
-        self._hold_models()
-        for number, run, made in self._held:
-            model = run.model or made
-            if not model.sch.in_lockstep:
-                yield Top(model)
-                continue
-            for agent in children_of(model):  # the environment of a simulation is its own
-                yield Top(agent, top_path(number) if number > 1 else "")
+        return names_of_program(self.tops(), bodies, self._listing, self._source, Path(self._controller.channel.start.folder))
 
     def _hold_models(self) -> None:
         """Keeps the latest models: else it would be up to Python's collector of garbage which of them are shown."""
@@ -450,6 +516,6 @@ class ProgramRun:
 
 def _refusal(what: str) -> SimulationError:
     return SimulationError(
-        f"'{what}' cannot be done: a program takes no commands while it runs; to change a simulation while it runs, "
+        f"'{what}' cannot be done: of a program, only agents without a body can be changed; to change a simulation while it runs, "
         "let a function `build(parameters) -> Simulation` return it"
     )

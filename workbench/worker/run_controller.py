@@ -14,7 +14,7 @@ import msgspec
 from actr3d.actr.kernel.run_limits import EndOfRun
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError
-from actr3d.printing import ModelOutput
+from actr3d.output import ModelOutput
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench.worker.channel import Channel
@@ -71,6 +71,8 @@ class RunController:
         """The time that the run had reached when it went back [us]: until then it repeats itself."""
         self._seen = 0
         """Number of events that have been checked against the stop conditions."""
+        self._interrupted = False
+        """Whether the run has something to do although it is paused."""
         self._shown = 0.0
         self._drawn: tuple[str, ...] = ()
         """The kinds of overlays to compute; empty if no browser shows the 3D view."""
@@ -126,13 +128,20 @@ class RunController:
         if self.watch.goal is not None and self.run.clock >= self.watch.goal and self.status == "running":
             self.pause(self.watch.goal_reason)
         while True:
+            if self._interrupted:
+                self._interrupted = False
+                return
             held = wait and self.status != "running"
             message = self.channel.receive(None if held else 0)
             if message is None:
                 return
             self._hear(message)
-            if self.status == "running":
+            if self.status == "running" and not self._interrupted:
                 return
+
+    def interrupt(self) -> None:
+        """Ends the present wait of a paused run, which has something to do at its present moment."""
+        self._interrupted = True
 
     def pace(self, clock: int) -> bool:
         """Waits until a moment of the run [us] is due; returns False if a command arrived in the meantime."""
@@ -229,7 +238,7 @@ class RunController:
         """
         if self.status in ("ended", "failed"):
             raise Actr3dError("the run is over: go back to an earlier time, or restart it")
-        self.watch.begin(**wanted)
+        self.watch = self.watch.renewed(**wanted)
         trace = self.run.trace
         self._seen = 0 if trace is None else len(trace)
         self.status, self.reason = "running", ""
@@ -321,7 +330,7 @@ class RunController:
             self._send(msgspec.structs.replace(last, time=time, furthest=furthest, tick=clock // self.run.period, events=len(trace)), trace)
 
     def send_all(self, ends: bool) -> None:
-        """Records and sends all events so far, from any thread of the model, as it may be about to end its process.
+        """Records and sends all events until now, from any thread of the model, as it may be about to end its process.
 
         Args:
             ends: Whether it surely ends: then a line without a line break is sent, too.
@@ -362,6 +371,6 @@ class RunController:
 
     def _halt(self) -> None:
         self.pacer.halt()
-        self.watch.begin()
+        self.watch = self.watch.renewed()
         self.run.flush()
         self.show()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import asdict
@@ -15,37 +16,16 @@ from actr3d.parameter_schema import Parameter
 from actr3d.simulation import Simulation
 from actr3d.simulation.surroundings import surroundings
 from actr3d.vision import visions
-from actr3d.world import Aperture, Floor, World
+from actr3d.world import Aperture, Floor
 from actr3d.world.compiled import loaded, saved
 from actr3d.world.sensors.touch import present
 from workbench.curves import CurveReader, stretch
 from workbench.overlays import OVERLAYS, Observed
-from workbench.worker.state_history import Past
+from workbench.worker.state_history import Kept
 from workbench.worker.stop_conditions import Touches
-from workbench.worker.walked_paths import Walked
-from workbench.worker.widths import widths
 
-
-class Kept:
-    """Stores the past of a simulation. It can also serve the same simulation when it is run again.
-
-    Args:
-        period: Length of a tick [us].
-    """
-
-    def __init__(self, period: int) -> None:
-        self.states = Past()
-        self.walked = Walked(period)
-
-    def keep(self, tick: int, world: World) -> None:
-        """Stores the end of a tick, or the start of the run (tick 0); known ticks are skipped."""
-        self.states.keep(tick, world)
-        self.walked.keep(tick, world)
-
-    def cut(self, tick: int) -> None:
-        """Removes what came after a tick, because the run continues differently."""
-        self.states.cut(tick)
-        self.walked.cut(tick)
+WIDEST = 300
+"""Default maximum width of a doorway [cm], if no parameter limits it. Chosen here."""
 
 
 class Shown:
@@ -79,6 +59,7 @@ class Shown:
         return {
             **self.surroundings,
             "openings": self._openings,
+            "objects": [] if parameters is None else self.simulation.world.objects.names,
             "widths": {} if parameters is None else widths(self.surroundings["apertures"], parameters),
         }
 
@@ -131,3 +112,14 @@ class Shown:
         agent, body = self.simulation.agents.get(name), self.simulation.world.bodies[name]
         own = None if agent is None else next((vision.eyesight for vision in visions(agent)), None)
         return own or next((sense.parameters for sense in body.senses if isinstance(sense, Sight)), CameraParameters())
+
+
+def widths(apertures: Iterable[str], parameters: Iterable[Parameter]) -> dict[str, tuple[int, int]]:
+    """Returns the minimum and maximum width of each doorway [cm], from the bounds of the parameter that sets doorways."""
+    setting = [one for one in parameters if one.live is not None and one.live.word == "aperture"]
+    least = [math.ceil(100 * one.least) for one in setting if one.least is not None]
+    least += [math.floor(100 * one.above) + 1 for one in setting if one.above is not None]
+    most = [math.floor(100 * one.most) for one in setting if one.most is not None]
+    most += [math.ceil(100 * one.below) - 1 for one in setting if one.below is not None]
+    bounds = max(least, default=0), min(most, default=WIDEST)
+    return dict.fromkeys(apertures, bounds)

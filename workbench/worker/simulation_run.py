@@ -10,14 +10,12 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.clock import MICROSECONDS, microseconds, seconds
-from actr3d.errors import Actr3dError, SimulationError
+from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
-from actr3d.recording import Recording
 from actr3d.runner.facts import built_facts
 from actr3d.runner.model_factory import build
 from actr3d.runner.model_stdout import BuiltOutput
@@ -25,17 +23,17 @@ from actr3d.runner.traceback_report import failure
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
-from workbench.branches import new_branch, superfluous_branches
 from workbench.loader import ModelListing
+from workbench.worker.change_menu import change_menu
+from workbench.worker.controlled_run import ControlledRun
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
+from workbench.worker.kept_branch import KeptBranch
 from workbench.worker.known_run import KnownRun
-from workbench.worker.messages import Branched, Facts
-from workbench.worker.names import Names, names_of
+from workbench.worker.messages import Facts
+from workbench.worker.names import Names, Top, names_of
 from workbench.worker.run_controller import RunController
 from workbench.worker.shown import Shown
-from workbench.worker.stop_conditions import Touches
-from workbench.worker.top_models import Top
 
 BLOCK = 0.008
 """How long the run continues before it checks for commands of users [s], approximately."""
@@ -44,19 +42,18 @@ MOST_TICKS = 64
 ENDINGS = {"stop": "the model called stop()", "done": "no agent has anything left to do"}
 
 
-class SimulationRun:
+class SimulationRun(ControlledRun):
     """Runs a simulation under a controller.
 
     Args:
         controller: Decides when it continues.
-        listing: What the model's text says of itself.
+        listing: The description read from the model's text.
     """
 
     def __init__(self, controller: RunController, listing: ModelListing) -> None:
         self._controller = controller
         self._listing = listing
         self._start = controller.channel.start
-        self._recording: Recording | None = None
         self._tick_time = 0.0
         self._end: tuple[int, str] | None = None
         """At which tick the run is over, and why, once that is known."""
@@ -88,15 +85,12 @@ class SimulationRun:
                 if self._known_run is not None:
                     self._controller.repeat_recorded(self._known_run)
                 self._controller.show()
-                self._controller.channel.flush()  # whatever the model does next, that it was built is known
+                self._controller.channel.flush()  # before the model does anything that could prevent it
                 while True:
                     self._controller.attend()
                     self._go_on()
             finally:
-                if self._recording is not None:
-                    if self._controller.leaving:
-                        self._recording.leave()
-                    self._recording.close()
+                self._close_recording(left=self._controller.leaving)
 
     def _prepare(self, limits: RunLimits, parameters: dict[str, Any], helpers: HelperTexts) -> None:
         simulation, start = self._simulation, self._start
@@ -107,7 +101,10 @@ class SimulationRun:
             helpers.heard = partial(self._recording.fact, "helpers")  # an agent may import one later
         if start.recorded is not None:
             self._known_run = known_run = KnownRun(Path(start.recorded), self._shown.kept.states.add)
-            simulation.plan([Command.from_data(tick, data) for tick, data in start.commands], known_run.ticks)
+            if self._recording is not None:
+                for command in start.commands:
+                    self._recording.command(*command)
+            simulation.plan([Command.from_data(tick, data) for _, tick, data in start.commands], known_run.ticks)
             ended: dict[str, Any] | None = known_run.facts.get("ended")
             if ended is not None and ended.get("by") in ENDINGS:
                 self._end = known_run.ticks, str(ended["by"])
@@ -120,6 +117,7 @@ class SimulationRun:
             parameters=to_json(parameters).encode(),
             world=to_json(self._shown.world(self._listing.parameters)).encode(),
             mj_model=self._shown.mj_model,
+            changes=change_menu(agents_only=False),
         )
 
     def _go_on(self) -> None:
@@ -141,9 +139,7 @@ class SimulationRun:
             controller.pace(self.clock)
             return
         self._end = simulation.ticks, over
-        if self._recording is not None:
-            self._recording.fact("ended", {"by": over})
-            self._recording.fact("whole", True)
+        self._record(ended={"by": over}, whole=True)
         controller.end("ended", ENDINGS[over])
 
     def run_ticks(self) -> str | None:
@@ -177,39 +173,29 @@ class SimulationRun:
             most = min(most, -(-(controller.watch.goal - self.clock) // self.period))
         return max(1, most)
 
-    # -- calls from the controller
+    # -- calls from the controller; `ControlledRun` describes them
 
     @property
     def clock(self) -> int:
-        """How much time has passed since its start [us]."""
         return self._simulation.ticks * self.period
 
     @property
     def furthest(self) -> int:
-        """How far it has come [us]."""
         return microseconds(self._simulation.furthest)
 
     @property
     def period(self) -> int:
-        """A tick [us]."""
         return microseconds(self._simulation.period)
 
     @property
     def trace(self) -> Trace | None:
-        """The trace up to now."""
         return self._simulation.trace
 
     @property
     def shown(self) -> Shown:
-        """What is shown of the simulation."""
         return self._shown
 
     def go_to(self, time: int) -> None:
-        """Goes to the tick that is nearest to a time [us].
-
-        Raises:
-            SimulationError: If the run has not been there, or does not repeat what it did; then it has failed.
-        """
         tick = round(time / self.period)
         try:
             self._simulation.seek(seconds(tick * self.period))
@@ -225,11 +211,6 @@ class SimulationRun:
         self._controller.end("ended", ENDINGS[self._end[1]])
 
     def live_parameter(self, name: str, value: Any) -> LiveCommand:
-        """Returns how a parameter is changed during the run, after checking its new value.
-
-        Raises:
-            Actr3dError: If there is no such parameter, it cannot change during a run, or it cannot have this value.
-        """
         parameter = self._listing.parameter(name)
         if parameter.live is None:
             raise SimulationError(f"'{name}' cannot change while a run goes on; restart it with the new value")
@@ -237,119 +218,45 @@ class SimulationRun:
         return parameter.live
 
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
-        """Sends the simulation a command; the future of the run is kept as a branch, or dropped if `drop` is true.
-
-        Raises:
-            SimulationError: If the run is over, or what lies ahead cannot be kept and may not be lost.
-            Exception: What the world, a body or an agent raises.
-        """
         if self._controller.status == "ended":
             raise SimulationError("the run is over: go back to an earlier time, or restart it")
         trace = self._simulation.trace
         before = 0 if trace is None else len(trace)
-        ahead = self.furthest > self.clock
-        at, until = seconds(self.clock), seconds(self.furthest)
-        repeated = Path(self._start.recorded) if self._start.recorded is not None and self._controller.repeats_recording else None
-        branch = self._keep_branch(at, until, drop=drop) if ahead and repeated is None else None
+        branch = KeptBranch(self._controller, self._recording, self.clock, self.furthest, drop=drop)
         try:
             self._simulation.command(word, *values, body=body, **named)
         except BaseException:
-            if branch is not None:
-                branch.unlink(missing_ok=True)  # nothing has changed
+            branch.undo()
             raise
-        kept = branch or (repeated if ahead else None)  # a repeated run is kept by its own recording
-        if branch is not None:
-            for old in superfluous_branches(Path(self._start.record or "")):
-                old.unlink(missing_ok=True)
         if self._failed:
             self._record_failure(None)
         if self._end is not None:
             self._end = None
-            if self._recording is not None:
-                self._recording.fact("ended", None)
-                self._recording.fact("whole", None)
-        if kept is not None:
-            self.flush()  # pages list recordings again when they hear of the branch
-            self._controller.channel.post(Branched(recording=kept.stem, at=at, until=until))
-        kept_as = "the rest was lost" if kept is None else "a branch was kept" if branch else "the recording keeps the rest"
-        self._controller.goes_another_way(before, f"changed at {at:.2f} s; {kept_as}" if ahead else None)
-
-    def _keep_branch(self, at: float, until: float, *, drop: bool) -> Path | None:
-        """Keeps what has been recorded of the run, before something is changed in its past. Returns the file; None where it may be lost.
-
-        Raises:
-            SimulationError: If it cannot be kept, and may not be lost.
-        """
-        ahead = f"what lies ahead, from {at:g} to {until:g} s,"
-        if self._recording is None or self._start.record is None:
-            if drop:
-                return None
-            raise SimulationError(f"the run is not recorded: {ahead} would be lost; go to its newest moment, or allow it with `drop`")
-        path = new_branch(Path(self._start.record), at)
-        try:
-            self._recording.copy_to(path, branched=at)  # a fact stays with the branch whatever it is called
-        except Actr3dError as error:
-            if drop:
-                return None
-            raise SimulationError(f"nothing was changed, because {ahead} cannot be kept: {error}; allow to lose it with `drop`") from None
-        return path
+            self._record(ended=None, whole=None)
+        branch.announce(before)
 
     def _record_failure(self, text: str | None) -> None:
         """Records the exception of the model; None if the run continues differently now."""
         self._failed = text is not None
-        if self._recording is not None:
-            self._recording.fact("failed", text)
+        self._record(failed=text)
 
     def finish_output(self) -> None:
-        """Traces an unfinished line."""
         self._simulation.event_log.stdout.finish()
 
-    def flush(self) -> None:
-        """Writes everything that is not written yet."""
-        if self._recording is not None:
-            self._recording.flush()
-
     def forget_ahead(self) -> None:
-        """Forgets that it has been further than it is now."""
         self._simulation.forget_ahead()
         self._shown.kept.cut(self._simulation.ticks)
         if self._end is not None and self._end[0] > self._simulation.ticks:
             self._end = None
 
     def tops(self) -> list[Top]:
-        """Returns the agents."""
         return [Top(agent) for agent in self._simulation.agents.values()]
 
     def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
-        """Returns curves of the known run; see `workbench.page_commands.bodies.Curves`."""
         return self._shown.curves(names, first, last, most)
 
-    def scene(self) -> tuple[bytes | None, dict[str, float]]:
-        """Returns the state of the physics, and how wide apertures are."""
-        return self._shown.scene()
-
-    def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
-        """Returns what overlays show of the present, by kind."""
-        return self._shown.drawn(kinds)
-
-    def result(self) -> dict[str, Any] | None:
-        """Returns what was measured of the run, if anything was."""
-        return self._shown.result()
-
-    def parts(self) -> dict[str, dict[str, Any]]:
-        """Returns what all parts of all agents are like."""
-        parts: dict[str, dict[str, Any]] = {}
-        for agent in self._simulation.agents.values():
-            parts |= snapshot_of(agent)
-        return parts
-
     def names(self) -> Names:
-        """Returns at what it can be stopped."""
         return names_of(self.tops(), self._simulation.world.bodies)
-
-    def touches(self) -> Touches:
-        """Returns what touches a body now, the ground left out."""
-        return self._shown.touches()
 
 
 def check(source: str, filename: str, folder: Path) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.declarative.chunk_index import ChunkStore
@@ -37,10 +38,9 @@ class Watch:
     touching: Touches = field(default_factory=frozenset[tuple[str, str, str]])
     """The contacts that existed at the last check, which do not count as new."""
 
-    def begin(self, **wanted: object) -> None:
-        """Sets new stop conditions; all others except the breakpoints are cleared."""
-        fresh = Watch(breakpoints=self.breakpoints)
-        self.__dict__.update({**fresh.__dict__, **wanted})
+    def renewed(self, **wanted: Any) -> Watch:
+        """Returns new stop conditions with the same breakpoints."""
+        return Watch(breakpoints=self.breakpoints, **wanted)
 
     @property
     def of_events(self) -> bool:
@@ -54,7 +54,7 @@ class Watch:
 
     @property
     def pending(self) -> str:
-        """A text that says until when the run goes on."""
+        """A text that names the condition at which the run will stop."""
         parts = [] if self.goal is None else [f"{seconds(self.goal):g} s"]
         if self.production is not None:
             parts.append(f"{self.production} fires")

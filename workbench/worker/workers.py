@@ -141,7 +141,7 @@ class Workers:
         """
         own_end, its_end = socket.socketpair()
         reading, writing = os.pipe()
-        # The caller may be cancelled; the new process is registered all the same, and ends when its connection is closed.
+        # The caller may be cancelled; the new process is registered nevertheless, and ends when its connection is closed.
         birth = asyncio.create_task(self._birth(its_end, writing, self.memory if memory is None else memory))
         try:
             pid = await asyncio.shield(birth)

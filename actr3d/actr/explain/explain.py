@@ -11,48 +11,17 @@ from typing import TypeVar
 from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.explain.past_state import Past
 from actr3d.actr.explain.present_state import Present
-from actr3d.actr.explain.state import AgentState
-from actr3d.actr.explain.trial import ProductionTrial
+from actr3d.actr.explain.trial import why
 from actr3d.actr.kernel.model import Model, ensure_converted
 from actr3d.actr.kernel.tree import path_of, places_in, subtree, top_of
 from actr3d.actr.modules.port import Searching
-from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import ProductionSystem, prepare_context, rules_of, system_of
-from actr3d.actr.reasons import Explanation, ProductionReason
+from actr3d.actr.procedural.production_system import ProductionSystem, prepare_context, rules_of
+from actr3d.actr.reasons import Explanation
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import ParameterError, SchedulerError
 from actr3d.trace import TraceEvent
 
 Kind = TypeVar("Kind", bound=Model)
-
-
-def why(production: Production, state: AgentState) -> ProductionReason:
-    """Returns the reason of one production in a state."""
-    trial = ProductionTrial(production, state)
-    failed = trial.failure
-    choice = state.choice(production)
-    none_drawn: dict[str, float] = {}
-    drawn = none_drawn if choice is None else choice.parts.get(production.name, none_drawn)
-    parts: dict[str, float | None] = {name: drawn.get(name) if value is None else value for name, value in state.parts(production).items()}
-    if "get_activation" not in parts:
-        parts = {"base": production.base_utility, **parts}
-    known = [value for value in parts.values() if value is not None]
-    return ProductionReason(
-        name=production.name,
-        system=state.path(system_of(production)),
-        parents=production.parents,
-        matches=trial.matches,
-        condition=failed.condition if failed is not None else None,
-        expected=failed.expected if failed is not None else None,
-        found=failed.found if failed is not None else None,
-        source=trial.source,
-        bindings=trial.bindings,
-        conditions=trial.conditions,
-        utility=sum(known) if len(known) == len(parts) else None,
-        parts=parts,
-        selected=choice is not None and choice.chosen == production.name,
-        verdict=None if choice is None else choice.verdict(production.name),
-    )
 
 
 def explain(agent: ProductionSystem, at: float | None = None) -> Explanation:

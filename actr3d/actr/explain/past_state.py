@@ -66,7 +66,7 @@ class _Part:
             self.parts.setdefault(data["production"], {})[data["part"]] = data["value"]
         elif kind == "select":
             self.chosen = data["production"]
-        elif kind in ("fire", "changed"):
+        elif kind in ("fire", "changed", "withdrawn"):
             self.conflict = self.chosen = None
         elif kind == "request" and "candidates" in data:
             self.request, self.outcome = event, data.get("outcome", "pending")
@@ -206,8 +206,10 @@ class Past:
             threshold=data.get("threshold"),
             weighed=rules_of(system_of(production)).by_utility,
             chosen=known.chosen,
+            forbidden=data.get("forbidden", ()),
+            wanted=data.get("wanted"),
         )
-        return choice if choice.chosen is not None or choice.held_back else None
+        return choice if choice.stands else None
 
     def retrieval(self, memory: Model) -> RetrievalReason | None:
         known = self._of(memory)

@@ -35,6 +35,8 @@ def _part(part: Any) -> dict[str, Any]:
         chosen = rules.chosen
         known["productions"] = [production.name for production in rules.productions]
         known["chosen"] = None if chosen is None else chosen.name
+        if rules.forbidden:
+            known["forbidden"] = sorted(rules.forbidden)
     return known
 
 

@@ -9,7 +9,8 @@ from actr3d.actr.chunks.chunk import as_text
 from actr3d.actr.chunks.pattern import Bindings, Condition, Missing, slot_named
 from actr3d.actr.explain.state import AgentState, Fact, is_unknown
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.reasons import ConditionReason
+from actr3d.actr.procedural.production_system import system_of
+from actr3d.actr.reasons import ConditionReason, ProductionReason
 from actr3d.errors import did_you_mean
 
 AT_THE_LAST_MATCH = "as at the latest match"
@@ -174,3 +175,32 @@ def _expected(condition: Condition, wanted: Any) -> str:
         return f"some value for ?{value}"
     named = f" (?{value})" if op in ("same", "differs") else ""
     return f"{'anything but ' if op in ('not', 'differs') else ''}'{wanted}'{named}"
+
+
+def why(production: Production, state: AgentState) -> ProductionReason:
+    """Returns the reason of one production in a state."""
+    trial = ProductionTrial(production, state)
+    failed = trial.failure
+    choice = state.choice(production)
+    none_drawn: dict[str, float] = {}
+    drawn = none_drawn if choice is None else choice.parts.get(production.name, none_drawn)
+    parts: dict[str, float | None] = {name: drawn.get(name) if value is None else value for name, value in state.parts(production).items()}
+    if "get_activation" not in parts:
+        parts = {"base": production.base_utility, **parts}
+    known = [value for value in parts.values() if value is not None]
+    return ProductionReason(
+        name=production.name,
+        system=state.path(system_of(production)),
+        parents=production.parents,
+        matches=trial.matches,
+        condition=failed.condition if failed is not None else None,
+        expected=failed.expected if failed is not None else None,
+        found=failed.found if failed is not None else None,
+        source=trial.source,
+        bindings=trial.bindings,
+        conditions=trial.conditions,
+        utility=sum(known) if len(known) == len(parts) else None,
+        parts=parts,
+        selected=choice is not None and choice.chosen == production.name,
+        verdict=None if choice is None else choice.verdict(production.name),
+    )

@@ -326,8 +326,8 @@ class Scheduler:
             if not heap or (time := heap[0][0]) > end:
                 break
             if time > self.now_us:
-                if passing is not None:
-                    passing(self.now_us, time)
+                if passing is not None and passing(self, time):
+                    continue  # a user has changed something, which may have effects before that time
                 self.now_us = LOG.time_us = time
                 still = 0
             else:
@@ -399,12 +399,23 @@ class Scheduler:
 
     def _advance(self, time: int, total: float) -> None:
         """Advances the time without events, to a time [us], which is also given as a sum of delays [s]."""
-        if self.limits is not None and self.limits.passing is not None and not self.in_lockstep and time > self.now_us:
-            self.limits.passing(self.now_us, time)
+        passing = None if self.limits is None or self.in_lockstep else self.limits.passing
+        while passing is not None and time > self.now_us and passing(self, time):
+            self._run_on(time)  # what a user has changed may have effects before that time
+            if self.stop_flag and self.now_us < time:
+                self.ended_by = "stop"
+                return
         self.now_us = time
         self.left = NOTHING_LEFT
         self.queue.sum = total
         LOG.time_us = time
+
+    def catch_up(self, time: int) -> None:
+        """Advances the time to one before the next event [us], because a user changes something then."""
+        if time > self.now_us:
+            self.queue.sum += seconds(time - self.now_us)
+            self.now_us = LOG.time_us = time
+            self.forget_left()
 
     def finish(self, event: Event) -> None:
         """Marks an event as finished, and wakes the events that wait for it."""

@@ -62,7 +62,8 @@ class ACTR(ProductionSystem):
     def _process_productions(self) -> Iterator[Any]:
         """Matches, chooses the best, waits, matches again, fires; then waits for everything else at that moment."""
         self._begin()
-        matcher = self._rules.matcher
+        rules = self._rules
+        matcher = rules.matcher
         assert matcher is not None
         adaptors = self._adaptors
         sch = self.sch
@@ -70,7 +71,7 @@ class ACTR(ProductionSystem):
         while True:
             if self.production_match_delay > 0:
                 yield self.production_match_delay
-            matching = matcher.matching() if sch.trace is None else self._match()
+            matching = rules.without_forbidden(matcher.matching()) if sch.trace is None else self._match()
             choice = self._choose(matching) if matching else None
             if choice is None:
                 yield self._top.changes
@@ -79,6 +80,8 @@ class ACTR(ProductionSystem):
                 adaptor.selecting(choice)
             self._select(choice)
             yield self._duration()
+            if rules.chosen is not choice:  # a user has withdrawn it
+                continue
             if not matcher.matches(choice):
                 self._abandon(choice)
                 continue
@@ -95,7 +98,8 @@ class ACTR(ProductionSystem):
         if len(matching) == 1 and self._indifferent and self.production_threshold is None:
             if trace is not None and trace.all:
                 only = matching[0]
-                trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": {only.name: only.base_utility}})
+                data = {"utilities": {only.name: only.base_utility}, **self._rules.by_hand}
+                trace.emit(self.sch.now_us, self._path, "conflict", data)
             return pick(self.random, matching)
         parts: list[list[float]] = []
         if self._own_utility:
@@ -113,6 +117,9 @@ class ACTR(ProductionSystem):
         weighed = self.__dict__["_weighed"] = Weighed(matching, utilities, parts, threshold)
         if trace is not None and trace.all:
             self._trace_utilities(weighed, trace)
+        wanted = self._rules.wanted_of(matching)
+        if wanted is not None:
+            return wanted
         if threshold is not None and best < threshold:
             for adaptor in self._adaptors:
                 adaptor.below_threshold()
@@ -135,6 +142,7 @@ class ACTR(ProductionSystem):
             data["drawn"] = self._drawn_names()
         if threshold is not None:
             data["threshold"] = threshold
+        data |= self._rules.by_hand
         trace.emit(self.sch.now_us, self._path, "conflict", data)
 
     def _trace_state(self, trace: Trace) -> None:
@@ -167,6 +175,7 @@ class ACTR(ProductionSystem):
             threshold=threshold,
             weighed=True,
             chosen=picked.name if picked is not None else None,
+            **self._rules.by_hand,
         )
 
     def _duration(self) -> float:

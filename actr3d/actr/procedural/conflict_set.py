@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 
@@ -19,15 +19,28 @@ class ConflictSet:
     weighed: bool
     """Whether utilities decided; a plain production system chooses at random."""
     chosen: str | None
-    """The production that is about to fire; None if all are below the threshold."""
+    """The production that is about to fire; None if all are below the threshold, or none is left."""
+    forbidden: Collection[str] = ()
+    """The productions that matched, and were left out because a user had forbidden them once."""
+    wanted: str | None = None
+    """The production that was chosen because a user had it fire."""
 
     @property
     def held_back(self) -> bool:
         """Whether even the best production is below the threshold."""
         return self.threshold is not None and bool(self.utilities) and max(self.utilities.values()) < self.threshold
 
+    @property
+    def stands(self) -> bool:
+        """Whether it still says something: a production is about to fire, or none was allowed to."""
+        return self.chosen is not None or self.held_back or bool(self.forbidden)
+
     def verdict(self, name: str) -> str | None:
         """Returns why a production was chosen or not; None if there was nothing to choose."""
+        if name in self.forbidden:
+            return "left out: the user had forbidden it once"
+        if self.wanted is not None and self.wanted == self.chosen:
+            return "selected: the user had it fire next" if name == self.wanted else f"not selected: the user had {self.wanted} fire next"
         utility = self.utilities.get(name)
         if self.held_back:
             if utility is None:

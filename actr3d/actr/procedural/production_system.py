@@ -49,6 +49,12 @@ class Rules:
     """The production that is about to fire."""
     by_utility: bool = False
     """Whether utilities decide among those that match, and so are part of the conflict set."""
+    forbidden: set[str] = field(default_factory=set[str])
+    """The productions that a user has forbidden: each is left out of the next choice for which it matches."""
+    wanted: Production | None = None
+    """The production that a user has fire next."""
+    by_hand: dict[str, Any] = field(default_factory=dict[str, Any])
+    """What of the latest choice is due to a user: the names that were `forbidden`, the production that was `wanted`."""
 
     def add(self, production: Production) -> None:
         """Adds a production during the run."""
@@ -56,6 +62,27 @@ class Rules:
         self.productions.append(production)
         if self.matcher is not None:
             self.matcher.build(self.productions)
+
+    def without_forbidden(self, matching: list[Production]) -> list[Production]:
+        """Returns the productions among which to choose; those that were forbidden are allowed again from now on."""
+        if self.by_hand:
+            self.by_hand = {}
+        if not self.forbidden and self.wanted is None:
+            return matching
+        left_out = [production.name for production in matching if production.name in self.forbidden]
+        if left_out:
+            self.forbidden.difference_update(left_out)
+            self.by_hand["forbidden"] = left_out
+            matching[:] = [production for production in matching if production.name not in left_out]
+        wanted, self.wanted = self.wanted, None
+        if wanted in matching:
+            self.by_hand["wanted"] = wanted.name
+        return matching
+
+    def wanted_of(self, matching: list[Production]) -> Production | None:
+        """Returns the production that a user wants among those that match; None if there is none."""
+        name = self.by_hand.get("wanted")
+        return None if name is None else next(production for production in matching if production.name == name)
 
 
 class ProductionSystem(WithParameters, Model):
@@ -114,10 +141,11 @@ class ProductionSystem(WithParameters, Model):
             if not matching:
                 yield self._top.changes
                 continue
-            choice = pick(self.random, matching)
+            choice = self._rules.wanted_of(matching) or pick(self.random, matching)
             self._select(choice)
             yield self._duration()
-            self._fire(choice)
+            if self._rules.chosen is choice:  # otherwise a user has withdrawn it
+                self._fire(choice)
 
     def _begin(self) -> None:
         """Determines what productions see by name, runs the methods without parameters, and builds the matcher."""
@@ -144,14 +172,14 @@ class ProductionSystem(WithParameters, Model):
         """Returns the productions that match now; records in the trace what they read beyond buffers and modules."""
         matcher = self._rules.matcher
         assert matcher is not None
-        matching = matcher.matching()
+        matching = self._rules.without_forbidden(matcher.matching())
         trace = self.sch.trace
         if trace is not None and trace.all:
             if matcher.observed.used:
                 self._observe(trace)
             if not matching or not self._by_utility:
                 utilities = {production.name: production.base_utility for production in matching}
-                trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities})
+                trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities, **self._rules.by_hand})
         return matching
 
     def _observe(self, trace: Trace) -> None:
@@ -175,7 +203,7 @@ class ProductionSystem(WithParameters, Model):
             }
             choice = standing_choice(self)
             if choice is not None:
-                data |= {"utilities": choice.utilities, "parts": choice.parts, "threshold": choice.threshold}
+                data |= {"utilities": choice.utilities, "parts": choice.parts, "threshold": choice.threshold, **rules.by_hand}
             trace.emit(self.sch.now_us, self._path, "productions", data)
             if trace is self.sch.trace:
                 self._observe(trace)
@@ -202,7 +230,7 @@ class ProductionSystem(WithParameters, Model):
             return None
         utilities = {production.name: production.base_utility for production in rules.matcher.last}
         chosen = rules.chosen.name if rules.chosen is not None else None
-        return ConflictSet(utilities=utilities, parts={}, threshold=None, weighed=self._by_utility, chosen=chosen)
+        return ConflictSet(utilities=utilities, parts={}, threshold=None, weighed=self._by_utility, chosen=chosen, **rules.by_hand)
 
     def _select(self, choice: Production) -> None:
         """Records which production will fire."""
@@ -304,10 +332,42 @@ def trace_utility_parts(system: ProductionSystem, production: Production, trace:
             trace.emit(system.sch.now_us, path_of(system), "utility", data)
 
 
+def choose_next(system: ProductionSystem, production: Production) -> None:
+    """Has a production be chosen at the next match if it matches then, in place of the one that is about to fire."""
+    rules_of(system).wanted = production
+    rules_of(system).forbidden.discard(production.name)
+    _withdraw(system)
+
+
+def leave_out_once(system: ProductionSystem, production: Production) -> None:
+    """Leaves a production out of the next choice for which it matches; if it is about to fire, that choice is made again now."""
+    rules = rules_of(system)
+    rules.forbidden.add(production.name)
+    if rules.chosen is production:
+        _withdraw(system)
+
+
+def _withdraw(system: ProductionSystem) -> None:
+    """Withdraws the production that is about to fire, if any, and matches again now."""
+    rules, sch = rules_of(system), system.sch
+    process, changes = system.__dict__["_process"], system.__dict__.get("_top", system).changes
+    waits = any(event is process for event in changes.waiting)
+    if rules.chosen is None and not waits:
+        return  # it is about to match anyway
+    if rules.chosen is not None:
+        withdrawn, rules.chosen = rules.chosen, None
+        if sch.trace is not None and sch.trace.production:
+            sch.trace.emit(sch.now_us, path_of(system), "withdrawn", {"production": withdrawn.name})
+    changes.waiting = [event for event in changes.waiting if event is not process]
+    sch.drop([process])
+    sch.forget_left()
+    sch.put_now(process)
+
+
 def standing_choice(system: ProductionSystem) -> ConflictSet | None:
     """Returns the latest conflict set until the chosen production fires; one in which none was chosen, until the next."""
     choice = system._latest_choice()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
-    return choice if choice is not None and (choice.chosen is not None or choice.held_back) else None
+    return choice if choice is not None and choice.stands else None
 
 
 def utility_parts(system: ProductionSystem, production: Production) -> dict[str, float | None]:

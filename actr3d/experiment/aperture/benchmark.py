@@ -120,7 +120,10 @@ def main(*, json_output: bool, trials: int = TRIALS) -> int:
     print(
         "\n".join(
             _table(
-                "descriptive: angle at the wall [degrees], mean (margin of those that turned [cm])", measured["descriptive"], "margin", 100
+                "descriptive: angle at the wall [degrees], mean (smaller margin of those that turned [cm])",
+                measured["descriptive"],
+                "margin",
+                100,
             )
         )
     )

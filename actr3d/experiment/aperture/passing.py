@@ -1,4 +1,4 @@
-"""One trial at an aperture, as it is analysed, whichever experiment it is from; and the baseline that any model must beat."""
+"""One trial at an aperture in the form that is analysed, whichever experiment it is from; and the baseline that any model must beat."""
 
 from __future__ import annotations
 

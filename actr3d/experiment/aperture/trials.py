@@ -83,7 +83,7 @@ class Outcome:
 
     @property
     def passing(self) -> Passing:
-        """The trial as it is analysed."""
+        """The trial in the form that is analysed."""
         trial, result = self.trial, self.result
         return Passing(
             participant=f"{trial.group} {trial.agent}",

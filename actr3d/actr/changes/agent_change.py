@@ -1,0 +1,86 @@
+"""The base of all changes of agents, and what they find in an agent."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TypeVar
+
+from actr3d.actr.chunks.chunk import Chunk
+from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.tree import path_of, subtree
+from actr3d.actr.procedural.production import Production
+from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
+from actr3d.change import Change
+from actr3d.errors import ChunkError, SimulationError, did_you_mean
+
+P = TypeVar("P", bound=Model)
+
+
+class Parts:
+    """The parts of agents by their paths, such as `walker.goal`.
+
+    Args:
+        tops: The top models.
+    """
+
+    def __init__(self, tops: Iterable[Model]) -> None:
+        self._tops = tuple(tops)
+
+    def __iter__(self) -> Iterator[Model]:
+        for top in self._tops:
+            yield from subtree(top)
+
+    def part(self, kind: type[P], path: str, what: str) -> P:
+        """Returns a part.
+
+        Args:
+            kind: Its class.
+            path: Its path.
+            what: What it is, for the error.
+
+        Raises:
+            SimulationError: If there is none of that kind at that path; with those that there are.
+        """
+        known = {path_of(part): part for part in self if isinstance(part, kind)}
+        if path not in known:
+            raise SimulationError(f"no {what} '{path}'{did_you_mean(path, known)}; there are: {', '.join(known) or 'none'}")
+        return known[path]
+
+    def production(self, path: str, name: str) -> tuple[ProductionSystem, Production]:
+        """Returns a production, and its system.
+
+        Raises:
+            SimulationError: If there is no such system or production; with those that there are.
+        """
+        system = self.part(ProductionSystem, path, "production system")
+        known = {production.name: production for production in rules_of(system).productions}
+        if name not in known:
+            raise SimulationError(f"no production '{name}' in '{path}'{did_you_mean(name, known)}; there are: {', '.join(known) or 'none'}")
+        return system, known[name]
+
+
+class AgentChange(Change):
+    """A change of a part of an agent."""
+
+    def carry_out(self, on: Parts) -> None:
+        """Makes the change.
+
+        Raises:
+            Actr3dError: If it cannot be made; then nothing has changed.
+        """
+        raise NotImplementedError
+
+
+def chunk_of(text: str, where: str) -> Chunk:
+    """Returns a chunk from a user's text.
+
+    Raises:
+        ChunkError: If the text has no slot, or a variable: no production is firing that could bind it.
+    """
+    try:
+        chunk = Chunk(text)
+    except ChunkError as error:
+        raise ChunkError(f"'{where}': {error}; write a value") from None
+    if not chunk:
+        raise ChunkError(f"'{where}': a chunk has at least one slot, such as 'count 3' or 'item:cup' (got {text!r})")
+    return chunk

@@ -1,0 +1,37 @@
+"""The change `parameter`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from actr3d.actr.changes.agent_change import AgentChange, Parts
+from actr3d.actr.chunks.chunk import LASTING_TYPES
+from actr3d.actr.kernel.model import Model
+from actr3d.change import change
+from actr3d.errors import SimulationError, did_you_mean
+
+
+@change
+@dataclass(frozen=True)
+class SetParameter(AgentChange):
+    """Sets a parameter of an agent."""
+
+    word = "parameter"
+    of = "parameter"
+    title = "Set"
+    text = "{path} {value}"
+
+    path: str
+    """Its path, such as `walker.memory.latency`."""
+    value: bool | int | float | str | None
+    """Its new value."""
+
+    def carry_out(self, on: Parts) -> None:
+        place, _, name = self.path.rpartition(".")
+        part = on.part(Model, place or "top", "part")
+        known = [known for known, now in part.__dict__.items() if known[0] != "_" and type(now) in LASTING_TYPES]
+        if name not in known:
+            raise SimulationError(f"no parameter '{self.path}': '{place}' has no '{name}'{did_you_mean(name, known)}")
+        if isinstance(getattr(part, name), (int, float)) and isinstance(self.value, str):
+            raise SimulationError(f"parameter '{self.path}' must be a number (got {self.value!r})")
+        setattr(part, name, self.value)

@@ -1,0 +1,8 @@
+"""The changes that a user can make in a world; a module of this package that defines one is found by itself."""
+
+from actr3d.registry import import_modules
+from actr3d.world.changes.world_change import WorldChange
+
+import_modules(__name__, __path__)
+
+__all__ = ["WorldChange"]

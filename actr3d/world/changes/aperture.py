@@ -1,0 +1,31 @@
+"""The change `aperture`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Ge
+
+from actr3d.change import change
+from actr3d.world.changes.world_change import WorldChange
+from actr3d.world.world import World
+
+
+@change
+@dataclass(frozen=True)
+class SetAperture(WorldChange):
+    """Sets the free width of an aperture."""
+
+    word = "aperture"
+    of = "aperture"
+    title = "Set the width"
+    text = "{name} {width} m"
+
+    width: Annotated[float, Ge(0)]
+    """The free width [m]."""
+    name: str = "aperture"
+    """The aperture."""
+
+    def carry_out(self, on: World) -> None:
+        on.set_aperture_width(self.width, self.name)

@@ -1,0 +1,193 @@
+"""Objects that a user can move by hand: bodies, walls and other fixed obstacles, loose objects."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from actr3d.errors import WorldError, did_you_mean
+from actr3d.world.body import Body
+from actr3d.world.physics import Physics
+from actr3d.world.scene_objects import yaw_quaternion
+
+PRESSED = 0.01
+"""Greatest depth of one object in another after it was moved by hand [m]: contacts as stiff as those of walls push that out
+at less than 3 m/s, but fling away, or crush without bounds, what is deeper. Source: chosen for this library."""
+
+Pose = tuple[float, float, float]
+"""Place and heading of an object: x [m], y [m], heading [rad]."""
+
+
+class Objects:
+    """Finds, moves and pushes the objects of a world that are not fixed for ever.
+
+    Args:
+        physics: The compiled scene and its state.
+        bodies: The bodies of the world by name.
+        kept: The names of MuJoCo bodies that are moved in another way, such as the segments of apertures.
+    """
+
+    def __init__(self, physics: Physics, bodies: Mapping[str, Body], kept: frozenset[str]) -> None:
+        model = physics.mj_model
+        self._physics = physics
+        self._bodies = {name: body for name, body in bodies.items() if body.base.planar or body.base.free}
+        names = {int(number): str(model.body(int(number)).name) for number in np.flatnonzero(model.body_parentid == 0)[1:]}
+        own = {body.root for body in bodies.values()}
+        self._obstacles = {name: number for number, name in names.items() if model.body_mocapid[number] >= 0 and name not in kept}
+        self._loose = {name: number for number, name in names.items() if number not in own and self._is_free(number)}
+
+    def _is_free(self, body: int) -> bool:
+        model = self._physics.mj_model
+        return int(model.body_jntnum[body]) == 1 and int(model.jnt_type[model.body_jntadr[body]]) == 0
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all objects that can be moved."""
+        return (*self._bodies, *self._obstacles, *self._loose)
+
+    def pose(self, name: str) -> Pose:
+        """Returns where an object is.
+
+        Raises:
+            WorldError: If there is no such object.
+        """
+        number, data = self._number(name, self.names, "move"), self._physics.mj_data
+        if name in self._bodies and self._bodies[name].base.planar:
+            return self._bodies[name].base.place
+        if name in self._obstacles:
+            mocap = int(self._physics.mj_model.body_mocapid[number])
+            (x, y, _), turned = data.mocap_pos[mocap].tolist(), data.mocap_quat[mocap]
+        else:
+            at = int(self._physics.mj_model.jnt_qposadr[self._physics.mj_model.body_jntadr[number]])
+            (x, y, _), turned = data.qpos[at : at + 3].tolist(), data.qpos[at + 3 : at + 7]
+        return x, y, _heading(turned.tolist())
+
+    def move(self, name: str, x: float, y: float, heading: float | None) -> None:
+        """Puts an object at (x, y) [m], with a heading [rad] or its present one; a loose object comes to rest.
+
+        Raises:
+            WorldError: If there is no such object, or it would be inside another one; it stays then.
+        """
+        number, physics = self._number(name, self.names, "move"), self._physics
+        before, depths = physics.integration_state(), self._depths(number)
+        held = self._bodies[name].state() if name in self._bodies else None
+        if name in self._bodies:
+            self._bodies[name].set("teleport", x, y, heading)
+        elif name in self._obstacles:
+            mocap = int(physics.mj_model.body_mocapid[number])
+            physics.mj_data.mocap_pos[mocap, :2] = (x, y)
+            if heading is not None:
+                _turn(physics.mj_data.mocap_quat[mocap], heading)
+        else:
+            joint = int(physics.mj_model.body_jntadr[number])
+            q, v = int(physics.mj_model.jnt_qposadr[joint]), int(physics.mj_model.jnt_dofadr[joint])
+            physics.mj_data.qpos[q : q + 2] = (x, y)
+            physics.mj_data.qvel[v : v + 6] = 0
+            if heading is not None:
+                _turn(physics.mj_data.qpos[q + 3 : q + 7], heading)
+        physics.changed()
+        others = [other for other, depth in self._depths(number).items() if depth > max(PRESSED, depths.get(other, 0.0))]
+        if others:
+            physics.restore(before)
+            if held is not None:
+                self._bodies[name].restore(held)
+            physics.changed()
+            raise WorldError(f"'{name}' cannot be put at ({x:g}, {y:g}) m: it would be inside {', '.join(map(repr, others))}; leave room")
+
+    def pushed(self, name: str) -> int:
+        """Returns the MuJoCo body that a push of an object acts on.
+
+        Raises:
+            WorldError: If there is no such object, or it cannot be pushed.
+        """
+        return self._number(name, (*self._bodies, *self._loose), "push")
+
+    def strike(self, number: int) -> None:
+        """Notes that something pushes a MuJoCo body: the body to which it belongs holds its place with no more than its strength."""
+        for body in self._bodies.values():
+            if body.root == number:
+                body.hold.strike()
+
+    def _number(self, name: str, names: tuple[str, ...], what: str) -> int:
+        if name not in names:
+            fixed = f"'{name}' is fixed" if name in self._obstacles else f"no object '{name}' to {what}{did_you_mean(name, names)}"
+            raise WorldError(f"{fixed}; there are: {', '.join(names) or 'none'}")
+        return self._bodies[name].root if name in self._bodies else self._obstacles[name] if name in self._obstacles else self._loose[name]
+
+    def _depths(self, root: int) -> dict[str, float]:
+        """Returns by name the depth of an object, given its root, in each other object [m]."""
+        physics = self._physics
+        physics.refresh()
+        model, contacts = physics.mj_model, physics.mj_data.contact
+        depths: dict[str, float] = {}
+        pairs: list[list[int]] = contacts.geom.tolist()
+        for pair, distance in zip(pairs, contacts.dist.tolist(), strict=True):
+            mine = [geom >= 0 and int(model.body_rootid[model.geom_bodyid[geom]]) == root for geom in pair]
+            if mine[0] != mine[1] and pair[mine[0]] >= 0:
+                other = physics.owners[pair[mine[0]]]
+                depths[other] = max(depths.get(other, 0.0), -distance)
+        return depths
+
+
+class Pushes:
+    """Forces by which a user pushes objects, each for a number of physics steps.
+
+    Args:
+        physics: The compiled scene and its state.
+        objects: The objects that are pushed.
+    """
+
+    def __init__(self, physics: Physics, objects: Objects) -> None:
+        self._physics = physics
+        self._objects = objects
+        self._pushes: list[tuple[int, float, float, int]] = []
+        """The MuJoCo body, the force along x and y [N], and the physics steps left."""
+
+    def __bool__(self) -> bool:
+        return bool(self._pushes)
+
+    def add(self, name: str, x: float, y: float, steps: int) -> None:
+        """Pushes an object with a force (x, y) [N] for a number of physics steps.
+
+        Raises:
+            WorldError: If there is no such object, or it cannot be pushed.
+        """
+        self._pushes.append((self._objects.pushed(name), x, y, steps))
+
+    def begin(self, steps: int) -> None:
+        """Applies the forces for the next physics steps; a push that lasts less acts with its mean force, so that its impulse is exact."""
+        for number, x, y, left in self._pushes:
+            share = min(left, steps) / steps
+            self._physics.mj_data.xfrc_applied[number, :2] += (share * x, share * y)
+            self._objects.strike(number)
+
+    def end(self, steps: int) -> None:
+        """Removes the forces after these steps; pushes that are over are forgotten."""
+        for number, *_ in self._pushes:
+            self._physics.mj_data.xfrc_applied[number] = 0
+            self._objects.strike(number)
+        self._pushes = [(number, x, y, left - steps) for number, x, y, left in self._pushes if left > steps]
+
+    def state(self) -> tuple[tuple[int, float, float, int], ...]:
+        """Returns what is left of all pushes as plain values."""
+        return tuple(self._pushes)
+
+    def restore(self, state: tuple[tuple[int, float, float, int], ...]) -> None:
+        """Restores pushes that `state` returned."""
+        self._pushes = list(state)
+
+
+def _turn(quaternion: NDArray[np.float64], heading: float) -> None:
+    """Turns an orientation about the vertical to a heading [rad]; an object that lies keeps lying."""
+    by = np.array(yaw_quaternion(heading - _heading(quaternion.tolist())))
+    mujoco.mju_mulQuat(quaternion, by, quaternion.copy())
+
+
+def _heading(quaternion: list[float]) -> float:
+    """Returns the heading of an orientation [rad]."""
+    w, x, y, z = quaternion
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))

@@ -1,0 +1,122 @@
+// Changes by hand: what a user can change in the run, from the library's registry (`actr3d.change`), and the forms and menus for it.
+
+import { change } from "../bar/branch.js";
+import { dialog } from "../parts/dialog.js";
+import { Icon } from "../parts/icon.js";
+import { alive, session } from "../store.js";
+import { computed, html, signal, useId, useRef, useState } from "../vendor/preact.js";
+
+/** All changes that this run accepts: {word, of, title, help, text, fields: [{name, takes, required, default, unit, help}]}. */
+export const changes = computed(() => session.value?.changes ?? []);
+
+/** Returns the changes of one kind of thing. */
+export function changesOf(of) {
+  return changes.value.filter((one) => one.of === of);
+}
+
+/** Makes a change; returns null, or the text of the problem. */
+export async function make(word, named) {
+  try {
+    await change({ type: "command", word, named });
+    return null;
+  } catch (error) {
+    return error.message;
+  }
+}
+
+/** Returns {problem, send}: a function that makes a change and stores the problem for showing it beside; it returns whether it is made. */
+export function useChange() {
+  const [problem, setProblem] = useState(null);
+  const send = async (word, named) => {
+    const text = await make(word, named);
+    setProblem(text);
+    return text === null;
+  };
+  return { problem, send, forget: () => setProblem(null) };
+}
+
+export function Problem({ text }) {
+  return text ? html`<p class="problem bad" role="alert">${text}</p>` : null;
+}
+
+function valueOf({ takes }, text) {
+  if (takes.includes("number")) return text.trim() === "" ? null : Number(text);
+  return text;
+}
+
+function Fields({ fields, values, objects }) {
+  return fields.map((field) => {
+    const { name, unit, help, required } = field;
+    const put = (event) => (values[name] = event.currentTarget.value);
+    return html`<label key=${name} class="field" title=${help}>
+      ${name}${unit ? html` <span class="quiet">[${unit}]</span>` : null}
+      ${name === "object" && objects.length
+        ? html`<select onChange=${put}>${objects.map((one) => html`<option key=${one} value=${one} selected=${one === values[name]}>${one}</option>`)}</select>`
+        : html`<input inputmode=${field.takes.includes("number") ? "decimal" : "text"} required=${required} value=${values[name] ?? ""} onInput=${put} />`}
+    </label>`;
+  });
+}
+
+/** Asks for the fields of a change that are not given, and makes it; an error is shown in the dialog, which stays open then. */
+export function askAndMake(one, given = {}) {
+  const objects = session.value?.world?.objects ?? [];
+  const fields = one.fields.filter(({ name }) => !(name in given));
+  const values = Object.fromEntries(fields.map(({ name, default: first }) => [name, name === "object" ? objects[0] : (first ?? "")]));
+  const problem = signal(null);
+  const Body = () => html`<p class="quiet">${one.help}</p><${Fields} fields=${fields} values=${values} objects=${objects} /><${Problem} text=${problem.value} />`;
+  const check = async () => {
+    const named = { ...given };
+    for (const field of fields) {
+      const value = valueOf(field, String(values[field.name]));
+      if (Number.isNaN(value)) {
+        problem.value = `${field.name}: must be a number (got '${values[field.name]}')`;
+        return false;
+      }
+      if (value !== null || field.required) named[field.name] = value;
+    }
+    problem.value = await make(one.word, named);
+    return problem.value === null;
+  };
+  return dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: "Cancel", value: null }, { text: one.title, value: true, kind: "primary" }], check });
+}
+
+/** The buttons for all changes of a thing: one that needs nothing else is made at once, others ask for the rest. */
+export function ChangeButtons({ of, given, without = [] }) {
+  const { problem, send } = useChange();
+  const list = changesOf(of).filter(({ word }) => !without.includes(word));
+  if (list.length === 0) return null;
+  const act = (one) => (one.fields.some(({ name, required }) => required && !(name in given)) ? askAndMake(one, given) : send(one.word, given));
+  return html`<span class="change-buttons">
+      ${list.map((one) => html`<button key=${one.word} disabled=${!alive.value} title=${one.help} onClick=${() => act(one)}>${one.title}</button>`)}
+    </span>
+    <${Problem} text=${problem} />`;
+}
+
+/** A menu with the same changes, opened by a small button: for lists with little room. */
+export function ChangeMenu({ of, given, label }) {
+  const id = useId();
+  const box = useRef(null);
+  const [problem, setProblem] = useState(null);
+  const list = changesOf(of);
+  if (list.length === 0) return null;
+  const place = ({ currentTarget }) => {
+    const { left, bottom } = currentTarget.getBoundingClientRect();
+    Object.assign(box.current.style, { left: `${left}px`, top: `${bottom}px` });
+    setProblem(null);
+  };
+  const act = async (one) => {
+    if (one.fields.some(({ name, required }) => required && !(name in given))) {
+      box.current.hidePopover();
+      askAndMake(one, given);
+      return;
+    }
+    const text = await make(one.word, given);
+    setProblem(text);
+    if (text === null) box.current?.hidePopover();
+  };
+  return html`<button class="bare change-more" popovertarget=${id} aria-label="Change ${label}" title="Change ${label}" disabled=${!alive.value} onClick=${place}><${Icon} name="more" /></button>
+    <div id=${id} ref=${box} popover="auto" class="change-menu" role="group" aria-label="Change ${label}">
+      ${list.map((one) => html`<button key=${one.word} title=${one.help} onClick=${() => act(one)}>${one.title}</button>`)}
+      <${Problem} text=${problem} />
+    </div>`;
+}

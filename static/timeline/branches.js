@@ -1,0 +1,121 @@
+// The branches of the run as a small tree on the axis of time: each begins where its run was changed. They are opened, compared, named
+// and deleted here; there is nothing to see as long as there is only one way.
+
+import { compareRuns } from "../compare/compare.js";
+import { remembered } from "../local_storage.js";
+import { openTab } from "../open_tab.js";
+import { Icon } from "../parts/icon.js";
+import { deleteRuns, openRun } from "../runs/actions.js";
+import { labelRun } from "../runs/label.js";
+import { follow, present, runs } from "../runs/list.js";
+import { outcomeText, whenText } from "../runs/wording.js";
+import { choose } from "../bar/models.js";
+import { call } from "../server.js";
+import { alive, complain, session, state } from "../store.js";
+import { computed, effect, html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { placeOf } from "./draw.js";
+import { column } from "./rows.js";
+import { furthest, seek } from "./seek.js";
+import { span } from "./view.js";
+
+const open = remembered("branches open", true);
+
+/** The recording of the shown run: its own, or that which it repeats. */
+const shown = computed(() => present.value ?? session.value?.recorded ?? null);
+
+/** Returns the tree that a recording is in, as rows with their depth: a branch follows that from which it comes. */
+export function treeOf(list, id) {
+  const known = new Map(list.map((run) => [run.id, run]));
+  const parentOf = (run) => (run.origin !== null && run.origin !== run.id ? known.get(run.origin) : undefined);
+  let root = known.get(id);
+  if (!root) return [];
+  const seen = new Set([root.id]);
+  for (let above = parentOf(root); above && !seen.has(above.id); above = parentOf(above)) {
+    seen.add(above.id);
+    root = above;
+  }
+  const below = Map.groupBy(list.filter((run) => parentOf(run)), (run) => run.origin);
+  const rows = [];
+  const done = new Set();
+  const add = (run, depth) => {
+    if (done.has(run.id)) return;
+    done.add(run.id);
+    rows.push({ run, depth });
+    for (const child of (below.get(run.id) ?? []).toSorted((one, other) => (one.branched ?? 0) - (other.branched ?? 0) || one.made - other.made)) add(child, depth + 1);
+  };
+  add(root, 0);
+  return rows;
+}
+
+const tree = computed(() => treeOf(runs.value ?? [], shown.value));
+
+/** Shows another branch: the open session that writes it, or its recording. */
+async function show(run) {
+  if (!run.session) {
+    await openRun(run);
+    return beginAt(run);
+  }
+  try {
+    const { session: found } = await call("GET", `/api/sessions/${run.session}`);
+    if (found.recorded === null) return choose(found.model);
+    return openRun({ ...run, id: found.recorded });
+  } catch (error) {
+    return complain(error.message);
+  }
+}
+
+/** Goes to the moment from which an opened branch differs, once its run is known. */
+function beginAt({ id, branched }) {
+  if (branched === null) return;
+  const end = effect(() => {
+    const here = session.value?.recorded === id;
+    if (session.value !== null && !here) queueMicrotask(() => end()); // another run is shown by now
+    if (!here || !alive.value || furthest.value < branched - 1e-6) return;
+    queueMicrotask(() => {
+      end();
+      seek(branched);
+    });
+  });
+}
+
+function compare(run) {
+  openTab.value = "runs";
+  compareRuns(run.id, shown.value);
+}
+
+function Row({ run, depth, width }) {
+  const mine = run.id === shown.value;
+  const view = { column: column.value, width, span: span.value };
+  const inside = (x) => Math.min(Math.max(x, view.column), width);
+  const end = mine && run.session === session.value?.id ? Math.max(furthest.value, state.value?.time ?? 0) : run.time;
+  const [from, to] = [inside(placeOf(run.branched ?? 0, view)), inside(placeOf(end, view))];
+  const name = run.label?.name || (run.branched === null ? whenText(run.made) : `at ${run.branched.toFixed(2)} s`);
+  const title = `${name}: ${outcomeText(run)}, ${end.toFixed(2)} s${run.label?.note ? `\n${run.label.note}` : ""}`;
+  return html`<li class=${mine ? "mine" : ""} data-branch=${run.id}>
+    <button class="branch-name" style=${{ width: `${view.column}px`, paddingLeft: `${8 + 10 * depth}px` }} aria-current=${mine} title=${mine ? `${title}\nshown` : `${title}\nShow it`} disabled=${Boolean(run.problem)} onClick=${() => mine || show(run)}>${depth > 0 ? "└ " : ""}${name}</button>
+    <span class="branch-way" style=${{ left: `${from}px`, width: `${Math.max(2, to - from)}px` }} aria-hidden="true"></span>
+    <span class="branch-actions">
+      ${mine ? null : html`<button class="bare" title="Compare with the shown run" onClick=${() => compare(run)}>Compare</button>`}
+      <button class="bare" aria-label="Name ${name}" title="Name, note, tags" onClick=${() => labelRun(run)}><${Icon} name="pen" /></button>
+      ${run.session || mine ? null : html`<button class="bare" aria-label="Delete ${name}" title="Delete" onClick=${() => deleteRuns([run])}><${Icon} name="trash" /></button>`}
+    </span>
+  </li>`;
+}
+
+export function Branches() {
+  const box = useRef(null);
+  const [width, setWidth] = useState(600);
+  const several = tree.value.length > 1;
+  useEffect(follow, []);
+  useLayoutEffect(() => {
+    if (!box.current) return undefined;
+    const watch = new ResizeObserver(() => box.current && setWidth(box.current.clientWidth));
+    watch.observe(box.current);
+    return () => watch.disconnect();
+  }, [several]);
+  if (!several) return null;
+  return html`<section ref=${box} class="branches" aria-label="Branches">
+    <button class="bare branches-head" aria-expanded=${open.value} onClick=${() => (open.value = !open.value)}><${Icon} name=${open.value ? "down" : "right"} />${tree.value.length} branches</button>
+    ${open.value ? html`<ul>${tree.value.map(({ run, depth }) => html`<${Row} key=${run.id} run=${run} depth=${depth} width=${width} />`)}</ul>` : null}
+  </section>`;
+}

@@ -1,0 +1,135 @@
+"""Changes by hand in a real browser: buffers, memories, productions, the scene; the tree of branches; all browsers see the same."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from playwright.sync_api import Page, expect
+
+from tests.helpers.page import open_tab, shows
+
+
+def say(page: Page, **command: Any) -> None:
+    """Sends a command to the run."""
+    page.evaluate("async (command) => void (await (await import('/static/server.js')).say(command))", command)
+
+
+def commands(page: Page) -> list[str]:
+    """Returns the users' commands as the timeline shows them."""
+    return page.evaluate("""async () => {
+      const { lanes } = await import("/static/timeline/record.js");
+      return (lanes.lanes.get("commands")?.bands ?? []).map(({ text }) => text);
+    }""")
+
+
+def test_a_mind_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", refusals=True)
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.12)
+    shows(page, "#status", r"at 0\.12 s")
+    other = pages("counting.py")
+    shows(other, "tr[data-path=goal]", "count")
+
+    # a buffer: a wrong text is explained beside the field, which stays open
+    page.get_by_role("button", name="Edit goal").focus()
+    page.keyboard.press("Enter")
+    field = page.get_by_label("Chunk of goal")
+    expect(field).to_have_value("task:count number:2 last:5")
+    field.fill("task:count number:?x")
+    field.press("Enter")
+    expect(page.get_by_role("alert")).to_contain_text("'?x' is not bound")
+    field.fill("task:count number:7 last:9 <b>")
+    field.press("Enter")
+    expect(field).to_have_count(0)
+    for one in (page, other):
+        shows(one, "tr[data-path=goal]", "<b>taskcountnumber7last9")
+    page.get_by_role("button", name="Edit goal").click()
+    expect(field).to_have_value("task:count number:7 last:9 <b>")
+    field.press("Escape")
+    assert commands(other) == ["set buffer goal task:count number:2 last:5 -> task:count number:7 last:9 <b>"]
+
+    # a memory
+    open_tab(page, "Memory")
+    page.get_by_label("Add a chunk").fill("count 7 8 again")
+    page.get_by_label("Add a chunk").press("Enter")
+    row = page.locator("#chunks tr", has_text="count78again")
+    row.click()
+    page.get_by_role("button", name="Strengthen").click()
+    page.wait_for_function(
+        "async () => (await import('/static/store.js')).events.value.list.filter(([, , kind]) => kind === 'command').length === 3"
+    )
+    assert commands(page)[1:] == ["add chunk memory count 7 8 again", "strengthen memory count 7 8 again"]
+
+    # productions: what is forbidden is marked, and the explanation says who did it
+    open_tab(page, "Productions")
+    page.locator(".production-list").get_by_role("button", name="count_on", exact=False).first.hover()
+    page.get_by_role("button", name="Change stop_counting").focus()
+    page.keyboard.press("Enter")
+    page.get_by_role("group", name="Change stop_counting").get_by_role("button", name="Fire next").click()
+    expect(page.get_by_role("group", name="Change stop_counting").get_by_role("alert")).to_contain_text("it does not match")
+    page.get_by_role("group", name="Change stop_counting").get_by_role("button", name="Forbid once").click()
+    expect(page.locator(".production-list li", has_text="stop_counting")).to_contain_text("forbidden once")
+    say(other, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "task:count number:9 last:9"})
+    say(other, type="until", time=0.16)  # what was about to fire no longer matches then
+    page.locator(".production-list .name", has_text="stop_counting").click()
+    shows(page, "#why-text", "left out: the user had forbidden it once")
+
+
+def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="runs")
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.3)
+    shows(page, "#status", r"at 0\.3 s")
+    expect(page.locator(".branches")).to_have_count(0)
+    say(page, type="seek", time=0.12)
+    say(page, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "task:count number:2 last:3"})
+    rows = page.locator(".branches li")
+    expect(rows).to_have_count(2)
+    expect(rows.nth(1)).to_contain_text("at 0.12 s")
+    rows.nth(1).get_by_role("button", name="Name at 0.12 s").click()
+    page.get_by_label("Name", exact=True).fill("<i>to five</i>")
+    page.get_by_label("Tags").fill("long, kept, long")
+    page.get_by_label("Note").fill("as it was")
+    page.get_by_role("button", name="Keep", exact=True).click()
+    expect(rows.nth(1)).to_contain_text("<i>to five</i>")
+    expect(page.locator("tr[data-run] .tag")).to_have_text(["long", "kept"])
+
+    # the branch is shown as a recording with its own address; a change there is a branch of it, and the live run is left alone
+    rows.nth(1).locator(".branch-name").click()
+    shows(page, ".recording-banner", r"0\.30 s are known")
+    page.wait_for_url("**/?run=*")
+    shows(page, "#time", r"0\.12 s")  # from where it differs
+    say(page, type="seek", time=0.2)
+    say(page, type="command", word="clear_buffer", named={"buffer": "goal"})
+    shows(page, ".recording-banner", "what follows is recorded as a branch of it")
+    expect(rows).to_have_count(3)
+    expect(page.locator(".branches li.mine")).to_contain_text("at 0.20 s")
+    rows.nth(0).locator(".branch-name").click()
+    shows(page, "#status", r"changed at 0\.12 s")
+    expect(rows).to_have_count(3)
+    expect(page.locator(".branches li.mine")).to_have_count(1)
+    assert commands(page) == ["set buffer goal task:count number:2 last:5 -> task:count number:2 last:3"]
+
+
+def test_things_in_the_scene_are_moved_and_pushed_by_numbers(pages: Callable[..., Page]) -> None:
+    page = pages(refusals=True)
+    shows(page, "#status", "at its start")
+    page.get_by_role("button", name="Move, push …").click()
+    page.get_by_role("button", name="Move …", exact=True).click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label("x", exact=False).first.fill("abc")
+    dialog.get_by_role("button", name="Move").click()
+    expect(dialog.get_by_role("alert")).to_have_text("x: must be a number (got 'abc')")
+    dialog.locator("input").nth(0).fill("7")
+    dialog.locator("input").nth(1).fill("1.5")
+    dialog.get_by_role("button", name="Move").click()
+    expect(dialog.get_by_role("alert")).to_contain_text("'walker' cannot be put at (7, 1.5) m: it would be inside 'aperture_left'")
+    dialog.locator("input").nth(0).fill("1")
+    dialog.get_by_role("button", name="Move").click()
+    expect(dialog).to_have_count(0)
+    say(page, type="step")
+    shows(page, "#time", r"0\.01 s")
+    say(page, type="command", word="move", values=["walker", 2.0, 1.0, 0.5])
+    say(page, type="aperture", width=0.4)
+    assert commands(page) == ["move walker to (1, 1.5) m", "move walker (1, 1.5) m -> (2, 1) m, 29°", "aperture 50 -> 40 cm"]

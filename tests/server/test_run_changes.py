@@ -1,0 +1,256 @@
+"""Changes by hand in sessions: of simulations and of programs, while they run, are paused, go back, and in opened recordings."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from actr3d.recording import Recorded
+from actr3d.runner.replay import replay
+from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, Answer, call
+from tests.helpers.sessions import Desk, RefusedError, Talk
+from workbench.app import make_app
+from workbench.retention import Keeping, branched_at
+
+AGENT = """
+from actr3d.actr import *
+
+class Counter(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+    strength = DMBaseLevel(memory)
+    noise = PMNoise(noise=0.3)
+
+    def init():
+        goal.set("count 0")
+        memory.add("next 0 1")
+
+    def up(goal="count ?n"):
+        goal.set(f"count {int(n) + 1}")
+
+    def recall(goal="count ?n"):
+        memory.request("next ?n ?")
+
+    def rest(goal="rest ?n"):
+        goal.set("count ?n")
+"""
+PROGRAM = AGENT + "\nfirst = Counter()\nfirst.run(0.4)\nsecond = Counter()\nsecond.run(3)\nprint('over')\n"
+BUILT = (
+    AGENT
+    + """
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Scene
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(),)), bodiless={"mind": Counter})
+"""
+)
+MODELS = {"program": (PROGRAM, "top", ""), "simulation": (BUILT, "mind", "mind.")}
+"""By kind of model: its text, the path of its agent, and the start of the paths of its parts."""
+
+
+def change(talk: Talk, word: str, **named: Any) -> None:
+    talk.say("command", word=word, named=named)
+
+
+def events(talk: Talk) -> list[Any]:
+    return talk.say("events", most=20_000)["events"]
+
+
+def there(talk: Talk, time: float) -> None:
+    talk.say("until", time=time)
+    talk.until("paused", time=time)
+
+
+def recording(talk: Talk) -> Path:
+    assert talk.session.start is not None
+    assert talk.session.start.record is not None
+    return Path(talk.session.start.record)
+
+
+@pytest.mark.parametrize("kind", MODELS)
+def test_changes_are_repeated_exactly_by_going_back_by_a_replay_and_by_opening(kind: str, desk: Desk, tmp_path: Path) -> None:
+    source, agent, below = MODELS[kind]
+    talk = desk.begin(tmp_path, source, record=True)
+    there(talk, 0.12)
+    change(talk, "forbid_once", system=agent, production="up")
+    change(talk, "set_buffer", buffer=f"{below}goal", chunk="rest 5")
+    assert talk.state["parts"][f"{below}goal"]["chunk"] == {"0": "rest", "1": "5"}
+    there(talk, 0.17)
+    change(talk, "add_chunk", memory=f"{below}memory", chunk="next 5 6")
+    there(talk, 0.3)
+    change(talk, "strengthen", memory=f"{below}memory", chunk="next 5 6")
+    change(talk, "clear_buffer", buffer=f"{below}retrieval")
+    there(talk, 0.9)
+    first = events(talk)
+    assert [data["command"] for _, _, kind, data in first if kind == "command"] == [
+        "forbid_once", "set_buffer", "add_chunk", "strengthen", "clear_buffer",
+    ]  # fmt: skip
+    for time in (0.5, 0.12, 0.17, 0.0, 0.29):
+        talk.say("seek", time=time)
+        talk.until("paused", time=time)
+        talk.say("until", time=0.9)
+        talk.until("paused", time=0.9)
+        assert events(talk) == first
+    path = recording(talk)
+    desk.do(talk.session.close())
+    with Recorded(path) as recorded:
+        comparison = replay(recorded)
+        assert comparison.difference is None, comparison.difference
+    opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
+    opened.until("paused", furthest=0.9)
+    opened.say("until", time=0.9)
+    opened.until("paused", time=0.9)
+    assert events(opened) == first
+    opened.say("seek", time=0.2)
+    change(opened, "set_buffer", buffer=f"{below}goal", chunk="count 9")
+    assert opened.state["reason"] == "changed at 0.20 s; the recording keeps the rest"
+    there(opened, 0.5)
+    now = events(opened)
+    own = recording(opened)
+    desk.do(opened.sessions.close(opened.session.name))
+    with Recorded(path) as recorded:
+        recorded.check()  # it is as it was
+        assert len(list(recorded.commands())) == 5
+    with Recorded(own) as recorded:  # what followed is a branch of it
+        assert (recorded.facts["branched"], recorded.facts["origin"]) == (0.2, path.stem)
+        assert [event.time_us for event in recorded.events()][: len(now)] == [time for time, *_ in now]
+        comparison = replay(recorded)
+        assert comparison.difference is None, comparison.difference
+
+
+def test_an_opened_recording_that_nobody_changes_leaves_no_other(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, BUILT, record=True)
+    there(talk, 0.3)
+    path = recording(talk)
+    desk.do(talk.session.close())
+    opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
+    opened.until("paused", furthest=0.3)
+    there(opened, 0.2)
+    assert recording(opened).exists()
+    assert [one.stem for one in talk.sessions.recordings.all()] == [path.stem]  # it is not listed
+    assert opened.facts["recording"] is None
+    desk.do(opened.sessions.close(opened.session.name))
+    assert list(path.parent.glob("*.sqlite*")) == [path]
+
+
+def test_recordings_have_names_notes_and_tags(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, BUILT, record=True)
+    there(talk, 0.1)
+    name = recording(talk).stem
+    desk.do(talk.session.close())
+
+    def post(recording: str, body: Any) -> Answer:
+        sent = json.dumps(body).encode()
+        app = make_app(tmp_path, GATE)
+        app.state.sessions = desk.sessions(tmp_path)
+        return desk.do(call(app, f"/api/recordings/{recording}/label", HOST, COOKIE, ORIGIN, JSON, OURS, method="POST", body=sent))
+
+    def label(**body: Any) -> Answer:
+        return post(name, body)
+
+    hostile = {"name": "  <script>\ud800 ../..  ", "note": "a\nb", "tags": ["x", " x ", "", "y"]}
+    assert label(**hostile).status in (200, 422)
+    assert desk.ask(tmp_path, "/api/recordings").status == 200
+    answer = label(name=" to five ", note="kept", tags=["x", " x ", "", "y"])
+    assert json.loads(answer.body) == {"label": {"name": "to five", "note": "kept", "tags": ["x", "y"]}}
+    listed = json.loads(desk.ask(tmp_path, f"/api/recordings/{name}").body)
+    assert listed["label"] == {"name": "to five", "note": "kept", "tags": ["x", "y"]}
+    for wrong in ({"name": "x" * 101}, {"note": "x" * 2001}, {"tags": ["x"] * 21}, {"tags": ["x" * 41]}, {"names": "x"}):
+        assert label(**wrong).status == 422
+    assert post("nothing", {}).status == 404
+    recordings = talk.sessions.recordings
+    recordings.tidy(Keeping(number=0, megabytes=0))
+    recordings.tidy(Keeping(number=1))
+    assert name in recordings.labels.all()
+    recordings.rename(name, "other")
+    assert set(recordings.labels.all()) == {"other"}
+    recordings.delete("other")
+    assert recordings.labels.all() == {}
+
+
+@pytest.mark.parametrize("kind", MODELS)
+def test_a_change_in_the_past_of_any_run_keeps_what_had_come_as_a_branch(kind: str, desk: Desk, tmp_path: Path) -> None:
+    source, _, below = MODELS[kind]
+    talk = desk.begin(tmp_path, source, record=True)
+    there(talk, 0.2)
+    change(talk, "set_buffer", buffer=f"{below}goal", chunk="rest 1")
+    there(talk, 0.8)
+    talk.say("seek", time=0.3)
+    talk.until("paused", time=0.3)
+    with pytest.raises(RefusedError, match="no buffer"):
+        change(talk, "set_buffer", buffer="nothing", chunk="count 9")
+    assert not [path for path in recording(talk).parent.glob("*.sqlite") if branched_at(path) is not None]
+    change(talk, "set_buffer", buffer=f"{below}goal", chunk="count 90")
+    assert talk.state["reason"] == "changed at 0.30 s; a branch was kept"
+    there(talk, 0.7)
+    now = events(talk)
+    (branch,) = [path for path in recording(talk).parent.glob("*.sqlite") if branched_at(path) is not None]
+    path = recording(talk)
+    desk.do(talk.session.close())
+    for one, goals in ((branch, ["rest 1"]), (path, ["rest 1", "count 90"])):
+        with Recorded(one) as recorded:
+            recorded.check()
+            assert [command.data["data"]["named"]["chunk"] for command in recorded.commands()] == goals
+            comparison = replay(recorded)
+            assert comparison.difference is None, comparison.difference
+    with Recorded(path) as recorded:
+        assert [event.time_us for event in recorded.events()][: len(now)] == [time for time, *_ in now]
+
+
+@pytest.mark.parametrize("kind", MODELS)
+def test_changes_during_a_run_and_while_it_goes_back_are_repeated_exactly(kind: str, desk: Desk, tmp_path: Path) -> None:
+    source, agent, below = MODELS[kind]
+    talk = desk.begin(tmp_path, source.replace("first.run(0.4)", "first.run(5)"), record=True)
+    talk.say("speed", factor=2.0)
+    talk.say("run")
+    for number in range(12):
+        talk.wait(lambda number=number: talk.state["time"] > 0.05 * number)
+        change(talk, "set_buffer", buffer=f"{below}goal", chunk=f"count {100 * number}")
+        with suppress(RefusedError):  # it may be forbidden already
+            change(talk, "forbid_once", system=agent, production="recall")
+        change(talk, "add_chunk", memory=f"{below}memory", chunk=f"next {number} {number + 1}")
+        if number == 6:
+            talk.say("seek", time=0.1)
+            change(talk, "clear_buffer", buffer=f"{below}retrieval")
+            talk.say("run")
+    talk.say("pause")
+    talk.say("speed", factor=None)
+    end = round(talk.until("paused")["time"] + 0.3, 2)
+    there(talk, end)
+    first = events(talk)
+    for time in (0.0, 0.11):
+        talk.say("seek", time=time)
+        talk.say("until", time=end)
+        talk.until("paused", time=end)
+        assert events(talk) == first
+    path = recording(talk)
+    desk.do(talk.session.close())
+    with Recorded(path) as recorded:
+        comparison = replay(recorded)
+        assert comparison.difference is None, comparison.difference
+
+
+def test_a_program_says_what_cannot_be_changed(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, PROGRAM, record=True)
+    with pytest.raises(RefusedError, match="the program has not begun, so there is no agent yet; step once first"):
+        change(talk, "set_buffer", buffer="goal", chunk="a")
+    there(talk, 0.1)
+    with pytest.raises(RefusedError, match="no change 'aperture' for the agents of a program; there are: set_buffer, add_chunk"):
+        talk.say("aperture", width=0.5)
+    with pytest.raises(RefusedError, match=r"no buffer 'goa'; did you mean 'goal'\?; there are: goal, retrieval"):
+        change(talk, "set_buffer", buffer="goa", chunk="a")
+    there(talk, 0.5)  # the second agent of the program
+    with pytest.raises(RefusedError, match=r"no buffer 'goal'; there are: top#2.goal"):
+        change(talk, "set_buffer", buffer="goal", chunk="a")
+    change(talk, "set_buffer", buffer="top#2.goal", chunk="rest 7")
+    assert talk.state["parts"]["top#2.goal"]["chunk"] == {"0": "rest", "1": "7"}
+    talk.say("run")
+    talk.until("ended")
+    with pytest.raises(RefusedError, match="the run is over: go back to an earlier time"):
+        change(talk, "clear_buffer", buffer="top#2.goal")

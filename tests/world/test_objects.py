@@ -1,0 +1,131 @@
+"""Moving and pushing by hand: bodies, walls, fixed and loose objects; exact after going back."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from actr3d.errors import Actr3dError, WorldError
+from actr3d.recording import Recorded
+from actr3d.runner.replay import replay
+from actr3d.simulation import Simulation
+from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Wall, World
+
+PARTS = (
+    Floor(),
+    Wall(name="wall", start=(3, -1), end=(3, 1)),
+    Aperture(),
+    Loose(name="pole", shape="cylinder", size=(0.1, 1.0), position=(5, 2, 1), mass=None),
+    Loose(name="box", shape="box", size=(0.3, 0.3, 0.3), position=(1, 2, 0.15), mass=5),
+    Mannequin(name="walker"),
+)
+
+
+def world() -> World:
+    return World(Scene(parts=PARTS), seed=1)
+
+
+def test_everything_that_does_not_belong_to_an_aperture_can_be_moved() -> None:
+    made = world()
+    assert made.objects.names == ("walker", "wall", "pole", "box")
+    for name in made.objects.names:
+        made.move(name, 1.5, -3.0, 0.5)
+        assert made.objects.pose(name) == pytest.approx((1.5, -3.0, 0.5))
+        made.move(name, 9.0 + made.objects.names.index(name), 5.0)
+        assert made.objects.pose(name)[2] == pytest.approx(0.5)  # it keeps its heading
+
+
+def test_a_wall_that_was_moved_stands_in_the_way() -> None:
+    def walked(x: float | None) -> float:
+        made = world()
+        if x is not None:
+            made.move("wall", x, 0.0)
+        made.bodies["walker"].set("walk", 1.3)
+        made.step(1500)
+        return made.bodies["walker"].get("pose").x
+
+    assert walked(1.5) < 1.5 < walked(2.5) < 2.5 < walked(None) < 3.0
+
+
+def test_nothing_is_put_inside_something_else() -> None:
+    made = world()
+    before = made.state()
+    for name, x, y, inside in (("wall", 0, 0, "walker"), ("walker", 3, 0, "wall"), ("box", 3, 0, "wall"), ("pole", 0, 0, "walker")):
+        with pytest.raises(WorldError, match=rf"'{name}' cannot be put at \({x}, {y}\) m: it would be inside '{inside}'; leave room"):
+            made.move(name, x, y)
+    assert made.state().bodies == before.bodies
+    assert made.state_bytes() == before.mj_state.tobytes()
+
+
+def test_a_push_has_its_impulse_and_the_legs_withstand_a_weak_one() -> None:
+    made = world()
+    made.mj_model.opt.gravity[:] = 0  # without weight there is no friction
+    made.push("box", 3.0, -4.0, 0.123)
+    made.step(5)
+    made.step(100)
+    assert made.mj_data.joint("box").qvel[:2] == pytest.approx((3 * 0.124 / 5, -4 * 0.124 / 5), rel=1e-3)  # whole physics steps of 2 ms
+    ways: list[float] = []
+    for force in (100.0, 450.0, 600.0):
+        made = world()
+        made.push("walker", 0.0, force, 0.3)
+        made.step(500)
+        ways.append(made.objects.pose("walker")[1])
+    assert ways[0] == pytest.approx(0.0, abs=0.002)
+    assert 0.01 < ways[1] < ways[2] < 0.5
+
+
+def test_pushes_that_are_under_way_are_part_of_the_state() -> None:
+    made = world()
+    made.push("walker", 0.0, 500.0, 0.3)
+    made.step(40)
+    state = made.state()
+    made.step(500)
+    end = made.state_bytes()
+    made.restore(state)
+    made.step(500)
+    assert made.state_bytes() == end
+
+
+@pytest.mark.parametrize(
+    ("command", "problem"),
+    [
+        (("move", "wal", 0, 0), r"no object 'wal' to move; did you mean 'wall'\?; there are: walker, wall, pole, box"),
+        (("move", "aperture_left", 0, 0), r"no object 'aperture_left' to move"),
+        (("move", "wall", math.nan, 0), r"MoveObject.x: must be a finite number \(got nan\)"),
+        (("push", "wall", 10), r"'wall' is fixed; there are: walker, box"),
+        (("push", "box", 1e9), r"PushObject.x: must be <= 100000.0 \(got 1000000000.0\)"),
+        (("push", "box", 10, 0, 0), r"PushObject.time: must be > 0 \(got 0.0\)"),
+        (("push", "box"), r"command 'push': missing a required argument: 'x'; it takes \(object, x, y=0.0, time=0.1\)"),
+    ],
+)
+def test_a_wrong_change_names_what_is_wrong(command: tuple[str, ...], problem: str) -> None:
+    simulation = Simulation(Scene(parts=PARTS), seed=1)
+    with pytest.raises(Actr3dError, match=problem):
+        simulation.command(*command)
+
+
+def test_changes_of_the_world_are_exact_after_going_back_and_in_a_replay(tmp_path: Path) -> None:
+    def made() -> Simulation:
+        return Simulation(Scene(parts=PARTS), seed=1)
+
+    simulation = made()
+    ends: list[bytes] = []
+    with simulation.record(tmp_path / "run.sqlite"):
+        simulation.command("walk", 1.0, body="walker")
+        simulation.run(0.3)
+        simulation.command("push", "walker", 0.0, 600.0, 0.25)
+        simulation.command("move", "wall", 1.5, 0.0, 1.2)
+        simulation.run(0.1)
+        simulation.command("push", "box", x=300.0, time=0.05)
+        simulation.command("move", "pole", 0.5, -2.0)
+        simulation.run(1.1)
+        ends.append(simulation.world.state_bytes())
+        for time in (0.35, 0.3, 0.0, 0.41):
+            simulation.seek(time)
+            simulation.run(1.5 - time)
+            ends.append(simulation.world.state_bytes())
+    assert set(ends) == {ends[0]}
+    with Recorded(tmp_path / "run.sqlite") as recorded:
+        assert replay(recorded, made).difference is None

@@ -1,0 +1,78 @@
+"""Keeps what lies ahead of a run before a user changes something in its past."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from actr3d.clock import seconds
+from actr3d.errors import Actr3dError, SimulationError
+from actr3d.recording import Recording
+from workbench.retention import new_branch, superfluous_branches
+from workbench.worker.messages import Branched
+from workbench.worker.run_controller import RunController
+
+
+class KeptBranch:
+    """What lies ahead of a run that is about to be changed, kept as a recording of its own.
+
+    Args:
+        controller: Controls the run.
+        recording: The recording of the run; None if it is not recorded.
+        clock: The present time [us].
+        furthest: The time that the run has reached [us].
+        drop: Whether what lies ahead may be lost if it cannot be kept.
+
+    Raises:
+        SimulationError: If it cannot be kept, and may not be lost.
+    """
+
+    def __init__(self, controller: RunController, recording: Recording | None, clock: int, furthest: int, *, drop: bool) -> None:
+        self._controller = controller
+        self._recording = recording
+        self._start = start = controller.channel.start
+        self._at, self._until = seconds(clock), seconds(furthest)
+        self._ahead = furthest > clock
+        self._branch: Path | None = None
+        # A run that repeats a recording is kept by that recording.
+        self._repeated = Path(start.recorded) if start.recorded is not None and controller.repeats_recording else None
+        if self._ahead and self._repeated is None:
+            self._branch = self._copy(recording, drop=drop)
+
+    def _copy(self, recording: Recording | None, *, drop: bool) -> Path | None:
+        ahead = f"what lies ahead, from {self._at:g} to {self._until:g} s,"
+        if recording is None or self._start.record is None:
+            if drop:
+                return None
+            raise SimulationError(f"the run is not recorded: {ahead} would be lost; go to its newest moment, or allow it with `drop`")
+        path = new_branch(Path(self._start.record), self._at)
+        try:
+            recording.copy_to(path, branched=self._at, origin=Path(self._start.record).stem)
+        except Actr3dError as error:
+            if drop:
+                return None
+            raise SimulationError(f"nothing was changed, because {ahead} cannot be kept: {error}; allow to lose it with `drop`") from None
+        return path
+
+    def undo(self) -> None:
+        """Removes the copy, because nothing was changed."""
+        if self._branch is not None:
+            self._branch.unlink(missing_ok=True)
+
+    def announce(self, events: int) -> None:
+        """Informs the server that the run goes another way from its present moment on.
+
+        Args:
+            events: Number of events up to the change.
+        """
+        kept = self._branch or self._repeated
+        if self._repeated is not None and self._recording is not None:
+            self._recording.fact("branched", self._at)
+            self._recording.fact("origin", self._repeated.stem)
+        if self._branch is not None:
+            for old in superfluous_branches(Path(self._start.record or "")):
+                old.unlink(missing_ok=True)
+        if kept is not None:
+            self._controller.run.flush()  # pages list recordings again when they hear of the branch
+            self._controller.channel.post(Branched(recording=kept.stem, at=self._at, until=self._until))
+        kept_as = "the rest was lost" if kept is None else "a branch was kept" if self._branch else "the recording keeps the rest"
+        self._controller.goes_another_way(events, f"changed at {self._at:.2f} s; {kept_as}" if self._ahead else None)
