@@ -55,6 +55,10 @@ class RecordingError(Actr3dError):
     """A recording cannot be written or read."""
 
 
+class NotebookError(Actr3dError):
+    """Something cannot be shown in a notebook."""
+
+
 class UntrustedError(RecordingError):
     """A recording that another installation made, or that was changed, is not run unless the user declares it trusted."""
 

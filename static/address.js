@@ -1,6 +1,6 @@
 // The address of the page: which model, or which recorded run and time; in a window of its own, which panel.
 
-/** Returns a part of the address: "model", "run", "t", "panel" or "page"; null for none. */
+/** Returns a part of the address: "model", "run", "t", "panel", "page", "session" or "theme"; null for none. */
 export function addressed(name) {
   return new URLSearchParams(location.search).get(name);
 }

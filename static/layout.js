@@ -5,6 +5,7 @@ import { command } from "./commands.js";
 import { remembered } from "./local_storage.js";
 import { computed, effect, signal } from "./vendor/preact.js";
 import { session } from "./store.js";
+import { embedded } from "./windows.js";
 
 /** The parts of the page, with their titles. */
 export const AREAS = { scene: "3D view", panels: "Panels", timeline: "Timeline" };
@@ -35,7 +36,7 @@ const isThere = (area) => isWhole && (area !== "scene" || hasWorld.value);
 
 const ROWS = 336; // the height of the default rows of a model with a body [px]
 /** The width of the panels [px]. By default, all tabs can be seen, and wide windows give the panels more room too. */
-export const panelsWidth = ofKind("side width", Math.max(784, Math.round(0.38 * innerWidth)));
+export const panelsWidth = ofKind("side width", embedded === null ? Math.max(784, Math.round(0.38 * innerWidth)) : Math.round(0.45 * innerWidth));
 /** The height of the timeline [px]. */
 export const timelineHeight = ofKind("timeline height", Math.round(Math.min(0.42 * innerHeight, Math.max(ROWS, 0.34 * innerHeight))));
 /** Whether the panels are on the left. */

@@ -3,6 +3,7 @@
 import { addressed } from "./address.js";
 import { remembered } from "./local_storage.js";
 import { signal } from "./vendor/preact.js";
+import { embedded } from "./windows.js";
 
 /** The id of the open tab; in a window of its own, of the panel that it shows. */
-export const openTab = addressed("panel") === null ? remembered("tab", "about") : signal(addressed("panel"));
+export const openTab = addressed("panel") === null ? remembered("tab", embedded === null ? "about" : "buffers") : signal(addressed("panel"));

@@ -3,9 +3,11 @@
 
 import { computed } from "./vendor/preact.js";
 import { opening, session, state } from "./store.js";
+import { embedded } from "./windows.js";
 
-const AGAIN = "«Run again» starts it from the beginning.";
-const FIX = "see Messages for the reason and the line. Fix it in the editor, then run it again.";
+const AGAIN = embedded === null ? "«Run again» starts it from the beginning." : "A cell can make it again.";
+const FIX = embedded === null ? "see Messages for the reason and the line. Fix it in the editor, then run it again." : "the cell shows the reason.";
+const STOP = embedded === null ? "it answers after this step. Stop ends it." : "it answers after this step, or after the cell.";
 
 /** The states: `line` is a word or two, `text` describes the status and what to do. Both receive the result of `known`. */
 const STATUSES = {
@@ -14,7 +16,7 @@ const STATUSES = {
   unloadable: { line: () => "the model cannot be loaded", text: () => `This model cannot be loaded: ${FIX}` },
   ready: { line: withReason, text: ({ kind }) => (kind === "program" ? "Press Run: the program makes its model as it goes." : "Press Run, or step.") },
   running: { line: withReason, text: () => "It is shown as soon as the run pauses." },
-  busy: { line: ({ status, at }) => `${status ?? "loading"} (busy${at})`, text: ({ at }) => `The model is busy${at}; it answers after this step. Stop ends it.` },
+  busy: { line: ({ status, at }) => `${status ?? "loading"} (busy${at})`, text: ({ at }) => `The model is busy${at}; ${STOP}` },
   halted: { line: ({ signal }) => `stopped by ${signal}`, text: ({ signal }) => `The model's process was stopped by ${signal} and does not continue. Stop ends it.` },
   paused: { line: withReason, text: () => "The run is paused." },
   ended: { line: withReason, text: () => `The run is over. Go back on the timeline; ${AGAIN}` },

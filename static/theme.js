@@ -1,5 +1,6 @@
 // Light or dark: by the system's setting, or as the user has chosen.
 
+import { addressed } from "./address.js";
 import { computed, effect, signal } from "./vendor/preact.js";
 import { remembered } from "./local_storage.js";
 
@@ -8,7 +9,7 @@ const systemIsDark = signal(system.matches);
 system.addEventListener("change", () => (systemIsDark.value = system.matches));
 
 /** "system", "light" or "dark". */
-export const chosen = remembered("theme", "system");
+export const chosen = addressed("theme") === null ? remembered("theme", "system") : signal(addressed("theme"));
 /** Whether the page is dark now; code that draws on a canvas reads it and draws again. */
 export const dark = computed(() => (chosen.value === "system" ? systemIsDark.value : chosen.value === "dark"));
 

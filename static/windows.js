@@ -12,6 +12,9 @@ const USUAL = [760, 620];
 /** The id of the panel, or of the part of the page, that this window shows alone; null for the whole page. */
 export const alone = addressed("panel");
 
+/** The id of the session that this page shows in a notebook, without what belongs to a models folder; null for the workbench itself. */
+export const embedded = addressed("session");
+
 /** Identifies the page that this window belongs to: itself, unless it was opened by one. */
 const page = addressed("page") ?? ownName();
 const channel = new BroadcastChannel("actr3d pages");

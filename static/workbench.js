@@ -6,6 +6,7 @@ import { Clock } from "./bar/clock.js";
 import { begin } from "./bar/models.js";
 import { RecordingBanner } from "./bar/recorded.js";
 import { StatusLine } from "./bar/status.js";
+import { Transport } from "./bar/transport.js";
 import { command, run } from "./commands.js";
 import { noteKey } from "./keys.js";
 import { AREAS, hasWorld, isCollapsed, layoutCommands, maximised, panelsWidth, swapped, timelineHeight } from "./layout.js";
@@ -21,13 +22,17 @@ import { Toasts } from "./parts/toasts.js";
 import { Scene } from "./panels/scene.js";
 import { Timeline } from "./panels/timeline.js";
 import { hurried, session } from "./store.js";
-import { alone, follow, openWindow } from "./windows.js";
+import { show } from "./server.js";
+import { alone, embedded, follow, openWindow } from "./windows.js";
 
 const LEAST_SCENE = 320; // [px]
 /** What a window can show alone. */
 const VIEWS = { ...Object.fromEntries(PANELS.map(({ id, title, View }) => [id, { title, View }])), scene: { title: "3D view", View: Scene }, timeline: { title: "Timeline", View: Timeline } };
 
-PANELS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => (openTab.value = id) }));
+/** The tabs: in a notebook, without those of a models folder. */
+const TABS = PANELS.filter(({ id }) => embedded === null || !["about", "parameters", "editor", "experiments", "runs"].includes(id));
+
+TABS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => (openTab.value = id) }));
 const openPanel = command({ text: "Open the panel in a window of its own", group: "Page", work: () => openWindow(openTab.value), ready: () => alone === null });
 noteKey("1 … 9, 0", "Open a tab", "Panels");
 noteKey("w", "Why, of a line of the firing trace", "Panels");
@@ -50,7 +55,7 @@ function Work() {
     <${Splitter} size=${panelsWidth} along="columns" reversed=${swapped.value} label="Width of the panels" least=${280} most=${() => innerWidth - LEAST_SCENE} />
     ${noPanels ? html`<${Strip} area="panels" />` : null}
     <section class="side" aria-label="Panels">
-      <${Tabs} label="Panels" tabs=${PANELS} shown=${openTab} more=${html`<${AreaMenu} area="panels" opening=${openPanel} />`} />
+      <${Tabs} label="Panels" tabs=${TABS} shown=${openTab} more=${html`<${AreaMenu} area="panels" opening=${openPanel} />`} />
     </section>
   </main>`;
 }
@@ -59,8 +64,7 @@ function WholePage() {
   const sizes = { "--side": `${panelsWidth.value}px`, "--below": `${timelineHeight.value}px` };
   const hasTimeline = !isCollapsed("timeline");
   return html`<div class="workbench ${hurried.value ? "hurried" : ""} ${hasTimeline ? "" : "no-timeline"}" data-maximised=${maximised.value} style=${sizes}>
-    <${Bar} />
-    <div><${RecordingBanner} /></div>
+    ${embedded === null ? html`<${Bar} /><div><${RecordingBanner} /></div>` : html`<${NotebookBar} /><div></div>`}
     <${Work} />
     ${hasTimeline
       ? html`<section class="below" aria-label="Timeline">
@@ -83,6 +87,20 @@ function OnePanel() {
     <main class="alone-view" aria-label=${title}><${View} /></main>
     <${StatusLine} />
   </div>`;
+}
+
+/** The bar of a page in a notebook. */
+function NotebookBar() {
+  const { model = "", recorded = null } = session.value ?? {};
+  useEffect(() => {
+    show(embedded);
+    parent.postMessage("workbench", "*"); // says only that the page can be reached
+  }, []);
+  return html`<header class="bar">
+    <h1>${recorded === null ? "ACT-R 3D" : `Recording of ${model}`}</h1>
+    <${Transport} />
+    <${Clock} />
+  </header>`;
 }
 
 export function Workbench() {

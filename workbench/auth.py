@@ -24,6 +24,7 @@ BODY_TIME = 30.0
 """Maximum time in which a request's body must arrive [s]."""
 LONGEST_PATH = 4_000
 """Maximum total length of path and query."""
+_LOCAL_ORIGIN = re.compile(r"https?://(localhost|127\.0\.0\.1)(:\d{1,5})?")
 _HOST = re.compile(r"(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.\-]+)(?::(\d{1,5}))?")
 
 HEADERS = {
@@ -39,6 +40,7 @@ POLICY = (
     "connect-src 'self'; frame-src 'self'; worker-src 'self' blob:; form-action 'none'; base-uri 'none'; frame-ancestors 'self'"
 )
 """What the workbench's pages may load and do: nothing from other servers, no inline scripts."""
+_ANCESTORS = "frame-ancestors 'self'"
 
 
 class Token:
@@ -68,6 +70,10 @@ class Gate:
     hosts: frozenset[str] = LOOPBACK
     """Host names by which the server may be called; any other name suggests DNS rebinding."""
     scheme: str = "http"
+    tickets: set[str] = field(default_factory=set[str], repr=False)
+    """Secrets each of which admits one browser, once. What a notebook stores of an address is worthless after its first use."""
+    embedders: set[str] = field(default_factory=set[str])
+    """The origins of other pages that may show this server in a frame."""
     cookie: str = field(init=False)
     """The name of the cookie: one for each port, as cookies do not distinguish ports."""
 
@@ -79,6 +85,21 @@ class Gate:
         """Returns whether a `Host` header names this server."""
         match = _HOST.fullmatch(host)
         return match is not None and match[1].lower() in self.hosts and int(match[2] or 80) == self.port
+
+    def issue_ticket(self) -> str:
+        """Returns a ticket, with which one browser can show this server in a frame of another page."""
+        ticket = secrets.token_urlsafe(32)
+        self.tickets.add(ticket)
+        return ticket
+
+    def use_ticket(self, ticket: str, embedder: str) -> bool:
+        """Uses up a ticket: from now on, pages of the origin `embedder` may show this server in a frame. Returns whether it was valid."""
+        known = [one for one in self.tickets if hmac.compare_digest(one.encode(), ticket.encode("utf-8", "surrogateescape"))]
+        if not known or _LOCAL_ORIGIN.fullmatch(embedder) is None:
+            return False
+        self.tickets.discard(ticket)
+        self.embedders.add(embedder)
+        return True
 
     def is_own_origin(self, origin: str, host: str) -> bool:
         """Returns whether an `Origin` header is that of the workbench's own pages, which were loaded from this `Host`."""
@@ -116,7 +137,7 @@ class Guard:
         if status == 200:
             body, status, reason = await _body(receive)
         if status == 200:
-            await self._app(_without_secrets(scope), _given(body, receive), _with_headers(send))
+            await self._app(_without_secrets(scope), _given(body, receive), _with_headers(send, self._gate))
         else:
             response = _redirect(scope, self._gate) if status == 303 else _refusal(status, reason)
             await response(scope, receive, send)
@@ -131,12 +152,17 @@ class Guard:
         method = "GET" if socket else scope["method"]
         if len(scope.get("raw_path") or b"") + len(scope["query_string"]) > LONGEST_PATH:
             return 414, "the address is too long"
-        brought = parse_qs(scope["query_string"].decode("latin-1")).get("token", []) if not socket and method == "GET" else []
-        if brought and scope["path"] == "/":
+        query = parse_qs(scope["query_string"].decode("latin-1")) if not socket and method == "GET" and scope["path"] == "/" else {}
+        brought = query.get("token", [])
+        if brought:
             return (303, "") if len(brought) == 1 and gate.token.equals(brought[0]) else (401, "token: must be that of this server")
+        known = any(gate.token.equals(value) for value in _cookies(headers, gate.cookie))
+        if "ticket" in query:
+            admitted = gate.use_ticket(query["ticket"][0], query.get("embedder", [""])[0]) or known
+            return (303, "") if admitted else (401, "ticket: must not have been used before")
         bearer = _one(headers, "authorization") or ""
         by_header = bearer.startswith("Bearer ") and gate.token.equals(bearer.removeprefix("Bearer "))
-        if not by_header and not any(gate.token.equals(value) for value in _cookies(headers, gate.cookie)):
+        if not by_header and not known:
             return 401, "open the address with the token that the workbench printed when it was started"
         if origin is not None and not gate.is_own_origin(origin, host):
             return 403, "Origin: must be that of the workbench's own page"
@@ -207,12 +233,15 @@ def _without_secrets(scope: Scope) -> Scope:
     return {**scope, "headers": kept}
 
 
-def _with_headers(send: Send) -> Send:
+def _with_headers(send: Send, gate: Gate) -> Send:
     async def send_with_headers(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
             for name, value in {**HEADERS, "content-security-policy": POLICY}.items():
                 headers.setdefault(name, value)
+            if gate.embedders:  # browsers ignore x-frame-options where the policy names ancestors
+                allowed = " ".join([_ANCESTORS, *sorted(gate.embedders)])
+                headers["content-security-policy"] = headers["content-security-policy"].replace(_ANCESTORS, allowed)
         await send(message)
 
     return send_with_headers
@@ -220,7 +249,8 @@ def _with_headers(send: Send) -> Send:
 
 def _redirect(scope: Scope, gate: Gate) -> Response:
     """Stores the token in a cookie and redirects the browser to the same page without the token in its address."""
-    rest = {key: values for key, values in parse_qs(scope["query_string"].decode("latin-1")).items() if key != "token"}
+    query = parse_qs(scope["query_string"].decode("latin-1"))
+    rest = {key: values for key, values in query.items() if key not in ("token", "ticket", "embedder")}
     target = scope["path"] + (f"?{urlencode(rest, doseq=True)}" if rest else "")
     cookie = f"{gate.cookie}={gate.token.reveal()}; Path=/; HttpOnly; SameSite=Strict"
     return RedirectResponse(target, 303, {**HEADERS, "set-cookie": cookie})

@@ -67,6 +67,8 @@ class Session(Broadcast, Receiver):
         """
         self._controlled_by = ""
         self._ending = ""
+        self._after_end = "the worker has ended"
+        """What pages say once the worker has ended normally."""
         self._stuck: dict[str, Any] | None = None
         self.speed: float | None = None
         self.real_time = False
@@ -125,9 +127,21 @@ class Session(Broadcast, Receiver):
                 return
             if self._loading is not None:
                 self._leave(self._loading.worker)
-            self._loading = launched
-            self._ending = ""
-            self.changed(facts=True)
+            self._await(launched)
+
+    def adopt(self, worker: Worker) -> None:
+        """Shows a run that has been built elsewhere: in the process of a notebook."""
+        self._attempt += 1
+        self._after_end = "the notebook has no variable for this simulation any more"
+        launched = LaunchedRun(Start(path=str(self.path), folder=str(self.path.parent), attempt=self._attempt, real_time=True), worker)
+        self.run_task(WorkerMonitor(worker, launched.start, self).serve())
+        self._await(launched)
+
+    def _await(self, launched: LaunchedRun) -> None:
+        """Awaits the facts of a run, to show it then."""
+        self._loading = launched
+        self._ending = ""
+        self.changed(facts=True)
 
     def take(self, worker: Worker, start: Start, message: FromWorker) -> None:
         if isinstance(message, Reply):
@@ -220,7 +234,7 @@ class Session(Broadcast, Receiver):
             self._stuck = None
             if self.state is not None and self.state.status not in ("ended", "failed"):
                 status_now = "failed" if self._ending != "stopped" else "ended"
-                reason = self._ending or "the worker has ended"
+                reason = self._ending or self._after_end
                 self.state = msgspec.structs.replace(self.state, status=status_now, reason=reason, measured=None)
                 self.state_version += 1
         self.changed(facts=True)

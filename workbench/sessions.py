@@ -17,7 +17,7 @@ from workbench.run_request import RunOptions
 from workbench.scene_view import SceneView
 from workbench.session import Session
 from workbench.worker.messages import Start
-from workbench.worker.workers import Workers
+from workbench.worker.workers import Worker, Workers
 
 MOST = 8
 """Maximum number of sessions; each has a worker."""
@@ -172,6 +172,21 @@ class Sessions:
             shown = path.relative_to(self.folder.root).as_posix()
             options = RunOptions(settings=began.parameters, seed=began.seed, repeated=began)
             return await self._begun(path, shown, options, real_time=real_time)
+
+    async def adopt(self, worker: Worker, name: str) -> Session:
+        """Starts a session with a run that has been built elsewhere; see `Session.adopt`.
+
+        Args:
+            worker: The connection to the process of the run.
+            name: What pages show in place of a model file.
+
+        Raises:
+            SessionError: If there are too many sessions.
+        """
+        async with self._opening:
+            session = await self._new(self.folder.root / name, name)
+        session.adopt(worker)
+        return session
 
     async def _begun(self, path: Path, model: str, options: RunOptions, *, real_time: bool = False) -> Session:
         """Returns a new session that has started a run; if the run cannot be started, the session is closed again."""

@@ -7,11 +7,13 @@ import json
 import sqlite3
 from array import array
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple, Self, cast
 
 from actr3d.errors import RecordingError
+from actr3d.notebook import show_in_notebook
 from actr3d.recording.checksums import Checksums
 from actr3d.recording.facts import LARGEST, check_facts
 from actr3d.recording.key import is_sealed
@@ -225,6 +227,33 @@ class Recorded:
 
     def _reading(self) -> _Reading:
         return _Reading(self.path)
+
+    def copy_to(self, path: Path) -> None:
+        """Writes a copy to a new file.
+
+        Raises:
+            RecordingError: If it cannot be written.
+        """
+        try:
+            with closing(sqlite3.connect(path)) as copy:
+                self._file.backup(copy)
+        except sqlite3.Error as error:
+            raise RecordingError(f"the recording '{self.path}' cannot be copied: {error}") from None
+
+    def show(self, *, trust: bool = False, height: int = 560) -> Any:
+        """Returns a widget that shows the recorded run in a notebook: scene, timeline and buffers at any of its times.
+
+        For this, the run is repeated. A recording whose code must not be run, or that does not hold the file of its model, is
+        only played: scene and trace.
+
+        Args:
+            trust: Whether its code may be run although this installation did not make the recording.
+            height: Height of the widget [px].
+
+        Raises:
+            NotebookError: If the packages for notebooks are not installed, or this is not a notebook.
+        """
+        return show_in_notebook(self, trust=trust, height=height)
 
     def close(self) -> None:
         """Closes the file."""

@@ -67,27 +67,29 @@ class Observers:
         self._random = random
         self._physics = world.physics
         self._observers: list[Observer] = []
+        self._of_calls: list[Observer] = []
 
     @property
     def looking(self) -> bool:
         """Whether an observer, a listener or a condition is being called now."""
         return self._physics.observed
 
-    def add(self, observer: Observer) -> None:
-        """Adds an observer."""
-        self._observers.append(observer)
+    def add(self, observer: Observer, *, of_calls: bool = False) -> None:
+        """Adds an observer of each moment, or of the end of each call."""
+        (self._of_calls if of_calls else self._observers).append(observer)
 
-    def show(self, make: Callable[[], Glimpse]) -> None:
+    def show(self, make: Callable[[], Glimpse], *, of_calls: bool = False) -> None:
         """Calls the observers with what `make` returns; without observers it makes nothing.
 
         Raises:
             Exception: What an observer raises.
         """
-        if not self._observers:
+        observers = self._of_calls if of_calls else self._observers
+        if not observers:
             return
         glimpse = make()
         with self.only_looking():
-            for observer in self._observers:
+            for observer in observers:
                 observer(glimpse)
 
     @contextmanager

@@ -6,8 +6,9 @@ import linecache
 import sys
 import threading
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from concurrent.futures import Future
+from contextlib import contextmanager
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -18,6 +19,7 @@ from actr3d.actr.kernel.run_limits import RunLimits, fresh_seed
 from actr3d.actr.kernel.source_code import SOURCE
 from actr3d.clock import seconds
 from actr3d.errors import RecordingError, SimulationError
+from actr3d.notebook import show_in_notebook
 from actr3d.recording import Recording
 from actr3d.recording.schema import OWN_FACTS
 from actr3d.simulation.agents import Factory
@@ -87,6 +89,7 @@ class Simulation:
         self._submitted: deque[tuple[Future[None], Callable[[], None]]] = deque()
         self._observers = Observers(self._random, self.world)
         self._measure: Measure | None = None
+        self._calls = 0
         self.timeline = Timeline(self.world, self._begin, self.event_log)
         """The run in time; for recorders and runners."""
         self._owner = threading.get_ident()
@@ -187,7 +190,7 @@ class Simulation:
             SimulationError: If the number is not a whole number, or is negative; and as `tick` does.
             Exception: As `tick` and `tock` do.
         """
-        with self._random:
+        with self._call():
             for _ in range(count_of(n, "step(n)")):
                 self.tick()
                 self.tock()
@@ -221,7 +224,7 @@ class Simulation:
         end = None if seconds is None else self.ticks + whole_ticks(seconds, self._period, "run(seconds)")
         held = self._limits is not None and self._limits.ticked is not None
         clock = RealTime(self._period, None if held else factor)  # limits that wait set the speed themselves
-        with self._random:
+        with self._call():
             return clock.report(self._run_until(clock, end, until, open_end=end is None and until is None))
 
     def _run_until(self, clock: RealTime, end: int | None, until: Callable[[Glimpse], bool] | None, *, open_end: bool) -> Ending:
@@ -244,6 +247,18 @@ class Simulation:
                     if until(self._glimpse()):
                         return "until"
         return "seconds"
+
+    @contextmanager
+    def _call(self) -> Generator[None]:
+        """Uses the agents' random numbers inside the block; then calls the observers of calls, outside the outermost block only."""
+        self._calls += 1
+        try:
+            with self._random:
+                yield
+        finally:
+            self._calls -= 1
+            if not self._calls:
+                self._observers.show(self._glimpse, of_calls=True)
 
     def _enter(self) -> None:
         if threading.get_ident() != self._owner:
@@ -271,7 +286,7 @@ class Simulation:
             Exception: What the world or the body raises; then nothing was done.
         """
         self._enter()
-        with self._random:
+        with self._call():
             self.timeline.command(word, values, named, body)
         self.event_log.check()
 
@@ -333,16 +348,36 @@ class Simulation:
         to = whole_ticks(time, self._period, "seek")
         if to > self.timeline.furthest:
             raise SimulationError(f"seek({time:g}): the run has only reached {self.furthest:g} s; continue it instead")
-        with self._random:
-            self.timeline.seek(to)
-        self.event_log.check()
-        self._observers.show(self._glimpse)
+        with self._call():
+            with self._random:
+                self.timeline.seek(to)
+            self.event_log.check()
+            self._observers.show(self._glimpse)
 
     # -- observing, without an effect on the run
 
-    def observe(self, observer: Observer) -> None:
-        """Calls an observer with a `Glimpse` after each tock, and after `seek`; it receives copies and can change nothing."""
-        self._observers.add(observer)
+    def observe(self, observer: Observer, *, of_calls: bool = False) -> None:
+        """Calls an observer with a `Glimpse` after each tock, and after `seek`; it receives copies and can change nothing.
+
+        Args:
+            observer: The function.
+            of_calls: Whether it is called at the end of each `run`, `step`, `seek` and `command` instead, also of one that fails.
+        """
+        self._observers.add(observer, of_calls=of_calls)
+
+    def show(self, *, height: int = 560) -> Any:
+        """Returns a widget that shows this simulation in a notebook: scene, timeline and buffers, which follow what cells do with it.
+
+        A run that has begun is first repeated from its start, because its past is shown too.
+
+        Args:
+            height: Height of the widget [px].
+
+        Raises:
+            NotebookError: If the packages for notebooks are not installed, or this is not a notebook.
+            SimulationError: As `seek` does, if the run has begun.
+        """
+        return show_in_notebook(self, height=height)
 
     def _glimpse(self) -> Glimpse:
         return Glimpse(self.world, self.timeline.ticks)

@@ -7,8 +7,10 @@ import { Former } from "../editor/stale_run.js";
 import { Hint } from "./pace.js";
 import { Share } from "./share.js";
 import { runStatus } from "../run_status.js";
+import { embedded } from "../windows.js";
 import { connected, me, session, state } from "../store.js";
 
+const LOST = embedded === null ? "connection lost; trying again …" : "the kernel does not answer any more: run the cell again";
 const BAD = ["busy", "halted", "failed", "lost", "unloadable"];
 
 /** Returns the number of viewers, which of them this one is, and who sent the last command. */
@@ -28,15 +30,13 @@ export function StatusLine() {
     <span id="status" role="status" class=${BAD.includes(is) ? "bad" : is} title=${line}>${line}</span>
     <${Hint} />
     <span class="stretch"></span>
-    <${Branch} />
-    <${Former} />
-    <${Share} />
+    ${embedded === null ? html`<${Branch} /><${Former} /><${Share} />` : null}
     ${recording ? html`<span class="fact" title="Kept as this recording">rec ${recording}</span>` : null}
     ${seed !== null && seed !== undefined ? html`<span class="fact" title="The seed of the run">seed ${String(seed)}</span>` : null}
     <span class="fact">${counted(state.value?.events ?? 0, "event")}</span>
     ${watching.length > 1 ? html`<span id="browsers" title=${browsersInFull(watching)}>${browsers(watching, control)}</span>` : null}
     <span id="connection" class=${connected.value === false ? "bad" : ""}>
-      ${connected.value === false ? "connection lost; trying again …" : connected.value ? "connected" : "connecting …"}
+      ${connected.value === false ? LOST : connected.value ? "connected" : "connecting …"}
     </span>
   </footer>`;
 }

@@ -9,6 +9,7 @@ import { order, say } from "../server.js";
 import { isOver } from "../run_status.js";
 import { alive, running, session, state } from "../store.js";
 import { orderThere } from "../timeline/seek.js";
+import { embedded } from "../windows.js";
 import { bindFaster, speedIsKnown } from "./pace.js";
 import { SeedField } from "./seed.js";
 import { runUntil } from "./until.js";
@@ -51,11 +52,15 @@ const BUTTONS = [
   { id: "stop", text: "Stop the model, whatever it does", key: "Mod+.", what: { type: "stop" } },
 ];
 
+/** The buttons that start or end a run: in a notebook, its cells do that. */
+const OF_MODELS = ["restart", "new-seed", "stop"];
+const shownButtons = BUTTONS.filter(({ id }) => embedded === null || !OF_MODELS.includes(id));
+
 /** Whether a button is disabled; its key is then disabled too. */
 function isIdle(id) {
   const { alive, loading } = session.value ?? {};
-  if (!session.value) return true;
-  if (id === "run") return loading && !isRestarting();
+  if (!session.value || (embedded !== null && OF_MODELS.includes(id))) return true;
+  if (id === "run") return embedded === null ? loading && !isRestarting() : !alive;
   if (id === "stop") return !alive && !loading;
   if (id === "back") return !alive || !state.value?.time;
   return ["step", "cycle", "until"].includes(id) && isDone();
@@ -101,7 +106,7 @@ export function Transport() {
     <button id="run" class="primary" disabled=${isIdle("run")} title=${buttonTitle(toggling, text)} onClick=${() => run(toggling)}>
       <${Icon} name=${goes ? "pause" : "run"} />${text}
     </button>
-    ${BUTTONS.map(
+    ${shownButtons.map(
       (button) => html`<button
         key=${button.id}
         id=${button.id}

@@ -57,10 +57,16 @@ class Channel:
 
     Args:
         wire: The socket to the server.
+        arrived: Called by the thread that reads, after a command has arrived.
+        end: Called when the server is gone, with an exit code for the process; usually ends it. The threads of the channel end anyway.
     """
 
-    def __init__(self, wire: socket.socket) -> None:
+    def __init__(
+        self, wire: socket.socket, *, arrived: Callable[[], object] | None = None, end: Callable[[int], object] = end_at_once
+    ) -> None:
         self._wire = wire
+        self._arrived = arrived
+        self._end = end
         self.inbox: queue.SimpleQueue[Do | Draw | Leave] = queue.SimpleQueue()
         self._messages: deque[Message] = deque()
         self._events = EventLog()
@@ -118,13 +124,16 @@ class Channel:
             except OSError:
                 message = None
             if message is None:
-                end_at_once(0)  # the server is gone
+                self._end(0)  # the server is gone
+                return
             if isinstance(message, Where):
                 if self.busy is not None:
                     self.busy()
                 self.post(self._where())
             elif isinstance(message, (Do, Draw, Leave)):
                 self.inbox.put(message)
+                if self._arrived is not None:
+                    self._arrived()
 
     def _where(self) -> At:
         """Returns the position of the main thread in the modeller's own files."""
@@ -139,7 +148,8 @@ class Channel:
     def _check_wire(self) -> None:
         """Ends the process if the model has closed the connection: its number may belong to another file of the model by now."""
         if _identity(self._wire) != self._identity:
-            end_at_once(WIRE_LOST)
+            self._end(WIRE_LOST)
+            raise OSError(WIRE_LOST, "the connection to the server was closed")
 
     # -- sending
 
@@ -228,7 +238,8 @@ class Channel:
                     self._check_wire()
                     self._wire.sendall(_bounded(message))
             except OSError:
-                end_at_once(0)
+                self._end(0)
+                return
 
 
 def _end_copy() -> NoReturn:

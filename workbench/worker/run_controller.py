@@ -115,8 +115,11 @@ class RunController:
 
     # -- calls from the run
 
-    def attend(self) -> None:
+    def attend(self, *, wait: bool = True) -> None:
         """Carries out the commands that have arrived; while the run is paused, waits for more. Returns when it may continue.
+
+        Args:
+            wait: Whether it waits; otherwise the run may still be paused when it returns.
 
         Raises:
             Leaving: If the worker must end.
@@ -128,7 +131,7 @@ class RunController:
             if self._interrupted:
                 self._interrupted = False
                 return
-            held = self.status != "running"
+            held = wait and self.status != "running"
             message = self.channel.receive(None if held else 0)
             if message is None:
                 return
@@ -276,10 +279,14 @@ class RunController:
 
     # -- what is sent to the server
 
-    def show_if_due(self) -> None:
-        """Sends the state at regular intervals while the run is going on."""
+    def show_if_due(self, *, hurried: bool = False) -> None:
+        """Sends the state at regular intervals while the run is going on.
+
+        Args:
+            hurried: Whether the run goes as fast as possible, whatever speed is set.
+        """
         now = perf_counter()
-        due = HURRIED if self.pacer.factor is None else SHOWN
+        due = HURRIED if hurried or self.pacer.factor is None else SHOWN
         if now - self._shown >= due and self.status == "running" and self.channel.idle:
             self.show()
 

@@ -123,12 +123,8 @@ class SimulationRun(ControlledRun):
     def _go_on(self) -> None:
         """Goes on by a few ticks."""
         controller, simulation = self._controller, self._simulation
-        first, last = simulation.ticks, simulation.ticks + self._allowance()
-        begin, over = perf_counter(), None
         try:
-            while over is None and simulation.ticks < last:  # it ends at the same tick however many are done at once
-                simulation.step()
-                over = simulation.over
+            over = self.run_ticks()
             if over is not None:
                 self._conclude()
         except UNFORESEEN as error:
@@ -138,7 +134,6 @@ class SimulationRun(ControlledRun):
             self._record_failure(failure(error))
             controller.end("failed", describe_error(error))
             return
-        self._tick_time = (perf_counter() - begin) / max(1, simulation.ticks - first)
         controller.passed()
         if over is None:
             controller.pace(self.clock)
@@ -146,6 +141,20 @@ class SimulationRun(ControlledRun):
         self._end = simulation.ticks, over
         self._record(ended={"by": over}, whole=True)
         controller.end("ended", ENDINGS[over])
+
+    def run_ticks(self) -> str | None:
+        """Runs a few ticks; returns why the run is over, if it is.
+
+        Raises:
+            Exception: What the simulation raises.
+        """
+        simulation, over = self._simulation, None
+        begin, first, last = perf_counter(), simulation.ticks, simulation.ticks + self._allowance()
+        while over is None and simulation.ticks < last:  # it ends at the same tick however many are done at once
+            simulation.step()
+            over = simulation.over
+        self._tick_time = (perf_counter() - begin) / max(1, simulation.ticks - first)
+        return over
 
     def _conclude(self) -> None:
         """Records the result, then the last output, in the order of a replay."""

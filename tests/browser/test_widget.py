@@ -1,0 +1,160 @@
+"""The widget of a notebook in a browser: a page with its module stands for the notebook, and a process that runs cells for the kernel."""
+
+from __future__ import annotations
+
+import http.server
+import json
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, FrameLocator, Page, expect
+
+from tests.browser.test_access import AXE, LOOK, RUN_AXE
+from tests.helpers.page import PATIENCE, shows
+from workbench.notebook import widget
+
+KERNEL = """
+import asyncio, gc, json, sys
+from aperture_passage import Parameters, build
+from workbench.notebook.widget import replay_of
+
+async def cells():
+    global simulation, shown
+    simulation = build(Parameters())
+    shown = simulation.show()
+    print(json.dumps(dict(shown.page)), flush=True)
+    loop = asyncio.get_running_loop()
+    while cell := await loop.run_in_executor(None, sys.stdin.readline):
+        print(json.dumps(eval(cell)), flush=True)
+
+asyncio.run(cells())
+"""
+NOTEBOOK = """<!doctype html><meta charset="utf-8"><title>Notebook</title><body style="background: BACKGROUND">
+<script type="module">
+  import widget from "/widget.js";
+  const heard = {};
+  const model = {
+    get: (name) => (TRAITS)[name],
+    on: (name, call) => (heard[name] = call),
+    off: () => null,
+    send: async () => heard["msg:custom"]({ replay: await kernel() }),
+  };
+  widget.render({ model, el: document.body });
+</script>"""
+
+
+class Kernel:
+    """A process that runs cells."""
+
+    def __init__(self) -> None:
+        models = str(Path(__file__).parents[2] / "models")
+        command = [sys.executable, "-c", f"import sys; sys.path.insert(0, {models!r})\n{KERNEL}"]
+        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.page = self._answer()
+
+    def _answer(self) -> Any:
+        assert self._process.stdout is not None
+        return json.loads(self._process.stdout.readline())
+
+    def cell(self, expression: str) -> Any:
+        """Runs a cell; returns what it shows."""
+        assert self._process.stdin is not None
+        self._process.stdin.write(f"{expression}\n")
+        self._process.stdin.flush()
+        return self._answer()
+
+    def end(self) -> None:
+        """Ends the kernel at once, as its restart does."""
+        self._process.kill()
+        self._process.communicate()
+
+
+@pytest.fixture
+def kernel() -> Iterator[Kernel]:
+    started = Kernel()
+    yield started
+    started.end()
+
+
+@pytest.fixture
+def notebook(kernel: Kernel) -> Iterator[str]:
+    """Serves pages with the widget, as a notebook's server does; returns their address."""
+    module = Path(widget.__file__).with_name("widget.js").read_bytes()
+    traits = json.dumps({"page": kernel.page, "height": 560, "problem": ""})
+
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            background = "#111" if "dark" in self.path else "#fff"
+            is_module = self.path == "/widget.js"
+            page = NOTEBOOK.replace("TRAITS", traits).replace("BACKGROUND", background).encode()
+            self.send_response(200)
+            self.send_header("content-type", "text/javascript" if is_module else "text/html")
+            self.end_headers()
+            self.wfile.write(module if is_module else page)
+
+        def log_message(self, format: str, *args: Any) -> None:
+            pass
+
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://localhost:{server.server_port}"
+        server.shutdown()
+
+
+def opened(browser: Browser, address: str) -> Page:
+    """Opens a notebook in a browser that has no cookie."""
+    page = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
+    page.set_default_timeout(PATIENCE)
+    page.goto(address)
+    return page
+
+
+def time_of(frame: FrameLocator, text: str) -> None:
+    expect(frame.locator("#time")).to_have_text(text)
+
+
+@pytest.mark.slow
+@pytest.mark.scene
+def test_the_widget_follows_the_cells_and_says_what_to_do_where_it_cannot(browser: Browser, kernel: Kernel, notebook: str) -> None:
+    page = opened(browser, f"{notebook}/dark")
+    frame = page.frame_locator("iframe").first
+    time_of(frame, "t = 0.00 s")
+    expect(frame.locator(".scene iframe")).to_be_visible()
+    kernel.cell("simulation.run(1.5) and None")
+    time_of(frame, "t = 1.50 s")
+    kernel.cell("simulation.seek(0.5)")
+    time_of(frame, "t = 0.50 s")
+    expect(frame.locator("#status")).to_have_text("paused: by a cell")
+    frame.locator("#step").click()
+    time_of(frame, "t = 0.51 s")
+    assert kernel.cell("simulation.time") == 0.51
+    expect(frame.get_by_role("tab", name="Buffers")).to_be_visible()
+    assert frame.get_by_role("tab", name="Editor").count() == 0
+    assert frame.locator("#restart, #stop, select.model").count() == 0
+    inner = next(one for one in page.frames if "session=" in one.url)
+    assert inner.evaluate("() => document.documentElement.dataset.theme") == "dark"
+    expect(inner.locator(".changed")).to_have_count(0)
+    inner.evaluate(AXE)
+    assert [*inner.evaluate(LOOK), *inner.evaluate(RUN_AXE)] == []
+
+    page.reload()  # with the cookie, as the ticket is used up
+    time_of(page.frame_locator("iframe").first, "t = 0.51 s")
+
+    other = opened(browser, notebook)
+    shows(other, ".actr3d-note", f"The live view at port {kernel.page['port']} does not answer this browser")
+    other.expose_function("kernel", lambda: kernel.cell("replay_of(simulation)"))  # pyright: ignore[reportUnknownMemberType]
+    other.get_by_role("button", name="Play the run up to now").click()
+    replay = other.frame_locator("iframe").first
+    expect(replay.locator("h1")).to_contain_text("seed")
+
+    kernel.cell("[globals().pop('simulation') and None, gc.collect() and None]")
+    lost = page.frame_locator("iframe").first
+    expect(lost.locator("#status")).to_contain_text("the notebook has no variable for this simulation any more")
+    kernel.end()
+    expect(lost.locator("#connection")).to_have_text("the kernel does not answer any more: run the cell again")
+    expect(lost.locator("#run")).to_be_disabled()
