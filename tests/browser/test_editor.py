@@ -226,6 +226,7 @@ def test_a_file_chosen_before_the_next_picture_stays_chosen(pages: Callable[...,
     expect(page.get_by_label("File", exact=True)).to_have_value("soon.py")
 
 
+@pytest.mark.slow
 def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
     path = written("draft.py", "a = 1\n")
     page = pages("counting.py")

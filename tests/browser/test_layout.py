@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.helpers.page import choose, open_tab, shows, until
@@ -82,6 +83,7 @@ def test_parts_of_the_page_are_maximised_collapsed_and_swapped(page: Page) -> No
     panels_are_at(page, 0, 1280)
 
 
+@pytest.mark.slow
 def test_a_panel_has_a_window_of_its_own_which_follows_the_page(pages: Pages) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")

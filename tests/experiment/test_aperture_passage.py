@@ -149,6 +149,7 @@ def test_what_it_knows_of_its_width_it_has_learned(model: Any) -> None:
 # -- a doorway that changes
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_a_doorway_that_shrinks_on_the_way_is_turned_for(model: Any, variant: str) -> None:
     simulation = built(model, variant=variant, aperture=0.7)
@@ -160,6 +161,7 @@ def test_a_doorway_that_shrinks_on_the_way_is_turned_for(model: Any, variant: st
     assert result.wall_angle_deg > (passed(model, variant=variant, aperture=0.7).wall_angle_deg or 0) + 15
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize("variant", ["descriptive", "replication"])
 @pytest.mark.parametrize("until", [8.0, 9.0, 9.6])
 def test_a_doorway_that_becomes_too_narrow_is_stopped_before(model: Any, variant: str, until: float) -> None:
@@ -229,6 +231,7 @@ def test_who_is_to_walk_faster_close_before_it_still_turns_in_time(model: Any, a
     assert (simulation.result().outcome, simulation.result().contacts) == ("passed", 0)
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_a_speed_may_change_while_it_turns_back(model: Any, variant: str) -> None:
     simulation = built(model, variant=variant, aperture=0.45)
@@ -298,6 +301,7 @@ def scene_with(model: Any, names: tuple[str, str, str], variant: str, width: flo
     return simulation
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_renaming_every_object_changes_no_byte(model: Any, variant: str) -> None:
     plain, renamed = scene_with(model, ("floor", "aperture", "walker"), variant), scene_with(model, ("a", "zebra", "mouse"), variant)

@@ -133,6 +133,7 @@ def test_it_turns_the_more_the_narrower_the_doorway_is_and_not_at_all_if_it_is_w
     assert narrower > narrow + 8
 
 
+@pytest.mark.slow
 def test_it_turns_more_if_it_fears_contacts_and_not_if_they_cost_nothing(model: Any) -> None:
     assert chosen(model, 2, aperture=0.45, contact_cost=0.0) == 0
     assert chosen(model, aperture=0.52, contact_cost=100.0) > chosen(model, aperture=0.52, contact_cost=1.0) + 10

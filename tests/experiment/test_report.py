@@ -246,6 +246,7 @@ def test_an_experiment_that_was_run_has_a_report(tmp_path: Path, capsys: Any) ->
     assert [(row["n_"], row["n"]) for row in table(folder, "means_rt")] == [("1", "3"), ("2", "3"), ("5", "3")]
 
 
+@pytest.mark.slow
 def test_starts_aside_and_aslant_have_a_figure_and_a_table(tmp_path: Path) -> None:
     def misaligned(trial: Any) -> dict[str, Any]:
         return {**walk(trial), "outcome": "passed" if trial.values["start_aside"] < 0.2 else "stopped"}

@@ -91,6 +91,7 @@ for _ in range(120):
 """
 
 
+@pytest.mark.slow
 def test_two_processes_that_write_at_once_never_find_a_file_that_is_not_whole(cache: Path) -> None:
     with ExitStack() as stack:
         commands = [[sys.executable, "-c", WRITER, mine, other] for mine, other in (("1", "2"), ("2", "1"))]
