@@ -399,6 +399,6 @@ def test_what_cannot_be_opened_or_saved_is_told(pages: Callable[..., Page], work
     assert mark.is_dir()
     write(page, "#" * 1_000_001)
     page.keyboard.press("Control+s")
-    shows(page, ".toast", "no more than 1,000,000 bytes")
+    shows(page, ".toast", "the size of a model file must be <= 1,000,000 bytes")
     assert (workbench.folder / "loaded.py").read_text(encoding="utf-8") == source
     page.keyboard.press("Control+z")
