@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
 import tracemalloc
@@ -512,6 +513,7 @@ def test_many_ticks_neither_drift_nor_grow(monkeypatch: pytest.MonkeyPatch) -> N
     sizes: list[int] = []
     for _ in range(3):
         simulation.run(20)
+        gc.collect()
         sizes.append(tracemalloc.get_traced_memory()[0])
     tracemalloc.stop()
     assert simulation.world.time == simulation.agents["walker"].sch.now_us == 62_000_000
