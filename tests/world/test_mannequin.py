@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import mujoco
@@ -413,3 +414,13 @@ def test_wrong_mannequins_are_refused_with_a_reason(wrong: dict[str, Any], messa
 def test_wrong_loads_are_refused_with_a_reason(wrong: dict[str, Any], message: str) -> None:
     with pytest.raises(Actr3dError, match=message):
         Load(**wrong)
+
+
+def test_shirt_trousers_shoes_and_skin_have_colours_of_their_own() -> None:
+    model = World(Scene(parts=(Mannequin(name="walker", gait=Gait(), colour=(0.8, 0.4, 0.2, 0.5)),))).mj_model
+    shirt, trousers, shoe, head, hand = (
+        model.geom(f"walker_{name}").rgba.tolist() for name in ("torso", "left_shank", "left_foot", "head", "right_hand")
+    )
+    assert shirt == pytest.approx([0.8, 0.4, 0.2, 0.5])
+    assert all(dark < bright for dark, bright in pairwise([sum(shoe), sum(trousers), sum(shirt)]))
+    assert head == hand != shirt

@@ -45,6 +45,10 @@ BRISKNESS = 100.0
 """Acceleration of a joint by its full strength [rad/s^2]; its armature (inertia relative to the segment that carries it) follows
 from it. With less armature, thin limbs on strong joints vibrate for ever after a push. Source: chosen for this library."""
 
+SKIN = (0.78, 0.64, 0.53)
+"""The colour of head and hands."""
+SHADES = {"pelvis": 0.6, "leg": 0.6, "thigh": 0.6, "shank": 0.6, "foot": 0.35, "eye": 0.15}
+"""How dark trousers, shoes and eye are, as a fraction of the shirt's colour."""
 AHEAD = 0.002
 """Distance of the viewpoint in front of the eyeball [m], so that the eyeball does not block the view."""
 
@@ -136,7 +140,7 @@ class Mannequin(Configuration):
     """Noise of its sensors: the name and the standard deviation, in the reading's unit; sensors that are not named are exact."""
 
     colour: Colour = (0.35, 0.47, 0.62, 1.0)
-    """Of the clothes: red, green, blue, alpha in 0 to 1."""
+    """Of the shirt: red, green, blue, alpha in 0 to 1. Trousers and shoes are darker shades of it."""
 
     def __post_init__(self) -> None:
         """Checks the fields.
@@ -251,6 +255,15 @@ class _Builder:
 
     def _name(self, part: str) -> str:
         return f"{self.person.name}_{part}"
+
+    def _colour_of(self, name: str) -> Colour:
+        """Returns the colour of a geom: that of skin, or of clothes."""
+        red, green, blue, alpha = self.person.colour
+        kind = name.rpartition("_")[2]
+        if kind in ("head", "neck", "hand"):
+            return (*SKIN, alpha)
+        shade = SHADES.get(kind, 1.0)
+        return (shade * red, shade * green, shade * blue, alpha)
 
     def _base(self) -> None:
         """Adds the planar base, which carries all the rest."""
@@ -439,7 +452,7 @@ class _Builder:
             pos=[a - b for a, b in zip(at, origin, strict=True)],
             size=list(size),
             mass=mass * self.person.mass,
-            rgba=colour or self.person.colour,
+            rgba=colour or self._colour_of(name),
             solref=WALL_SOLREF,
             friction=[0.4, 0.005, 0.0001],
             priority=1,
