@@ -9,6 +9,7 @@ import { AreaMenu } from "../parts/area_menu.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
+import { saveFile } from "../parts/picture.js";
 import { optimistic } from "../parts/optimistic_value.js";
 import { remembered } from "../local_storage.js";
 import { frameBudget } from "../frame_budget.js";
@@ -46,6 +47,7 @@ function ViewBar() {
       <button aria-label="Reset view" title=${buttonTitle(reset)} onClick=${resetView}><${Icon} name="restart" /></button>
       ${canMove() ? html`<button title="Move or push a body or an object of the scene" onClick=${moveOrPush}>Move, push …</button>` : null}
       <button aria-expanded=${open.value} title="What is drawn over the scene" onClick=${() => (open.value = !open.value)}>Overlays</button>
+      <button aria-label="Save the 3D view as a picture" title=${buttonTitle(keep)} onClick=${keepPicture}><${Icon} name="download" /></button>
       <${ManualLink} page="scene" title="3D view" />
       <${AreaMenu} area="scene" opening=${openScene} />
     </div>
@@ -83,10 +85,19 @@ function nextView() {
   view.value = views[(views.indexOf(view.value) + 1) % views.length];
 }
 
+/** Saves what the 3D view shows now. */
+function keepPicture() {
+  const { model, seed } = session.peek();
+  const name = `${model.replace(/\.py$/, "")} seed ${seed} at ${state.peek().time.toFixed(2)} s.png`;
+  const drawn = document.querySelector("#scene iframe").contentWindow.scene?.picture?.();
+  drawn?.toBlob((blob) => saveFile(name, blob), "image/png");
+}
+
 /** Whether there is a scene to look at. */
 const isShown = () => Boolean(session.value?.world && session.value.scene);
 command({ text: "Next view: with the body, free, from the side, from above, through the eye", key: "v", group: "3D view", work: nextView, ready: isShown });
 const reset = command({ text: "Reset view", key: "Shift+v", group: "3D view", work: resetView, ready: isShown });
+const keep = command({ text: "Save the 3D view as a picture (PNG)", group: "3D view", work: keepPicture, ready: isShown });
 commandsOf(() => (isShown() ? Object.entries(VIEWS).map(([id, title]) => ({ text: `View: ${title}`, group: "3D view", work: () => (view.value = id) })) : []));
 commandsOf(() => (session.value?.overlays ?? []).map(({ name, title }) => {
   const shown = overlay(name).value.value;

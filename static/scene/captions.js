@@ -80,4 +80,29 @@ export class Captions {
       if (one.style !== style) one.label.style = one.style = style;
     });
   }
+
+  /** Paints the labels where they are now. */
+  paint(context) {
+    for (const { label, text } of this.shown) {
+      const css = getComputedStyle(label);
+      if (css.visibility === "hidden") continue;
+      const { left, top, width, height } = label.getBoundingClientRect();
+      const line = getComputedStyle(label, "::after");
+      context.fillStyle = line.backgroundColor;
+      context.fillRect(left + 1 + parseFloat(line.left), top + 1 + parseFloat(line.top), 1, parseFloat(line.height));
+      context.beginPath();
+      context.roundRect(left + 0.5, top + 0.5, width - 1, height - 1, parseFloat(css.borderTopLeftRadius));
+      context.fillStyle = css.backgroundColor;
+      context.fill();
+      context.strokeStyle = css.borderTopColor;
+      context.stroke();
+      context.fillStyle = css.color;
+      context.font = `${css.fontWeight} ${css.fontSize} ${css.fontFamily}`;
+      context.textAlign = "center";
+      context.textBaseline = "middle";
+      const rows = text.split("\n");
+      const high = parseFloat(css.lineHeight);
+      rows.forEach((row, n) => context.fillText(row, left + width / 2, top + height / 2 + (n - (rows.length - 1) / 2) * high));
+    }
+  }
 }

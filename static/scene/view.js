@@ -5,6 +5,7 @@ import { SceneCamera } from "./camera.js";
 import { Cutaway } from "./cutaway.js";
 import { Ground } from "./ground.js";
 import { Captions } from "./captions.js";
+import { pictureOf } from "./picture.js";
 import { VIEWS } from "./stage.js";
 
 const { scene: given } = window;
@@ -117,7 +118,10 @@ let kept = false;
 viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   if (seenBy !== viewer.camera) return;
   if (renderer.toneMapping) renderer.toneMapping = 0; // unchanged colours
-  if (!kept) keepFormer(renderer);
+  if (!kept) {
+    keepFormer(renderer);
+    given.picture = () => pictureOf({ renderer, viewer, ground, labels });
+  }
   kept = true;
   const now = drawnNow();
   if (now.stage !== stage) {

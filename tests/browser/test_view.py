@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Callable, Iterator
 from io import BytesIO
 from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -262,6 +264,39 @@ def test_with_the_body_it_stays_in_the_middle_whatever_the_user_does(pages: Call
     in_the_middle(page, frame)
     steps(page, frame, 60)
     in_the_middle(page, frame)
+
+
+def test_the_view_is_saved_as_a_picture_with_sky_and_labels(pages: Callable[..., Page], tmp_path: Path) -> None:
+    page = pages()
+    frame = frame_of(page)
+    in_the_middle(page, frame)
+    frame.evaluate(
+        """() => {
+          const { now } = window.scene.facts;
+          window.scene.receive("now", { ...now, labels: [{ text: "opening 50 cm", place: [2, 0, 1], chosen: true }] });
+          window.__viserMutable.requestRender();
+        }"""
+    )
+    label = frame.locator(".scene-labels p")
+    expect(label).to_be_visible()
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save the 3D view as a picture").click()
+    assert re.fullmatch(r"doorway_seed_\d+_at_0\.00_s\.png", download.value.suggested_filename)
+    download.value.save_as(tmp_path / "view.png")
+    picture = np.array(Image.open(tmp_path / "view.png").convert("RGB")).astype(int)
+    height, width = frame.evaluate("() => [innerHeight, innerWidth]")
+    assert picture.shape == (2 * height, 2 * width, 3)
+    shot = Image.open(BytesIO(page.locator("iframe[title='3D view']").screenshot())).convert("RGB").resize((2 * width, 2 * height))
+    off = np.abs(picture - np.array(shot).astype(int)).max(axis=2)[height // 4 :, :width]  # without the page's own buttons and inset
+    assert np.quantile(off, 0.9) < 12
+    box = label.bounding_box()
+    around = page.locator("iframe[title='3D view']").bounding_box()
+    assert box is not None
+    assert around is not None
+    x, y = round(2 * (box["x"] - around["x"])), round(2 * (box["y"] - around["y"]))
+    inside = picture[y + 6 : y + round(2 * box["height"]) - 6, x + 16 : x + round(2 * box["width"]) - 16].min(axis=2)
+    assert np.median(inside) > 200, "a label is light"
+    assert inside.min() < 100, "its text is dark"
 
 
 WATCH = """() => {
