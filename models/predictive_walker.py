@@ -537,7 +537,7 @@ def build(parameters: Parameters) -> Simulation:
     if p.scene == "pillar":
         parts.append(Wall(name="pillar", start=(4.0, -0.15), end=(4.0, 0.15), thickness=0.3))
     elif p.scene == "two people":
-        parts.append(replace(walker, name="other", position=(14.0, 0.0), heading=pi))
+        parts.append(replace(walker, name="other", position=(14.0, 0.0), heading=pi, colour=(0.62, 0.43, 0.35, 1.0)))
     elif p.scene == "two doorways":
         beside = BETWEEN / 2
         shared = {"width": p.aperture, "closing": p.closing, "segment": beside - p.aperture / 2}
