@@ -35,15 +35,15 @@ export function openWindow(id) {
   if (!open(`/?${address}`, `${page} ${id}`, `popup,width=${width},height=${height}`)) complain("The browser does not open a window: allow this page to.");
 }
 
-function tell() {
+function announce() {
   if (session.peek()) channel.postMessage({ page, shown: session.peek().id });
 }
 
 if (alone === null) {
-  channel.addEventListener("message", ({ data }) => data.page === page && data.asked && tell());
+  channel.addEventListener("message", ({ data }) => data.page === page && data.asked && announce());
   effect(() => {
     session.value?.id;
-    tell();
+    announce();
   });
 }
 

@@ -85,7 +85,7 @@ def build(parameters: Parameters) -> Simulation:
 `,
 };
 
-/** Returns imports as they stand in a file: those of the standard library, of other packages, and of this one, with a line between. */
+/** Returns imports in the order of a file: those of the standard library, of other packages, and of this one, with a line between. */
 function importLines(imports) {
   const group = (line) => (/^from (actr3d|workbench)/.test(line) ? 2 : /^from (annotated_types|numpy)/.test(line) ? 1 : 0);
   const groups = [0, 1, 2].map((wanted) => imports.filter((line) => group(line) === wanted).join("\n"));

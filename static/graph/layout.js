@@ -34,7 +34,7 @@ export function placed(width, [modules, buffers, productions]) {
 }
 
 /** Returns the path of an edge between two places, for SVG: from the facing sides, or past a column between them. `offset` moves its
- * ends up or down, so that edges of two kinds between the same nodes can be told apart [px]. */
+ * ends up or down, so that edges of two kinds between the same nodes do not coincide [px]. */
 export function edgePath(from, to, offset = 0) {
   const right = to.x > from.x;
   const [x1, x2] = right ? [from.x + from.width, to.x] : [from.x, to.x + to.width];

@@ -1,10 +1,10 @@
 "use strict";
-// From where the scene is seen: at first, as in the workbench, all that stands around the body, from behind it.
+// The camera of the replay. At first it sees the body from behind, with everything around it, as in the workbench.
 
 const FOV = (50 * Math.PI) / 180; // the vertical field of view
-const ASIDE = (10 * Math.PI) / 180; // so far from the side it is seen at first
-const RAISED = (25 * Math.PI) / 180; // and from so far above
-const ROOM = 1.06; // so many times as far off as need be
+const ASIDE = (10 * Math.PI) / 180; // the first view's angle to the side
+const RAISED = (25 * Math.PI) / 180; // its angle from above
+const ROOM = 1.06; // its distance, as a multiple of the smallest that shows everything
 
 class Camera {
   constructor(stage) {

@@ -85,7 +85,7 @@ class Drawing {
     return { array, count: faces.length, clear };
   }
 
-  // How a shape stands at a time.
+  // Returns the position and orientation of a shape at a time.
   pose(shape, time) {
     const times = this.times, count = this.shapes.length;
     let low = 0, high = times.length - 1;

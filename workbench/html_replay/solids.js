@@ -1,10 +1,9 @@
 "use strict";
-// Triangles of the shapes that have a name: corners and faces, as those of meshes are given; and where they are round, which way
-// they face at each corner.
+// Triangles of the basic shapes: corners and faces, in the form of those of meshes; for round shapes also the normal at each corner.
 
-const AROUND = 32; // so many corners has a circle
+const AROUND = 32; // corners of a circle
 
-// What turns about the upright axis: a line of [radius, height, outward, upward], from below to above; the last two say where it faces.
+// A solid of revolution about the vertical axis, from a line of [radius, height, outward, upward], upwards; the last two are the normal.
 function turned(line) {
   const places = [], faces = [], facing = [];
   for (const [radius, height, outward = 0, upward = 0] of line)

@@ -69,7 +69,7 @@ class Python:
         return jedi.Script(text, path=where, project=project, environment=self._environment)
 
     def complete(self, explicit: ExplicitText, path: str, at: int) -> list[Item]:
-        """Returns what may stand at a position; nothing in a string or a comment."""
+        """Returns what can be written at a position; nothing in a string or a comment."""
         script, (line, column) = self._script(explicit.text, path), explicit.place(at)
         found = [one for one in script.complete(line, column) if one.type != "path"][:MOST_ITEMS]
         start = column - len(found[0].name_with_symbols) + len(found[0].complete or "") if found else column

@@ -134,7 +134,7 @@ class LiveRun(SimulationRun):
             self._loop.call_soon_threadsafe(self._turn)
 
     def _turn(self) -> None:
-        """Carries out the commands of pages; runs a few ticks if they have let the run go on."""
+        """Carries out the commands of pages; runs a few ticks if they have started it."""
         if self._turn_due is not None:
             self._turn_due.cancel()
             self._turn_due = None

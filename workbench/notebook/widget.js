@@ -40,7 +40,7 @@ function render({ model, el }) {
   let frame = null;
   let asked = false; // whether a replay was asked for here, and not in another view of the widget
 
-  /** Returns the address of the page, as it is reached from this notebook. */
+  /** Returns the address of the page, for this notebook. */
   function address() {
     const query = new URLSearchParams({ session, theme: isDark(el) ? "dark" : "light", ticket, embedder: location.origin });
     return `http://${location.hostname}:${port}/?${query}`;

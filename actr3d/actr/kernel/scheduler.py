@@ -68,7 +68,7 @@ class Scheduler:
         self.stop_flag = False
         self._run_number = 0
         self.step = 0
-        """The number of events so far."""
+        """The number of past events."""
         self.harvests = False
         """Whether a memory collects the chunks that leave buffers, as in ACT-R 7."""
         self.round_ms = False
