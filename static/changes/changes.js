@@ -68,7 +68,8 @@ export function askAndMake(one, given = {}) {
     const named = { ...given };
     for (const field of fields) {
       const value = valueOf(field, String(values[field.name]));
-      if (Number.isNaN(value)) {
+      const isNumber = field.takes.includes("number");
+      if (isNumber && (value === null ? field.required : !Number.isFinite(value))) {
         problem.value = `${field.name}: must be a number (got '${values[field.name]}')`;
         return false;
       }

@@ -19,7 +19,7 @@ export class Former {
   /** Stores the effect of a command; called in order. */
   take(event) {
     const { of, key, text } = settingOf(event[3]) ?? {};
-    if (key === undefined) return;
+    if (key === undefined || of === "place") return; // a thing may have moved since it was put somewhere
     const known = of === "buffer" ? this.#buffers.get(named(event[3]).buffer)?.[1] || "empty" : (this.#values.get(key) ?? startOf(of, event[3]));
     if (known !== undefined) before.set(event, known);
     this.#values.set(key, text);
@@ -69,7 +69,7 @@ function dataText(event, first) {
   if (setting) {
     const was = before.has(first) ? `${before.get(first)} -> ` : "";
     if (setting.of === "aperture") return `${values.name === "aperture" ? "" : `${values.name} `}${was}${setting.text} cm`;
-    if (setting.of === "place") return `${values.object} ${was || "to "}${setting.text}`;
+    if (setting.of === "place") return `${values.object} to ${setting.text}`;
     return `${values.buffer ?? values.path} ${was}${setting.text}`;
   }
   const { text } = changeOf(command) ?? {};
