@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import mujoco
 import numpy as np
@@ -73,7 +73,7 @@ class Objects:
             WorldError: If there is no such object, or it would be inside another one; it stays then.
         """
         number, physics = self._number(name, self.names, "move"), self._physics
-        before, depths = physics.integration_state(), self._depths(number)
+        before, depths = physics.integration_state(), self.depths({number})
         held = self._bodies[name].state() if name in self._bodies else None
         if name in self._bodies:
             self._bodies[name].set("teleport", x, y, heading)
@@ -90,7 +90,7 @@ class Objects:
             if heading is not None:
                 _turn(physics.mj_data.qpos[q + 3 : q + 7], heading)
         physics.changed()
-        others = [other for other, depth in self._depths(number).items() if depth > max(PRESSED, depths.get(other, 0.0))]
+        others = deeper(depths, self.depths({number}))
         if others:
             physics.restore(before)
             if held is not None:
@@ -118,17 +118,23 @@ class Objects:
             raise WorldError(f"{fixed}; there are: {', '.join(names) or 'none'}")
         return self._bodies[name].root if name in self._bodies else self._obstacles[name] if name in self._obstacles else self._loose[name]
 
-    def _depths(self, root: int) -> dict[str, float]:
-        """Returns by name the depth of an object, given its root, in each other object [m]."""
+    def depths(self, roots: Collection[int], *, moving: bool = False) -> dict[str, float]:
+        """Returns by name the depth of some objects in each other object [m].
+
+        Args:
+            roots: The MuJoCo bodies that are the roots of these objects.
+            moving: Whether to leave out other objects that cannot move by themselves.
+        """
         physics = self._physics
         physics.refresh()
         model, contacts = physics.mj_model, physics.mj_data.contact
         depths: dict[str, float] = {}
         pairs: list[list[int]] = contacts.geom.tolist()
         for pair, distance in zip(pairs, contacts.dist.tolist(), strict=True):
-            mine = [geom >= 0 and int(model.body_rootid[model.geom_bodyid[geom]]) == root for geom in pair]
-            if mine[0] != mine[1] and pair[mine[0]] >= 0:
-                other = physics.owners[pair[mine[0]]]
+            mine = [geom >= 0 and int(model.body_rootid[model.geom_bodyid[geom]]) in roots for geom in pair]
+            geom = pair[mine[0]]  # of the other object, if one of the two is
+            if mine[0] != mine[1] and geom >= 0 and not (moving and model.body_treeid[model.geom_bodyid[geom]] < 0):
+                other = physics.owners[geom]
                 depths[other] = max(depths.get(other, 0.0), -distance)
         return depths
 
@@ -179,6 +185,11 @@ class Pushes:
     def restore(self, state: tuple[tuple[int, float, float, int], ...]) -> None:
         """Restores pushes that `state` returned."""
         self._pushes = list(state)
+
+
+def deeper(before: Mapping[str, float], after: Mapping[str, float]) -> list[str]:
+    """Returns the objects in which something is now too deep, given the depths in them before and after it was moved [m]."""
+    return [name for name, depth in after.items() if depth > max(PRESSED, before.get(name, 0.0))]
 
 
 def _turn(quaternion: NDArray[np.float64], heading: float) -> None:

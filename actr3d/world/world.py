@@ -15,7 +15,7 @@ from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
 from actr3d.world.model_changes import Changes, ModelChanges
 from actr3d.world.motion_commands import MotionCommands
-from actr3d.world.objects import PRESSED, Objects, Pushes
+from actr3d.world.objects import Objects, Pushes, deeper
 from actr3d.world.physics import Physics
 from actr3d.world.scene import Scene
 from actr3d.world.scene_objects import Aperture
@@ -238,29 +238,16 @@ class World:
 
     def _slide(self, name: str, width: float) -> list[str]:
         """Sets the free width of an aperture, unless objects would be inside its walls: then it returns their names."""
-        sides = [self._mocap(f"{name}_{side}") for side in ("left", "right")]
-        before, depths = self.mj_data.mocap_pos[sides].copy(), self._pressed_by(sides)
+        roots = [int(self.mj_model.body(f"{name}_{side}").id) for side in ("left", "right")]
+        sides = self.mj_model.body_mocapid[roots]
+        before, depths = self.mj_data.mocap_pos[sides].copy(), self.objects.depths(roots, moving=True)
         self.mj_data.mocap_pos[sides] = list(self._aperture(name).segment_positions(width).values())
         self.changed()
-        inside = [other for other, depth in self._pressed_by(sides).items() if depth > max(PRESSED, depths.get(other, 0))]
+        inside = deeper(depths, self.objects.depths(roots, moving=True))
         if inside:
             self.mj_data.mocap_pos[sides] = before
             self.changed()
         return inside
-
-    def _pressed_by(self, mocaps: list[int]) -> dict[str, float]:
-        """Returns by name the depth of some mocap bodies in each object that can move [m]."""
-        self.refresh()
-        model, contacts = self.mj_model, self.mj_data.contact
-        depths: dict[str, float] = {}
-        pairs: list[list[int]] = contacts.geom.tolist()
-        for pair, distance in zip(pairs, contacts.dist.tolist(), strict=True):
-            bodies = [int(model.geom_bodyid[geom]) if geom >= 0 else 0 for geom in pair]
-            for one, other in ((0, 1), (1, 0)):
-                if int(model.body_mocapid[bodies[one]]) in mocaps and model.body_treeid[bodies[other]] >= 0:
-                    name = self.owners[pair[other]]
-                    depths[name] = max(depths.get(name, 0.0), -distance)
-        return depths
 
     def _aperture(self, name: str) -> Aperture:
         if not isinstance(name, str) or name not in self._apertures:  # pyright: ignore[reportUnnecessaryIsInstance]
