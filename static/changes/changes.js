@@ -3,6 +3,7 @@
 import { change } from "../bar/branch.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
+import { Problem } from "../parts/problem.js";
 import { alive, session } from "../store.js";
 import { computed, html, signal, useId, useRef, useState } from "../vendor/preact.js";
 
@@ -15,7 +16,7 @@ export function changesOf(of) {
 }
 
 /** Makes a change; returns null, or the text of the problem. */
-export async function make(word, named) {
+async function make(word, named) {
   try {
     await change({ type: "command", word, named });
     return null;
@@ -33,10 +34,6 @@ export function useChange() {
     return text === null;
   };
   return { problem, send, forget: () => setProblem(null) };
-}
-
-export function Problem({ text }) {
-  return text ? html`<p class="problem bad" role="alert">${text}</p>` : null;
 }
 
 function valueOf({ takes }, text) {
@@ -81,12 +78,15 @@ export function askAndMake(one, given = {}) {
   return dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: "Cancel", value: null }, { text: one.title, value: true, kind: "primary" }], check });
 }
 
+/** Returns whether a change needs more than is given. */
+const needsMore = (one, given) => one.fields.some(({ name, required }) => required && !(name in given));
+
 /** The buttons for all changes of a thing: one that needs nothing else is made at once, others ask for the rest. */
 export function ChangeButtons({ of, given, without = [] }) {
   const { problem, send } = useChange();
   const list = changesOf(of).filter(({ word }) => !without.includes(word));
   if (list.length === 0) return null;
-  const act = (one) => (one.fields.some(({ name, required }) => required && !(name in given)) ? askAndMake(one, given) : send(one.word, given));
+  const act = (one) => (needsMore(one, given) ? askAndMake(one, given) : send(one.word, given));
   return html`<span class="change-buttons">
       ${list.map((one) => html`<button key=${one.word} disabled=${!alive.value} title=${one.help} onClick=${() => act(one)}>${one.title}</button>`)}
     </span>
@@ -97,23 +97,18 @@ export function ChangeButtons({ of, given, without = [] }) {
 export function ChangeMenu({ of, given, label }) {
   const id = useId();
   const box = useRef(null);
-  const [problem, setProblem] = useState(null);
+  const { problem, send, forget } = useChange();
   const list = changesOf(of);
   if (list.length === 0) return null;
   const place = ({ currentTarget }) => {
     const { left, bottom } = currentTarget.getBoundingClientRect();
     Object.assign(box.current.style, { left: `${left}px`, top: `${bottom}px` });
-    setProblem(null);
+    forget();
   };
   const act = async (one) => {
-    if (one.fields.some(({ name, required }) => required && !(name in given))) {
-      box.current.hidePopover();
-      askAndMake(one, given);
-      return;
-    }
-    const text = await make(one.word, given);
-    setProblem(text);
-    if (text === null) box.current?.hidePopover();
+    const more = needsMore(one, given);
+    if (more || (await send(one.word, given))) box.current?.hidePopover();
+    if (more) askAndMake(one, given);
   };
   return html`<button class="bare change-more" popovertarget=${id} aria-label="Change ${label}" title="Change ${label}" disabled=${!alive.value} onClick=${place}><${Icon} name="more" /></button>
     <div id=${id} ref=${box} popover="auto" class="change-menu" role="group" aria-label="Change ${label}">

@@ -4,6 +4,7 @@ import { html, useEffect, useMemo, useRef, useSignal } from "../vendor/preact.js
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
+import { Problem } from "../parts/problem.js";
 import { savePicture } from "../parts/picture.js";
 import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
@@ -266,7 +267,7 @@ export function Figure({ experiment, facts, columns: all }) {
   const error = own.error ?? (other ? others.error && `${other.name}: ${others.error}` : null);
   return html`
     <${Menus} experiment=${experiment} facts=${facts} columns=${columns} chosen=${chosen} />
-    ${error ? html`<p class="problem bad" role="alert">${error}</p>` : null}
+    <${Problem} text=${error} />
     ${combined > MOST_LINES ? html`<p class="problem warning">The first ${MOST_LINES} of ${combined} lines are drawn.</p>` : null}
     ${answer && lines.length > 0
       ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOf(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} experiment=${experiment} other=${other} /><//>`

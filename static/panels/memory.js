@@ -1,7 +1,8 @@
 // Declarative memory: its chunks with their activations, the body schema in it, and what the eyes found last.
 
 import { html, signal, useEffect, useState } from "../vendor/preact.js";
-import { changesOf, Problem, useChange } from "../changes/changes.js";
+import { changesOf, useChange } from "../changes/changes.js";
+import { Problem } from "../parts/problem.js";
 import { AtStart } from "../inspector/at_start.js";
 import { MemoryTable } from "../inspector/memory_table.js";
 import { Search } from "../inspector/retrievals.js";

@@ -9,7 +9,7 @@ import { AreaMenu } from "../parts/area_menu.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
-import { saveFile } from "../parts/picture.js";
+import { pictureName, saveFile, SHARPNESS } from "../parts/picture.js";
 import { optimistic } from "../parts/optimistic_value.js";
 import { remembered } from "../local_storage.js";
 import { frameBudget } from "../frame_budget.js";
@@ -69,7 +69,7 @@ function canMove() {
 async function moveOrPush() {
   const list = changesOf("object");
   const actions = [{ text: "Cancel", value: null }, ...list.map((one) => ({ text: `${one.title} …`, value: one }))];
-  const body = html`<dl class="change-help">${list.map((one) => html`<dt>${one.title}</dt><dd>${one.help}</dd>`)}</dl><p class="quiet">The overlay «handles» moves things with the mouse.</p>`;
+  const body = html`<dl class="change-help">${list.map((one) => html`<dt>${one.title}</dt><dd>${one.help}</dd>`)}</dl><p class="quiet">The overlay «handles to move things» moves them with the mouse.</p>`;
   const chosen = await dialog({ title: "Change by hand", body, actions });
   if (chosen) askAndMake(chosen);
 }
@@ -87,10 +87,9 @@ function nextView() {
 
 /** Saves what the 3D view shows now. */
 function keepPicture() {
-  const { model, seed } = session.peek();
-  const name = `${model.replace(/\.py$/, "")} seed ${seed} at ${state.peek().time.toFixed(2)} s.png`;
-  const drawn = document.querySelector("#scene iframe").contentWindow.scene?.picture?.();
-  drawn?.toBlob((blob) => saveFile(name, blob), "image/png");
+  const name = pictureName(session.peek(), `at ${state.peek().time.toFixed(2)} s`);
+  const drawn = document.querySelector("#scene iframe").contentWindow.scene?.picture?.(SHARPNESS);
+  drawn?.toBlob((blob) => saveFile(`${name}.png`, blob), "image/png");
 }
 
 /** Whether there is a scene to look at. */

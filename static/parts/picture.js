@@ -2,7 +2,7 @@
 
 import { CanvasSurface, SvgSurface } from "./surface.js";
 
-const SHARPNESS = 2; // pixels of a PNG per pixel of the page
+export const SHARPNESS = 2; // pixels of a PNG per pixel of the page
 const TITLE = 26; // height of the line above a picture [px]
 const MARGIN = 12; // [px]
 
@@ -14,6 +14,11 @@ const MARGIN = 12; // [px]
  * @property {number} height [px]
  * @property {(surface) => void} draw Draws it, from 0, 0.
  */
+
+/** Returns the name of a picture's file, without its ending: of which run, and what. */
+export function pictureName({ model, seed }, what) {
+  return `${model.replace(/\.py$/, "")} seed ${seed} ${what}`;
+}
 
 /** Draws a picture with its title and background. */
 function drawWhole(surface, { title, width, height, draw }, move) {

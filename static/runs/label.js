@@ -1,6 +1,7 @@
 // The name, the note and the tags of a recording, which users give.
 
 import { dialog } from "../parts/dialog.js";
+import { Problem } from "../parts/problem.js";
 import { call } from "../server.js";
 import { complain } from "../store.js";
 import { html, signal } from "../vendor/preact.js";
@@ -21,7 +22,7 @@ export async function labelRun(run) {
   const Body = () => html`<label class="field">Name <input value=${values.name} maxlength="100" onInput=${(event) => (values.name = event.currentTarget.value)} /></label>
     <label class="field">Tags <input value=${values.tags.join(", ")} placeholder="separated by commas" onInput=${(event) => (values.tags = event.currentTarget.value.split(","))} /></label>
     <label class="field">Note <textarea rows="4" maxlength="2000" onInput=${(event) => (values.note = event.currentTarget.value)}>${values.note}</textarea></label>
-    ${problem.value ? html`<p class="problem bad" role="alert">${problem.value}</p>` : null}`;
+    <${Problem} text=${problem.value} />`;
   const check = async () => {
     try {
       const tags = values.tags.map((tag) => tag.trim()).filter(Boolean);

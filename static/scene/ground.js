@@ -6,6 +6,7 @@ import { palette } from "./palette.js";
 const MOST = 64; // the maximum number of shadows
 const LIFT = 0.004; // their height above the ground [m]
 const RISE = 0.6; // the height over which the sky changes its colour above the horizon, as a part of the picture's
+const FADE = 0.12; // the same below the horizon
 
 const VERTEX = `
 attribute vec2 local; attribute vec4 form; varying vec2 at; varying vec4 shape;
@@ -91,20 +92,18 @@ export class Ground {
     if (theme === this.theme && flat === this.flat && Math.abs(horizon - this.horizon) < 0.002) return;
     this.shades.material.uniforms.strength.value = colours.shade;
     [this.theme, this.horizon, this.flat] = [theme, horizon, flat];
-    const at = `${(100 * horizon).toFixed(1)}%`;
     const below = stage.grounds.length ? colours.ground : colours.haze;
-    this.sky = { horizon, above: colours.sky, haze: colours.haze, below, fade: flat ? 0 : 0.12 };
-    document.documentElement.style.background = `linear-gradient(${colours.sky} calc(${at} - ${100 * RISE}vh), ${colours.haze} ${at}, ${colours.haze} ${at}, ${below} calc(${at} + ${100 * this.sky.fade}vh)) fixed`;
+    this.sky = [[horizon - RISE, colours.sky], [horizon, colours.haze], [horizon, colours.haze], [horizon + (flat ? 0 : FADE), below]];
+    const stops = this.sky.map(([at, colour]) => `${colour} ${(100 * at).toFixed(1)}%`);
+    document.documentElement.style.background = `linear-gradient(${stops.join(", ")}) fixed`;
   }
 
   /** Paints the sky, and what is below the horizon, as the page shows them. */
   paintSky(context, width, height) {
-    const { horizon, above, haze, below, fade } = this.sky;
-    const colours = context.createLinearGradient(0, (horizon - RISE) * height, 0, (horizon + fade) * height);
-    colours.addColorStop(0, above);
-    colours.addColorStop(RISE / (RISE + fade), haze);
-    colours.addColorStop(1, below);
-    context.fillStyle = colours;
+    const [top, bottom] = [this.sky[0][0], this.sky.at(-1)[0]];
+    const gradient = context.createLinearGradient(0, top * height, 0, bottom * height);
+    for (const [at, colour] of this.sky) gradient.addColorStop((at - top) / (bottom - top), colour);
+    context.fillStyle = gradient;
     context.fillRect(0, 0, width, height);
   }
 }

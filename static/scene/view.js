@@ -120,7 +120,7 @@ viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   if (renderer.toneMapping) renderer.toneMapping = 0; // unchanged colours
   if (!kept) {
     keepFormer(renderer);
-    given.picture = () => pictureOf({ renderer, viewer, ground, labels });
+    given.picture = (sharpness) => pictureOf({ renderer, viewer, ground, labels }, sharpness);
   }
   kept = true;
   const now = drawnNow();

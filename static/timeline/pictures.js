@@ -3,7 +3,7 @@
 import { html, signal } from "../vendor/preact.js";
 import { drawCurves, drawLegend, drawTimes, valueAt } from "../parts/curve.js";
 import { dialog } from "../parts/dialog.js";
-import { saveFile, savePicture } from "../parts/picture.js";
+import { pictureName, saveFile, savePicture } from "../parts/picture.js";
 import { session } from "../store.js";
 import { headingOf, plots } from "./curves.js";
 import { drawTimeline } from "./draw.js";
@@ -59,8 +59,7 @@ export async function savePictures() {
   const kind = await dialog({ title: "Keep a picture or its values", body, actions: [{ text: "Cancel", value: null }, ...kinds] });
   if (!kind) return;
   const plot = which.peek() === "" ? null : offered[Number(which.peek())];
-  const { model, seed } = session.peek();
-  const name = [model.replace(/\.py$/, ""), `seed ${seed}`, plot ? plot.title : "timeline"].join(" ");
+  const name = pictureName(session.peek(), plot ? plot.title : "timeline");
   if (kind === "csv") saveFile(`${name}.csv`, new Blob([csvText((plot ? [plot] : offered).flatMap(({ series }) => series))], { type: "text/csv" }));
   else savePicture({ ...(plot ? ofPlot(plot) : ofTimeline()), name }, kind);
 }
