@@ -14,35 +14,10 @@ from actr3d.recording import Recorded
 from actr3d.runner.replay import replay
 from actr3d.simulation import Simulation
 from actr3d.world import Floor, Scene
+from tests.helpers.counters import counter_text
 
 SCENE = Scene(parts=(Floor(),))
-
-
-COUNTER = """
-from actr3d.actr import *
-
-class Counter(ACTR):
-    goal = Buffer()
-    retrieval = Buffer()
-    memory = Memory(retrieval)
-    strength = DMBaseLevel(memory)
-    utility = PMNew(alpha=0.2)
-
-    def init():
-        goal.set("count 0")
-        memory.add("next 0 1")
-
-    def up(goal="count ?n"):
-        goal.set(f"count {int(n) + 1}")
-
-    def recall(goal="count ?n"):
-        memory.request("next ?n ?")
-
-    def rest(goal="rest ?n"):
-        goal.set("count ?n")
-"""
-"""Counts: two productions compete, and one waits for another goal."""
-Counter: Any = load_text(COUNTER, "counter.py").Counter
+Counter: Any = load_text(counter_text("PMNew(alpha=0.2)"), "counter.py").Counter
 
 
 def made() -> Simulation:

@@ -12,33 +12,12 @@ import pytest
 from actr3d.recording import Recorded
 from actr3d.runner.replay import replay
 from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, Answer, call
+from tests.helpers.counters import counter_text
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.app import make_app
 from workbench.retention import Keeping, branched_at
 
-AGENT = """
-from actr3d.actr import *
-
-class Counter(ACTR):
-    goal = Buffer()
-    retrieval = Buffer()
-    memory = Memory(retrieval)
-    strength = DMBaseLevel(memory)
-    noise = PMNoise(noise=0.3)
-
-    def init():
-        goal.set("count 0")
-        memory.add("next 0 1")
-
-    def up(goal="count ?n"):
-        goal.set(f"count {int(n) + 1}")
-
-    def recall(goal="count ?n"):
-        memory.request("next ?n ?")
-
-    def rest(goal="rest ?n"):
-        goal.set("count ?n")
-"""
+AGENT = counter_text("PMNoise(noise=0.3)")
 PROGRAM = AGENT + "\nfirst = Counter()\nfirst.run(0.4)\nsecond = Counter()\nsecond.run(3)\nprint('over')\n"
 BUILT = (
     AGENT
@@ -100,8 +79,7 @@ def test_changes_are_repeated_exactly_by_going_back_by_a_replay_and_by_opening(k
     path = recording(talk)
     desk.do(talk.session.close())
     with Recorded(path) as recorded:
-        comparison = replay(recorded)
-        assert comparison.difference is None, comparison.difference
+        assert replay(recorded).difference is None
     opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
     opened.until("paused", furthest=0.9)
     opened.say("until", time=0.9)
@@ -120,8 +98,7 @@ def test_changes_are_repeated_exactly_by_going_back_by_a_replay_and_by_opening(k
     with Recorded(own) as recorded:  # what followed is a branch of it
         assert (recorded.facts["branched"], recorded.facts["origin"]) == (0.2, path.stem)
         assert [event.time_us for event in recorded.events()][: len(now)] == [time for time, *_ in now]
-        comparison = replay(recorded)
-        assert comparison.difference is None, comparison.difference
+        assert replay(recorded).difference is None
 
 
 def test_an_opened_recording_that_nobody_changes_leaves_no_other(desk: Desk, tmp_path: Path) -> None:
@@ -197,8 +174,7 @@ def test_a_change_in_the_past_of_any_run_keeps_what_had_come_as_a_branch(kind: s
         with Recorded(one) as recorded:
             recorded.check()
             assert [command.data["data"]["named"]["chunk"] for command in recorded.commands()] == goals
-            comparison = replay(recorded)
-            assert comparison.difference is None, comparison.difference
+            assert replay(recorded).difference is None
     with Recorded(path) as recorded:
         assert [event.time_us for event in recorded.events()][: len(now)] == [time for time, *_ in now]
 
@@ -232,8 +208,7 @@ def test_changes_during_a_run_and_while_it_goes_back_are_repeated_exactly(kind: 
     path = recording(talk)
     desk.do(talk.session.close())
     with Recorded(path) as recorded:
-        comparison = replay(recorded)
-        assert comparison.difference is None, comparison.difference
+        assert replay(recorded).difference is None
 
 
 def test_a_program_says_what_cannot_be_changed(desk: Desk, tmp_path: Path) -> None:
