@@ -99,8 +99,8 @@ CHECKS = {
         assert main(["bench", "copying"]) == 0
     """,
     "static/panels/clock.js": """
-        from workbench.sockets import panels
-        assert 'from "./panels/clock.js"' in panels().body.decode()
+        from workbench.page_files import panels
+        assert 'from "./panels/clock.js"' in panels()
     """,
 }
 """By file: what is true with it, in a process of its own."""

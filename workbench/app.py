@@ -23,11 +23,12 @@ from workbench.auth import Gate, Guard
 from workbench.experiments import Experiments
 from workbench.files import ModelFolder
 from workbench.language.language_server import LanguageServer
+from workbench.page_files import ROUTE, PageFiles
 from workbench.protocol import problem_of
 from workbench.recordings import Recordings
 from workbench.retention import Keeping
 from workbench.sessions import Sessions
-from workbench.shipped import manual, static
+from workbench.shipped import manual
 from workbench.viser_bridge import Bridge
 from workbench.worker.spawn import MEMORY, Zygote
 from workbench.worker.workers import Workers
@@ -73,13 +74,14 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     app.state.experiments = experiments
     app.state.language = language
     app.state.bridge = Bridge()
+    app.state.files = PageFiles()
     app.state.pages = 0
     app.include_router(routes.router)
     app.include_router(recording_routes.router)
     app.include_router(experiment_routes.router)
     app.include_router(language_routes.router)
     app.include_router(sockets.router)
-    app.mount("/static", StaticFiles(directory=static()), name="static")
+    app.mount(ROUTE, app.state.files, name="static")
     app.mount("/manual", _manual(), name="manual")
     app.add_exception_handler(Actr3dError, _refused)
     app.add_exception_handler(OSError, _refused)

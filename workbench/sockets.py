@@ -10,12 +10,11 @@ from typing import Any
 
 import msgspec
 from fastapi import APIRouter, Request
-from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse, RedirectResponse, Response
+from fastapi.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from actr3d.errors import Actr3dError
-from actr3d.trace_kinds import GROUPS, KINDS
 from workbench import protocol
 from workbench.client_feed import Feed, Raw
 from workbench.sessions import Sessions
@@ -34,39 +33,9 @@ _names = itertools.count(1)
 
 
 @router.get("/")
-def index() -> FileResponse:
+def index(request: Request) -> HTMLResponse:
     """Returns the workbench's page."""
-    return FileResponse(static() / "index.html", media_type="text/html")
-
-
-@router.get("/static/panels.js")
-def panels() -> Response:
-    """Returns a module with the panels of the page: one for each file of the folder `panels` that exports a `panel`."""
-    files = sorted(path.name for path in (static() / "panels").glob("*.js"))
-    imports = "".join(f'import * as panel{n} from "./panels/{file}";\n' for n, file in enumerate(files))
-    modules = ", ".join(f"panel{n}" for n in range(len(files)))
-    sorting = "flatMap(({ panel }) => panel ?? []).sort((one, other) => one.order - other.order)"
-    return Response(f"{imports}\nexport const PANELS = [{modules}].{sorting};\n", media_type="text/javascript")
-
-
-@router.get("/static/panels.css")
-def panel_styles() -> Response:
-    """Returns a style sheet that imports those of the folder `panels`."""
-    names = [path.name for path in sorted((static() / "panels").glob("*.css"))]
-    return Response("".join(f'@import url("panels/{name}");\n' for name in names), media_type="text/css")
-
-
-@router.get("/static/trace_kinds.js")
-def trace_kinds() -> Response:
-    """Returns a module with the groups of trace events, by which pages filter them, and the texts of their kinds."""
-    groups = [
-        {"id": name, "text": title, "first": shown, "kinds": [kind for kind, of in KINDS.items() if of.group == name]}
-        for name, (title, shown) in GROUPS.items()
-    ]
-    texts = {name: [kind.title, kind.text] for name, kind in KINDS.items()}
-    return Response(
-        f"export const GROUPS = {json.dumps(groups)};\nexport const TEXTS = {json.dumps(texts)};\n", media_type="text/javascript"
-    )
+    return HTMLResponse(request.app.state.files.with_versions((static() / "index.html").read_text(encoding="utf-8")))
 
 
 @router.get("/viser/")
@@ -85,7 +54,7 @@ def scene(session: str, request: Request) -> Response:
     sessions: Sessions = request.app.state.sessions
     if sessions.view(session) is None:
         return PlainTextResponse("there is no 3D view of that session\n", status_code=404)
-    return HTMLResponse(page(), headers={"content-security-policy": POLICY})
+    return HTMLResponse(request.app.state.files.with_versions(page()), headers={"content-security-policy": POLICY})
 
 
 @router.websocket("/viser/{session}")

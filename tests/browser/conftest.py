@@ -7,16 +7,13 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page, Route
+from playwright.sync_api import Browser, Page
 
-from tests.helpers.page import PATIENCE, chromium
+from tests.helpers.page import PATIENCE, Users, chromium
 from tests.helpers.workbench_server import Served, served
 
 REFUSED = re.compile("Failed to load resource: the server responded with a status of 40[0-9]")
 """What Chromium writes to its console of an answer that says why something is not done."""
-
-NO_SCENE = "<!doctype html><title>3D view</title><script>parent.postMessage({ drawn: true }, location.origin)</script>"
-"""Stands for the 3D view where a test is about something else: to draw it without a graphics card takes seconds of two processors."""
 
 
 @pytest.fixture(scope="session")
@@ -32,8 +29,13 @@ def browser() -> Iterator[Browser]:
         yield started
 
 
+@pytest.fixture(scope="module")
+def users(browser: Browser) -> Users:
+    return Users(browser)
+
+
 @pytest.fixture
-def pages(browser: Browser, workbench: Served, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
+def pages(users: Users, workbench: Served, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
     """Opens pages of a new user, whose browser remembers nothing but which tab is open: `tab`, or None for that of a first visit.
 
     Runs go as fast as they can, so that nobody waits for them; with `paced` as they do for users, at real time where there is a body.
@@ -55,11 +57,6 @@ def pages(browser: Browser, workbench: Served, request: pytest.FixtureRequest) -
     def fault(error: Any) -> None:
         complaints.append(str(error))
 
-    def leave_scene_out(route: Route) -> None:
-        route.fulfill(body=NO_SCENE, content_type="text/html")
-
-    contexts: list[Any] = []
-
     def opened(
         model: str = "doorway.py",
         width: int = 1280,
@@ -69,12 +66,11 @@ def pages(browser: Browser, workbench: Served, request: pytest.FixtureRequest) -
         paced: bool = False,
         refusals: bool = False,
     ) -> Page:
-        contexts.append(browser.new_context(viewport={"width": width, "height": height}, color_scheme=theme))
+        page = users.new(request.node.get_closest_marker("scene") is not None).new_page()
+        page.set_viewport_size({"width": width, "height": height})
+        page.emulate_media(color_scheme=theme)
         if tab is not None:
-            contexts[-1].add_init_script(f"localStorage.getItem('actr3d.tab') ?? localStorage.setItem('actr3d.tab', '\"{tab}\"')")
-        if request.node.get_closest_marker("scene") is None:
-            contexts[-1].route("**/viser/**", leave_scene_out)
-        page = contexts[-1].new_page()
+            page.add_init_script(f"localStorage.getItem('actr3d.tab') ?? localStorage.setItem('actr3d.tab', '\"{tab}\"')")
         page.set_default_timeout(PATIENCE)
         page.on("console", note_unless_refused if refusals else note)
         page.on("pageerror", fault)
@@ -85,8 +81,7 @@ def pages(browser: Browser, workbench: Served, request: pytest.FixtureRequest) -
         return page
 
     yield opened
-    for context in contexts:
-        context.close()
+    users.leave()
     assert complaints == []
 
 

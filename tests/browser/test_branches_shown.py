@@ -15,7 +15,7 @@ from tests.helpers.workbench_server import Served
 
 def say(page: Page, **command: Any) -> None:
     """Sends a command to the run."""
-    page.evaluate("async (command) => void (await (await import('/static/server.js')).say(command))", command)
+    page.evaluate("async (command) => void (await (await part('server.js')).say(command))", command)
 
 
 def change_the_past(page: Page) -> None:
@@ -70,7 +70,7 @@ def test_a_recording_that_is_changed_is_not_said_to_have_a_branch(pages: Callabl
     shows(page, "#status", "at its start")
     say(page, type="until", time=1.0)
     shows(page, "#status", r"at 1\.0 s")
-    name = page.evaluate("async () => (await import('/static/store.js')).session.value.recording")
+    name = page.evaluate("async () => (await part('store.js')).session.value.recording")
     for one in workbench.get("/api/sessions").json()["sessions"]:
         workbench.post(f"/api/sessions/{one['id']}/close")
     page.goto(f"{page.url.partition('?')[0]}?run={name}")

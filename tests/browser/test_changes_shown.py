@@ -13,13 +13,13 @@ from tests.helpers.workbench_server import Served
 
 def say(page: Page, **command: Any) -> None:
     """Sends a command to the run."""
-    page.evaluate("async (command) => void (await (await import('/static/server.js')).say(command))", command)
+    page.evaluate("async (command) => void (await (await part('server.js')).say(command))", command)
 
 
 def commands(page: Page) -> list[str]:
     """Returns the users' commands as the timeline shows them."""
     return page.evaluate("""async () => {
-      const { lanes } = await import("/static/timeline/record.js");
+      const { lanes } = await part("timeline/record.js");
       return (lanes.lanes.get("commands")?.bands ?? []).map(({ text }) => text);
     }""")
 
@@ -57,9 +57,7 @@ def test_a_mind_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[...
     row = page.locator("#chunks tr", has_text="count78again")
     row.click()
     page.get_by_role("button", name="Strengthen").click()
-    page.wait_for_function(
-        "async () => (await import('/static/store.js')).events.value.list.filter(([, , kind]) => kind === 'command').length === 3"
-    )
+    page.wait_for_function("async () => (await part('store.js')).events.value.list.filter(([, , kind]) => kind === 'command').length === 3")
     assert commands(page)[1:] == ["add chunk memory count 7 8 again", "strengthen memory count 7 8 again"]
 
     # productions: what is forbidden is marked, and the explanation says who did it

@@ -13,7 +13,7 @@ from tests.helpers.page import choose, drawn, open_tab, shows, until
 from tests.helpers.workbench_server import Served
 
 ENDED = """async () => {
-  const { alive, session, state } = await import("/static/store.js");
+  const { alive, session, state } = await part("store.js");
   return alive.value && state.value.status === "ended" ? session.value.run : null;
 }"""
 """Tells which run has ended; null where that is shown goes on."""
@@ -217,7 +217,7 @@ def test_a_zoom_is_kept_for_the_next_run_of_a_model_and_another_model_is_shown_a
 
 
 RUN = """async () => {
-  const { alive, session } = await import("/static/store.js");
+  const { alive, session } = await part("store.js");
   return alive.value ? session.value.run : null;
 }"""
 """Tells which run is shown; null until it has said where it stands."""

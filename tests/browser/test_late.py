@@ -22,7 +22,7 @@ import time
 time.sleep(1.5)
 """
 """Added to a model that is to take its time to load."""
-LOADING = """async () => (await import("/static/store.js")).session.value?.loading"""
+LOADING = """async () => (await part("store.js")).session.value?.loading"""
 
 
 class Wire:
@@ -451,7 +451,7 @@ def test_nothing_is_asked_of_a_new_run_before_its_own_first_state_is_there(pages
     shows(page, "#status", "at its start")
     told = page.evaluate(
         """async () => {
-          const { alive, moment, session, state, take } = await import("/static/store.js");
+          const { alive, moment, session, state, take } = await part("store.js");
           const [before, run] = [moment.value, session.value.run + 1];
           take([{ run, epoch: 1, session: { ...session.value, run } }]);
           const between = [alive.value, moment.value === before];

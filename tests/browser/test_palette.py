@@ -66,7 +66,7 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
     expect(page.locator(".cm-gotoLine, .cm-panel")).to_contain_text("Go to line")
     names, keys = page.evaluate(
         """async () => {
-          const { permanent, present } = await import("/static/commands.js");
+          const { permanent, present } = await part("commands.js");
           const names = [...permanent(), ...present()].map(({ group, text }) => `${group}: ${text}`);
           return [names, permanent().flatMap(({ key }) => key ?? [])];
         }"""
@@ -87,6 +87,7 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
 def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Callable[..., Page]) -> None:
     built = [False, True]
     page = pages("counting.py")
+    shows(page, "#status", "at its start")
     page.context.route("**/api/models", lambda route: route.fulfill(json={**route.fetch().json(), "manual": built.pop(0)}))
     page.reload()
     shows(page, "#status", "at its start")

@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 import zstandard
 from PIL import Image
-from playwright.sync_api import Browser, Page, Route, WebSocket, expect
+from playwright.sync_api import Page, Route, WebSocket, expect
 
-from tests.helpers.page import until
+from tests.helpers.page import Users, until
 from tests.helpers.workbench_server import MODELS, Served, served
 
 pytestmark = pytest.mark.scene
@@ -32,12 +32,13 @@ def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 
 @pytest.fixture
-def page(browser: Browser, workbench: Served) -> Iterator[Page]:
-    with browser.new_context(viewport={"width": 800, "height": 600}) as context:
-        page = context.new_page()
-        page.set_default_timeout(PATIENCE)
-        page.goto(workbench.address)
-        yield page
+def page(users: Users, workbench: Served) -> Iterator[Page]:
+    page = users.new(scene=True).new_page()
+    page.set_viewport_size({"width": 800, "height": 600})
+    page.set_default_timeout(PATIENCE)
+    page.goto(workbench.address)
+    yield page
+    users.leave()
 
 
 @pytest.fixture
@@ -108,7 +109,7 @@ def test_framed_there_is_the_scene_only_and_the_dark_is_dark(workbench: Served, 
 def test_the_frame_is_covered_until_it_has_drawn_and_has_the_page_s_theme_without_loading_anew(workbench: Served, page: Page) -> None:
     held: list[Route] = []
     released: list[bool] = []
-    page.route("**/static/viser_shim.js", lambda route: route.continue_() if released else held.append(route))
+    page.route("**/static/*/viser_shim.js", lambda route: route.continue_() if released else held.append(route))
     page.goto(f"{workbench.url}/?model=aperture_passage.py")
     cover = page.locator(".scene-cover")
     expect(cover).to_have_text("The 3D view loads …", timeout=PATIENCE)
@@ -179,7 +180,7 @@ def test_where_the_processor_draws_there_are_no_shadows_and_edges_are_not_smooth
 
 
 RESTING = """async () => {
-    const { FrameBudget } = await import("/static/frame_budget.js");
+    const { FrameBudget } = await part("frame_budget.js");
     const frames = [], rest = new FrameBudget((draw) => frames.push(draw)), told = [], clock = performance.now;
     const frame = () => frames.shift()?.();
     let now = 1000;
@@ -212,7 +213,7 @@ def test_the_3d_view_draws_when_the_page_does_while_a_run_is_hurried(pages: Call
     frame = page.frame_locator("iframe[title='3D view']")
     expect(frame.get_by_text("t = 0.00 s")).to_have_count(1, timeout=PATIENCE)
     draws = """async (left) => {
-        const { frameBudget: rest } = await import("/static/frame_budget.js");
+        const { frameBudget: rest } = await part("frame_budget.js");
         Object.defineProperty(rest, "left", { get: () => left, configurable: true });
         const view = document.querySelector("iframe[title='3D view']").contentWindow;
         let drawn = false;

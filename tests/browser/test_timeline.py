@@ -70,8 +70,8 @@ def ended(pages: Callable[..., Page]) -> Page:
     shows(page, "#time", "t =")
     page.evaluate(
         """async () => {
-          const { say } = await import("/static/server.js");
-          const { session, state } = await import("/static/store.js");
+          const { say } = await part("server.js");
+          const { session, state } = await part("store.js");
           const before = session.value.run;
           await say({ type: "restart", seed: 1, run: true });
           while (session.value.run === before || state.value?.status !== "ended") await new Promise((done) => setTimeout(done, 50));
@@ -79,9 +79,7 @@ def ended(pages: Callable[..., Page]) -> Page:
     )
     expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"))
     # Curves come by a request of their own, after the events.
-    page.wait_for_function(
-        "async () => (await import('/static/timeline/curves.js')).plots.value.some(({ title }) => title === 'speed')", polling=50
-    )
+    page.wait_for_function("async () => (await part('timeline/curves.js')).plots.value.some(({ title }) => title === 'speed')", polling=50)
     return page
 
 
@@ -90,9 +88,9 @@ def drawing(page: Page) -> dict[str, Any]:
     drawn(page)
     return page.evaluate(
         """async () => {
-          const { drawTimeline } = await import("/static/timeline/draw.js");
-          const { scene } = await import("/static/timeline/canvas.js");
-          const { widthOf } = await import("/static/parts/surface.js");
+          const { drawTimeline } = await part("timeline/draw.js");
+          const { scene } = await part("timeline/canvas.js");
+          const { widthOf } = await part("parts/surface.js");
           const [labels, marks] = [[], []];
           const surface = { fill() {}, line() {}, within: (x, y, width, height, draw) => draw() };
           surface.polygon = (points) => marks.push(Math.min(...points.filter((_, n) => n % 2 === 0)));
@@ -112,7 +110,7 @@ def drawing(page: Page) -> dict[str, Any]:
 @pytest.mark.parametrize("time", ["0.00", "1.96", "2.00", "3.50"])
 def test_labels_of_the_ruler_and_the_playhead_never_overlap(ended: Page, time: str) -> None:
     page = ended
-    page.evaluate("async (time) => (await import('/static/timeline/seek.js')).seek(time)", float(time))
+    page.evaluate("async (time) => (await part('timeline/seek.js')).seek(time)", float(time))
     when(page, time)
     told = drawing(page)
     texts = [text for text, *_ in told["labels"]]
@@ -332,8 +330,8 @@ def test_many_events_are_taken_in_one_by_one(pages: Callable[..., Page]) -> None
     page = pages("counting.py")
     counts: dict[str, Any] = page.evaluate(
         """async () => {
-          const { Lanes } = await import("/static/timeline/lanes.js");
-          const { drawTimeline } = await import("/static/timeline/draw.js");
+          const { Lanes } = await part("timeline/lanes.js");
+          const { drawTimeline } = await part("timeline/draw.js");
           const lanes = new Lanes();
           for (let n = 0; n < 100000; n += 1) {
             lanes.take([n * 1000, "mind.goal", "buffer", { chunk: n % 2 ? { 0: `chunk ${n}` } : null }]);
@@ -357,8 +355,8 @@ def test_no_text_of_the_axis_is_cut(page: Page, end: float, width: int) -> None:
     shows(page, "#time", "t =")
     drawn = page.evaluate(
         """async ([end, width]) => {
-          const { drawTimes } = await import("/static/parts/curve.js");
-          const { widthOf } = await import("/static/parts/surface.js");
+          const { drawTimes } = await part("parts/curve.js");
+          const { widthOf } = await part("parts/surface.js");
           const found = [];
           const text = (text, x, y, name, style) => found.push([x - widthOf(text, style) / 2, x + widthOf(text, style) / 2]);
           drawTimes({ line() {}, text }, { x: 0, y: 0, width, height: 20 }, { from: 0, to: end }, { y: 0 });
@@ -373,8 +371,8 @@ def test_no_text_of_the_axis_is_cut(page: Page, end: float, width: int) -> None:
 
 
 EVERY_TICK = """async () => {
-  const { known } = await import("/static/timeline/curves.js");
-  const { state } = await import("/static/store.js");
+  const { known } = await part("timeline/curves.js");
+  const { state } = await part("store.js");
   const ticks = known.times.map((time) => Math.round(time * 100));
   const whole = ticks.length === Math.round(state.value.furthest * 100) + 1 && ticks.every((tick, n) => tick === n);
   return whole && [...known.values.values()].every(({ length }) => length === ticks.length);
@@ -389,15 +387,15 @@ def test_curves_have_every_tick_after_a_restart_and_a_reload(ended: Page) -> Non
     for _ in range(3):
         page.evaluate(
             """async () => {
-              const { say } = await import("/static/server.js");
-              const { session, state } = await import("/static/store.js");
+              const { say } = await part("server.js");
+              const { session, state } = await part("store.js");
               const before = session.value.run;
               await say({ type: "restart", run: true });
               while (session.value.run === before || state.value?.status !== "ended") await new Promise((done) => setTimeout(done, 50));
             }"""
         )
         until(page, lambda: page.evaluate(EVERY_TICK))
-    page.evaluate("async () => (await import('/static/server.js')).say({ type: 'restart', run: true })")
+    page.evaluate("async () => (await part('server.js')).say({ type: 'restart', run: true })")
     page.reload()  # while it goes on
     shows(page, "#status", "ended")
     until(page, lambda: page.evaluate(EVERY_TICK))
@@ -411,7 +409,7 @@ def test_a_short_run_fits_and_the_slider_keeps_its_keys(pages: Callable[..., Pag
     when(page, "0.01")
     page.get_by_role("button", name="Fit").click()
     page.mouse.move(*at(page, 0.5))
-    assert page.evaluate("async () => (await import('/static/timeline/view.js')).span.value.to") < 0.1
+    assert page.evaluate("async () => (await part('timeline/view.js')).span.value.to") < 0.1
     for one, another in ((page, other), (other, page)):
         shows(one, "#browsers", r"2 browsers: you are page \d+, ")
         one.click("#step")
@@ -423,7 +421,7 @@ def test_a_short_run_fits_and_the_slider_keeps_its_keys(pages: Callable[..., Pag
 
 
 RUNS = """async () => {
-    const { Lanes } = await import("/static/timeline/lanes.js");
+    const { Lanes } = await part("timeline/lanes.js");
     const lanes = new Lanes();
     const of = (time, source, kind, data = {}) => lanes.take([time * 1e6, source, kind, data]);
     const hold = (time, source, text) => of(time, source, "buffer", { chunk: { 0: text } });
@@ -475,7 +473,7 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
     (workbench.folder / "counts.py").write_text(COUNTS, encoding="utf-8")
     page = pages("counts.py", height=1000)
     page.get_by_role("button", name="Run", exact=True).click()
-    page.wait_for_function("async () => (await import('/static/store.js')).state.value?.status === 'ended'", polling=50)
+    page.wait_for_function("async () => (await part('store.js')).state.value?.status === 'ended'", polling=50)
     page.get_by_role("button", name="Curves …").click()
     choice = page.get_by_role("dialog")
     for name in ("goal.at", "memory latency", "memory busy"):
@@ -484,9 +482,9 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
     page.keyboard.press("Escape")
     found = page.evaluate(
         """async () => {
-          const { csvText } = await import("/static/timeline/pictures.js");
-          const { plots } = await import("/static/timeline/curves.js");
-          const { lanes } = await import("/static/timeline/record.js");
+          const { csvText } = await part("timeline/pictures.js");
+          const { plots } = await part("timeline/curves.js");
+          const { lanes } = await part("timeline/record.js");
           const busy = plots.value.find(({ title }) => title === "time busy").series[0];
           const csv = plots.value.filter(({ title }) => title === "at").map(({ series }) => csvText(series));
           return { csv, busy: busy.values.at(-1), end: lanes.now / 1e6 };

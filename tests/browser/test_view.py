@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 from mujoco import MjData, MjModel
 from PIL import Image
-from playwright.sync_api import Browser, Frame, Page, expect
+from playwright.sync_api import Frame, Page, expect
 
 from actr3d.world import Aperture, Floor, Mannequin, Scene, Wall
 from actr3d.world.world import World
-from tests.helpers.page import PATIENCE, drawn, shows, until
+from tests.helpers.page import PATIENCE, Users, drawn, shows, until
 from tests.helpers.workbench_server import Served
 from workbench.scene_framing import SceneFraming
 
@@ -55,8 +55,8 @@ class Standing:
         body = self.data.body("walker").xpos.tolist()
         self.told = self.page.evaluate(
             """async ([view, stage, body, aspect]) => {
-                const { cameraPose, anchorOf } = await import("/static/scene/stage.js");
-                const { plus, minus } = await import("/static/scene/space.js");
+                const { cameraPose, anchorOf } = await part("scene/stage.js");
+                const { plus, minus } = await part("scene/space.js");
                 const found = cameraPose(view, stage, stage.start, aspect);
                 const way = minus(anchorOf(view, stage, body), anchorOf(view, stage, stage.start));
                 return { ...found, target: plus(found.target, way) };
@@ -87,12 +87,12 @@ class Standing:
 
 
 @pytest.fixture
-def blank(browser: Browser, workbench: Served) -> Iterator[Page]:
+def blank(users: Users, workbench: Served) -> Iterator[Page]:
     """A page that imports the modules, and shows nothing."""
-    with browser.new_context() as context:
-        page = context.new_page()
-        page.goto(workbench.address)
-        yield page
+    page = users.new(scene=False).new_page()
+    page.goto(workbench.address)
+    yield page
+    users.leave()
 
 
 @pytest.mark.daily(1)
@@ -139,7 +139,7 @@ def test_what_is_far_away_does_not_make_all_small(blank: Page) -> None:
 # -- where labels stand
 
 PLACED = """async ([wanted, blocked, size]) => {
-    const { placed } = await import("/static/scene/captions.js");
+    const { placed } = await part("scene/captions.js");
     return placed(wanted, blocked, size);
 }"""
 
@@ -168,7 +168,7 @@ def test_the_retina_has_the_colours_of_the_edges_in_the_scene(blank: Page) -> No
     from workbench.palette import label_colours
 
     colours = """async () => {
-        const { channels, labelColour } = await import("/static/scene/palette.js");
+        const { channels, labelColour } = await part("scene/palette.js");
         return [1, 2, 3, 9, 20].map((label) => channels(labelColour(label)));
     }"""
     assert blank.evaluate(colours) == label_colours([1, 2, 3, 9, 20]).tolist()
@@ -212,7 +212,7 @@ def in_the_middle(page: Page, frame: Frame) -> dict[str, Any]:
 def steps(page: Page, frame: Frame, ticks: int) -> None:
     """Runs on for some ticks, and waits until the 3D view shows that."""
     before = frame.evaluate("() => window.scene.shown.body[0]")
-    page.evaluate("async (ticks) => (await import('/static/server.js')).order({ type: 'step', ticks })", ticks)
+    page.evaluate("async (ticks) => (await part('server.js')).order({ type: 'step', ticks })", ticks)
     until(page, lambda: frame.evaluate("() => window.scene.shown.body[0]") > before)
 
 
@@ -389,7 +389,7 @@ def test_while_it_runs_the_drawn_body_stays_at_its_place_in_every_picture(pages:
     def to(time: float, how: str = "until") -> Callable[[], None]:
         def act() -> None:
             said = {"type": how, "time": time}
-            page.evaluate("async (said) => (await import('/static/server.js')).order(said)", said)
+            page.evaluate("async (said) => (await part('server.js')).order(said)", said)
             shows(page, "#time", f"t = {time:.2f} s")
             until(page, lambda: frame.evaluate("() => window.scene.facts.now.moment === window.scene.shown.moment"))
             drawn(page)
@@ -438,7 +438,7 @@ def part_seen(page: Page, frame: Frame, body: str) -> float:
 def test_a_wall_between_the_camera_and_the_body_is_cut_away_around_the_body(pages: Callable[..., Page]) -> None:
     page = pages()
     frame = frame_of(page)
-    page.evaluate("async () => (await import('/static/server.js')).order({ type: 'until', time: 4 })")
+    page.evaluate("async () => (await part('server.js')).order({ type: 'until', time: 4 })")
     shows(page, "#time", "t = 4.00 s")
     until(page, lambda: frame.evaluate("() => window.scene.shown.body[0]") > 4)
     plain = part_seen(page, frame, "/bodies/walker")
@@ -479,7 +479,7 @@ def test_a_body_is_dragged_elsewhere_by_its_handle(pages: Callable[..., Page], v
     page.mouse.up()
     until(page, lambda: abs(frame.evaluate("() => window.scene.facts.now.body[1]") - 0.75) < 0.1)
     commands = """async () => {
-      const { events } = await import("/static/store.js");
+      const { events } = await part("store.js");
       return events.value.list.filter(([, , kind]) => kind === "command").map((event) => event[3]);
     }"""
     (command,) = page.evaluate(commands)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 
 import pytest
-from playwright.sync_api import Browser, Page, expect, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
 
 PATIENCE = 60_000
 """So long a test waits for what must come [ms]; machines are slow at times."""
@@ -48,6 +48,50 @@ def chromium() -> Generator[Browser]:
         pytest.skip("there is no Chromium on this machine")
     with launched(path) as browser:
         yield browser
+
+
+PART = "window.part = (path) => import(new URL(path, document.querySelector('script[type=module]').src))"
+"""Defines `part("store.js")`, the module of the page with which a test looks inside."""
+
+NO_SCENE = "if (location.pathname.startsWith('/viser/')) { window.stop(); parent.postMessage({ drawn: true }, location.origin); }"
+"""Leaves the 3D view empty where a test is about something else: to draw it without a graphics card takes seconds of two processors."""
+
+
+class Users:
+    """The users of a browser: each has a memory of its own, but for the page's files, which a browser loads once."""
+
+    def __init__(self, browser: Browser) -> None:
+        self._browser = browser
+        self._free: dict[bool, list[BrowserContext]] = {True: [], False: []}
+        self._taken: list[tuple[bool, BrowserContext]] = []
+
+    def new(self, scene: bool) -> BrowserContext:
+        """Returns the context of a user who has not been here before, and who sees the 3D view or not."""
+        if self._free[scene]:
+            context = self._free[scene].pop()
+        else:
+            context = self._browser.new_context()
+            context.add_init_script(PART)
+            if not scene:
+                context.add_init_script(NO_SCENE)
+        self._taken.append((scene, context))
+        return context
+
+    def leave(self) -> None:
+        """Closes all pages; what the users did is forgotten."""
+        for scene, context in self._taken:
+            context.unroute_all()
+            context.clear_permissions()
+            addresses = {page.url for page in context.pages}
+            for page in context.pages:
+                page.close()
+            blank = context.new_page()
+            storage = context.new_cdp_session(blank)
+            for address in addresses:
+                storage.send("Storage.clearDataForOrigin", {"origin": address, "storageTypes": "all"})  # pyright: ignore[reportUnknownMemberType]
+            blank.close()
+            self._free[scene].append(context)
+        self._taken.clear()
 
 
 def shows(page: Page, where: str, text: str) -> None:

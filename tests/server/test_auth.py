@@ -66,7 +66,15 @@ def test_every_route_is_known_to_these_tests(app: Any) -> None:
     kinds = {type(route).__mro__[-2].__name__ for route in routes(app)}
     assert kinds == {"BaseRoute"}
     paths = {route.path for route in routes(app)}
-    assert {"/", "/static", "/ws", "/viser/{session}", "/viser/{session}/", "/api/models", "/api/sessions/{session}/command"} <= paths
+    assert {
+        "/",
+        "/static/{version}",
+        "/ws",
+        "/viser/{session}",
+        "/viser/{session}/",
+        "/api/models",
+        "/api/sessions/{session}/command",
+    } <= paths
 
 
 @pytest.mark.parametrize("headers", [(), (("cookie", "workbench_8000=wrong"),), (("cookie", f"workbench_8001={TOKEN}"),)])

@@ -100,7 +100,7 @@ def test_what_cannot_be_taken_is_told(method: str, path: str, server: Served, se
 
 
 def test_pages_take_every_address(server: Served) -> None:
-    for place in ("/viser/{}/", "/static/{}", "/{}", "/api/{}", "/viser/?token={}"):
+    for place in ("/viser/{}/", "/static/now/{}", "/{}", "/api/{}", "/viser/?token={}"):
         for value in IN_ADDRESS:
             answer = server.get(place.format(value))
             assert answer.status_code < 500, (answer.request.url, answer.text)

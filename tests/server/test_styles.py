@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from workbench import sockets
+from workbench import page_files
 from workbench.shipped import static
 
 VENDOR = static() / "vendor"
@@ -102,6 +102,6 @@ def test_a_rule_that_would_leak_is_found(text: str) -> None:
 
 
 def test_every_style_sheet_is_loaded_once() -> None:
-    text = SHARED.read_text(encoding="utf-8") + bytes(sockets.panel_styles().body).decode()
+    text = SHARED.read_text(encoding="utf-8") + page_files.panel_styles()
     loaded = set(re.findall(r'@import url\("([^"]+)"\);', text)) - {"panels.css"}
     assert sorted(loaded) == sorted(path.relative_to(static()).as_posix() for path in SCOPED)

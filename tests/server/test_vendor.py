@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from workbench import sockets
+from workbench import page_files
 from workbench.shipped import static
 
 VENDOR = static() / "vendor"
@@ -80,11 +80,11 @@ def test_a_new_file_of_the_folder_is_a_panel(tmp_path: Path, monkeypatch: pytest
     (tmp_path / "panels").mkdir()
     for name in ("my-own.js", "buffers.js", "buffers.css"):
         (tmp_path / "panels" / name).touch()
-    monkeypatch.setattr(sockets, "static", lambda: tmp_path)
-    text = bytes(sockets.panels().body).decode()
+    monkeypatch.setattr(page_files, "static", lambda: tmp_path)
+    text = page_files.panels()
     assert re.findall(r'^import \* as (\w+) from "(.+)";$', text, re.MULTILINE) == [
         ("panel0", "./panels/buffers.js"),
         ("panel1", "./panels/my-own.js"),
     ]
     assert "PANELS = [panel0, panel1].flatMap" in text
-    assert bytes(sockets.panel_styles().body).decode() == '@import url("panels/buffers.css");\n'
+    assert page_files.panel_styles() == '@import url("panels/buffers.css");\n'
