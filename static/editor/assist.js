@@ -48,7 +48,9 @@ async function complete(context) {
   let items = answer?.items ?? [];
   if (place === "head" && !word && !explicit) items = items.filter(({ apply }) => apply); // only the parts of the agent
   const options = [...items.map((item) => option(item, state, pos)), ...(place === "code" && isLineStart(state, pos) ? completionsOf() : [])];
-  return options.length === 0 ? null : { from: answer?.start ?? word?.from ?? pos, options, validFor: /^\??\w*$/ };
+  if (options.length > 0) return { from: answer?.start ?? word?.from ?? pos, options, validFor: /^\??\w*$/ };
+  // After null, CodeMirror would not ask again for what has been typed meanwhile; after options that are valid no more, it does.
+  return context.view.state.doc === state.doc ? null : { from: pos, options, validFor: () => false };
 }
 
 function isLineStart(state, at) {
@@ -138,7 +140,10 @@ async function showCall(view) {
   const { state } = view;
   const at = state.selection.main.head;
   const [found] = (await helpWith(state, "signature", at)) ?? [];
-  if (view.state.doc !== state.doc || view.state.selection.main.head !== at) return Boolean(found);
+  if (view.state.doc !== state.doc || view.state.selection.main.head !== at) {
+    if (found) followSoon(view); // more has been written meanwhile
+    return Boolean(found);
+  }
   if (found || state.field(box, false)?.call) view.dispatch({ effects: showBox.of(found ? { call: true, pos: at, dom: parametersOf(found) } : null) });
   return Boolean(found);
 }
@@ -158,9 +163,13 @@ const followCall = EditorView.updateListener.of(({ view, state, transactions, do
   if (!docChanged && !selectionSet) return;
   const opens = transactions.some((one) => one.isUserEvent("input") && /[(,]/.test(inserted(one)));
   if (!opens && !state.field(box, false)?.call) return;
+  followSoon(view);
+});
+
+function followSoon(view) {
   clearTimeout(timer);
   timer = setTimeout(showCall, PAUSE, view);
-});
+}
 
 function inserted({ changes }) {
   let text = "";

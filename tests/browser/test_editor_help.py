@@ -55,6 +55,13 @@ def at_end_of(page: Page, line: str) -> None:
     page.keyboard.press("End")
 
 
+SLOW = """() => {
+    const ask = fetch;
+    window.fetch = (...request) => new Promise((done) => setTimeout(done, 400)).then(() => ask(...request));
+}"""
+"""Lets the server's answers come late, when more has been written."""
+
+
 def has_line(page: Page, text: str) -> Any:
     return expect(page.locator(CODE)).to_have_text(re.compile(re.escape(text)))
 
@@ -87,7 +94,8 @@ def test_help_while_writing(opened: Callable[[str], Page]) -> None:
     expect(page.locator(".documentation")).to_have_count(0)
     at_end_of(page, "memory = Memory(facts)")
     page.keyboard.press("ArrowLeft")
-    page.keyboard.type(", latency=")
+    page.evaluate(SLOW)
+    page.keyboard.type(", latency=", delay=50)
     expect(page.locator(".documentation b")).to_have_text("latency: float | None=None")
     page.keyboard.press("Escape")
     expect(page.locator(".documentation")).to_have_count(0)
