@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
+from types import FunctionType
 from typing import Any, ParamSpec, TypeVar, cast
 
 P = ParamSpec("P")
@@ -14,15 +16,34 @@ OPTIONS: Any = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_
 """Division by zero gives infinity; no compiled function allocates memory, so that no references need to be counted."""
 
 
+_inner: set[object] = set()
+
+
 def _njit(**options: Any) -> Any:
-    import numba  # takes half a second
+    import numba  # takes a third of a second
 
     return cast("Any", numba).njit(**options)
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Returns the function compiled, callable only by other compiled functions."""
-    return _njit(no_cpython_wrapper=True, forceinline=True, **OPTIONS)(function)
+    """Marks a function that only compiled functions call: it is compiled with the first of these, as numba takes long to load."""
+    _inner.add(function)
+    return function
+
+
+@cache
+def _compiled(function: FunctionType) -> Any:
+    """Returns a marked function compiled, callable only by other compiled functions."""
+    return _njit(no_cpython_wrapper=True, forceinline=True, **OPTIONS)(_linked(function))
+
+
+def _linked(function: FunctionType) -> FunctionType:
+    """Returns a function that calls the compiled forms of the marked functions."""
+    called = {name: value for name in function.__code__.co_names if isinstance(value := function.__globals__.get(name), FunctionType)}
+    names = function.__globals__ | {name: _compiled(value) for name, value in called.items() if value in _inner}
+    linked = FunctionType(function.__code__, names, function.__name__, function.__defaults__, function.__closure__)
+    linked.__qualname__ = function.__qualname__
+    return linked
 
 
 def kept(function: Callable[P, R], *sources: Path) -> Callable[P, R]:
@@ -35,11 +56,12 @@ def kept(function: Callable[P, R], *sources: Path) -> Callable[P, R]:
         function: A function that may call compiled functions.
         sources: The files of the function and of those functions, or folders of such files.
     """
-    function.__qualname__ += f"-{sources_digest(*sources):x}"
+    linked = _linked(cast("FunctionType", function))
+    linked.__qualname__ += f"-{sources_digest(*sources):x}"
     try:
-        return _njit(cache=True, **OPTIONS)(function)
+        return _njit(cache=True, **OPTIONS)(linked)
     except RuntimeError:  # no writable cache folder
-        return _njit(**OPTIONS)(function)
+        return _njit(**OPTIONS)(linked)
 
 
 def sources_digest(*sources: Path) -> int:

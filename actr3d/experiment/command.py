@@ -14,14 +14,12 @@ from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import asdict, replace
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from actr3d.errors import ExperimentError
-from actr3d.experiment.cluster import Progress as State
-from actr3d.experiment.cluster import existing_cluster, local_cluster, run_experiment
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import SPECIFICATION, Store
 from actr3d.experiment.table import export
@@ -29,6 +27,9 @@ from actr3d.experiment.trial import PLAIN, record_trial
 from actr3d.experiment.trial_process import TrialProcess
 from actr3d.recording.schema import versions
 from actr3d.values import to_json
+
+if TYPE_CHECKING:
+    from actr3d.experiment.cluster import Progress as State
 
 EVERY = 10.0
 """Time between two lines of progress where the output is not a terminal [s]."""
@@ -135,6 +136,8 @@ def run(
         ExperimentError: If the experiment cannot be set up, run or continued.
         Exception: Any error that the files of the design and of the model themselves raise.
     """
+    from actr3d.experiment.cluster import existing_cluster, local_cluster, run_experiment  # Dask takes long to load
+
     with ExitStack() as opened:
         # Before the folder is made: a cluster may not answer.
         cluster = None if scheduler is None else opened.enter_context(existing_cluster(scheduler))
@@ -188,6 +191,7 @@ def fit(
         ExperimentError: If the fit cannot be set up or run.
         Exception: Any error that the files of the design and of the model themselves raise.
     """
+    from actr3d.experiment.cluster import existing_cluster, local_cluster
     from actr3d.experiment.fit import Fit, Range, TargetMean, load_target, to_json
 
     def means(design: str, of: str | None) -> tuple[TargetMean, ...]:
