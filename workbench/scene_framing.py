@@ -1,8 +1,9 @@
-"""Determines what the 3D view shows first: the moving body, its heading, and the objects around it."""
+"""Determines what the 3D view shows first: the body of the agent, its heading, and the objects around it."""
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterable
 from typing import Any
 
 import mujoco
@@ -24,14 +25,14 @@ class SceneFraming:
 
     Args:
         model: The compiled scene.
+        agents: The numbers of the MuJoCo bodies of agents.
     """
 
-    def __init__(self, model: MjModel) -> None:
+    def __init__(self, model: MjModel, agents: Iterable[int] = ()) -> None:
         from mjviser.conversions import get_body_name
 
-        moving = np.flatnonzero(model.body_dofnum > 0)
-        self.body = int(moving[0]) if moving.size else 0
-        """The number of the first body that moves."""
+        self.body = int(next(iter((*agents, *np.flatnonzero(model.body_dofnum > 0))), 0))
+        """The number of the first body of an agent; if there is none, of the first body that moves."""
         data = MjData(model)
         mujoco.mj_kinematics(model, data)
         base = self.base(data)

@@ -194,7 +194,7 @@ class _Drawn:
         for name, shown in self._overlays.items():
             shown.show(name in look.shown)
         self._server, self._moments = server, moments
-        self._stage = SceneFraming(self._model)
+        self._stage = SceneFraming(self._model, [world["bodies"][name]["root"] for name in world["agents"]])
         self._outlines = Outlines(server, self._model)
         self._shades = Shades(self._model, self._stage.ground)
         send_scene_data(server, "stage", self._stage.data(lay_grounds(server, self._model)))

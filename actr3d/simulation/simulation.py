@@ -132,6 +132,11 @@ class Simulation:
         return {name: environment[name] for name in (*self._embodied, *self._bodiless)}
 
     @property
+    def embodied(self) -> tuple[str, ...]:
+        """The names of the bodies that have an agent."""
+        return tuple(self._embodied)
+
+    @property
     def done(self) -> bool:
         """Whether no agent has anything left to do, now or ever, and no command of a user waits."""
         return self.timeline.lockstep.agents.done and not self._submitted and self.ticks >= self.timeline.furthest

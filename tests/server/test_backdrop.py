@@ -11,11 +11,18 @@ import numpy as np
 import pytest
 from mujoco import MjData
 
+from actr3d.actr import ACTR
+from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Wall
 from actr3d.world.world import World
 from workbench.backdrop import Outlines, Shades
 from workbench.scene_framing import SceneFraming
 from workbench.viser_server import send_scene_data, start_viser
+from workbench.worker.shown import Shown
+
+
+class Nothing(ACTR):
+    """An agent that does nothing."""
 
 
 def scene(*parts: Any) -> tuple[Any, MjData]:
@@ -79,6 +86,17 @@ def test_the_stage_is_told_with_the_body_s_middle_and_size() -> None:
     assert still["middle"] == pytest.approx([3, 0, 1.25], abs=0.1)
     nothing: Any = World(Scene(parts=(Floor(),))).mj_model
     assert np.isfinite(SceneFraming(nothing).data([])["corners"]).all()
+
+
+def test_the_stage_is_that_of_the_agent_s_body_whatever_else_moves() -> None:
+    parts = (Floor(), Loose(name="box", position=(-3, 0, 0.2)), Mannequin(name="other", position=(-2, 0)), Mannequin(name="walker"))
+    world = Shown(Simulation(Scene(parts=parts), {"walker": Nothing})).world()
+    model: Any = World(Scene(parts=parts)).mj_model
+    told = SceneFraming(model, [world["bodies"][name]["root"] for name in world["agents"]]).data([])
+    assert told["start"][:2] == pytest.approx([0, 0], abs=1e-6)
+    assert told["height"] == pytest.approx(1.75, abs=0.1)
+    assert not any("box" in name or "other" in name for name in told["own"])
+    assert SceneFraming(model).data([])["start"][:2] == pytest.approx([-3, 0], abs=1e-6)  # without an agent, the first that moves
 
 
 def test_who_comes_later_is_told_the_newest_only() -> None:

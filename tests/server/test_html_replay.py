@@ -12,8 +12,11 @@ import mujoco
 import numpy as np
 import pytest
 
+from actr3d.actr import ACTR, Buffer
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Loose, Mannequin, Scene
 from tests.helpers.sessions import Desk
 from tests.server.test_overlays import LOOKING
 from tests.server.test_recorded_runs import recording
@@ -23,6 +26,18 @@ from workbench.readers import Readers, ReadingError
 
 EVIL = "</script><img src=x onerror=alert(1)><!--"
 PRINTS = f"from actr3d.actr import *\nprint('''{EVIL}''')\n"
+
+
+class Waiting(ACTR):
+    """An agent that only waits."""
+
+    goal = Buffer()
+
+    def init(self) -> None:
+        self.goal.set("wait")
+
+    def wait(self, goal: str = "wait") -> None:
+        self.goal.set("wait")
 
 
 def inside(page: str) -> Any:
@@ -66,6 +81,18 @@ def test_scene_and_trace_are_those_of_the_recording(walked: Path, tmp_path: Path
     told_of = {row[3] for row in told["events"]["rows"] if row[2] == "buffer"}
     assert "empty" in told_of
     assert not any("{" in text for text in told_of)  # chunks stand there as modellers write them
+
+
+def test_the_view_follows_the_agent_s_body_whatever_else_moves(tmp_path: Path) -> None:
+    parts = (Floor(), Loose(name="box", position=(-3, 0, 0.2)), Mannequin(name="walker"))
+    simulation = Simulation(Scene(parts=parts), {"walker": Waiting}, seed=1)
+    simulation.traced()
+    with simulation.record(tmp_path / "run.sqlite"):
+        simulation.run(0.05)
+    write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    scene = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))["scene"]
+    poses = numbers(scene["poses"]).reshape(-1, len(scene["shapes"]), 7)
+    assert poses[0, scene["stage"]["follow"], :2] == pytest.approx([0, 0], abs=0.05)
 
 
 ZOO = """

@@ -283,7 +283,7 @@ def test_a_new_overlay_is_one_class_and_is_known_everywhere() -> None:
 
 def test_labels_keep_clear_of_the_head_and_not_only_of_the_eye() -> None:
     world = World(Scene(parts=(Floor(), Mannequin(name="walker"))))
-    drawn = Drawn(None, None, world.mj_model, {"bodies": {"walker": {"eye": world.bodies["walker"].eye}}}, print)
+    drawn = Drawn(None, None, world.mj_model, {"agents": ["walker"], "bodies": {"walker": {"eye": world.bodies["walker"].eye}}}, print)
     ((x, y, z, radius),) = Frustum(drawn).heads(world.mj_data)
     head = world.mj_model.geom("walker_head").id
     assert [x, y, z] == pytest.approx(world.mj_data.geom_xpos[head], abs=1e-3)

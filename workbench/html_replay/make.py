@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import html
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any, cast
 
 import msgspec
 import numpy as np
-from mujoco import MjModel
 
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.recording import Recorded
@@ -43,8 +42,9 @@ def write_replay(path: Path, to: Path) -> None:
         OSError: If the file cannot be written.
     """
     with Recorded(path) as recorded:
-        facts = _facts(recorded)
-        content = {**facts, "palette": palette(), "events": _events(recorded), "scene": _scene(recorded)}
+        facts, events = _facts(recorded), _events(recorded)
+        agents = {source.partition(".")[0] for _, source, _, _ in events["rows"]}
+        content = {**facts, "palette": palette(), "events": events, "scene": _scene(recorded, agents)}
     # No text from a model can close the HTML element that contains it.
     data = msgspec.json.encode(content).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     folder = Path(__file__).parent
@@ -119,8 +119,13 @@ def _word(value: Any) -> str:
     return value if isinstance(value, str) else to_json(value)
 
 
-def _scene(recorded: Recorded) -> dict[str, Any] | None:
-    """Returns the shapes and their poses in each stored frame; None without a world."""
+def _scene(recorded: Recorded, agents: Collection[str]) -> dict[str, Any] | None:
+    """Returns the shapes and their poses in each stored frame; None without a world.
+
+    Args:
+        recorded: The recording.
+        agents: The names of the agents.
+    """
     facts = recorded.facts
     if "compiled" not in facts:
         return None
@@ -139,19 +144,19 @@ def _scene(recorded: Recorded) -> dict[str, Any] | None:
                 yield state
 
     poses = poses_of(model, bodies, states())
+    roots = [body["root"] for name, body in facts["world"]["bodies"].items() if name in agents]
     return {
         "shapes": shapes.parts,
         "meshes": shapes.meshes,
         "grounds": grounds_of(model),
         "times": packed(times, "<f4"),
         "poses": packed(poses, "<f4"),
-        "stage": _stage(model, bodies),
+        "stage": _stage(SceneFraming(model, roots), bodies),
     }
 
 
-def _stage(model: MjModel, bodies: list[int]) -> dict[str, Any]:
-    """Returns the part of the scene that is shown first, and the shape that the view follows: the moving body, or the next one after it."""
-    stage = SceneFraming(model)
+def _stage(stage: SceneFraming, bodies: list[int]) -> dict[str, Any]:
+    """Returns the part of the scene that is shown first, and the shape that the view follows: the body, or the next one after it."""
     low, high = stage.corners.min(axis=0), stage.corners.max(axis=0)
     corners = stage.corners if len(stage.corners) <= MOST_STAGED else np.array(list(itertools.product(*zip(low, high, strict=True))))
     follow = next((number for number, body in enumerate(bodies) if body >= stage.body), 0)

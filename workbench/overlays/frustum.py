@@ -25,9 +25,10 @@ class Frustum(Overlay):
     def __init__(self, drawn: Drawn) -> None:
         model = drawn.model
         self._server = drawn.server
-        eyes = {name: body["eye"] for name, body in drawn.world["bodies"].items() if body["eye"] is not None}
+        bodies = {name: drawn.world["bodies"][name] for name in (*drawn.world["agents"], *drawn.world["bodies"])}
+        eyes = {name: body["eye"] for name, body in bodies.items() if body["eye"] is not None}
         self.sites = {name: mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, eye) for name, eye in eyes.items()}
-        """The site numbers of the eyes, by body."""
+        """The site numbers of the eyes, by body; those of agents first."""
         self.fields: dict[str, tuple[float, float]] = {}
         """The horizontal and vertical field of view of each eye [rad]."""
         self._handles: dict[str, Any] = {}

@@ -58,6 +58,7 @@ class Shown:
         """
         return {
             **self.surroundings,
+            "agents": self.simulation.embodied,
             "openings": self._openings,
             "objects": [] if parameters is None else self.simulation.world.objects.names,
             "widths": {} if parameters is None else widths(self.surroundings["apertures"], parameters),
