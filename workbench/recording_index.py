@@ -15,6 +15,7 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
+from actr3d.runner.facts import REACHED
 from actr3d.values import to_json
 from workbench.loader import listing_of
 from workbench.retention import begun, size_of
@@ -120,12 +121,20 @@ def _read(recorded: Recorded, size: int) -> Summary:
         ended=None if ended is None else str(ended["by"]),
         failed=None if facts.get("failed") is None else str(facts["failed"]),
         result=_result(last),
-        time=seconds(recorded.ticks * facts["period_us"] if "period_us" in facts else last[-1][0] if last else 0),
+        time=_duration(recorded, last),
         events=recorded.event_count,
         states=recorded.state_count,
         size=size,
         made=begun(path),
     )
+
+
+def _duration(recorded: Recorded, last: list[Event]) -> float:
+    """Returns the duration of a run [s]; of a program without the fact `reached`, that of its last run, up to its last event."""
+    facts = recorded.facts
+    if "period_us" in facts:
+        return seconds(recorded.ticks * facts["period_us"])
+    return facts.get(REACHED, seconds(last[-1][0]) if last else 0.0)
 
 
 def _result(events: list[Event]) -> dict[str, Any] | None:

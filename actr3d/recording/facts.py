@@ -71,6 +71,7 @@ _KINDS = {
     "whole": _Kind("true, or null", lambda value: value is True or value is None),
     "branched": _Kind("a number >= 0, or null", lambda value: value is None or _number(value)),
     "origin": _TEXT,
+    "reached": _Kind("a number >= 0", _number),
 }
 """The facts that this library or the workbench reads; other facts may have any values."""
 _SHOWN = 60

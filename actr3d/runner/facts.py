@@ -15,7 +15,10 @@ CHECKED_BEFORE = frozenset({"form", "versions"})
 UNCHECKED = frozenset({"branched", "origin"})
 """Facts that running a recording again cannot show: when a user of the workbench made another way of a run (`branched`), and which
 recording has the other one (`origin`)."""
-PROGRAM = frozenset({"kind", "file", "sources", "seed", "until", "helpers", "failed", "ended"}) | CHECKED_BEFORE | UNCHECKED
+REACHED = "reached"
+"""The time that the runs of a program have reached together in the workbench [s]: after the last event, it shows nowhere else. It is not
+compared, because the command line does not record it."""
+PROGRAM = frozenset({"kind", "file", "sources", "seed", "until", "helpers", "failed", "ended", REACHED}) | CHECKED_BEFORE | UNCHECKED
 """The facts that the recording of a program can have."""
 BUILT = PROGRAM | {"whole", "parameters", "built", "program_seed", "period_us", "timestep_us", "scene", "compiled", "world"}
 """The facts that the recording of a simulation that a model file builds can have."""

@@ -179,6 +179,28 @@ def test_a_change_in_the_past_of_any_run_keeps_what_had_come_as_a_branch(kind: s
         assert [event.time_us for event in recorded.events()][: len(now)] == [time for time, *_ in now]
 
 
+def test_a_branch_of_a_program_is_known_as_far_as_its_run_has_come_even_if_nothing_happened_there(desk: Desk, tmp_path: Path) -> None:
+    rests = AGENT.replace("count 0", "rest 0").replace('goal.set("count ?n")', 'goal.set("over")')
+    talk = desk.begin(tmp_path, rests + "\nCounter().run(0.2)\nCounter().run(3)\n", record=True)
+    there(talk, 0.6)
+    assert max(time for time, *_ in events(talk)) <= 0.2e6  # in either run
+    talk.say("seek", time=0.05)
+    change(talk, "set_buffer", buffer="goal", chunk="none")
+    told = talk.session.branched
+    assert told is not None
+    path = recording(talk)
+    assert (talk.summary(told.recording).time, talk.summary(path.stem).time) == (told.until, 0.05) == (0.6, 0.05)
+    talk.say("run")
+    talk.until("ended")
+    desk.do(talk.session.close())
+    assert talk.summary(path.stem).time == 3.2
+    for name, reached, said in ((told.recording, 0.6, "the run was left at 0.6 s"), (path.stem, 3.2, "every byte agrees")):
+        with Recorded(path.with_name(f"{name}.sqlite")) as recorded:
+            assert said in str(replay(recorded))
+        opened = Talk(desk, desk.do(talk.sessions.reopen(name)), talk.sessions)
+        assert opened.until("paused", furthest=reached)["time"] == 0
+
+
 @pytest.mark.parametrize("kind", MODELS)
 def test_changes_during_a_run_and_while_it_goes_back_are_repeated_exactly(kind: str, desk: Desk, tmp_path: Path) -> None:
     source, agent, below = MODELS[kind]

@@ -7,8 +7,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from actr3d.clock import seconds
+from actr3d.clock import microseconds, seconds
 from actr3d.recording import Recorded
+from actr3d.runner.facts import REACHED
 from actr3d.trace import TraceEvent
 from workbench.worker.messages import Notice, notice
 from workbench.worker.truncation import event_json
@@ -42,7 +43,7 @@ class KnownRun:
             if keep is not None:
                 for _, tick, data, _ in recorded.states():
                     keep(tick, data)
-        self.time = sum(times)
+        self.time = max(sum(times), microseconds(self.facts.get(REACHED, 0)))
         """The duration of the recording, summed over all its runs [us]."""
 
     @property

@@ -19,7 +19,7 @@ from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.recording.reader import RecordedCommand
-from actr3d.runner.facts import program_facts
+from actr3d.runner.facts import REACHED, program_facts
 from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.runner.program_changes import ProgramChanges
 from actr3d.runner.traceback_report import failure
@@ -180,6 +180,7 @@ class ProgramRun(ControlledRun):
         except Leaving:
             pass
         finally:
+            self.flush()
             self._close_recording(left=controller.leaving)
 
     def _show_recorded(self) -> None:
@@ -445,6 +446,7 @@ class ProgramRun(ControlledRun):
             raise SimulationError(f"'{word}' cannot be done: the program has not begun, so there is no agent yet; step once first")
         sch, begin, clock = self._waits
         before = 0 if self.trace is None else len(self.trace)
+        self.flush()
         branch = KeptBranch(self._controller, self._recording, self._clock, self._furthest, drop=drop)
         try:
             with self._recorded.changing() if self._recorded is not None else nullcontext():
@@ -460,6 +462,7 @@ class ProgramRun(ControlledRun):
             self._record(ended=None, failed=None)
         self._changed = True
         self._controller.interrupt()
+        self.flush()
         branch.announce(before)
 
     def go_to(self, time: int) -> None:
@@ -471,6 +474,10 @@ class ProgramRun(ControlledRun):
         if over or time < self._clock:
             self._again = True
             raise _Again
+
+    def flush(self) -> None:
+        self._record(**{REACHED: seconds(self._furthest)})
+        super().flush()
 
     def finish_output(self) -> None:
         if self._output is not None:
