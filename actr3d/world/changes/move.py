@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Ge, Le
 
 from actr3d.change import change
 from actr3d.world.changes.world_change import WorldChange
 from actr3d.world.world import World
+
+FARTHEST = 10_000.0
+"""Greatest coordinate [m]: there, the numbers of 32 bits with which scenes are drawn still tell millimetres apart."""
+MOST_TURN = 1_000.0
+"""Greatest heading [rad]: more than a body ever turns. Chosen here."""
 
 
 @change
@@ -21,11 +29,11 @@ class MoveObject(WorldChange):
 
     object: str
     """The name of the body or object in the scene."""
-    x: float
+    x: Annotated[float, Ge(-FARTHEST), Le(FARTHEST)]
     """[m]"""
-    y: float
+    y: Annotated[float, Ge(-FARTHEST), Le(FARTHEST)]
     """[m]"""
-    heading: float | None = None
+    heading: Annotated[float, Ge(-MOST_TURN), Le(MOST_TURN)] | None = None
     """[rad]; None for its present heading."""
 
     def carry_out(self, on: World) -> None:
