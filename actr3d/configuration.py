@@ -53,9 +53,9 @@ class Configuration:
         hints = _hints(type(self))
         for field in fields(self):  # pyright: ignore[reportArgumentType] # subclasses are dataclasses
             value = getattr(self, field.name)
-            checked = _checked(value, hints[field.name], f"{type(self).__name__}.{field.name}")
-            if checked is not value:
-                object.__setattr__(self, field.name, checked)
+            kept = checked(value, hints[field.name], f"{type(self).__name__}.{field.name}")
+            if kept is not value:
+                object.__setattr__(self, field.name, kept)
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, Any]) -> Any:
@@ -76,15 +76,24 @@ def _hints(of: type) -> dict[str, Any]:
     return get_type_hints(of, include_extras=True)
 
 
-def _checked(value: Any, declared: Any, where: str) -> Any:
-    """Returns the value converted to its declared type (an int for a float becomes a float, a list a tuple)."""
+def checked(value: Any, declared: Any, where: str) -> Any:
+    """Returns the value converted to its declared type (an int for a float becomes a float, a list a tuple).
+
+    Args:
+        value: The value.
+        declared: The type, which may have bounds.
+        where: What it is the value of, for the error.
+
+    Raises:
+        ConfigurationError: If it has another type, or is out of bounds.
+    """
     origin = get_origin(declared)
     if origin is Annotated:
         inner, *bounds = get_args(declared)
-        checked = _checked(value, inner, where)
+        found = checked(value, inner, where)
         for bound in bounds:
-            hold(bound, checked, where)
-        return checked
+            hold(bound, found, where)
+        return found
     if origin in (Union, UnionType):
         return _one_of(value, get_args(declared), where)
     if origin is Literal:
@@ -132,7 +141,7 @@ def _one_of(value: Any, options: tuple[Any, ...], where: str) -> Any:
         if option is NoneType:
             continue
         try:
-            return _checked(value, option, where)
+            return checked(value, option, where)
         except ConfigurationError as error:
             refused.append(error)
     raise refused[0]
@@ -149,7 +158,7 @@ def _tuple(value: Any, items: tuple[Any, ...], where: str) -> tuple[Any, ...]:
         items = (items[0],) * len(values)
     if len(values) != len(items):
         raise ConfigurationError(f"{where}: must have {len(items)} values (got {len(values)}: {value!r})")
-    return tuple(_checked(item, declared, f"{where}[{n}]") for n, (item, declared) in enumerate(zip(values, items, strict=True)))
+    return tuple(checked(item, declared, f"{where}[{n}]") for n, (item, declared) in enumerate(zip(values, items, strict=True)))
 
 
 def hold(bound: object, value: Any, where: str) -> None:

@@ -116,16 +116,6 @@ class Motor(WithParameters, Port):
         for name, given, kind in (("buffer", buffer, Buffer), ("memory", memory, Memory)):
             if given is not None and not isinstance(given, kind):
                 raise ParameterError(f"Motor.{name}: must be a {kind.__name__}, or None (got {given!r})")
-        grids = {"angle_grid": angle_grid, "size_grid": size_grid}
-        above = {"speed": speed, "extreme_step": extreme_step, "patience": patience, **grids}
-        from_0 = {"angle_noise": angle_noise, "size_noise": size_noise, "preparation": preparation, "initiation": initiation}
-        for name, value in {**above, **from_0}.items():
-            if value is not None and not (0 <= value < HUGE and (value > 0 or name in from_0)):
-                bound = ">= 0" if name in from_0 else "> 0"
-                raise ParameterError(f"Motor.{name}: must be {bound} and < {HUGE:g} (got {value!r})")
-        for name, grid in grids.items():
-            if grid < FINEST:
-                raise ParameterError(f"Motor.{name}: must be >= {FINEST:g} (got {grid!r})")
         self.speed = speed
         self.angle_grid = angle_grid
         self.size_grid = size_grid
@@ -135,6 +125,18 @@ class Motor(WithParameters, Port):
         self.patience = patience
         self.preparation = preparation
         self.initiation = initiation
+        self._check_parameters(vars(self))
+
+    def _check_parameters(self, values: Mapping[str, Any]) -> None:
+        for name in ("speed", "extreme_step", "patience", "angle_grid", "size_grid"):
+            if values[name] is not None and not 0 < values[name] < HUGE:
+                raise ParameterError(f"Motor.{name}: must be > 0 and < {HUGE:g} (got {values[name]!r})")
+        for name in ("angle_noise", "size_noise", "preparation", "initiation"):
+            if not 0 <= values[name] < HUGE:
+                raise ParameterError(f"Motor.{name}: must be >= 0 and < {HUGE:g} (got {values[name]!r})")
+        for name in ("angle_grid", "size_grid"):
+            if values[name] < FINEST:
+                raise ParameterError(f"Motor.{name}: must be >= {FINEST:g} (got {values[name]!r})")
 
     # -- the known body
 

@@ -108,7 +108,7 @@ class Vision(WithParameters, Searching):
         self.distance_noise = distance_noise
         self.saccades = saccades
         self.private_view = private_view
-        check_numbers(vars(self))
+        self._check_parameters(vars(self))
         check_camera(camera, sorted(self._settable() - {"camera", "busy", "error", "watching"}))
         self._detectors = dict(DETECTORS)
         self._saliences = saliences_of(salience, self._detectors)
@@ -120,6 +120,9 @@ class Vision(WithParameters, Searching):
         self._waiting: Search | None = None
         self._delivered: tuple[Any, int] = (None, 0)
         self._last: dict[bool, Search] = {}
+
+    def _check_parameters(self, values: Mapping[str, Any]) -> None:
+        check_numbers(values)
 
     def __setattr__(self, name: str, value: Any) -> None:
         if "_last" in vars(self):  # it has been made

@@ -10,7 +10,7 @@ import pytest
 
 from actr3d.actr import ACTR, Buffer
 from actr3d.actr.loading import load_text
-from actr3d.errors import ModelWarning, ParameterError, SimulationError, WorldError
+from actr3d.errors import Actr3dError, ModelWarning, ParameterError, SimulationError, WorldError
 from actr3d.motor import Motor
 from actr3d.simulation import Simulation
 from actr3d.world import Car, Floor, ImportedBody, Load, Mannequin, Scene, Wall
@@ -330,6 +330,15 @@ WRONG = [("angle_grid", 0), ("size_noise", -1), ("patience", 0), ("speed", float
 def test_parameters_are_checked(parameter: str, value: Any) -> None:
     with pytest.raises(ParameterError, match=rf"Motor\.{parameter}: must be"):
         Motor(**{parameter: value})
+
+
+@pytest.mark.parametrize(("parameter", "value"), [*WRONG, ("angle_grid", None), ("speed", True), ("busy", 1)])
+def test_parameters_are_checked_when_a_user_changes_them(parameter: str, value: Any) -> None:
+    simulation, motor = moving()
+    with pytest.raises(Actr3dError, match="must be"):
+        simulation.command("parameter", f"walker.motor.{parameter}", value)
+    simulation.command("parameter", "walker.motor.patience", None)
+    assert motor.patience is None
 
 
 def test_an_agent_without_a_body_is_told_so() -> None:

@@ -203,6 +203,13 @@ def test_any_word_can_be_said(desk: Desk, tmp_path: Path) -> None:
     assert talk.say("body")["pose"]["y"] == 0.5
     with pytest.raises(RefusedError, match="'fly'"):
         talk.say("command", word="fly", body="walker")
+    for value, right in ((None, "a number"), (True, "a number"), (-1.0, "> 0"), (4, "<= 3")):  # as with the command `set`
+        for given in ({"values": ["walker.speed", value]}, {"named": {"path": "walker.speed", "value": value}}):
+            with pytest.raises(RefusedError, match=rf"speed: must be {right} \(got {value}\)"):
+                talk.say("command", word="parameter", **given)
+    with pytest.raises(RefusedError, match=r"width: must be <= 3 \(got 4.0\)"):
+        talk.say("aperture", width=4)
+    talk.say("command", word="parameter", values=["walker.speed", 2])
 
 
 def test_parameters_make_another_run(desk: Desk, tmp_path: Path) -> None:

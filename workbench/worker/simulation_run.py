@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -13,6 +14,7 @@ from typing import Any
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
+from actr3d.change import CHANGES
 from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
@@ -220,6 +222,7 @@ class SimulationRun(ControlledRun):
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
         if self._controller.status == "ended":
             raise SimulationError("the run is over: go back to an earlier time, or restart it")
+        self._check_parameters(word, values, named)
         trace = self._simulation.trace
         before = 0 if trace is None else len(trace)
         branch = KeptBranch(self._controller, self._recording, self.clock, self.furthest, drop=drop)
@@ -234,6 +237,26 @@ class SimulationRun(ControlledRun):
             self._end = None
             self._record(ended=None, whole=None)
         branch.announce(before)
+
+    def _check_parameters(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any]) -> None:
+        """Checks the value that a change gives a parameter of the model.
+
+        Raises:
+            ConfigurationError: If the parameter cannot have it.
+        """
+        if word not in CHANGES:
+            return
+        with suppress(TypeError):  # the simulation explains what is wrong with the arguments
+            signature = inspect.signature(CHANGES[word])
+            known, given = signature.parameters, signature.bind(*values, **named).arguments
+            for parameter in self._listing.parameters:
+                if parameter.live is not None and parameter.live.word == word:
+                    same = signature.bind_partial(*parameter.live.before).arguments
+                    name = next((name for name in known if name not in same), "")
+                    if name in given and all(
+                        value == same.get(field, known[field].default) for field, value in given.items() if field != name
+                    ):
+                        parameter.check(given[name])
 
     def _record_failure(self, text: str | None) -> None:
         """Records the exception of the model; None if the run continues differently now."""

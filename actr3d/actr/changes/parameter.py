@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from actr3d.actr.changes.agent_change import AgentChange, Parts
 from actr3d.actr.chunks.chunk import LASTING_TYPES
 from actr3d.actr.kernel.model import Model
+from actr3d.actr.kernel.parameters import check_parameter
 from actr3d.change import change
 from actr3d.errors import SimulationError, did_you_mean
 
@@ -32,6 +33,5 @@ class SetParameter(AgentChange):
         known = [known for known, now in part.__dict__.items() if known[0] != "_" and type(now) in LASTING_TYPES]
         if name not in known:
             raise SimulationError(f"no parameter '{self.path}': '{place}' has no '{name}'{did_you_mean(name, known)}")
-        if isinstance(getattr(part, name), (int, float)) and isinstance(self.value, str):
-            raise SimulationError(f"parameter '{self.path}' must be a number (got {self.value!r})")
+        check_parameter(part, name, self.value, f"parameter '{self.path}'")
         setattr(part, name, self.value)

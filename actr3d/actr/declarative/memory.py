@@ -18,7 +18,7 @@ from actr3d.actr.kernel.buffer import Buffer, Harvester
 from actr3d.actr.kernel.log import dummy
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.noise import pick, total
-from actr3d.actr.kernel.parameters import WithParameters, named_parameters, warn_of_slip
+from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters, warn_of_slip
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile, find_profile
 from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.actr.kernel.tree import path_of
@@ -44,6 +44,9 @@ class Memory(WithParameters, Model):
     Raises:
         ParameterError: If there is no such profile.
     """
+
+    latency: NotNegative
+    maximum_time: NotNegative
 
     @named_parameters
     def __init__(

@@ -1,19 +1,25 @@
-"""Checks the parameters of modules when they are made and when they are changed: their names, and that numbers are numbers."""
+"""Checks the parameters of modules when they are made and when they are changed: their names, types and bounds."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator, Mapping
 from functools import wraps
 from numbers import Real
-from typing import Any, Concatenate, ParamSpec, TypeVar
+from typing import Annotated, Any, Concatenate, ParamSpec, TypeVar, cast
 from weakref import WeakKeyDictionary
 
-from actr3d.errors import ParameterError, did_you_mean
+from annotated_types import Ge
+
+from actr3d.configuration import checked
+from actr3d.errors import ConfigurationError, ParameterError, did_you_mean
 from actr3d.warnings import warn_modeller
 
 P = ParamSpec("P")
 Self = TypeVar("Self")
+NotNegative = Annotated[float, Ge(0)]
+"""A time [s], or the scale of noise. A class declares the bounds of a parameter in its body: `latency: NotNegative`."""
 
 
 def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Concatenate[Self, P], None]:
@@ -28,7 +34,7 @@ def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Con
     numbers = {name: p.annotation for name, p in signature.parameters.items() if str(p.annotation) in numeric}
 
     @wraps(init)
-    def checked(self: Self, *args: P.args, **keys: P.kwargs) -> None:
+    def with_checks(self: Self, *args: P.args, **keys: P.kwargs) -> None:
         kind = type(self).__name__
         unknown = [key for key in keys if key not in names]
         if unknown and not any(p.kind is p.VAR_KEYWORD for p in signature.parameters.values()):
@@ -44,7 +50,7 @@ def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Con
                 raise ParameterError(f"{kind}.{name}: must be a number{' or None' if 'None' in str(numbers[name]) else ''} (got {value!r})")
         init(self, *args, **keys)
 
-    return checked
+    return with_checks
 
 
 NEAR = 0.8
@@ -58,6 +64,13 @@ class WithParameters:
         if name not in self.__dict__:
             warn_of_slip(self, name)
         super().__setattr__(name, value)
+
+    def _check_parameters(self, values: Mapping[str, Any]) -> None:
+        """Checks the bounds of its parameters that their types do not show.
+
+        Raises:
+            ParameterError: If one is out of bounds.
+        """
 
     def _settable(self) -> set[str]:
         """Returns the names that may be meant by a misspelt one: parameters and attributes; nothing for a modeller's own class,
@@ -93,3 +106,50 @@ def slip_hint(name: str, known: set[str]) -> str:
     if any(name.startswith(other) or other.startswith(f"{name}_") for other in known):
         return ""
     return did_you_mean(name, known, NEAR)
+
+
+def check_parameter(part: Any, name: str, value: Any, where: str) -> None:
+    """Checks a new value of a part's parameter.
+
+    It must be of the type, and within the bounds, that a class of the part declares in its body or as a parameter of `__init__`; where
+    none does, of the kind of the present value, or None.
+
+    Args:
+        part: The part.
+        name: The name of the parameter.
+        value: The new value.
+        where: The parameter, for the error.
+
+    Raises:
+        ParameterError: If it cannot have that value.
+    """
+    kind = cast("type[Any]", type(part))
+    try:
+        checked(value, next(_declared(kind, name), _kind_of(vars(part)[name])), where)
+    except ConfigurationError as error:
+        raise ParameterError(str(error)) from None
+    if isinstance(part, WithParameters):
+        part._check_parameters({**vars(part), name: value})  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
+
+
+def _kind_of(value: Any) -> Any:
+    """Returns the type of the values that can follow an undeclared one."""
+    if value is None:
+        return Any
+    kind = cast("type[Any]", type(value))
+    return float | None if kind in (int, float) else kind | None
+
+
+def _declared(kind: type, name: str) -> Iterator[Any]:
+    """Yields the types that classes declare for a parameter, those in their bodies first."""
+    inits = [inspect.unwrap(vars(base)["__init__"]) for base in kind.__mro__ if "__init__" in vars(base)]
+    holders: list[Any] = [*kind.__mro__, *inits]
+    for holder in holders:
+        written = inspect.get_annotations(holder).get(name)
+        if isinstance(written, str):
+            try:
+                yield eval(written, vars(sys.modules[holder.__module__]))
+            except Exception:  # noqa: BLE001 - a name that only type checkers know
+                continue
+        elif written is not None:
+            yield written

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.kernel.model import Model
-from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.modules.registry import module
 
 
@@ -22,6 +22,9 @@ class ImaginalModule(WithParameters, Model):
 
     Source: 0.2 s, ACT-R's imaginal delay.
     """
+
+    delay: NotNegative | Callable[[], float]
+    delay_sd: NotNegative | None
 
     @named_parameters
     def __init__(self, buffer: Any, delay: Any = 0.2, delay_sd: float | None = None) -> None:

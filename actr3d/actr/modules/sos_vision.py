@@ -7,7 +7,7 @@ from typing import Any
 
 from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.kernel.model import Model
-from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.modules.registry import module
 
 
@@ -26,6 +26,9 @@ class SOSVision(WithParameters, Model):
 
     Source: SOS Vision (West & Emond 2002).
     """
+
+    delay: NotNegative
+    delay_sd: NotNegative | None
 
     @named_parameters
     def __init__(self, buffer: Any, delay: float = 0.0, log: Any = None, delay_sd: float | None = None) -> None:

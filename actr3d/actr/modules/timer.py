@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from actr3d.actr.kernel.events import Trigger
 from actr3d.actr.kernel.model import Model
-from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.modules.registry import module
 
 
@@ -21,6 +21,10 @@ class Timer(WithParameters, Model):
 
     Source: Taatgen, van Rijn & Anderson (2007), Psychological Review 114; ACT-R's temporal module.
     """
+
+    startpulse: NotNegative
+    a: NotNegative
+    b: NotNegative
 
     @named_parameters
     def __init__(self, startpulse: float = 0.011, a: float = 1.1, b: float = 0.015) -> None:

@@ -10,7 +10,7 @@ from actr3d.actr.kernel.class_members import Method
 from actr3d.actr.kernel.log import dummy
 from actr3d.actr.kernel.model import MethodWrapper, Model
 from actr3d.actr.kernel.noise import pick
-from actr3d.actr.kernel.parameters import WithParameters
+from actr3d.actr.kernel.parameters import NotNegative, WithParameters
 from actr3d.actr.kernel.profile import find_profile
 from actr3d.actr.kernel.tracing import traceable
 from actr3d.actr.kernel.tree import lineage, path_of
@@ -92,9 +92,9 @@ class ProductionSystem(WithParameters, Model):
     ancestors by name.
     """
 
-    production_time: float | Callable[[], float] = 0.05
+    production_time: NotNegative | Callable[[], float] = 0.05
     """How long a production takes to fire [s]; a number, or a function without arguments."""
-    production_match_delay: float = 0
+    production_match_delay: NotNegative = 0
     """How long matching takes, as a part of that [s]."""
     _auto_run_start = False
     _by_utility = False

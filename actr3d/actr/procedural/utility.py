@@ -9,7 +9,7 @@ from typing import Any, ClassVar, cast
 
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.noise import logistic_noise
-from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.kernel.tree import path_of
 from actr3d.actr.procedural.production import Production
 from actr3d.trace import Trace
@@ -103,6 +103,8 @@ class PMNoise(ProceduralSubModule):
     """
 
     _decisive = frozenset({"noise"})
+    noise: NotNegative
+    baseNoise: NotNegative  # noqa: N815 - Python ACT-R's name
 
     @named_parameters
     def __init__(self, noise: float = 0, baseNoise: float = 0.0) -> None:  # noqa: N803 - Python ACT-R's name
