@@ -17,7 +17,7 @@ from typing import Any, NoReturn, TextIO
 from actr3d.actr.compat.log_files import finished
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.source_text import read_source
-from actr3d.errors import DesignError, SettingError, did_you_mean
+from actr3d.errors import DesignError, SettingError, alternatives
 from actr3d.output import ModelOutput, all_written, printing_to, standard_output
 from actr3d.parameter_schema import Parameter
 from actr3d.runner.before_exit import before_the_end
@@ -324,8 +324,7 @@ def _bench(options: argparse.Namespace) -> int:
             print(f"{name:<10}{' '.join(about.partition(': ')[2].split('.')[0].split())}")
         return 0
     if options.name not in known:
-        near = did_you_mean(options.name, known)
-        print(f"actr3d bench: no benchmark '{options.name}'{near}; there are: {', '.join(sorted(known))}", file=sys.stderr)
+        print(f"actr3d bench: no benchmark '{options.name}'{alternatives(options.name, sorted(known))}", file=sys.stderr)
         return 2
     settings = {} if options.trials is None else {"trials": options.trials}
     function = known[options.name]

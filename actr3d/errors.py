@@ -113,6 +113,25 @@ def did_you_mean(word: str, known: Iterable[object], cutoff: float = 0.6) -> str
     return f"; did you mean '{near}'?" if near is not None else ""
 
 
+def followed(hint: str, rest: str) -> str:
+    """Returns a hint and the sentence after it: `; did you mean 'x'? There are: x, y`; without a hint `; there are: x, y`."""
+    return f"{hint} {rest[:1].upper()}{rest[1:]}" if hint else f"; {rest}"
+
+
+def alternatives(word: object, known: Iterable[object], has: str = "there are:", also: Iterable[object] = ()) -> str:
+    """Returns the known name nearest to `word`, if any is near, and all of them: `; did you mean 'x'? There are: x, y`.
+
+    Args:
+        word: The unknown name.
+        known: The known names.
+        has: The words before them.
+        also: More names that may be meant, which are not listed.
+    """
+    names = [str(name) for name in known]
+    hint = did_you_mean(word, [*names, *also]) if isinstance(word, str) else ""
+    return followed(hint, f"{has} {', '.join(names) or 'none'}")
+
+
 @lru_cache(maxsize=1024)
 def nearest(word: str, names: tuple[str, ...], cutoff: float) -> str | None:
     """Returns the name that is most similar to `word`; None if no similarity (0 to 1) is at least `cutoff`."""

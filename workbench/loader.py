@@ -13,7 +13,7 @@ from pathlib import Path
 from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.actr.loading.source_text import compile_source, read_source
 from actr3d.actr.loading.sweep import parameters as first_lines
-from actr3d.errors import ConfigurationError, ModelFileError, did_you_mean
+from actr3d.errors import ConfigurationError, ModelFileError, alternatives
 from actr3d.parameter_schema import Parameter, default_of, parameters_in
 from actr3d.runner.build_check import build_of, has_build, problem_of_build
 from actr3d.values import escape_surrogates
@@ -77,7 +77,7 @@ class ModelListing:
         """
         known = {parameter.name: parameter for parameter in self.parameters}
         if name not in known:
-            raise ConfigurationError(f"no parameter '{name}'{did_you_mean(name, known)}; there are: {', '.join(known) or 'none'}")
+            raise ConfigurationError(f"no parameter '{name}'{alternatives(name, known)}")
         return known[name]
 
 

@@ -12,7 +12,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from actr3d.camera.parameters import CameraParameters, optics_of
-from actr3d.errors import CameraError, did_you_mean
+from actr3d.errors import CameraError, alternatives
 
 NOISY = ("x1", "x2", "d1", "d2", "a1", "a2")
 """The fields that noise can be added to."""
@@ -89,7 +89,7 @@ class View:
         extents = self.extents.copy()
         for field, of in cast("Mapping[str, float]", sd).items():
             if field not in NOISY:
-                raise CameraError(f"noise of view: no field '{field}'{did_you_mean(field, NOISY)}; there are {', '.join(NOISY)}")
+                raise CameraError(f"noise of view: no field '{field}'{alternatives(field, NOISY)}")
             extents[field] += of * random.standard_normal(len(extents))
         extents.flags.writeable = False
         return replace(self, extents=extents)

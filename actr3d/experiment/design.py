@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal, Protocol, TypeVar, cast, runtime_che
 from annotated_types import Ge, Gt
 
 from actr3d.configuration import Configuration
-from actr3d.errors import ConfigurationError, DesignError, did_you_mean
+from actr3d.errors import ConfigurationError, DesignError, alternatives, did_you_mean
 from actr3d.parameter_schema import Parameter
 
 DIGITS = 6
@@ -350,9 +350,7 @@ class Design(Configuration):
                     raise DesignError(f"Design.derive: the model has no parameter '{name}'{did_you_mean(name, known)}", "derive")
         for name in given:
             if name not in known and name not in read:
-                raise DesignError(
-                    f"Design: the model has no parameter '{name}'{did_you_mean(name, known)}; it has: {', '.join(known) or 'none'}", name
-                )
+                raise DesignError(f"Design: the model has no parameter '{name}'{alternatives(name, known, 'it has:')}", name)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2  # pyright: ignore[reportMissingTypeStubs]
 
 from actr3d.configuration import Configuration
-from actr3d.errors import ExperimentError, did_you_mean
+from actr3d.errors import ExperimentError, alternatives
 from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import Design, Measured
 from actr3d.experiment.human_data import OF_MEANS, Schema, library_human_data, read_human_data
@@ -384,7 +384,7 @@ def load_target(name: str, design: Design, measure: str | None = None) -> tuple[
     known = library_human_data()
     path = known.get(name, Path(name))
     if not path.is_file():
-        raise ExperimentError(f"human data '{name}': no such file{did_you_mean(name, known)}; the library has: {', '.join(known)}")
+        raise ExperimentError(f"human data '{name}': no such file{alternatives(name, known, 'the library has:')}")
     levels: Any = {
         factor: [level if isinstance(level, str) else float(level) for level in given] for factor, given in design.factors.items()
     }
@@ -464,7 +464,7 @@ def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[
                 found[tuple(sorted((column, known[column]) for column in columns))][row["participant"]].append(float(value))
     if not found:
         wrong = next((name for name in (measure.name, *columns) if name not in known), measure.name)
-        raise ExperimentError(f"no trial has a value of '{wrong}'{did_you_mean(wrong, known)}; the columns are: {', '.join(known)}")
+        raise ExperimentError(f"no trial has a value of '{wrong}'{alternatives(wrong, known, 'the columns are:')}")
     return {cell: fmean(fmean(values) for values in people.values()) for cell, people in found.items()}
 
 

@@ -34,7 +34,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from actr3d.errors import ExperimentError, did_you_mean
+from actr3d.errors import ExperimentError, alternatives, did_you_mean
 
 FOLDER = Path(__file__).parent / "human"
 """The folder of the library's published means."""
@@ -147,11 +147,7 @@ class _Reader:
         if len(head) == 1 and ";" in head[0]:
             raise ExperimentError(f"{where}: the columns must be separated by commas (got {head[0]!r})")
         wrong = [f"{where}: column '{name}' is there twice" for name in dict.fromkeys(head) if head.count(name) > 1]
-        wrong += [
-            f"{where}: unknown column '{name}'{did_you_mean(name, known)}; there may be: {', '.join(known)}"
-            for name in head
-            if name not in known
-        ]
+        wrong += [f"{where}: unknown column '{name}'{alternatives(name, known, 'there may be:')}" for name in head if name not in known]
         needed = ["measure", "mean", "source"] if published else ["participant"]
         needed += ["group"] if not published and len(schema.groups) > 1 else []
         wrong += [f"{where}: column '{name}' is missing; {self._form(published)}" for name in needed if name not in head]

@@ -28,7 +28,7 @@ from actr3d.actr.loading.sealed import sealed
 from actr3d.actr.loading.source_text import read_source
 from actr3d.actr.loading.sweep import parameters as variables_of
 from actr3d.configuration import Configuration
-from actr3d.errors import ConfigurationError, DesignError, ExperimentError, did_you_mean
+from actr3d.errors import ConfigurationError, DesignError, ExperimentError, alternatives, did_you_mean
 from actr3d.experiment import designs
 from actr3d.experiment.design import Design, Measured, is_design
 from actr3d.output import ModelOutput, printing_to
@@ -234,7 +234,7 @@ def _file_of(name: str) -> tuple[Path, str]:
     if colon and file and chosen.isidentifier() and Path(file).exists():
         return Path(file), chosen
     if not Path(name).exists() and not name.endswith(".py"):
-        raise ExperimentError(f"no design or file '{name}'{did_you_mean(name, known)}; the library has: {', '.join(sorted(known))}")
+        raise ExperimentError(f"no design or file '{name}'{alternatives(name, sorted(known), 'the library has:')}")
     return Path(name), ""
 
 
@@ -318,8 +318,7 @@ def design_in(module: ModuleType, name: str, source: Source) -> Design:
     """
     known = designs_of(module)
     if name not in known:
-        near = did_you_mean(name, known)
-        raise ExperimentError(f"{source.file}: has no design '{name}'{near}; it has: {', '.join(known) or 'none'}")
+        raise ExperimentError(f"{source.file}: has no design '{name}'{alternatives(name, known, 'it has:')}")
     with naming_the_line(source, name, {}):
         found = known[name]()
         if not isinstance(found, Design):

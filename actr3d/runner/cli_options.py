@@ -10,7 +10,7 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from actr3d.errors import SettingError, did_you_mean
+from actr3d.errors import SettingError, alternatives
 from actr3d.parameter_schema import Parameter, literal
 
 _INDENT = 22
@@ -80,4 +80,4 @@ def options_help(fields: Sequence[Parameter]) -> str:
 def _unknown(word: str, known: dict[str, Parameter], others: Iterable[str]) -> str:
     if not word.startswith("--"):
         return f"unexpected '{word}': a parameter is given as --name value"
-    return f"no option '{word}'{did_you_mean(word, [*known, *others])}; the model has: {', '.join(known) or 'none'}"
+    return f"no option '{word}'{alternatives(word, known, 'the model has:', others)}"

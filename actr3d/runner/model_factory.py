@@ -10,7 +10,7 @@ from typing import Any, get_type_hints
 
 from actr3d.actr.loading import load_text
 from actr3d.actr.loading.helper_modules import HelperTexts
-from actr3d.errors import ConfigurationError, ModelFileError, SettingError, did_you_mean
+from actr3d.errors import ConfigurationError, ModelFileError, SettingError, alternatives
 from actr3d.parameter_schema import Parameter, parameters_of
 from actr3d.runner.build_check import RIGHT, check_build, line_of_build
 from actr3d.simulation import Simulation
@@ -80,8 +80,7 @@ class Blueprint:
         known = [field.name for field in self.fields]
         for name in settings:
             if name not in known:
-                hint = did_you_mean(name, known)
-                raise SettingError(f"{kind.__name__} has no parameter '{name}'{hint}; it has: {', '.join(known) or 'none'}")
+                raise SettingError(f"{kind.__name__} has no parameter '{name}'{alternatives(name, known, 'it has:')}")
         try:
             return kind(**settings)
         except ConfigurationError as error:

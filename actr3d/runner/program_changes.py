@@ -9,7 +9,7 @@ from actr3d.actr.changes import AgentChange, Parts
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.kernel.tree import top_of
 from actr3d.change import CHANGES
-from actr3d.errors import SimulationError, did_you_mean
+from actr3d.errors import SimulationError, alternatives
 from actr3d.recording.reader import RecordedCommand
 from actr3d.trace import top_path
 
@@ -87,8 +87,7 @@ class ProgramChanges:
         """
         if word not in CHANGES or not issubclass(CHANGES[word], AgentChange):
             known = [name for name, one in CHANGES.items() if issubclass(one, AgentChange)]
-            near = did_you_mean(word, known)
-            raise SimulationError(f"no change '{word}' for the agents of a program{near}; there are: {', '.join(known)}")
+            raise SimulationError(f"no change '{word}' for the agents of a program{alternatives(word, known)}")
 
     def _carry_out(self, sch: Scheduler, time: int, data: dict[str, Any]) -> None:
         given = data["data"]

@@ -7,7 +7,7 @@ from typing import Any
 from actr3d.actr import Buffer, Chunk
 from actr3d.actr.chunks.chunk import as_text
 from actr3d.actr.lint.slot_names import is_slip
-from actr3d.errors import PlanError, did_you_mean
+from actr3d.errors import PlanError, alternatives, did_you_mean, followed
 from actr3d.sgoms.units import BEFORE, END, START, plans_of
 from actr3d.trace import Trace
 
@@ -181,7 +181,7 @@ class PlanUnitLevel(Level):
             given = as_text(slots["type"])
             raise PlanError(f"b_plan_unit: '{name}' is of type '{kind}', not '{given}'; begin it with 'planning_unit:{name}'")
         if state not in STATES:
-            raise PlanError(f"b_plan_unit: no state '{state}'{did_you_mean(state, STATES)}; there are: {', '.join(STATES)}")
+            raise PlanError(f"b_plan_unit: no state '{state}'{alternatives(state, STATES)}")
         if state == "resuming" and slots["place"] == "none":
             raise PlanError(f"b_plan_unit: '{slots['planning_unit']}' has interrupted nothing, so no place is saved to resume at")
 
@@ -277,6 +277,5 @@ class Interruption(Buffer):
         when = made.get("when")
         if when not in ("now", "end"):
             hint = "" if when is None else did_you_mean(as_text(when), ("now", "end"), 0.5)
-            raise PlanError(
-                f"b_interrupt: '{made}' has no valid 'when'{hint}; 'when:now' interrupts the unit task, 'when:end' waits for its end"
-            )
+            says = followed(hint, "'when:now' interrupts the unit task, 'when:end' waits for its end")
+            raise PlanError(f"b_interrupt: '{made}' has no valid 'when'{says}")

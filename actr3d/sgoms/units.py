@@ -9,7 +9,7 @@ from typing import Any
 
 from actr3d.actr import Memory
 from actr3d.actr.chunks.pattern import conditions
-from actr3d.errors import PatternException, PlanError, did_you_mean
+from actr3d.errors import PatternException, PlanError, alternatives
 
 BEFORE, START, END = "none", "start", "finished"
 """Names in a chain instead of unit tasks: before the start, the start, and the end."""
@@ -132,8 +132,7 @@ class Plans:
             PlanError: If there is none.
         """
         if name not in self.units:
-            known = ", ".join(self.units) or "none"
-            raise PlanError(f"{where}: {self._agent} has no planning unit '{name}'{did_you_mean(name, self.units)}; it has: {known}")
+            raise PlanError(f"{where}: {self._agent} has no planning unit '{name}'{alternatives(name, self.units, 'it has:')}")
         return self.units[name]
 
     def check_unit_task(self, name: str) -> None:
@@ -142,12 +141,9 @@ class Plans:
         Raises:
             PlanError: If none has it.
         """
-        known = [task for unit in self.units.values() for task in unit.unit_tasks]
+        known = dict.fromkeys(task for unit in self.units.values() for task in unit.unit_tasks)
         if name not in known:
-            raise PlanError(
-                f"b_unit_task: no planning unit of {self._agent} has a unit task '{name}'{did_you_mean(name, known)}; "
-                f"there are: {', '.join(dict.fromkeys(known)) or 'none'}"
-            )
+            raise PlanError(f"b_unit_task: no planning unit of {self._agent} has a unit task '{name}'{alternatives(name, known)}")
 
 
 def plans_of(agent: Any) -> Plans:

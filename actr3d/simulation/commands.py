@@ -10,7 +10,7 @@ from typing import Any, cast
 from actr3d.actr.changes import AgentChange
 from actr3d.actr.chunks.chunk import LASTING_TYPES
 from actr3d.change import CHANGES
-from actr3d.errors import SimulationError, did_you_mean
+from actr3d.errors import SimulationError, alternatives, did_you_mean, followed
 from actr3d.simulation.agents import Agents
 from actr3d.world import World
 
@@ -78,10 +78,10 @@ def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str
     if body is None and word not in CHANGES:
         if len(bodies) != 1:
             say = f"name its body: {', '.join(bodies)}" if bodies else f"there are: {', '.join(CHANGES)}"
-            raise SimulationError(f"no command '{word}'{did_you_mean(word, CHANGES)}; {say}")
+            raise SimulationError(f"no command '{word}'{followed(did_you_mean(word, CHANGES), say)}")
         (body,) = bodies
     if body is not None and body not in bodies:
-        raise SimulationError(f"command '{word}': no body '{body}'{did_you_mean(body, bodies)}; there are: {', '.join(bodies) or 'none'}")
+        raise SimulationError(f"command '{word}': no body '{body}'{alternatives(body, bodies)}")
     return Command(tick, word, tuple(map(_fixed, values)), {name: _fixed(value) for name, value in named.items()}, body)
 
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from actr3d.actr.chunks.chunk import as_text, parse_slots, variable_value
 from actr3d.configuration import hold
-from actr3d.errors import VisionError, did_you_mean
+from actr3d.errors import VisionError, alternatives, did_you_mean, followed
 from actr3d.vision.detectors.registry import Detector
 from actr3d.vision.feature import Feature, slot_names
 from actr3d.vision.units import FLAG, LABEL, PLAIN, Unit, units_of
@@ -98,7 +98,7 @@ def read_request(
     if name[:1] == "?":
         name = as_text(variable_value(name[1:], bound, pattern))
     if name not in detectors:
-        raise VisionError(f"{what}: no feature '{name}' to look for{did_you_mean(name, detectors)}; there are: {known}")
+        raise VisionError(f"{what}: no feature '{name}' to look for{followed(did_you_mean(name, detectors), f'there are: {known}')}")
     twice = next((slot for n, (slot, _) in enumerate(pairs) if slot in [earlier for earlier, _ in pairs[:n]]), None)
     if twice is not None:
         raise VisionError(f"{what}: '{twice}' is given twice, in '{pattern}'; write {twice}='>1 <2' for two comparisons")
@@ -129,7 +129,7 @@ class _RequestReader:
                 parameters.append((word, self._parameter(word, value)))
             else:
                 known = [*self._units, *self._kind.aliases, *self._detector.parameters]
-                raise VisionError(f"{self._what} has no '{word}'{did_you_mean(str(word), known)}; it has: {', '.join(known)}")
+                raise VisionError(f"{self._what} has no '{word}'{alternatives(str(word), known, 'it has:')}")
         given = [f"{name}:{self._detector.unit(name).shown(value):g}" for name, value in parameters]
         asked = " ".join([f"feature:{self._detector.name}", *map(str, tests), *given])
         return Query(self._detector, tuple(parameters), tuple(tests), asked)

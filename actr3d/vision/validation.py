@@ -9,7 +9,7 @@ from numbers import Real
 from typing import Any, cast
 
 from actr3d.camera import CameraParameters
-from actr3d.errors import ParameterError, did_you_mean
+from actr3d.errors import ParameterError, alternatives, did_you_mean
 from actr3d.vision.detectors.registry import Detector
 from actr3d.vision.encoding import Emma
 from actr3d.vision.salience import RULES, Function, salience_of
@@ -66,8 +66,8 @@ def check_camera(camera: Mapping[str, Any], own: list[str]) -> None:
     """
     for name in camera:
         if name not in CAMERA:
-            hint = did_you_mean(name, [*own, *CAMERA])
-            raise ParameterError(f"Vision has no parameter '{name}'{hint}; it has: {', '.join(own)}, and the camera's {', '.join(CAMERA)}")
+            says = alternatives(name, own, "it has:", CAMERA)
+            raise ParameterError(f"Vision has no parameter '{name}'{says}, and the camera's {', '.join(CAMERA)}")
     CameraParameters.from_mapping(camera)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from mujoco import mjtJoint, mjtObj
 from numpy.typing import NDArray
 
-from actr3d.errors import WorldError, did_you_mean
+from actr3d.errors import WorldError, alternatives
 from actr3d.world.actuated_dofs import ActuatedDofs
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.base import Base
@@ -339,7 +339,7 @@ class Body:
             if body >= 0:
                 return (data.xpos[body], data.xmat[body].reshape(3, 3))
         names = ["world", "body", *self.parts]
-        raise WorldError(f"{self.name}: no frame, part or site '{name}'{did_you_mean(name, names)}; there are {', '.join(names)}")
+        raise WorldError(f"{self.name}: no frame, part or site '{name}'{alternatives(name, names)}")
 
     # -- the compiled model
 

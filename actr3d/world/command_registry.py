@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Collection
 from typing import Any, Generic, TypeVar, get_type_hints
 
-from actr3d.errors import WorldError, did_you_mean
+from actr3d.errors import WorldError, did_you_mean, followed
 
 B = TypeVar("B")
 """The type that the functions are for: `Body`."""
@@ -109,7 +109,7 @@ def known(name: Any, names: Collection[str], whose: str, kind: str) -> str:
         return name
     has = f"it has {', '.join(names)}" if names else f"it has no {kind}s"
     near = did_you_mean(name, names) if isinstance(name, str) else ""
-    raise WorldError(f"{whose} has no {kind} {_quoted(name)}{near}; {has}")
+    raise WorldError(f"{whose} has no {kind} {_quoted(name)}{followed(near, has)}")
 
 
 def _quoted(name: Any) -> str:

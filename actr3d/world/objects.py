@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from actr3d.errors import WorldError, did_you_mean
+from actr3d.errors import WorldError, alternatives
 from actr3d.world.body import Body
 from actr3d.world.physics import Physics
 from actr3d.world.scene_objects import yaw_quaternion
@@ -114,8 +114,9 @@ class Objects:
 
     def _number(self, name: str, names: tuple[str, ...], what: str) -> int:
         if name not in names:
-            fixed = f"'{name}' is fixed" if name in self._obstacles else f"no object '{name}' to {what}{did_you_mean(name, names)}"
-            raise WorldError(f"{fixed}; there are: {', '.join(names) or 'none'}")
+            if name in self._obstacles:
+                raise WorldError(f"'{name}' is fixed; there are: {', '.join(names) or 'none'}")
+            raise WorldError(f"no object '{name}' to {what}{alternatives(name, names)}")
         return self._bodies[name].root if name in self._bodies else self._obstacles[name] if name in self._obstacles else self._loose[name]
 
     def depths(self, roots: Collection[int], *, moving: bool = False) -> dict[str, float]:

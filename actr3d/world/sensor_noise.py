@@ -8,7 +8,7 @@ from typing import Any
 
 from numpy.random import PCG64, Generator, SeedSequence
 
-from actr3d.errors import WorldError, did_you_mean
+from actr3d.errors import WorldError, alternatives
 from actr3d.world.command_registry import number
 
 StandardDeviation = float | Mapping[str, float] | None
@@ -87,5 +87,5 @@ def _fields(sensor: str, value: Any, sd: float | dict[str, float], random: Gener
         return {name: _noisy(sensor, item, sd, random) for name, item in old.items()}
     for name in sd:
         if name not in old:
-            raise WorldError(f"noise of {sensor}: its readings have no '{name}'{did_you_mean(name, old)}; they have {', '.join(old)}")
+            raise WorldError(f"noise of {sensor}: its readings have no '{name}'{alternatives(name, old, 'they have')}")
     return {name: _noisy(sensor, item, sd[name], random) if name in sd else item for name, item in old.items()}

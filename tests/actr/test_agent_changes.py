@@ -141,8 +141,8 @@ def test_a_production_fires_next_in_place_of_the_chosen_one_whatever_its_utility
 @pytest.mark.parametrize(
     ("command", "problem"),
     [
-        (("set_buffer", "mind.gaol", "a"), r"no buffer 'mind.gaol'; did you mean 'mind.goal'\?; there are: mind.goal, mind.retrieval"),
-        (("set_buffer", "mind.memory", "a"), r"no buffer 'mind.memory'.*there are: mind.goal, mind.retrieval"),
+        (("set_buffer", "mind.gaol", "a"), r"no buffer 'mind.gaol'; did you mean 'mind.goal'\? There are: mind.goal, mind.retrieval"),
+        (("set_buffer", "mind.memory", "a"), r"no buffer 'mind.memory'.*[Tt]here are: mind.goal, mind.retrieval"),
         (("set_buffer", "mind.goal", "  "), r"'mind.goal': a chunk has at least one slot, such as 'count 3' or 'item:cup' \(got '  '\)"),
         (("set_buffer", "mind.goal", "a ?x"), r"'mind.goal': chunk 'a \?x': '\?x' is not bound .*; write a value"),
         (("set_buffer", "mind.goal", 3), r"SetBuffer.chunk: must be text \(got 3\)"),
@@ -154,8 +154,8 @@ def test_a_production_fires_next_in_place_of_the_chosen_one_whatever_its_utility
             ("fire_next", "mind", "rest"),
             r"'rest' cannot fire next, because it does not match: goal: 0:rest, expected 'rest', found 'count'",
         ),
-        (("fire_next", "mind", "upp"), r"no production 'upp' in 'mind'; did you mean 'up'\?; there are: recall, rest, up"),
-        (("forbid_once", "mnd", "up"), r"no production system 'mnd'; did you mean 'mind'\?; there are: mind"),
+        (("fire_next", "mind", "upp"), r"no production 'upp' in 'mind'; did you mean 'up'\? There are: recall, rest, up"),
+        (("forbid_once", "mnd", "up"), r"no production system 'mnd'; did you mean 'mind'\? There are: mind"),
         (("parameter", "mind.memory.latency", "abc"), r"parameter 'mind.memory.latency': must be a number \(got 'abc'\)"),
         (("parameter", "mind.memory.latency", None), r"parameter 'mind.memory.latency': must be a number \(got None\)"),
         (("parameter", "mind.memory.latency", -0.5), r"parameter 'mind.memory.latency': must be >= 0 \(got -0.5\)"),

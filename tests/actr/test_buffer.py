@@ -51,7 +51,7 @@ def test_modify() -> None:
 
 
 def test_a_misspelt_slot_is_named() -> None:
-    message = r"buffer 'goal': no slot 'colour' to modify to 'red'; did you mean 'color'\?; the chunk is 'hello color:blue'"
+    message = r"buffer 'goal': no slot 'colour' to modify to 'red'; did you mean 'color'\? The chunk is 'hello color:blue'"
     with pytest.raises(ChunkError, match=message):
         goal_of("hello color:blue").modify(colour="red")
     with pytest.raises(ChunkError, match="no slot '1' to modify"):

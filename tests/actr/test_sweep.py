@@ -114,7 +114,7 @@ def test_an_older_copy_of_the_model_is_kept(folder: Path) -> None:
 
 
 def test_mistakes_are_named(folder: Path) -> None:
-    with pytest.raises(ParameterError, match=r"the model has no parameter 'aa'; did you mean 'a'\?; its first lines set: a, b, c"):
+    with pytest.raises(ParameterError, match=r"the model has no parameter 'aa'; did you mean 'a'\? Its first lines set: a, b, c"):
         run("model", aa=1)
     with pytest.raises(ModelFileError, match=r"no model file 'modl\.py'; did you mean 'model\.py'"):
         run("modl")

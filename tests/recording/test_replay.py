@@ -373,7 +373,7 @@ def test_a_replay_that_fails_differs(
 @pytest.mark.parametrize(
     ("code", "words", "message"),
     [
-        (2, ["--set", "tims=4"], "Parameters has no parameter 'tims'; did you mean 'times'?; it has: times, height, word"),
+        (2, ["--set", "tims=4"], "Parameters has no parameter 'tims'; did you mean 'times'? It has: times, height, word"),
         (2, ["--set", "times"], "a parameter is set by name=value (got 'times')"),
         (1, ["--record", "falling.py"], "cannot write the recording 'falling.py': it exists already"),
         (1, ["--record", "nowhere/run"], "cannot write the recording 'nowhere/run': No such file or directory"),

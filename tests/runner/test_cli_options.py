@@ -105,7 +105,7 @@ def test_options_are_read(lamp: Any, words: list[str], settings: dict[str, Any])
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--powr", "3"], "no option '--powr'; did you mean '--power'[?]; the model has: --power, --shade"),
+        (["--powr", "3"], "no option '--powr'; did you mean '--power'[?] The model has: --power, --shade"),
         (["--sed", "3"], "no option '--sed'; did you mean '--seed'"),
         (["--power"], "--power takes a value: number, > 0, <= 100 .W."),
         (["--power", "--lit"], "--power takes a value"),
@@ -155,7 +155,7 @@ def test_help_tells_of_the_models_options(file: Path, capsys: pytest.CaptureFixt
         (["--power", "-1"], "Parameters.power: must be > 0 (got -1.0)"),
         (["--power", "101"], "Parameters.power: must be <= 100 (got 101.0)"),
         (["--shade", "papr"], "Parameters.shade: must be one of 'paper', 'glass' (got 'papr'); did you mean 'paper'?"),
-        (["--powr", "1"], "no option '--powr'; did you mean '--power'?; the model has: "),
+        (["--powr", "1"], "no option '--powr'; did you mean '--power'? The model has: "),
         (["--power", "much"], "Parameters.power: must be a number (got 'much')"),
         (["--sead", "1"], "no option '--sead'; did you mean '--seed'?"),
     ],

@@ -240,7 +240,7 @@ def test_a_program_says_what_cannot_be_changed(desk: Desk, tmp_path: Path) -> No
     there(talk, 0.1)
     with pytest.raises(RefusedError, match="no change 'aperture' for the agents of a program; there are: add_chunk, clear_buffer"):
         talk.say("aperture", width=0.5)
-    with pytest.raises(RefusedError, match=r"no buffer 'goa'; did you mean 'goal'\?; there are: goal, retrieval"):
+    with pytest.raises(RefusedError, match=r"no buffer 'goa'; did you mean 'goal'\? There are: goal, retrieval"):
         change(talk, "set_buffer", buffer="goa", chunk="a")
     there(talk, 0.5)  # the second agent of the program
     with pytest.raises(RefusedError, match=r"no buffer 'goal'; there are: top#2.goal"):

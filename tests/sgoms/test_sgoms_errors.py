@@ -63,7 +63,7 @@ class Agent(SGOMS):
     [
         (
             "b_plan_unit.set('planning_unit:phnoe')",
-            "b_plan_unit: Agent has no planning unit 'phnoe'; did you mean 'phone'?; it has: phone, tea",
+            "b_plan_unit: Agent has no planning unit 'phnoe'; did you mean 'phone'? It has: phone, tea",
         ),
         ("b_plan_unit.modify(planning_unit='te')", "no planning unit 'te'; did you mean 'tea'"),
         ("b_plan_unit.set('tea')", "names no planning unit; write 'planning_unit:…'"),
@@ -71,7 +71,7 @@ class Agent(SGOMS):
         ("b_plan_unit.modify(state='resuming')", "'tea' has interrupted nothing, so no place is saved to resume at"),
         (
             "b_unit_task.set('unit_task:puor')",
-            "no planning unit of Agent has a unit task 'puor'; did you mean 'pour'?; there are: talk, boil, pour",
+            "no planning unit of Agent has a unit task 'puor'; did you mean 'pour'? There are: talk, boil, pour",
         ),
         ("b_unit_task.modify(unit_task='tlak')", "has a unit task 'tlak'; did you mean 'talk'"),
         ("b_unit_task.set('state:start')", "names no unit task"),

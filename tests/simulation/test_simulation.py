@@ -338,7 +338,7 @@ def odd(value: Any) -> Any:
 
 
 WRONG: list[tuple[Callable[[Any], object], str]] = [
-    (lambda s: s.command("apertur", 1), r"no command 'apertur'; did you mean 'aperture'\?; name its body: walker, other"),
+    (lambda s: s.command("apertur", 1), r"no command 'apertur'; did you mean 'aperture'\? Name its body: walker, other"),
     (lambda s: s.command("stop", body="walkr"), r"no body 'walkr'; did you mean 'walker'\?"),
     (lambda s: s.command("stp", body="walker"), r"has no actuator 'stp'; did you mean 'stop'"),
     (lambda s: s.command("aperture", object()), "numbers, texts, and tuples and dicts of these"),

@@ -162,11 +162,11 @@ def test_the_time_to_contact_is_known_from_two_looks() -> None:
 @pytest.mark.parametrize(
     ("request_", "says"),
     [
-        ("vision.request('feature:openin')", "no feature 'openin' to look for; did you mean 'opening'?; there are: feature:obstacle"),
+        ("vision.request('feature:openin')", "no feature 'openin' to look for; did you mean 'opening'? There are: feature:obstacle"),
         ("vision.request('opening')", "the request 'opening' must name a feature and slots, all with their names"),
         ("vision.request('width:2')", "must name a feature"),
         ("vision.request(5)", r"a request is a text such as 'feature:opening' \(got 5\)"),
-        ("vision.request('feature:opening', widht='>1')", "feature:opening has no 'widht'; did you mean 'width'?; it has: distance, "),
+        ("vision.request('feature:opening', widht='>1')", "feature:opening has no 'widht'; did you mean 'width'? It has: distance, "),
         ("vision.request('feature:opening', radius=1)", "feature:opening has no 'radius'"),
         ("vision.request('feature:opening', width='>?wide')", r"'\?wide' is not bound"),
         ("vision.request('feature:opening', width='>>1')", "cannot read width='>>1'; write a number or"),
@@ -180,7 +180,7 @@ def test_the_time_to_contact_is_known_from_two_looks() -> None:
     ],
 )
 def test_what_cannot_be_asked_is_told(request_: str, says: str) -> None:
-    with pytest.raises(Actr3dError, match=says.replace("?;", r"\?;")):
+    with pytest.raises(Actr3dError, match=says.replace("? ", r"\? ")):
         Mindful(room(), asking(request_)).tick(11)
 
 

@@ -91,7 +91,7 @@ def test_pushes_that_are_under_way_are_part_of_the_state() -> None:
 @pytest.mark.parametrize(
     ("command", "problem"),
     [
-        (("move", "wal", 0, 0), r"no object 'wal' to move; did you mean 'wall'\?; there are: walker, wall, pole, box"),
+        (("move", "wal", 0, 0), r"no object 'wal' to move; did you mean 'wall'\? There are: walker, wall, pole, box"),
         (("move", "aperture_left", 0, 0), r"no object 'aperture_left' to move"),
         (("move", "wall", math.nan, 0), r"MoveObject.x: must be a finite number \(got nan\)"),
         (("move", "wall", 1e9, 0), r"MoveObject.x: must be <= 10000.0 \(got 1000000000.0\)"),

@@ -323,7 +323,7 @@ def test_noise_goes_on_exactly_from_a_state() -> None:
 @pytest.mark.parametrize(
     ("word", "options", "message"),
     [
-        ("poze", {}, "walker has no sensor 'poze'; did you mean 'pose'?; it has anatomy, pose, velocity"),
+        ("poze", {}, "walker has no sensor 'poze'; did you mean 'pose'? It has anatomy, pose, velocity"),
         ("pose", {"part": "arm"}, "walker has no part 'arm'"),
         ("pose", {"prt": "arm"}, r"walker: pose takes \(part=None\): got an unexpected keyword argument 'prt'"),
         ("velocity", {"frame": "wrld"}, "velocity: frame must be 'part' or 'world'"),
@@ -348,5 +348,5 @@ def test_noise_goes_on_exactly_from_a_state() -> None:
 )
 def test_wrong_readings_are_refused_with_a_reason(word: Any, options: dict[str, Any], message: str) -> None:
     _, body = walker_in()
-    with pytest.raises(Actr3dError, match=message.replace("?;", r"\?;")):
+    with pytest.raises(Actr3dError, match=message.replace("? ", r"\? ")):
         body.get(word, **options)

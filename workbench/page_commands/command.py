@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from actr3d.errors import Actr3dError, did_you_mean
+from actr3d.errors import Actr3dError, alternatives
 from actr3d.registry import Registry
 from workbench.worker.messages import Reply
 
@@ -108,5 +108,4 @@ def page_command(command: C) -> C:
 
 def unknown(what: str, name: str, known: Iterable[str]) -> Actr3dError:
     """Returns the error for a name that does not exist, with the names that do."""
-    names = list(known)
-    return Actr3dError(f"no {what} '{name}'{did_you_mean(name, names)}; there are: {', '.join(names) or 'none'}")
+    return Actr3dError(f"no {what} '{name}'{alternatives(name, known)}")

@@ -11,7 +11,7 @@ from actr3d.actr.kernel.tree import path_of, subtree
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
 from actr3d.change import Change
-from actr3d.errors import ChunkError, SimulationError, did_you_mean
+from actr3d.errors import ChunkError, SimulationError, alternatives
 
 P = TypeVar("P", bound=Model)
 
@@ -43,7 +43,7 @@ class Parts:
         """
         known = {path_of(part): part for part in self if isinstance(part, kind)}
         if path not in known:
-            raise SimulationError(f"no {what} '{path}'{did_you_mean(path, known)}; there are: {', '.join(known) or 'none'}")
+            raise SimulationError(f"no {what} '{path}'{alternatives(path, known)}")
         return known[path]
 
     def production(self, path: str, name: str) -> tuple[ProductionSystem, Production]:
@@ -55,7 +55,7 @@ class Parts:
         system = self.part(ProductionSystem, path, "production system")
         known = {production.name: production for production in rules_of(system).productions}
         if name not in known:
-            raise SimulationError(f"no production '{name}' in '{path}'{did_you_mean(name, known)}; there are: {', '.join(known) or 'none'}")
+            raise SimulationError(f"no production '{name}' in '{path}'{alternatives(name, known)}")
         return system, known[name]
 
 

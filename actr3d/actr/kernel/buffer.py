@@ -12,7 +12,7 @@ from actr3d.actr.chunks.pattern import MISSING, Missing
 from actr3d.actr.kernel.model import Model, profile_of
 from actr3d.actr.kernel.parameters import named_parameters
 from actr3d.actr.kernel.tracing import lasting_slots, traceable
-from actr3d.errors import ChunkError, did_you_mean
+from actr3d.errors import ChunkError, did_you_mean, followed
 from actr3d.trace import Data, Trace
 
 
@@ -51,9 +51,8 @@ class Buffer(Model):
                 raise ChunkError(f"buffer '{self.name}' is empty: there is no slot '{name}' to modify; use set")
             slot = int(name[1:]) if name[0] == "_" and name[1:].isdecimal() else name
             if slot not in chunk:
-                raise ChunkError(
-                    f"buffer '{self.name}': no slot '{slot}' to modify to {value!r}{did_you_mean(str(slot), chunk)}; the chunk is '{chunk}'"
-                )
+                says = followed(did_you_mean(str(slot), chunk), f"the chunk is '{chunk}'")
+                raise ChunkError(f"buffer '{self.name}': no slot '{slot}' to modify to {value!r}{says}")
             chunk[slot] = value
             self.chunk = chunk
 

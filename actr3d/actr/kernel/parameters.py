@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 from annotated_types import Ge
 
 from actr3d.configuration import checked
-from actr3d.errors import ConfigurationError, ParameterError, did_you_mean
+from actr3d.errors import ConfigurationError, ParameterError, alternatives, did_you_mean
 from actr3d.warnings import warn_modeller
 
 P = ParamSpec("P")
@@ -38,8 +38,7 @@ def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Con
         kind = type(self).__name__
         unknown = [key for key in keys if key not in names]
         if unknown and not any(p.kind is p.VAR_KEYWORD for p in signature.parameters.values()):
-            hint = did_you_mean(unknown[0], names)
-            raise ParameterError(f"{kind} has no parameter '{unknown[0]}'{hint}; it has: {', '.join(names) or 'none'}")
+            raise ParameterError(f"{kind} has no parameter '{unknown[0]}'{alternatives(unknown[0], names, 'it has:')}")
         try:
             given: dict[str, Any] = signature.bind(self, *args, **keys).arguments
         except TypeError as error:

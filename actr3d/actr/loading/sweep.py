@@ -14,7 +14,7 @@ from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.kernel.source_code import parse
 from actr3d.actr.loading.model_file import run_text
 from actr3d.actr.loading.source_text import compile_source, read_source
-from actr3d.errors import ParameterError, did_you_mean
+from actr3d.errors import ParameterError, alternatives
 
 
 def parameters(source: str) -> dict[str, ast.Assign]:
@@ -57,9 +57,7 @@ def with_values(source: str, chosen: Mapping[str, Any]) -> str:
     values: list[tuple[int, int, str]] = []
     for name, value in chosen.items():
         if name not in known:
-            raise ParameterError(
-                f"the model has no parameter '{name}'{did_you_mean(name, known)}; its first lines set: {', '.join(known) or 'nothing'}"
-            )
+            raise ParameterError(f"the model has no parameter '{name}'{alternatives(name, known, 'its first lines set:')}")
         old = known[name].value
         last = old.end_lineno or old.lineno
         start, end = starts[old.lineno - 1] + old.col_offset, starts[last - 1] + (old.end_col_offset or 0)
