@@ -3,14 +3,37 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+import logging
+import secrets
+import time
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from threading import Lock
+from typing import Any
 
 import msgspec
 
+from actr3d.errors import Actr3dError
+
 FILE = "labels.json"
+ASIDE = "labels-damaged-{}.json"
+"""The name under which a damaged file is kept."""
+
+
+class LabelError(Actr3dError):
+    """A field of a label was changed by somebody else in the meantime.
+
+    Args:
+        field: The field.
+        there: Its present value.
+    """
+
+    status = 409
+
+    def __init__(self, field: str, there: str | tuple[str, ...]) -> None:
+        value = there if isinstance(there, str) else ", ".join(there)
+        super().__init__(f"another browser has changed the {field} to '{value}' in the meantime")
 
 
 class Label(msgspec.Struct, frozen=True, kw_only=True):
@@ -36,20 +59,56 @@ class Labels:
         self._lock = Lock()
 
     def all(self) -> dict[str, Label]:
-        """Returns the labels by the names of their files, without the ending; a damaged file counts as empty."""
-        try:
-            return msgspec.json.decode(self._file.read_bytes(), type=dict[str, Label])
-        except (OSError, msgspec.MsgspecError, UnicodeDecodeError):
-            return {}
+        """Returns the labels by the names of their files, without the ending; none if the file cannot be read, see `problem`."""
+        return self._read()[0]
 
-    def set(self, recording: str, label: Label) -> None:
-        """Sets the label of a recording; an empty one removes it.
+    def _read(self) -> tuple[dict[str, Label], str | None]:
+        """Returns the labels, and why they cannot be read."""
+        try:
+            return msgspec.json.decode(self._file.read_bytes(), type=dict[str, Label]), None
+        except FileNotFoundError:
+            return {}, None
+        except OSError as error:
+            return {}, error.strerror or type(error).__name__
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+            return {}, f"it is damaged: {error}"
+
+    @property
+    def problem(self) -> str | None:
+        """Why labels are missing; None if they are all known. While some are missing, nobody knows which recordings a user has labelled."""
+        wrong = self._read()[1]
+        if wrong is not None:
+            return f"The names, notes and tags of recordings cannot be read from {FILE} ({wrong}). Nothing is deleted automatically."
+        aside = sorted(path.name for path in self._file.parent.glob(ASIDE.format("*")))
+        if aside:
+            return (
+                f"The names, notes and tags of recordings began anew: their file was damaged, and is kept as {', '.join(aside)} in "
+                f"{self._file.parent}. Nothing is deleted automatically until you repair it or delete it."
+            )
+        return None
+
+    def change(self, recording: str, changes: Mapping[str, Any], known: Label | None = None) -> Label:
+        """Changes fields of the label of a recording, and returns the label; an empty one is removed.
+
+        Args:
+            recording: The name of the recording.
+            changes: The new values of fields; the others stay as they are.
+            known: The label that the changes were made from; None to replace whatever there is.
 
         Raises:
+            LabelError: If a field that changes no longer has the value in `known`.
             OSError: If the file cannot be written.
         """
         with self._lock:
-            self._write({**self.all(), recording: label})
+            labels = self._to_change()
+            now = labels.get(recording, Label())
+            for field, new in changes.items():
+                there = getattr(now, field)
+                if known is not None and there not in (getattr(known, field), new):
+                    raise LabelError(field, there)
+            labels[recording] = label = msgspec.structs.replace(now, **changes)
+            self._write(labels)
+            return label
 
     def move(self, recording: str, to: str) -> None:
         """Moves a label with its renamed recording."""
@@ -66,6 +125,18 @@ class Labels:
             gone = [labels.pop(recording) for recording in recordings if recording in labels]
             if gone:
                 self._write(labels)
+
+    def _to_change(self) -> dict[str, Label]:
+        """Returns the labels; a file that cannot be read is kept aside first.
+
+        Raises:
+            OSError: If it cannot be kept.
+        """
+        labels, wrong = self._read()
+        if wrong is not None:
+            self._file.rename(self._file.with_name(ASIDE.format(f"{time.strftime('%Y%m%d-%H%M%S')}-{secrets.token_hex(2)}")))
+            logging.getLogger("workbench").warning(self.problem)
+        return labels
 
     def _write(self, labels: dict[str, Label]) -> None:
         part = self._file.with_name(f".{FILE}.part")

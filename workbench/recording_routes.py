@@ -42,12 +42,25 @@ class Naming(PageMessage):
     to: Annotated[str, Field(min_length=1, max_length=150)]
 
 
-class Labelling(PageMessage):
-    """What a user writes about a recording."""
+class KnownLabel(PageMessage):
+    """What a recording's label was when a user began to change it."""
 
     name: Annotated[str, Field(max_length=100)] = ""
     note: Annotated[str, Field(max_length=2_000)] = ""
     tags: tuple[Annotated[str, Field(max_length=40)], ...] = Field(default=(), max_length=20)
+
+    @property
+    def label(self) -> Label:
+        """The label, without spaces around its texts, and each tag once."""
+        tags = tuple(dict.fromkeys(tag.strip() for tag in self.tags if tag.strip()))
+        return Label(name=self.name.strip(), note=self.note.strip(), tags=tags)
+
+
+class Labelling(KnownLabel):
+    """What a user writes about a recording; what is left out stays as it is."""
+
+    known: KnownLabel | None = None
+    """What the label was before; then a field that somebody else has changed since is not replaced."""
 
 
 class Trusting(PageMessage):
@@ -79,13 +92,14 @@ async def recordings(
 ) -> Response:
     """Lists recordings, newest first: the `total` number, and summaries from number `first` on.
 
-    `problem` says why a recording cannot be read, `session` which session is still writing it.
+    `problem` says why a recording cannot be read, `session` which session is still writing it; `warning` why labels are missing.
     """
     sessions = sessions_of(request)
     total, found = await sessions.listing.some(first, most)
     writing = sessions.writing()
     labels = await asyncio.to_thread(sessions.recordings.labels.all)
-    page = {"total": total, "recordings": [_listed(summary, writing, labels) for summary in found]}
+    problem = await asyncio.to_thread(lambda: sessions.recordings.labels.problem)
+    page = {"total": total, "recordings": [_listed(summary, writing, labels) for summary in found], "warning": problem}
     return Response(await asyncio.to_thread(to_json, page), media_type="application/json")
 
 
@@ -178,31 +192,37 @@ async def replaying(request: Request, recording: Id) -> dict[str, Any]:
 
 
 @router.post("/recordings/{recording}/rename")
-def rename_recording(request: Request, recording: Id, body: Naming) -> dict[str, Any]:
+async def rename_recording(request: Request, recording: Id, body: Naming) -> dict[str, Any]:
     """Renames a recording; a recording with a name given by a user is never deleted automatically."""
-    sessions_of(request).recordings.rename(recording, body.to)
+    sessions = sessions_of(request)
+    await asyncio.to_thread(sessions.recordings.rename, recording, body.to)
+    sessions.listed_anew()
     return {"renamed": body.to}
 
 
 @router.post("/recordings/{recording}/label")
-def label_recording(request: Request, recording: Id, body: Labelling) -> dict[str, Any]:
-    """Sets the name, the note and the tags of a recording, even of one that is being written; it is then never deleted automatically."""
-    recordings = sessions_of(request).recordings
-    recordings.path(recording)
-    label = Label(
-        name=body.name.strip(), note=body.note.strip(), tags=tuple(dict.fromkeys(tag.strip() for tag in body.tags if tag.strip()))
-    )
-    recordings.labels.set(recording, label)
+async def label_recording(request: Request, recording: Id, body: Labelling) -> dict[str, Any]:
+    """Sets the name, the note or the tags of a recording, even of one that is being written; it is then never deleted automatically.
+
+    409 if somebody else has changed the same field since it was as `known` says.
+    """
+    sessions = sessions_of(request)
+    sessions.recordings.path(recording)
+    new, known = body.label, None if body.known is None else body.known.label
+    changes = {field: getattr(new, field) for field in Label.__struct_fields__ if field in body.model_fields_set}
+    label = await asyncio.to_thread(sessions.recordings.labels.change, recording, changes, known)
+    sessions.listed_anew()
     return {"label": msgspec.structs.asdict(label)}
 
 
 @router.post("/recordings/{recording}/delete")
-def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
+async def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
     """Deletes a recording; 409 while a run is still writing it."""
     sessions = sessions_of(request)
     if recording in sessions.writing():
         raise SessionError("an open run still writes this recording; restart its model or close its session, then delete it")
-    sessions.recordings.delete(recording)
+    await asyncio.to_thread(sessions.recordings.delete, recording)
+    sessions.listed_anew()
     return {"deleted": recording}
 
 

@@ -66,7 +66,9 @@ class Recordings:
         return [path for path in files if _NAME.fullmatch(path.stem) and path.is_file() and not path.is_symlink()]
 
     def tidy(self, keeping: Keeping) -> None:
-        """Deletes the oldest recordings that no user has named, if the limits are exceeded."""
+        """Deletes the oldest recordings that no user has named or labelled, if the limits are exceeded; none while labels are missing."""
+        if self.labels.problem is not None:
+            return
         erased = superfluous(self._files(), keeping, self.labels.all().keys())
         for path in erased:
             erase(path)

@@ -131,8 +131,11 @@ def branched_at(path: Path) -> float | None:
 
 
 def superfluous_branches(recording: Path) -> list[Path]:
-    """Returns the oldest branches of a run beyond the number that is kept; those with a label do not count."""
-    labelled = Labels(recording.parent).all()
+    """Returns the oldest branches of a run beyond the number that is kept; those with a label do not count. None if labels are missing."""
+    labels = Labels(recording.parent)
+    if labels.problem is not None:
+        return []
+    labelled = labels.all()
     branches = [path for path in recording.parent.glob(f"{recording.stem}-at-*{recording.suffix}") if branched_at(path) is not None]
     found = [path for path in branches if path.stem not in labelled]
     return sorted(found, key=written, reverse=True)[MOST_BRANCHES:]

@@ -50,6 +50,8 @@ class Session(Broadcast, Receiver):
         """When the session began [s since 1970]: distinguishes it from a session of the same name of an earlier server."""
         self.branched: Branched | None = None
         """What was kept when a user last changed something in the past of the current run."""
+        self.listings: int = 0
+        """Counts how often a recording was labelled, renamed or deleted: then pages list recordings again."""
         self.has_scene = False
         """Whether there is a 3D view."""
         self._shown: LaunchedRun | None = None
@@ -416,6 +418,7 @@ class Session(Broadcast, Receiver):
             "branched": None
             if self.branched is None
             else {"recording": self.branched.recording, "at": self.branched.at, "until": self.branched.until},
+            "listings": self.listings,
             "scene": self.has_scene,
             **self.look.as_dict(),
             "breakpoints": self.breakpoints,

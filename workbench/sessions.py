@@ -229,6 +229,12 @@ class Sessions:
         """Ends all sessions."""
         await asyncio.gather(*(self.close(name) for name in list(self._sessions)))
 
+    def listed_anew(self) -> None:
+        """Informs all browsers that a recording was labelled, renamed or deleted."""
+        for session in self.all():
+            session.listings += 1
+            session.changed(facts=True)
+
     def saved(self, path: Path) -> None:
         """Informs the sessions that a file may have a new text."""
         for session in self.all():

@@ -5,7 +5,7 @@ import { Comparison } from "../compare/compare.js";
 import { Icon } from "../parts/icon.js";
 import { Chosen } from "../runs/chosen.js";
 import { deleteRuns, openRun } from "../runs/actions.js";
-import { follow, listRuns, loading, problem, runs as list, total } from "../runs/list.js";
+import { follow, listRuns, loading, problem, runs as list, total, warning } from "../runs/list.js";
 import { chosen, sorted, Table } from "../runs/table.js";
 import { textOf } from "../runs/wording.js";
 
@@ -50,6 +50,7 @@ function Runs() {
       <button class="bare" title="Read the list again" aria-label="Read the list again" onClick=${listRuns}><${Icon} name="restart" /></button>
     </div>
     ${problem.value ? html`<p class="problem bad" role="alert">The recordings cannot be listed: ${problem.value} <button onClick=${listRuns}>Try again</button></p>` : null}
+    ${warning.value ? html`<p class="problem bad" role="alert">${warning.value}</p>` : null}
     ${body(all, ordered, search)}
     ${idle > 0 ? html`<p class="left-out">${idle} never begun ${idle === 1 ? "is" : "are"} left out <button class="bare" onClick=${() => (withIdle.value = true)}>Show</button></p>` : null}
     <${Chosen} list=${picked} />

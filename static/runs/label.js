@@ -7,7 +7,8 @@ import { complain } from "../store.js";
 import { html, signal } from "../vendor/preact.js";
 import { listRuns } from "./list.js";
 
-/** Asks for the name, the note and the tags of a run, and stores them. They are read first: another browser may have changed them. */
+/** Asks for the name, the note and the tags of a run, and stores those that were changed. They are read first, and what another browser
+ * has changed while they were asked for is told before it is replaced. */
 export async function labelRun(run) {
   const path = `/api/recordings/${encodeURIComponent(run.id)}`;
   let known;
@@ -17,7 +18,8 @@ export async function labelRun(run) {
     complain(`It cannot be named: ${error.message}`);
     return;
   }
-  const values = { ...known.label };
+  let before = known.label;
+  const values = { ...before };
   const problem = signal(null);
   const Body = () => html`<label class="field">Name <input value=${values.name} maxlength="100" onInput=${(event) => (values.name = event.currentTarget.value)} /></label>
     <label class="field">Tags <input value=${values.tags.join(", ")} placeholder="separated by commas" onInput=${(event) => (values.tags = event.currentTarget.value.split(","))} /></label>
@@ -25,11 +27,17 @@ export async function labelRun(run) {
     <${Problem} text=${problem.value} />`;
   const check = async () => {
     try {
-      const tags = values.tags.map((tag) => tag.trim()).filter(Boolean);
-      await call("POST", `${path}/label`, { name: values.name, note: values.note, tags });
+      const written = { ...values, tags: values.tags.map((tag) => tag.trim()).filter(Boolean) };
+      const changed = Object.entries(written).filter(([field, value]) => String(value) !== String(before[field]));
+      await call("POST", `${path}/label`, { ...Object.fromEntries(changed), known: before });
       return true;
     } catch (error) {
       problem.value = error.message;
+      const now = error.status === 409 ? await call("GET", path).catch(() => null) : null;
+      if (now) {
+        before = now.label;
+        problem.value += ". Keep replaces that.";
+      }
       return false;
     }
   };

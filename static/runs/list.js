@@ -15,6 +15,8 @@ export const runs = signal(null);
 export const total = signal(0);
 /** Why they cannot be listed; null if they can. */
 export const problem = signal(null);
+/** What is wrong with the names and notes of recordings; null if nothing is. */
+export const warning = signal(null);
 export const loading = signal(false);
 /** The recording that the current run writes; null if there is none. */
 export const present = computed(() => session.value?.recording ?? null);
@@ -36,6 +38,7 @@ export async function listRuns() {
       batch(() => {
         total.value = page.total;
         problem.value = null;
+        warning.value = page.warning;
         if (runs.value === null || runs.value.length <= found.size) runs.value = [...found.values()];
       });
       if (page.recordings.length < PART) break;
@@ -65,9 +68,10 @@ export function forgetRun(id) {
   total.value -= 1;
 }
 
-/** Keeps the list up to date while it is shown, also when the run goes another way; returns the function that stops this. */
+/** Keeps the list up to date while it is shown, also when the run goes another way, or another browser names or deletes a recording; returns
+ * the function that stops this. */
 export function follow() {
-  const key = computed(() => `${session.value?.id} ${session.value?.run} ${session.value?.alive} ${isOver.value} ${session.value?.branched?.recording} ${way.value}`);
+  const key = computed(() => `${session.value?.id} ${session.value?.run} ${session.value?.alive} ${isOver.value} ${session.value?.branched?.recording} ${session.value?.listings} ${way.value}`);
   return effect(() => {
     key.value;
     untracked(() => void listRuns());

@@ -76,7 +76,7 @@ def test_a_mind_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[...
 
 
 def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(pages: Callable[..., Page], workbench: Served) -> None:
-    page = pages("counting.py", tab="runs")
+    page = pages("counting.py", tab="runs", refusals=True)
     shows(page, "#status", "at its start")
     say(page, type="until", time=0.3)
     shows(page, "#status", r"at 0\.3 s")
@@ -90,10 +90,18 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
     workbench.post(f"/api/recordings/{branch}/label", {"note": "as it was"})  # by another browser, which this page does not know
     rows.nth(1).get_by_role("button", name="Name at 0.12 s").click()
     expect(page.get_by_label("Note")).to_have_value("as it was")
+    workbench.post(f"/api/recordings/{branch}/label", {"name": "theirs"})
+    expect(rows.nth(1)).to_contain_text("theirs")  # this page hears of it, although it has not listed
     page.get_by_label("Name", exact=True).fill("<i>to five</i>")
     page.get_by_label("Tags").fill("long, kept, long")
     page.get_by_role("button", name="Keep", exact=True).click()
+    expect(page.get_by_role("dialog").get_by_role("alert")).to_have_text(
+        "another browser has changed the name to 'theirs' in the meantime. Keep replaces that."
+    )
+    page.get_by_role("button", name="Keep", exact=True).click()
     expect(rows.nth(1)).to_contain_text("<i>to five</i>")
+    label = {"name": "<i>to five</i>", "note": "as it was", "tags": ["long", "kept"]}
+    assert workbench.get(f"/api/recordings/{branch}").json()["label"] == label
     expect(page.locator("tr[data-run] .tag")).to_have_text(["long", "kept"])
 
     # the branch is shown as a recording with its own address; a change there is a branch of it, and the live run is left alone

@@ -15,6 +15,8 @@ from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, An
 from tests.helpers.counters import counter_text
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.app import make_app
+from workbench.labels import Label
+from workbench.recordings import Recordings
 from workbench.retention import Keeping, branched_at
 
 AGENT = counter_text("PMNoise(noise=0.3)")
@@ -122,6 +124,8 @@ def test_recordings_have_names_notes_and_tags(desk: Desk, tmp_path: Path) -> Non
     name = recording(talk).stem
     desk.do(talk.session.close())
 
+    recordings = talk.sessions.recordings
+
     def post(recording: str, body: Any) -> Answer:
         sent = json.dumps(body).encode()
         app = make_app(tmp_path, GATE)
@@ -138,10 +142,17 @@ def test_recordings_have_names_notes_and_tags(desk: Desk, tmp_path: Path) -> Non
     assert json.loads(answer.body) == {"label": {"name": "to five", "note": "kept", "tags": ["x", "y"]}}
     listed = json.loads(desk.ask(tmp_path, f"/api/recordings/{name}").body)
     assert listed["label"] == {"name": "to five", "note": "kept", "tags": ["x", "y"]}
+    assert label(note="other").status == 200  # what is not sent stays
+    assert recordings.labels.all()[name] == Label(name="to five", note="other", tags=("x", "y"))
+    known = {"name": "to five", "note": "kept", "tags": ["x", "y"]}  # as another browser has seen it
+    assert label(tags=["z"], known=known).status == 200
+    answer = label(name="mine", note="mine", known=known)
+    assert answer.status == 409
+    assert json.loads(answer.body)["error"] == "another browser has changed the note to 'other' in the meantime"
+    assert recordings.labels.all()[name] == Label(name="to five", note="other", tags=("z",))
     for wrong in ({"name": "x" * 101}, {"note": "x" * 2001}, {"tags": ["x"] * 21}, {"tags": ["x" * 41]}, {"names": "x"}):
         assert label(**wrong).status == 422
     assert post("nothing", {}).status == 404
-    recordings = talk.sessions.recordings
     recordings.tidy(Keeping(number=0, megabytes=0))
     recordings.tidy(Keeping(number=1))
     assert name in recordings.labels.all()
@@ -149,6 +160,57 @@ def test_recordings_have_names_notes_and_tags(desk: Desk, tmp_path: Path) -> Non
     assert set(recordings.labels.all()) == {"other"}
     recordings.delete("other")
     assert recordings.labels.all() == {}
+
+
+def test_all_browsers_hear_that_a_recording_was_labelled_renamed_or_deleted(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, BUILT, record=True)
+    there(talk, 0.1)
+    talk.say("restart")
+    name = recording(talk).stem
+    talk.wait(lambda: talk.facts["run"] == 2)
+    app = make_app(tmp_path, GATE)
+    app.state.sessions = talk.sessions
+
+    def post(path: str, body: dict[str, str]) -> int:
+        sent = json.dumps(body).encode()
+        return desk.do(call(app, f"/api/recordings/{path}", HOST, COOKIE, ORIGIN, JSON, OURS, method="POST", body=sent)).status
+
+    heard: list[int] = []
+    for path, body in ((f"{name}/label", {"name": "x"}), (f"{name}/rename", {"to": "other"}), ("other/delete", {})):
+        before = talk.session.facts_version
+        assert post(path, body) == 200
+        assert talk.session.facts_version > before
+        heard.append(talk.facts["listings"])
+    assert heard == [1, 2, 3]
+
+
+def test_a_damaged_file_of_labels_is_kept_and_nothing_is_deleted_without_it(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    recordings = Recordings(tmp_path)
+    path, other = recordings.new("model"), recordings.new("model")
+    path.touch()
+    other.touch()
+    recordings.labels.change(path.stem, {"name": "kept"})
+    assert recordings.labels.problem is None
+    file = path.with_name("labels.json")
+    damaged = file.read_text(encoding="utf-8")[:-5]
+    file.write_text(damaged, encoding="utf-8")
+    assert recordings.labels.all() == {}
+    assert str(recordings.labels.problem).startswith(
+        "The names, notes and tags of recordings cannot be read from labels.json (it is damaged: "
+    )
+    recordings.tidy(Keeping(number=1))
+    recordings.labels.change(other.stem, {"note": "new"})
+    recordings.tidy(Keeping(number=1))
+    assert (path.exists(), other.exists()) == (True, True)
+    (aside,) = path.parent.glob("labels-damaged-*.json")
+    assert aside.read_text(encoding="utf-8") == damaged
+    assert f"kept as {aside.name} in {path.parent}" in str(recordings.labels.problem)
+    assert aside.name in caplog.text
+    assert recordings.labels.all() == {other.stem: Label(note="new")}
+    aside.unlink()
+    assert recordings.labels.problem is None
+    recordings.tidy(Keeping(number=1))
+    assert (path.exists(), other.exists()) == (False, True)
 
 
 @pytest.mark.parametrize("kind", MODELS)
