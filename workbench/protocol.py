@@ -44,7 +44,7 @@ def problem_of(error: Mapping[str, Any]) -> str:
         error: An error from pydantic's `ValidationError.errors`.
     """
     place = ".".join(str(part)[:100] for part in error["loc"])
-    words = str(error["msg"])
+    words = str(error["msg"]).removeprefix("Value error, ")  # of an error that this package raises itself
     if error["type"] == "union_tag_invalid":  # pydantic's own text for this error quotes the message
         words = f"{error['ctx']['discriminator']} must be one of {error['ctx']['expected_tags']}"
     return f"{place}: {words}" if place else words

@@ -115,6 +115,24 @@ def test_what_is_wrong_is_told_with_its_place_and_not_echoed(server: Served) -> 
         ("/api/sessions", '{"model": "counting.py", }', 400, "the body is not JSON: "),
         ("/api/compare", '{"first": "secret"}', 422, "body.second: Field required"),
         ("/api/sessions/x/command", '{"command": {"type": "secret"}}', 422, "body.command: 'type' must be one of 'explain', 'memory', "),
+        (
+            "/api/sessions/x/command",
+            json.dumps({"command": {"type": "command", "word": "set_buffer", "values": ["goal", "secret" * 2000]}}),
+            422,
+            "body.command.command.values.1: a text has at most 10,000 characters (this one has 12,000)",
+        ),
+        (
+            "/api/sessions",
+            '{"model": "counting.py", "settings": {"a": ["secret"]}}',
+            422,
+            "body.settings.a: must be a number, a text, true, false or null",
+        ),
+        (
+            "/api/sessions/x/command",
+            '{"command": {"type": "set", "name": "a", "value": NaN}}',
+            422,
+            "body.command.set.value: must be a finite",
+        ),
         ("/api/sessions", f'{{"{"x" * 200}secret": 1}}', 422, "body.model: Field required"),
         ("/api/sessions", f'{{"model": "counting.py", "{"x" * 200}secret": 1}}', 422, "body.xxx"),
     ):

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from actr3d.errors import Actr3dError, alternatives
 from actr3d.registry import Registry
@@ -19,7 +20,22 @@ if TYPE_CHECKING:
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 Text = Annotated[str, Field(max_length=1_000_000)]
 Seconds = Annotated[float, Field(ge=0, lt=1e9, allow_inf_nan=False)]
-PlainValue = bool | int | float | Annotated[str, Field(max_length=10_000)] | None
+LONGEST_TEXT = 10_000
+"""Maximum length of a text that is a value [characters]."""
+
+
+def _plain(value: Any) -> Any:
+    """Checks a value here, because pydantic names each type of a union that does not fit."""
+    if isinstance(value, str) and len(value) > LONGEST_TEXT:
+        raise ValueError(f"a text has at most {LONGEST_TEXT:,} characters (this one has {len(value):,})")
+    if not isinstance(value, (bool, int, float, str)) and value is not None:
+        raise ValueError("must be a number, a text, true, false or null")
+    if isinstance(value, float) and not isfinite(value):
+        raise ValueError("must be a finite number")
+    return value
+
+
+PlainValue = Annotated[bool | int | float | Annotated[str, Field(max_length=LONGEST_TEXT)] | None, BeforeValidator(_plain)]
 """A value that can be recorded."""
 
 
