@@ -3,7 +3,8 @@
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { remembered } from "../local_storage.js";
-import { endedText, labelOf, measureText, sizeText, whenText } from "../runs/wording.js";
+import { runs as recordings } from "../runs/list.js";
+import { endedText, labelOf, measureText, originText, sizeText, whenText } from "../runs/wording.js";
 
 const onlyOthers = remembered("compare only differences", false);
 
@@ -60,7 +61,9 @@ export function SideBySide({ runs, changed }) {
   const own = [
     line("model", (run) => run.model),
     line("seed", (run) => String(run.seed)),
+    line("name", (run) => run.label.name || "–"),
     line("began", (run) => whenText(run.made)),
+    line("branch", (run) => originText(run, recordings.value)),
     line("end", endedText),
     line("simulated time", (run) => `${run.time.toFixed(2)} s`),
     line("events", (run) => run.events.toLocaleString("en")),

@@ -8,8 +8,8 @@ import { compareRuns } from "../compare/compare.js";
 import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./actions.js";
 import { download, Downloads } from "./downloads.js";
 import { labelRun } from "./label.js";
-import { present } from "./list.js";
-import { endedText, labelOf, measureText, outcomeText, whenInFull } from "./wording.js";
+import { present, runs } from "./list.js";
+import { endedText, labelOf, measureText, originText, outcomeText, whenInFull } from "./wording.js";
 
 const FORMATS = [
   ["sqlite", "SQLite", "The recording file, unchanged"],
@@ -55,6 +55,7 @@ export const withFacts = remembered("run facts", innerHeight >= 900);
 function Facts({ run }) {
   const rows = [
     ["began", whenInFull(run.made)],
+    ...(run.branched === null ? [] : [["branch", originText(run, runs.value)]]),
     ["end", endedText(run)],
     ["seed", String(run.seed)],
     ["events", run.events.toLocaleString("en")],

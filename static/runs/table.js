@@ -4,7 +4,7 @@ import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/prea
 import { remembered } from "../local_storage.js";
 import { alive, session, state } from "../store.js";
 import { present } from "./list.js";
-import { agoText, differentText, endedText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./wording.js";
+import { agoText, branchText, differentText, endedText, originText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./wording.js";
 
 const ROW = 44; // [px]; style.css has the same
 const AROUND = 6; // the number of rows drawn beyond the visible ones
@@ -59,7 +59,7 @@ function Length({ run }) {
   return `${(goesOn ? state.value.furthest : run.time).toFixed(2)} s`;
 }
 
-function Row({ run, number, now, toggle, open }) {
+function Row({ run, list, number, now, toggle, open }) {
   const isChosen = chosen.value.has(run.id);
   const own = run.id === present.value;
   const different = differentText(run);
@@ -77,7 +77,7 @@ function Row({ run, number, now, toggle, open }) {
     <td class="when" title=${whenInFull(run.made)}><span class="number">${whenText(run.made)}</span><small>${agoText(run.made, now)}</small></td>
     <td class="model" title="${run.model || run.id}${different ? `\n${different}` : ""}\nseed ${String(run.seed)}">
       <span>${run.label?.name ? html`<b>${run.label.name}</b> <span class="quiet">${run.model || run.id}</span>` : run.model || run.id}${(run.label?.tags ?? []).map((tag) => html` <span key=${tag} class="tag">${tag}</span>`)}</span>
-      <small>${run.session ? html`<b class="present-mark" title=${own ? "The run that is shown" : "Its session is still there: choose its model above to show it"}>${own ? "present" : "open"}</b> · ` : null}${run.problem ? "" : html`${run.branched === null ? null : html`<b title="Kept when its run was changed at ${run.branched.toFixed(2)} s">branch at ${run.branched.toFixed(2)} s</b> · `}${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
+      <small>${run.session ? html`<b class="present-mark" title=${own ? "The run that is shown" : "Its session is still there: choose its model above to show it"}>${own ? "present" : "open"}</b> · ` : null}${run.problem ? "" : html`${run.branched === null ? null : html`<b title=${originText(run, list)}>${branchText(run)}</b> · `}${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
     </td>
     <td class="outcome ${run.problem || run.failed ? "bad" : ""}" title=${endedText(run)}>
       <span>${outcomeText(run)} <span class="number">${resultText(run)}</span></span><small>${endedText(run)}</small>
@@ -140,7 +140,7 @@ export function Table({ list, open }) {
       </thead>
       <tbody>
         <tr class="space" aria-hidden="true" style=${{ height: `${first * ROW}px` }}></tr>
-        ${list.slice(first, beyond).map((run, n) => html`<${Row} key=${run.id} run=${run} number=${first + n} now=${now.value} toggle=${toggle} open=${open} />`)}
+        ${list.slice(first, beyond).map((run, n) => html`<${Row} key=${run.id} run=${run} list=${list} number=${first + n} now=${now.value} toggle=${toggle} open=${open} />`)}
         <tr class="space" aria-hidden="true" style=${{ height: `${(list.length - beyond) * ROW}px` }}></tr>
       </tbody>
     </table>

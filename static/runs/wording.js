@@ -30,9 +30,20 @@ export function whenInFull(made) {
   return FULL.format(new Date(1000 * made));
 }
 
-/** Returns the name of a recording: what the user has called it, else its model, and when it began. */
+/** Returns the name of a recording: what the user has called it, else its model, when it began, and where it is a branch. */
 export function nameOf(run) {
-  return run.label?.name || `${run.model || run.id} ${whenText(run.made)}`;
+  return run.label?.name || [run.model || run.id, whenText(run.made), branchText(run)].filter(Boolean).join(" ");
+}
+
+/** Returns where a branch leaves its run, which began at the same time; an empty text if it is none. */
+export function branchText(run) {
+  return run.branched === null ? "" : `branch at ${run.branched.toFixed(2)} s`;
+}
+
+/** Returns the same with the name of that run, if it is in a list of recordings; a dash if it is no branch. */
+export function originText(run, list) {
+  const origin = list?.find(({ id }) => id === run.origin);
+  return run.branched === null ? "–" : `${branchText(run)}${origin ? ` of ${nameOf(origin)}` : ""}`;
 }
 
 /** Returns how long ago something was, as text. */
@@ -100,6 +111,6 @@ export function measureText(name, value) {
 
 /** Returns all text that a search includes. */
 export function textOf(run) {
-  const own = [run.id, run.model, `seed ${run.seed}`, outcomeText(run), endedText(run), run.branched === null ? "" : "branch", whenText(run.made), run.label?.name ?? "", run.label?.note ?? "", ...(run.label?.tags ?? [])];
+  const own = [run.id, run.model, `seed ${run.seed}`, outcomeText(run), endedText(run), branchText(run), whenText(run.made), run.label?.name ?? "", run.label?.note ?? "", ...(run.label?.tags ?? [])];
   return [...own, ...Object.entries(run.parameters).map(([name, value]) => `${name} ${valueText(value)}`)].join("  ").toLowerCase();
 }

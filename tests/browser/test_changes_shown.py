@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -103,6 +104,16 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
     label = {"name": "<i>to five</i>", "note": "as it was", "tags": ["long", "kept"]}
     assert workbench.get(f"/api/recordings/{branch}").json()["label"] == label
     expect(page.locator("tr[data-run] .tag")).to_have_text(["long", "kept"])
+
+    # beside its run, which began at the same time, it says where it leaves that
+    rows.nth(1).get_by_role("button", name="Compare").click()
+    compared = page.get_by_role("dialog")
+    expect(compared.locator(".compare-run").first).to_have_text(re.compile(r"<i>to five</i> \S+, branch at 0\.12 s$"))
+    expect(compared.locator(".compare-run").last).not_to_contain_text("branch")
+    expect(compared.get_by_role("row", name="branch", exact=False).first).to_contain_text("branch at 0.12 s of counting.py")
+    compared.get_by_role("button", name="Close").click()
+    said = page.locator(f"tr[data-run='{branch}']").get_by_text("branch at 0.12 s")
+    expect(said).to_have_attribute("title", re.compile(r"branch at 0\.12 s of counting\.py"))
 
     # the branch is shown as a recording with its own address; a change there is a branch of it, and the live run is left alone
     rows.nth(1).locator(".branch-name").click()
