@@ -36,14 +36,31 @@ export function useChange() {
   return { problem, send, forget: () => setProblem(null) };
 }
 
-function valueOf({ takes }, text) {
-  if (takes.includes("number")) return text.trim() === "" ? null : Number(text);
+/** The units in which people give a number instead of that of the field, and by how much their numbers are larger. */
+const FOR_PEOPLE = { rad: { unit: "°", factor: 180 / Math.PI } };
+
+/** Returns [unit, factor]: the unit in which a field is asked for, and by how much numbers are larger in it. */
+function unitOf({ unit }) {
+  const { unit: shown = unit, factor = 1 } = FOR_PEOPLE[unit] ?? {};
+  return [shown, factor];
+}
+
+function valueOf(field, text) {
+  if (field.takes.includes("number")) return text.trim() === "" ? null : Number(text) / unitOf(field)[1];
   return text;
+}
+
+/** Returns the text with which the form of a field begins. */
+function firstOf(field, objects) {
+  if (field.name === "object") return objects[0];
+  return typeof field.default === "number" ? field.default * unitOf(field)[1] : (field.default ?? "");
 }
 
 function Fields({ fields, values, objects }) {
   return fields.map((field) => {
-    const { name, unit, help, required } = field;
+    const { name, required } = field;
+    const [unit] = unitOf(field);
+    const help = field.help.replace(`[${field.unit}]`, `[${unit}]`);
     const put = (event) => (values[name] = event.currentTarget.value);
     return html`<label key=${name} class="field" title=${help}>
       ${name}${unit ? html` <span class="quiet">[${unit}]</span>` : null}
@@ -58,7 +75,7 @@ function Fields({ fields, values, objects }) {
 export function askAndMake(one, given = {}) {
   const objects = session.value?.world?.objects ?? [];
   const fields = one.fields.filter(({ name }) => !(name in given));
-  const values = Object.fromEntries(fields.map(({ name, default: first }) => [name, name === "object" ? objects[0] : (first ?? "")]));
+  const values = Object.fromEntries(fields.map((field) => [field.name, firstOf(field, objects)]));
   const problem = signal(null);
   const Body = () => html`<p class="quiet">${one.help}</p><${Fields} fields=${fields} values=${values} objects=${objects} /><${Problem} text=${problem.value} />`;
   const check = async () => {
