@@ -1,6 +1,6 @@
 // The contents of the agents: every buffer with its chunk, every module with its state, by agent; and the result of a run.
 
-import { html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { html, signal, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { AtStart } from "../inspector/at_start.js";
 import { agentOf, agentsOf, nameIn } from "../inspector/agents.js";
 import { useWrittenAgents } from "../inspector/description.js";
@@ -39,35 +39,64 @@ function useLines(text, open) {
   return { box, content, lines: running.value ? kept : needed.lines, more: needed.more };
 }
 
-/** The field in which a buffer is edited: Enter sets it, or clears it if it is empty; a problem is shown below. */
-function Edit({ path, name, chunk, onDone }) {
+/** The texts that are being written, by run and buffer: {text, from}, with the contents of the buffer when it was begun. A text stays until it
+ * is set or cancelled, or the buffer changes; also while another tab is shown. */
+const drafts = signal({});
+
+function keyOf(path) {
+  return `${session.value?.id} ${session.value?.run} ${path}`;
+}
+
+function keepDraft(path, draft) {
+  drafts.value = { ...drafts.peek(), [keyOf(path)]: draft };
+}
+
+/** The field in which a buffer is edited: Enter sets it, or clears it if it is empty; a problem is shown below.
+ * @param chosen Whether the user has just chosen to edit it.
+ * @param onLeft Called if it goes away while it has the focus. */
+function Edit({ path, name, draft, chosen, onLeft }) {
   const { problem, send, forget } = useChange();
   const line = useRef(null);
-  useLayoutEffect(() => line.current.select(), []);
+  useLayoutEffect(() => {
+    if (chosen) line.current.select();
+    return () => document.activeElement === line.current && onLeft();
+  }, []);
+  const done = () => keepDraft(path, undefined);
 
   async function press(event) {
     event.stopPropagation();
     const text = line.current.value.trim();
-    if (event.key === "Escape") onDone();
+    if (event.key === "Escape") done();
     else if (event.key !== "Enter") forget();
-    else if (text ? await send("set_buffer", { buffer: path, chunk: text }) : await send("clear_buffer", { buffer: path })) onDone();
+    else if (text ? await send("set_buffer", { buffer: path, chunk: text }) : await send("clear_buffer", { buffer: path })) done();
   }
 
-  return html`<input class="mono edit" ref=${line} aria-label="Chunk of ${name}" aria-invalid=${problem !== null} defaultValue=${writtenChunk(chunk)} placeholder="empty" maxlength="10000" onKeyDown=${press} onBlur=${() => problem === null && onDone()} />
+  const write = () => keepDraft(path, { ...draft, text: line.current.value });
+  return html`<input class="mono edit" ref=${line} aria-label="Chunk of ${name}" aria-invalid=${problem !== null} value=${draft.text} placeholder="empty" maxlength="10000" onInput=${write} onKeyDown=${press} />
     <${Problem} text=${problem} />`;
 }
 
 /** A buffer: its chunk, or the field in which it is edited. */
 function Buffer({ path, name, chunk }) {
-  const [edits, setEdits] = useState(false);
   const row = useRef(null);
+  const chosen = useRef(false);
+  const text = writtenChunk(chunk);
+  const draft = drafts.value[keyOf(path)];
+  const edits = draft?.from === text;
+  useEffect(() => {
+    if (draft && !edits) keepDraft(path, undefined);
+  }, [draft, edits]);
   const canEdit = alive.value && changesOf("buffer").some(({ word }) => word === "set_buffer");
-  const edit = () => canEdit && setEdits(true);
-  const done = () => (setEdits(false), requestAnimationFrame(() => row.current?.querySelector(".pen")?.focus()));
+  const edit = () => {
+    if (!canEdit || edits) return;
+    chosen.current = true;
+    keepDraft(path, { text, from: text });
+  };
+  const focus = () => requestAnimationFrame(() => row.current?.querySelector(".pen")?.focus());
   return html`<tr ref=${row} data-path=${path} onDblClick=${edit}>
     <th scope="row" class="mono" title=${path}>${name}</th>
     <td class=${edits ? "edits" : ""}>
-      ${edits ? html`<${Edit} path=${path} name=${name} chunk=${chunk} onDone=${done} />` : html`<${Shown} name=${name} chunk=${chunk} onEdit=${canEdit ? edit : null} />`}
+      ${edits ? html`<${Edit} path=${path} name=${name} draft=${draft} chosen=${chosen.current} onLeft=${focus} />` : html`<${Shown} name=${name} chunk=${chunk} onEdit=${canEdit ? edit : null} />`}
     </td>
   </tr>`;
 }

@@ -48,7 +48,22 @@ def test_a_mind_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[...
         shows(one, "tr[data-path=goal]", "<b>taskcountnumber7last9")
     page.get_by_role("button", name="Edit goal").click()
     expect(field).to_have_value("task:count number:7 last:9 <b>")
+    field.fill("a draft")
+    page.locator("#status").click()  # a draft stays where the focus goes elsewhere, or to another tab and back
+    open_tab(page, "Memory")
+    open_tab(page, "Buffers")
+    expect(field).to_have_value("a draft")
+    expect(field).not_to_be_focused()
+    say(other, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "of another browser"})
+    expect(field).to_have_count(0)  # what it was to replace is no longer there
+    say(other, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "task:count number:7 last:9 <b>"})
+    shows(page, "tr[data-path=goal]", "<b>taskcountnumber7last9")
+    expect(field).to_have_count(0)
+    page.get_by_role("button", name="Edit goal").click()
+    field.fill("x")
     field.press("Escape")
+    expect(field).to_have_count(0)
+    expect(page.get_by_role("button", name="Edit goal")).to_be_focused()
     assert commands(other) == ["set buffer goal task:count number:2 last:5 -> task:count number:7 last:9 <b>"]
 
     # a memory
@@ -58,7 +73,7 @@ def test_a_mind_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[...
     row = page.locator("#chunks tr", has_text="count78again")
     row.click()
     page.get_by_role("button", name="Strengthen").click()
-    page.wait_for_function("async () => (await part('store.js')).events.value.list.filter(([, , kind]) => kind === 'command').length === 3")
+    page.wait_for_function("async () => (await part('store.js')).events.value.list.filter(([, , kind]) => kind === 'command').length === 5")
     assert commands(page)[1:] == ["add chunk memory count 7 8 again", "strengthen memory count 7 8 again"]
 
     # productions: what is forbidden is marked, and the explanation says who did it
@@ -147,10 +162,12 @@ def test_things_in_the_scene_are_moved_and_pushed_by_numbers(pages: Callable[...
     dialog.get_by_role("button", name="Move").click()
     expect(dialog.get_by_role("alert")).to_contain_text("'walker' cannot be put at (7, 1.5) m: it would be inside 'aperture_left'")
     dialog.locator("input").nth(0).fill("1")
+    expect(dialog.locator("label", has_text="heading")).to_contain_text("[°]")
+    dialog.get_by_label("heading", exact=False).fill("90")
     dialog.get_by_role("button", name="Move").click()
     expect(dialog).to_have_count(0)
     say(page, type="step")
     shows(page, "#time", r"0\.01 s")
     say(page, type="command", word="move", values=["walker", 2.0, 1.0, 0.5])
     say(page, type="aperture", width=0.4)
-    assert commands(page) == ["move walker to (1, 1.5) m", "move walker to (2, 1) m, 29°", "aperture 50 -> 40 cm"]
+    assert commands(page) == ["move walker to (1, 1.5) m, 90°", "move walker to (2, 1) m, 29°", "aperture 50 -> 40 cm"]
