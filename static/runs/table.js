@@ -77,7 +77,7 @@ function Row({ run, list, number, now, toggle, open }) {
     <td class="when" title=${whenInFull(run.made)}><span class="number">${whenText(run.made)}</span><small>${agoText(run.made, now)}</small></td>
     <td class="model" title="${run.model || run.id}${different ? `\n${different}` : ""}\nseed ${String(run.seed)}">
       <span>${run.label?.name ? html`<b>${run.label.name}</b> <span class="quiet">${run.model || run.id}</span>` : run.model || run.id}${(run.label?.tags ?? []).map((tag) => html` <span key=${tag} class="tag">${tag}</span>`)}</span>
-      <small>${run.session ? html`<b class="present-mark" title=${own ? "The run that is shown" : "Its session is still there: choose its model above to show it"}>${own ? "present" : "open"}</b> · ` : null}${run.problem ? "" : html`${run.branched === null ? null : html`<b title=${originText(run, list)}>${branchText(run)}</b> · `}${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
+      <small>${run.session ? html`<b class="present-mark" title=${own ? "The run that is shown" : "Its session is still there: choose its model above to show it"}>${own ? "present" : "open"}</b> · ` : null}${run.problem ? "" : html`${run.branched === null ? null : html`<b title="branch ${originText(run, list)}">${branchText(run)}</b> · `}${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
     </td>
     <td class="outcome ${run.problem || run.failed ? "bad" : ""}" title=${endedText(run)}>
       <span>${outcomeText(run)} <span class="number">${resultText(run)}</span></span><small>${endedText(run)}</small>

@@ -40,10 +40,10 @@ export function branchText(run) {
   return run.branched === null ? "" : `branch at ${run.branched.toFixed(2)} s`;
 }
 
-/** Returns the same with the name of that run, if it is in a list of recordings; a dash if it is no branch. */
+/** Returns when, and of which run in a list of recordings, a recording is a branch; a dash if it is none. */
 export function originText(run, list) {
   const origin = list?.find(({ id }) => id === run.origin);
-  return run.branched === null ? "–" : `${branchText(run)}${origin ? ` of ${nameOf(origin)}` : ""}`;
+  return run.branched === null ? "–" : `at ${run.branched.toFixed(2)} s${origin ? ` of ${nameOf(origin)}` : ""}`;
 }
 
 /** Returns how long ago something was, as text. */

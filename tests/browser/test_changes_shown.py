@@ -125,7 +125,7 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
     compared = page.get_by_role("dialog")
     expect(compared.locator(".compare-run").first).to_have_text(re.compile(r"<i>to five</i> \S+, branch at 0\.12 s$"))
     expect(compared.locator(".compare-run").last).not_to_contain_text("branch")
-    expect(compared.get_by_role("row", name="branch", exact=False).first).to_contain_text("branch at 0.12 s of counting.py")
+    expect(compared.get_by_role("row", name="branch", exact=False).first).to_contain_text("at 0.12 s of counting.py")
     compared.get_by_role("button", name="Close").click()
     said = page.locator(f"tr[data-run='{branch}']").get_by_text("branch at 0.12 s")
     expect(said).to_have_attribute("title", re.compile(r"branch at 0\.12 s of counting\.py"))
