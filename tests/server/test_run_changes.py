@@ -103,6 +103,21 @@ def test_changes_are_repeated_exactly_by_going_back_by_a_replay_and_by_opening(k
         assert replay(recorded).difference is None
 
 
+def test_a_change_says_what_is_lost_if_the_opened_recording_has_been_deleted(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, MODELS["program"][0], record=True)
+    there(talk, 0.3)
+    path = recording(talk)
+    desk.do(talk.session.close())
+    opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
+    opened.until("paused", furthest=0.3)
+    there(opened, 0.1)
+    path.unlink()
+    with pytest.raises(RefusedError, match=r"has been deleted: what lies ahead, from 0\.1 to 0\.3 s, would be lost"):
+        opened.say("command", word="set_buffer", named={"buffer": "goal", "chunk": "count 9"})
+    opened.say("command", word="set_buffer", named={"buffer": "goal", "chunk": "count 9"}, drop=True)
+    assert opened.state["reason"] == "changed at 0.10 s; the rest was lost"
+
+
 def test_an_opened_recording_that_nobody_changes_leaves_no_other(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, BUILT, record=True)
     there(talk, 0.3)
