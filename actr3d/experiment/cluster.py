@@ -21,7 +21,7 @@ from queue import Empty, SimpleQueue
 from typing import Any, NoReturn, cast
 
 import dask.config
-from distributed import Client, KilledWorker, LocalCluster, get_worker
+from distributed import Client, KilledWorker, LocalCluster, Status, get_worker
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Experiment
@@ -178,9 +178,11 @@ class _Run:
 
     def _replace_workers(self) -> None:
         """Starts the workers again that the cluster of this computer has given up, because they took long to come back when they had
-        been ended; it would wait for ever without any."""
+        been ended, or could not be started again; it would wait for ever without any."""
         cluster = self._client.cluster
         if cluster is not None and self._workers() < len(cluster.worker_spec):
+            for name in [name for name, worker in list(cluster.workers.items()) if worker.status is Status.failed]:
+                del cluster.workers[name]  # else the cluster keeps it, and starts no other in its place
             cluster.scale(len(cluster.worker_spec))
 
     def _next_batches(self, numbers: Iterator[int]) -> Iterator[list[int]]:
