@@ -195,6 +195,7 @@ class _Drawn:
             shown.show(name in look.shown)
         self._server, self._moments = server, moments
         self._stage = SceneFraming(self._model, [world["bodies"][name]["root"] for name in world["agents"]])
+        self._time: float | None = None  # of the state that is shown [s]
         self._outlines = Outlines(server, self._model)
         self._shades = Shades(self._model, self._stage.ground)
         send_scene_data(server, "stage", self._stage.data(lay_grounds(server, self._model)))
@@ -230,10 +231,11 @@ class _Drawn:
             if overlay.visible or name == "frustum":
                 overlay.draw(self.data, state.drawn.get(name))
         self._panel.show(state)
+        self._time = state.time
         self._send_now()
 
     def _send_now(self) -> None:
-        """Sends browsers the positions of the body, its eye and its head, and the shadows and labels."""
+        """Sends browsers the time, the positions of the body, its eye and its head, and the shadows and labels."""
         if not np.isfinite(self.data.xpos).all():
             return  # physics has diverged: keep the last valid state
         self._outlines.draw(self.data)
@@ -241,6 +243,7 @@ class _Drawn:
         assert isinstance(eyes, Frustum)
         now = {
             "moment": self._moments.next(),
+            "time": self._time,
             "body": self._stage.base(self.data).round(5).tolist(),
             "eye": eyes.eye(self.data),
             "heads": eyes.heads(self.data),

@@ -16,7 +16,7 @@ import { frameBudget } from "../frame_budget.js";
 import { VIEWS } from "../scene/stage.js";
 import { runStatus } from "../run_status.js";
 import { openWindow } from "../windows.js";
-import { alive, running, session, state } from "../store.js";
+import { alive, complain, running, session, state } from "../store.js";
 
 const open = remembered("overlays open", false);
 const view = remembered("view", "follow");
@@ -48,6 +48,7 @@ function ViewBar() {
       ${canMove() ? html`<button title="Move or push a body or an object of the scene" onClick=${moveOrPush}>Move, push …</button>` : null}
       <button aria-expanded=${open.value} title="What is drawn over the scene" onClick=${() => (open.value = !open.value)}>Overlays</button>
       <button aria-label="Save the 3D view as a picture" title=${buttonTitle(keep)} onClick=${keepPicture}><${Icon} name="download" /></button>
+      <button aria-label="Make a video of the 3D view" title=${buttonTitle(film)} onClick=${makeVideo}><${Icon} name="film" /></button>
       <${ManualLink} page="scene" title="3D view" />
       <${AreaMenu} area="scene" opening=${openScene} />
     </div>
@@ -92,11 +93,22 @@ function keepPicture() {
   drawn?.toBlob((blob) => saveFile(`${name}.png`, blob), "image/png");
 }
 
+/** Asks for a stretch of the run, and makes a video of it. */
+async function makeVideo() {
+  try {
+    const { askForVideo } = await import("../video/dialog.js"); // only few visits need it
+    await askForVideo();
+  } catch (error) {
+    complain(error.message);
+  }
+}
+
 /** Whether there is a scene to look at. */
 const isShown = () => Boolean(session.value?.world && session.value.scene);
 command({ text: "Next view: with the body, free, from the side, from above, through the eye", key: "v", group: "3D view", work: nextView, ready: isShown });
 const reset = command({ text: "Reset view", key: "Shift+v", group: "3D view", work: resetView, ready: isShown });
 const keep = command({ text: "Save the 3D view as a picture (PNG)", group: "3D view", work: keepPicture, ready: isShown });
+const film = command({ text: "Make a video of the 3D view (WebM) …", group: "3D view", work: makeVideo, ready: isShown });
 commandsOf(() => (isShown() ? Object.entries(VIEWS).map(([id, title]) => ({ text: `View: ${title}`, group: "3D view", work: () => (view.value = id) })) : []));
 commandsOf(() => (session.value?.overlays ?? []).map(({ name, title }) => {
   const shown = overlay(name).value.value;

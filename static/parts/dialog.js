@@ -6,10 +6,10 @@ const open = signal(null);
 /** The dialog whose entries are being checked; null for none. */
 const checking = signal(null);
 
-/** Shows a dialog: `title`, `body` (made by `html`) and `actions` [{text, kind, value}]. Returns the value of the chosen action;
+/** Shows a dialog: `title`, `body` (made by `html`) and `actions` [{text, kind, value, busy?}]. Returns the value of the chosen action;
  * null if it is closed. With `ask` {label, value, problem?, choices?} it has a text field, and the entered text is returned;
  * with choices [{value, text}], {text, choice}. With `check` it stays open until that function has checked the result of an action and
- * returned true; the function shows itself what is wrong. */
+ * returned true; the function shows itself what is wrong, and meanwhile the action's button has the text `busy`. */
 export function dialog({ title, body = null, actions = [{ text: "Close", value: null }], ask = undefined, check = undefined }) {
   open.peek()?.resolve(null); // a new dialog replaces the open one
   return new Promise((resolve) => (open.value = { title, body, actions, ask, check, resolve }));
@@ -86,7 +86,7 @@ export function Dialogs() {
       ({ value, text }, n) => html`<label class="choice"><input type="radio" name="choice" value=${value} defaultChecked=${n === 0} />${text}</label>`,
     )}
     <footer role="none">
-      ${shown.actions.map(({ text, value, kind }) => html`<button class=${kind ?? ""} disabled=${isChecking && Boolean(value)} onClick=${() => done(value)}>${isChecking && value ? "checking …" : text}</button>`)}
+      ${shown.actions.map(({ text, value, kind, busy = "checking …" }) => html`<button class=${kind ?? ""} disabled=${isChecking && Boolean(value)} onClick=${() => done(value)}>${isChecking && value ? busy : text}</button>`)}
     </footer>
   </dialog>`;
 }

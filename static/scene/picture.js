@@ -1,13 +1,16 @@
 // A picture of the 3D view, with its sky and its labels.
 
-/** Returns what the 3D view shows now, as a canvas with `sharpness` pixels per pixel of the page. */
-export function pictureOf({ renderer, viewer, ground, labels }, sharpness) {
+/** Returns what the 3D view shows now, as a canvas with `sharpness` pixels per pixel of the page. A canvas that is given is drawn on;
+ * it keeps its size. */
+export function pictureOf({ renderer, viewer, ground, labels }, sharpness, given = null) {
   const { clientWidth: width, clientHeight: height } = renderer.domElement;
-  const canvas = document.createElement("canvas");
-  canvas.width = sharpness * width;
-  canvas.height = sharpness * height;
+  const canvas = given ?? document.createElement("canvas");
+  if (!given) {
+    canvas.width = sharpness * width;
+    canvas.height = sharpness * height;
+  }
   const context = canvas.getContext("2d");
-  context.scale(sharpness, sharpness);
+  context.setTransform(sharpness, 0, 0, sharpness, 0, 0);
   ground.paintSky(context, width, height);
   const ratio = renderer.getPixelRatio();
   renderer.setPixelRatio(sharpness);

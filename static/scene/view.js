@@ -120,7 +120,7 @@ viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   if (renderer.toneMapping) renderer.toneMapping = 0; // unchanged colours
   if (!kept) {
     keepFormer(renderer);
-    given.picture = (sharpness) => pictureOf({ renderer, viewer, ground, labels }, sharpness);
+    given.picture = (sharpness, canvas) => pictureOf({ renderer, viewer, ground, labels }, sharpness, canvas);
   }
   kept = true;
   const now = drawnNow();
@@ -161,6 +161,8 @@ function addSwitches() {
 }
 
 if (parent === window && new URLSearchParams(location.search).get("panel") !== "hidden") addSwitches();
+/** The time of the moment at which the shapes are drawn [s]; null if it is not known. */
+given.drawnTime = () => (isWhole() ? (drawnNow()?.time ?? null) : null);
 given.onview = choose;
 given.camera = camera;
 choose();

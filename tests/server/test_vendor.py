@@ -34,7 +34,9 @@ def test_the_manifest_names_every_bundle_and_every_package_has_its_licence() -> 
     licences = (VENDOR / "LICENSES.txt").read_text(encoding="utf-8")
     for package in MANIFEST["packages"]:
         assert f"{package['name']} {package['version']}\n" in licences
-        assert package["license"] in ("MIT", "Apache-2.0")
+        assert package["license"] in ("MIT", "Apache-2.0", "MPL-2.0")
+        if package["license"] == "MPL-2.0":  # it demands a note on where to get the source code
+            assert f"{package['name']} {package['version']}\n\nSource code: https://" in licences
 
 
 @pytest.mark.parametrize("path", OWN, ids=lambda path: path.name)

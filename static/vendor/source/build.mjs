@@ -6,7 +6,7 @@ import { readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { build } from "esbuild";
 
 const out = new URL("..", import.meta.url).pathname;
-const bundles = ["preact", "codemirror"];
+const bundles = ["preact", "codemirror", "mediabunny"];
 const { metafile } = await build({
   entryPoints: bundles.map((name) => `${name}.js`),
   outdir: out,
@@ -23,9 +23,11 @@ const packageOf = (path) => path.match(/node_modules\/((?:@[^/]+\/)?[^/]+)/)?.[1
 const facts = (name) => JSON.parse(readFileSync(`node_modules/${name}/package.json`));
 const used = new Set(Object.values(metafile.outputs).flatMap(({ inputs }) => Object.keys(inputs).map(packageOf)).filter(Boolean));
 const packages = [...used].sort().map((name) => ({ name, version: facts(name).version, license: facts(name).license }));
-const licences = packages.map(({ name, version }) => {
+const licences = packages.map(({ name, version, license }) => {
   const file = readdirSync(`node_modules/${name}`).find((one) => /^licen[cs]e/i.test(one));
-  return `${name} ${version}\n\n${readFileSync(`node_modules/${name}/${file}`, "utf8").trim()}\n`;
+  // The MPL demands a note on where to get the source code.
+  const source = license.startsWith("MPL") ? `Source code: ${facts(name).repository.url.replace("git+", "")}, or the package ${name} ${version} on npm\n\n` : "";
+  return `${name} ${version}\n\n${source}${readFileSync(`node_modules/${name}/${file}`, "utf8").trim()}\n`;
 });
 writeFileSync(`${out}/LICENSES.txt`, licences.join(`\n${"-".repeat(78)}\n\n`));
 

@@ -1,0 +1,115 @@
+"""The video of the 3D view: its dialog, and what is in the file, decoded by a browser."""
+
+from __future__ import annotations
+
+import re
+from base64 import b64encode
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.helpers.page import PATIENCE, Users, shows, until
+
+pytestmark = pytest.mark.scene
+
+DECODED = """async ([video, picture, count]) => {
+    const player = Object.assign(document.createElement("video"), { src: video, muted: true });
+    await new Promise((done, fail) => Object.assign(player, { onloadeddata: done, onerror: () => fail(new Error(player.error.message)) }));
+    const image = new Image();
+    image.src = picture;
+    await image.decode();
+    const context = new OffscreenCanvas(player.videoWidth, player.videoHeight).getContext("2d", { willReadFrequently: true });
+    const pixels = (of) => {
+        context.drawImage(of, 0, 0);
+        return context.getImageData(0, 0, player.videoWidth, player.videoHeight).data;
+    };
+    const wanted = pixels(image), off = [], shown = new Set();
+    for (let n = 0; n < count; n++) {
+        player.currentTime = (n + 0.5) / 30;
+        await new Promise((done) => (player.onseeked = done));
+        const found = pixels(player);
+        off.push(found.reduce((sum, value, at) => sum + Math.abs(value - wanted[at]), 0) / found.length);
+        shown.add(String(found));
+    }
+    return { size: [player.videoWidth, player.videoHeight], duration: player.duration, off, different: shown.size };
+}"""
+"""Compares each picture of a video with a PNG: how far the colours are off on average."""
+
+
+def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[..., Page], users: Users, tmp_path: Path) -> None:
+    page = pages(width=1000, height=600)
+    element = page.wait_for_selector("iframe[title='3D view'][src^='/viser/']", state="attached", timeout=PATIENCE)
+    frame = element.content_frame() if element is not None else None
+    assert frame is not None
+    frame.wait_for_function("() => window.scene?.picture && window.scene.drawnTime() === 0", timeout=PATIENCE)
+    button = page.get_by_role("button", name="Make a video of the 3D view")
+    dialog = page.get_by_role("dialog", name="Video of the 3D view")
+    make = dialog.get_by_role("button", name="Make the video")
+    button.click()
+    expect(dialog).to_contain_text("run it first")
+    page.keyboard.press("Escape")
+
+    def order(command: str) -> None:
+        page.evaluate(f"async () => (await part('server.js')).order({command})")
+
+    order("{ type: 'step', ticks: 60 }")
+    shows(page, "#time", r"t = 0\.60 s")
+    order("{ type: 'seek', time: 0.5 }")
+    until(page, lambda: frame.evaluate("() => window.scene.drawnTime()") == 0.5)
+    picture = frame.evaluate("() => window.scene.picture(1).toDataURL()")
+    order("{ type: 'seek', time: 0.4 }")
+
+    button.click()
+    first, last = (dialog.get_by_role("textbox", name=re.compile(f"^{name}")) for name in ("From", "To"))
+    expect(first).to_have_value("0.00")
+    expect(last).to_have_value("0.60")
+    expect(dialog).to_contain_text("19 pictures, 0.63 s of video")
+    for start, end, speed, wrong in (
+        ("", "0.6", "1", "must be a number of seconds"),
+        ("0.5", "0.5", "1", "must be later than the first time, 0.5 s"),
+        ("0", "0.7", "1", "must be from 0 to 0.60 s, which the run has reached"),
+    ):
+        first.fill(start)
+        last.fill(end)
+        dialog.get_by_label("Speed").select_option(speed)
+        make.click()
+        expect(dialog.get_by_role("alert")).to_contain_text(wrong)
+    too_long = "async (texts) => (await part('video/dialog.js')).problemsOf(texts, 2000)"
+    assert page.evaluate(too_long, {"begin": "0", "end": "600", "speed": "1"}) == {}
+    assert "at most 10 minutes" in page.evaluate(too_long, {"begin": "0", "end": "600", "speed": "0.5"})["end"]
+
+    first.fill("0.3")
+    last.fill("0.6")
+    expect(dialog).to_contain_text("10 pictures, 0.33 s of video")
+    with page.expect_download() as download:
+        make.click()
+    assert re.fullmatch(r"doorway_seed_\d+_0\.30_s_to_0\.60_s\.webm", download.value.suggested_filename)
+    download.value.save_as(tmp_path / "video.webm")
+    expect(dialog).to_have_count(0)
+    shows(page, "#time", r"t = 0\.40 s")
+
+    video = f"data:video/webm;base64,{b64encode((tmp_path / 'video.webm').read_bytes()).decode()}"
+    found = users.new(scene=False).new_page().evaluate(DECODED, [video, picture, 10])
+    width, height = frame.evaluate("() => [innerWidth, innerHeight]")
+    assert found["size"] == [width // 2 * 2, height // 2 * 2]
+    assert found["duration"] == pytest.approx(1 / 3, abs=0.001)
+    assert found["different"] == 10
+    assert found["off"].index(min(found["off"])) == 6  # the picture of 0.5 s
+    assert min(found["off"]) < 3
+
+    button.click()
+    dialog.get_by_label("Speed").select_option("0.25")
+    make.click()
+    expect(dialog.get_by_role("status")).to_contain_text(re.compile("[1-9] of 73 pictures"))
+    page.keyboard.press("Escape")
+    shows(page, "#time", r"t = 0\.40 s")
+    button.click()
+    make.click()
+    order("{ type: 'restart' }")
+    expect(dialog.get_by_role("alert")).to_contain_text("There is no video: the run was restarted")
+    page.keyboard.press("Escape")
+    page.evaluate("() => delete window.VideoEncoder")
+    button.click()
+    expect(dialog).to_contain_text("This browser cannot make videos")
