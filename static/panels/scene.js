@@ -40,7 +40,7 @@ function overlay(name) {
 
 /** The controls for this browser's view of the scene, and for the overlays shared by all viewers. */
 function ViewBar() {
-  return html`<div class="view-bar" role="toolbar" aria-label="3D view">
+  return html`<div class="view-controls"><div class="view-bar" role="toolbar" aria-label="3D view">
       <select aria-label="Camera" title="From where the scene is seen (V)" value=${view.value} onChange=${(event) => (view.value = event.currentTarget.value)}>
         ${Object.entries(VIEWS).map(([id, title]) => html`<option key=${id} value=${id}>${title}</option>`)}
       </select>
@@ -59,7 +59,7 @@ function ViewBar() {
           <input type="checkbox" checked=${overlay(name).value.value} onChange=${(event) => overlay(name).set(event.currentTarget.checked)} />${title}
         </label>`,
       )}
-    </div>`}`;
+    </div>`}</div>`;
 }
 
 function canMove() {
