@@ -13,7 +13,7 @@ from workbench.shipped import static
 
 @cache
 def palette() -> dict[str, Any]:
-    """Returns the colours in the file: of sky and ground by theme, of outlines, and of the labels in an agent's view."""
+    """Returns the colours in the file: of sky and ground by theme, of outlines, of clothes, and of the labels in an agent's view."""
     return json.loads((static() / "scene" / "palette.json").read_text(encoding="utf-8"))
 
 

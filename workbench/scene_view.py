@@ -15,6 +15,7 @@ from mujoco import MjData, MjModel
 
 from actr3d.world.compiled import loaded
 from workbench.backdrop import Outlines, Shades, lay_grounds, light
+from workbench.clothes import dress
 from workbench.curves import INTEGRATION
 from workbench.overlays import OVERLAYS, Drawn, Overlay, ViewSettings
 from workbench.overlays.frustum import Frustum
@@ -185,7 +186,9 @@ class _Drawn:
         mujoco.mj_forward(self._model, self.data)
         world: dict[str, Any] = msgspec.json.decode(facts.world)
         # The scene scales the model's visual settings, so it gets a copy of its own.
-        self._scene: Any = ViserMujocoScene(server, loaded(facts.mj_model), 1)
+        copy = loaded(facts.mj_model)
+        dress(copy, [body["root"] for name, body in world["bodies"].items() if name in world["agents"]])
+        self._scene: Any = ViserMujocoScene(server, copy, 1)
         self._scene.camera_tracking_enabled = False  # it would shift the world
         self._scene.set_refresh_handler(lambda: None)  # so that its own threads read no data
         server.scene.configure_environment_map(hdri=None)  # it takes much of the drawing time without a graphics card

@@ -16,6 +16,7 @@ from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent
 from actr3d.values import to_json
 from actr3d.world.compiled import from_text, loaded
+from workbench.clothes import dress
 from workbench.curves import stride
 from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
 from workbench.palette import palette
@@ -130,6 +131,8 @@ def _scene(recorded: Recorded, agents: Collection[str]) -> dict[str, Any] | None
     if "compiled" not in facts:
         return None
     model, period = loaded(from_text(facts["compiled"])), facts["period_us"]
+    roots = [body["root"] for name, body in facts["world"]["bodies"].items() if name in agents]
+    dress(model, roots)
     shapes = Shapes(model)
     bodies = shapes.bodies
     ticks = recorded.ticks
@@ -144,7 +147,6 @@ def _scene(recorded: Recorded, agents: Collection[str]) -> dict[str, Any] | None
                 yield state
 
     poses = poses_of(model, bodies, states())
-    roots = [body["root"] for name, body in facts["world"]["bodies"].items() if name in agents]
     return {
         "shapes": shapes.parts,
         "meshes": shapes.meshes,
