@@ -4,6 +4,7 @@ import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Output, WebMOutp
 
 const CODECS = { vp9: "vp09.00.50.08", vp8: "vp8" }; // of WebM, the better one first
 const BITS = 0.15; // of the file, per pixel and picture
+const MOST_BITS = 8e6; // of the file, per second: ten minutes fit into memory
 const BETWEEN_KEYS = 60; // pictures from one that players can jump to, to the next
 const MOST_QUEUED = 4; // pictures that wait to be compressed
 
@@ -12,7 +13,7 @@ const MOST_QUEUED = 4; // pictures that wait to be compressed
 export async function encoderFor({ width, height }, rate) {
   if (typeof VideoEncoder === "undefined") return null;
   for (const [name, codec] of Object.entries(CODECS)) {
-    const settings = { codec, width, height, framerate: rate, bitrate: Math.round(BITS * width * height * rate) };
+    const settings = { codec, width, height, framerate: rate, bitrate: Math.round(Math.min(MOST_BITS, BITS * width * height * rate)) };
     if ((await VideoEncoder.isConfigSupported(settings)).supported) return [name, settings];
   }
   return null;
@@ -26,8 +27,11 @@ export class VideoFile {
     const track = new EncodedVideoPacketSource(codec);
     this.output.addVideoTrack(track, { frameRate: this.rate });
     this.written = this.output.start();
-    this.failed = new Promise((_, reject) => (this.fail = reject));
-    this.failed.catch(() => {}); // whoever waits is told
+    this.failure = null;
+    this.failed = new Promise((_, reject) => {
+      this.fail = (error) => reject((this.failure ??= error));
+    });
+    this.failed.catch(() => {}); // those who wait get it
     const write = (chunk, more) => {
       this.written = this.written.then(() => track.add(EncodedPacket.fromEncodedChunk(chunk), more));
       this.written.catch(this.fail);
@@ -41,6 +45,7 @@ export class VideoFile {
     while (this.encoder.encodeQueueSize >= MOST_QUEUED) {
       await Promise.race([new Promise((done) => this.encoder.addEventListener("dequeue", done, { once: true })), this.failed]);
     }
+    if (this.failure) throw this.failure;
     const at = (count) => Math.round((count * 1e6) / this.rate);
     const picture = new VideoFrame(canvas, { timestamp: at(number), duration: at(number + 1) - at(number) });
     this.encoder.encode(picture, { keyFrame: number % BETWEEN_KEYS === 0 });

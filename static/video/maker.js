@@ -87,7 +87,13 @@ class Maker {
   async go(time) {
     this.check();
     this.expected = [this.expected[1], time];
-    await say({ type: "seek", time });
+    try {
+      await say({ type: "seek", time });
+    } catch (error) {
+      await nextFrame();
+      this.check(); // a run that was restarted has not been there: the reason is the restart
+      throw error;
+    }
     while (Math.abs(state.peek().time - time) >= NEAR) {
       await nextFrame(); // a program is still on its way
       this.check();

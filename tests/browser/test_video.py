@@ -16,6 +16,7 @@ pytestmark = pytest.mark.scene
 
 DECODED = """async ([video, picture, count]) => {
     const player = Object.assign(document.createElement("video"), { src: video, muted: true });
+    document.body.append(player);
     await new Promise((done, fail) => Object.assign(player, { onloadeddata: done, onerror: () => fail(new Error(player.error.message)) }));
     const image = new Image();
     image.src = picture;
@@ -27,8 +28,12 @@ DECODED = """async ([video, picture, count]) => {
     };
     const wanted = pixels(image), off = [], shown = new Set();
     for (let n = 0; n < count; n++) {
-        player.currentTime = (n + 0.5) / 30;
-        await new Promise((done) => (player.onseeked = done));
+        await new Promise((done, fail) => {
+            setTimeout(() => fail(new Error(`picture ${n} is not shown`)), 30_000);
+            const check = (_, { mediaTime }) => (Math.abs(mediaTime - n / 30) < 0.001 ? done() : player.requestVideoFrameCallback(check));
+            player.requestVideoFrameCallback(check);
+            player.currentTime = (n + 0.5) / 30;
+        });
         const found = pixels(player);
         off.push(found.reduce((sum, value, at) => sum + Math.abs(value - wanted[at]), 0) / found.length);
         shown.add(String(found));
@@ -47,8 +52,12 @@ def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[...,
     button = page.get_by_role("button", name="Make a video of the 3D view")
     dialog = page.get_by_role("dialog", name="Video of the 3D view")
     make = dialog.get_by_role("button", name="Make the video")
+    loaded = "(name) => performance.getEntriesByType('resource').some((one) => one.name.endsWith(name))"
+    assert page.evaluate(loaded, "/panels/scene.js")
+    assert not page.evaluate(loaded, "/mediabunny.js")  # only when a video is made
     button.click()
     expect(dialog).to_contain_text("run it first")
+    assert page.evaluate(loaded, "/mediabunny.js")
     page.keyboard.press("Escape")
 
     def order(command: str) -> None:
