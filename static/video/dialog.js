@@ -46,8 +46,7 @@ const explain = (text) => dialog({ title: TITLE, body: html`<p>${text}</p>` });
 export async function askForVideo() {
   const size = sizeNow();
   if (size === null) return explain("The 3D view has not been drawn yet.");
-  const chosen = await encoderFor(size, RATE);
-  if (chosen === null) return explain(NO_ENCODER);
+  if ((await encoderFor(size, RATE)) === null) return explain(NO_ENCODER);
   if (furthest.peek() === 0) return explain("The run is at its start, and has reached nothing else: run it first.");
 
   const texts = signal({ begin: entry(0), end: entry(furthest.peek()), speed: "1" });
@@ -71,7 +70,8 @@ export async function askForVideo() {
   function Summary() {
     if (Object.keys(problemsOf(texts.value, furthest.value)).length) return html`<p class="quiet">No video yet: see the times.</p>`;
     const count = countOf(stretchOf(texts.value));
-    return html`<p class="quiet number">${count} ${count === 1 ? "picture" : "pictures"}, ${seconds(count / RATE)} of video, ${size.width} × ${size.height} pixels, ${RATE} pictures a second</p>`;
+    const { width, height } = sizeNow() ?? size;
+    return html`<p class="quiet number">${count} ${count === 1 ? "picture" : "pictures"}, ${seconds(count / RATE)} of video, ${width} × ${height} pixels, ${RATE} pictures a second</p>`;
   }
 
   function Progress() {
@@ -102,7 +102,7 @@ export async function askForVideo() {
     const stretch = stretchOf(texts.peek());
     const name = pictureName(session.peek(), `${seconds(stretch.begin)} to ${seconds(stretch.end)}`);
     try {
-      saveFile(`${name}.webm`, await makeVideo(stretch, chosen, leaving.signal, (count) => (made.value = count)));
+      saveFile(`${name}.webm`, await makeVideo(stretch, leaving.signal, (count) => (made.value = count)));
       return true;
     } catch (error) {
       problem.value = `There is no video: ${error.message}`;

@@ -4,7 +4,7 @@
 import { order, say } from "../server.js";
 import { listeners, session, state, way } from "../store.js";
 import { furthest, sayThere } from "../timeline/seek.js";
-import { VideoFile } from "./encoder.js";
+import { encoderFor, VideoFile } from "./encoder.js";
 
 export const RATE = 30; // pictures a second
 export const LONGEST = 600; // length of a video [s]
@@ -118,7 +118,9 @@ class Maker {
     }
   }
 
-  async make(chosen, progress) {
+  async make(progress) {
+    const chosen = await encoderFor(this.size, RATE);
+    if (chosen === null) throw new Error("this browser cannot encode pictures of this size");
     const file = new VideoFile(chosen);
     listeners.add(this.listen);
     try {
@@ -146,18 +148,17 @@ class Maker {
  * Pauses the run, and makes a video of a stretch of it; afterwards the run is where it was, unless somebody else has taken it elsewhere.
  * Returns it as a Blob, or throws an Error with the reason.
  * @param {Stretch} stretch
- * @param chosen What `encoderFor` has returned for `sizeNow`.
  * @param {AbortSignal} stopped Cancels it.
  * @param {(count: number) => void} progress Called with the number of pictures made.
  */
-export async function makeVideo(stretch, chosen, stopped, progress) {
+export async function makeVideo(stretch, stopped, progress) {
   await sayThere({ type: "pause" });
   stopped.throwIfAborted();
   const maker = new Maker(stretch, stopped);
   const goBack = () => way.peek() === maker.way && order({ type: "seek", time: maker.before });
   addEventListener("pagehide", goBack);
   try {
-    const made = await maker.make(chosen, progress);
+    const made = await maker.make(progress);
     await goBack();
     return made;
   } catch (error) {
