@@ -119,6 +119,7 @@ class Maker {
   }
 
   async make(progress) {
+    this.check();
     const chosen = await encoderFor(this.size, RATE);
     if (chosen === null) throw new Error("this browser cannot encode pictures of this size");
     const file = new VideoFile(chosen);
