@@ -99,8 +99,9 @@ def _use(address: str, home: Path) -> None:
     page = ask("/").decode()
     if "<html" not in page:
         raise SystemExit("there is no page")
+    files = page.partition('src="')[2].partition("main.js")[0]
     for file in (ROOT / "static").rglob("*"):
-        if file.is_file() and ask(f"/static/{file.relative_to(ROOT / 'static').as_posix()}") != file.read_bytes():
+        if file.is_file() and ask(f"{files}{file.relative_to(ROOT / 'static').as_posix()}") != file.read_bytes():
             raise SystemExit(f"the page's {file.name} is another")
     if ask("/manual/workbench/buffers/") != (SITE / "workbench" / "buffers" / "index.html").read_bytes():
         raise SystemExit("the manual is another")

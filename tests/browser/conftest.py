@@ -30,8 +30,8 @@ def browser() -> Iterator[Browser]:
 
 
 @pytest.fixture(scope="module")
-def users(browser: Browser) -> Users:
-    return Users(browser)
+def users(browser: Browser, workbench: Served) -> Users:
+    return Users(browser, workbench.url)
 
 
 @pytest.fixture

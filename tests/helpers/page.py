@@ -58,10 +58,11 @@ NO_SCENE = "if (location.pathname.startsWith('/viser/')) { window.stop(); parent
 
 
 class Users:
-    """The users of a browser: each has a memory of its own, but for the page's files, which a browser loads once."""
+    """The users of a workbench in one browser: each has a memory of its own, but for the page's files, which a browser loads once."""
 
-    def __init__(self, browser: Browser) -> None:
+    def __init__(self, browser: Browser, url: str) -> None:
         self._browser = browser
+        self._url = url
         self._free: dict[bool, list[BrowserContext]] = {True: [], False: []}
         self._taken: list[tuple[bool, BrowserContext]] = []
 
@@ -82,13 +83,11 @@ class Users:
         for scene, context in self._taken:
             context.unroute_all()
             context.clear_permissions()
-            addresses = {page.url for page in context.pages}
             for page in context.pages:
                 page.close()
             blank = context.new_page()
             storage = context.new_cdp_session(blank)
-            for address in addresses:
-                storage.send("Storage.clearDataForOrigin", {"origin": address, "storageTypes": "all"})  # pyright: ignore[reportUnknownMemberType]
+            storage.send("Storage.clearDataForOrigin", {"origin": self._url, "storageTypes": "all"})  # pyright: ignore[reportUnknownMemberType]
             blank.close()
             self._free[scene].append(context)
         self._taken.clear()
