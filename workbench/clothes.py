@@ -1,4 +1,4 @@
-"""Gives each agent of a scene its own clothes in what is drawn. The world itself, and with it what eyes see, stays as it is."""
+"""Gives each agent of a scene its own clothes in what is drawn. The world itself, and with it what eyes see, does not change."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from actr3d.world.changes.world_change import WorldChange
 from actr3d.world.world import World
 
 FARTHEST = 10_000.0
-"""Greatest coordinate [m]: there, the numbers of 32 bits with which scenes are drawn still tell millimetres apart."""
+"""Greatest coordinate [m]: there, the numbers of 32 bits with which scenes are drawn still distinguish millimetres."""
 MOST_TURN = 1_000.0
 """Greatest heading [rad]: more than a body ever turns. Chosen here."""
 
