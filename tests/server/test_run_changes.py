@@ -54,6 +54,17 @@ def recording(talk: Talk) -> Path:
     return Path(talk.session.start.record)
 
 
+def reopened(desk: Desk, folder: Path, source: str) -> tuple[Path, Talk]:
+    """Runs a model for 0.3 s; returns its recording, and a session that has opened it."""
+    talk = desk.begin(folder, source, record=True)
+    there(talk, 0.3)
+    path = recording(talk)
+    desk.do(talk.session.close())
+    opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
+    opened.until("paused", furthest=0.3)
+    return path, opened
+
+
 @pytest.mark.parametrize("kind", MODELS)
 def test_changes_are_repeated_exactly_by_going_back_by_a_replay_and_by_opening(kind: str, desk: Desk, tmp_path: Path) -> None:
     source, agent, below = MODELS[kind]
@@ -104,12 +115,7 @@ def test_changes_are_repeated_exactly_by_going_back_by_a_replay_and_by_opening(k
 
 
 def test_a_change_says_what_is_lost_if_the_opened_recording_has_been_deleted(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, MODELS["program"][0], record=True)
-    there(talk, 0.3)
-    path = recording(talk)
-    desk.do(talk.session.close())
-    opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
-    opened.until("paused", furthest=0.3)
+    path, opened = reopened(desk, tmp_path, PROGRAM)
     there(opened, 0.1)
     path.unlink()
     with pytest.raises(RefusedError, match=r"has been deleted: what lies ahead, from 0\.1 to 0\.3 s, would be lost"):
@@ -119,15 +125,10 @@ def test_a_change_says_what_is_lost_if_the_opened_recording_has_been_deleted(des
 
 
 def test_an_opened_recording_that_nobody_changes_leaves_no_other(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, BUILT, record=True)
-    there(talk, 0.3)
-    path = recording(talk)
-    desk.do(talk.session.close())
-    opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
-    opened.until("paused", furthest=0.3)
+    path, opened = reopened(desk, tmp_path, BUILT)
     there(opened, 0.2)
     assert recording(opened).exists()
-    assert [one.stem for one in talk.sessions.recordings.all()] == [path.stem]  # it is not listed
+    assert [one.stem for one in opened.sessions.recordings.all()] == [path.stem]  # it is not listed
     assert opened.facts["recording"] is None
     desk.do(opened.sessions.close(opened.session.name))
     assert list(path.parent.glob("*.sqlite*")) == [path]

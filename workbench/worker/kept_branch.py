@@ -34,19 +34,18 @@ class KeptBranch:
         self._ahead = furthest > clock
         self._branch: Path | None = None
         # A run that repeats a recording is kept by that recording.
-        self._repeated = Path(start.recorded) if start.recorded is not None and controller.repeats_recording else None
-        gone = self._repeated is not None and not self._repeated.is_file()
-        if gone:
-            self._repeated = None
+        repeated = Path(start.recorded) if start.recorded is not None and controller.repeats_recording else None
+        self._is_gone = repeated is not None and not repeated.is_file()
+        self._repeated = None if self._is_gone else repeated
         if self._ahead and self._repeated is None:
-            self._branch = self._copy(None if gone else recording, drop=drop)
+            self._branch = self._copy(recording, drop=drop)
 
     def _copy(self, recording: Recording | None, *, drop: bool) -> Path | None:
         ahead = f"what lies ahead, from {self._at:g} to {self._until:g} s,"
-        if recording is None or self._start.record is None:
+        if self._is_gone or recording is None or self._start.record is None:
             if drop:
                 return None
-            why = "the run is not recorded" if self._start.recorded is None else "the recording that this run repeats has been deleted"
+            why = "the recording that this run repeats has been deleted" if self._is_gone else "the run is not recorded"
             raise SimulationError(f"{why}: {ahead} would be lost; go to its newest moment, or allow it with `drop`")
         path = new_branch(Path(self._start.record), self._at)
         try:
