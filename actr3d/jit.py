@@ -16,7 +16,8 @@ OPTIONS: Any = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_
 """Division by zero gives infinity; no compiled function allocates memory, so that no references need to be counted."""
 
 
-_inner: set[object] = set()
+_inner: set[FunctionType] = set()
+"""The functions that are marked with `compiled`."""
 
 
 def _njit(**options: Any) -> Any:
@@ -27,7 +28,7 @@ def _njit(**options: Any) -> Any:
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Marks a function that only compiled functions call: it is compiled with the first of these, as numba takes long to load."""
-    _inner.add(function)
+    _inner.add(cast("FunctionType", function))
     return function
 
 
@@ -39,9 +40,9 @@ def _compiled(function: FunctionType) -> Any:
 
 def _linked(function: FunctionType) -> FunctionType:
     """Returns a function that calls the compiled forms of the marked functions."""
-    called = {name: value for name in function.__code__.co_names if isinstance(value := function.__globals__.get(name), FunctionType)}
-    names = function.__globals__ | {name: _compiled(value) for name, value in called.items() if value in _inner}
-    linked = FunctionType(function.__code__, names, function.__name__, function.__defaults__, function.__closure__)
+    there = {name: function.__globals__.get(name) for name in function.__code__.co_names}
+    inner = {name: _compiled(value) for name, value in there.items() if isinstance(value, FunctionType) and value in _inner}
+    linked = FunctionType(function.__code__, function.__globals__ | inner, function.__name__, function.__defaults__, function.__closure__)
     linked.__qualname__ = function.__qualname__
     return linked
 

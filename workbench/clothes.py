@@ -26,11 +26,9 @@ def dress(model: MjModel, roots: Iterable[int]) -> None:
         roots: The MuJoCo body at the root of each agent's body, in the order of the scene.
     """
     colours = [np.array(channels(colour)) / 255 for colour in palette()["clothes"]]
-    for number, root in enumerate(roots):
-        if number == 0:
-            continue
+    for number, root in enumerate(list(roots)[1:]):
         for geom in np.flatnonzero(model.body_rootid[model.geom_bodyid] == model.body_rootid[root]).tolist():
             # Trousers and shoes are darker shades of the shirt.
             shade = float(model.geom_rgba[geom, :3] @ USUAL / (USUAL @ USUAL))
             if shade > DARKEST and np.abs(model.geom_rgba[geom, :3] - shade * USUAL).max() < NEAR:
-                model.geom_rgba[geom, :3] = shade * colours[(number - 1) % len(colours)]
+                model.geom_rgba[geom, :3] = shade * colours[number % len(colours)]

@@ -196,7 +196,7 @@ async def rename_recording(request: Request, recording: Id, body: Naming) -> dic
     """Renames a recording; a recording with a name given by a user is never deleted automatically."""
     sessions = sessions_of(request)
     await asyncio.to_thread(sessions.recordings.rename, recording, body.to)
-    sessions.listed_anew()
+    sessions.listings_changed()
     return {"renamed": body.to}
 
 
@@ -211,7 +211,7 @@ async def label_recording(request: Request, recording: Id, body: Labelling) -> d
     new, known = body.label, None if body.known is None else body.known.label
     changes = {field: getattr(new, field) for field in Label.__struct_fields__ if field in body.model_fields_set}
     label = await asyncio.to_thread(sessions.recordings.labels.change, recording, changes, known)
-    sessions.listed_anew()
+    sessions.listings_changed()
     return {"label": msgspec.structs.asdict(label)}
 
 
@@ -222,7 +222,7 @@ async def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
     if recording in sessions.writing():
         raise SessionError("an open run still writes this recording; restart its model or close its session, then delete it")
     await asyncio.to_thread(sessions.recordings.delete, recording)
-    sessions.listed_anew()
+    sessions.listings_changed()
     return {"deleted": recording}
 
 

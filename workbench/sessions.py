@@ -229,7 +229,7 @@ class Sessions:
         """Ends all sessions."""
         await asyncio.gather(*(self.close(name) for name in list(self._sessions)))
 
-    def listed_anew(self) -> None:
+    def listings_changed(self) -> None:
         """Informs all browsers that a recording was labelled, renamed or deleted."""
         for session in self.all():
             session.listings += 1
