@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -67,8 +68,8 @@ class LaunchedRun:
     def __init__(self, start: Start, worker: Worker) -> None:
         self.start = start
         self.worker = worker
-        self.over = False
-        """Whether the worker has ended."""
+        self.over = asyncio.Event()
+        """Set when the worker has ended and its last messages have been read."""
         self._helpers: dict[Path, str] = {}
         for file, text in list(start.helpers.values())[:MOST_HELPERS]:
             self._helpers[(Path(start.folder) / file).resolve()] = digest_of(text)

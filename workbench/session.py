@@ -6,6 +6,7 @@ import asyncio
 import time
 from collections import deque
 from collections.abc import Callable, Coroutine
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from workbench.retention import erase
 from workbench.run_request import LaunchedRun, RunOptions, start_of
 from workbench.worker.messages import At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
-from workbench.worker_monitor import Receiver, WorkerMonitor
+from workbench.worker_monitor import LAST_WORDS, Receiver, WorkerMonitor
 
 Watcher = Callable[[Facts | State | ViewSettings | None], None]
 
@@ -92,7 +93,7 @@ class Session(Broadcast, Receiver):
     @property
     def _worker(self) -> Worker | None:
         """The worker of the run on screen; None once it has ended."""
-        return None if self._shown is None or self._shown.over else self._shown.worker
+        return None if self._shown is None or self._shown.over.is_set() else self._shown.worker
 
     @property
     def _newest(self) -> LaunchedRun | None:
@@ -221,7 +222,7 @@ class Session(Broadcast, Receiver):
         asked = worker in self._asked
         self._asked.discard(worker)
         launched = self._run_of(worker)
-        if launched is None or launched.over:
+        if launched is None or launched.over.is_set():
             return
         self._ending = "stopped" if asked else ending
         where = f" at {self._stuck['file']}:{self._stuck['line']}" if self._stuck and self._stuck["file"] else ""
@@ -229,7 +230,7 @@ class Session(Broadcast, Receiver):
             self.add_notice(Notice(level="error", text=f"{self._ending}{where}"))
         elif asked and where:
             self.add_notice(Notice(level="warning", text=f"stopped while it was busy{where}"))
-        launched.over = True
+        launched.over.set()
         if launched is self._loading:
             self._loading = None
         else:
@@ -281,11 +282,15 @@ class Session(Broadcast, Receiver):
         self.run_task(end())
 
     async def stop(self) -> None:
-        """Ends the workers, whatever they are doing; after at most two seconds they are gone."""
+        """Ends the workers, whatever they are doing, and reads their last messages; after at most two seconds they are gone."""
         self._given_up = self._attempt  # including an attempt that has no worker yet
-        workers = [one.worker for one in (self._shown, self._loading) if one is not None and not one.over]
-        self._asked.update(workers)
-        await asyncio.gather(*(worker.stop() for worker in workers))
+        ending = [one for one in (self._shown, self._loading) if one is not None and not one.over.is_set()]
+        self._asked.update(one.worker for one in ending)
+        await asyncio.gather(*(one.worker.stop() for one in ending))
+        with suppress(TimeoutError):
+            async with asyncio.timeout(LAST_WORDS):
+                for one in ending:
+                    await one.over.wait()
 
     async def close(self) -> None:
         """Stops the workers, informs the watchers, and cancels all tasks."""
@@ -398,7 +403,7 @@ class Session(Broadcast, Receiver):
     @property
     def alive(self) -> bool:
         """Whether the current run still accepts commands."""
-        return self._shown is not None and not self._shown.over
+        return self._shown is not None and not self._shown.over.is_set()
 
     def _shown_file(self, file: str | None, start: Start | None = None) -> str | None:
         """Returns the path of a file in the models folder as pages show it; for the model itself, its current name."""

@@ -16,6 +16,8 @@ from actr3d.trace import Trace
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.files import ModelFile, ModelFolder, NoSuchFileError
 from workbench.session import Session
+from workbench.worker.messages import FromWorker
+from workbench.worker.workers import Worker
 
 MODELS = Path(__file__).parents[2] / "models"
 DOORWAY = (MODELS / "doorway.py").read_text(encoding="utf-8")
@@ -373,6 +375,21 @@ def test_a_program_is_recorded_once_however_often_it_goes_back(desk: Desk, tmp_p
     count = len(talk.events)
     desk.do(talk.session.stop())
     assert talk.summary(name).events == count
+
+
+def test_a_run_that_was_stopped_is_over_also_where_its_last_messages_are_read_slowly(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    talk = desk.begin(tmp_path, COUNTING, wait="paused")
+    received = Worker.receive
+
+    async def slowly(worker: Worker) -> FromWorker | None:
+        await asyncio.sleep(0.1)
+        return await received(worker)
+
+    monkeypatch.setattr(Worker, "receive", slowly)
+    desk.do(talk.session.stop())
+    assert not talk.session.alive
 
 
 def test_two_sessions_at_once(desk: Desk, tmp_path: Path) -> None:
