@@ -160,9 +160,9 @@ function connect() {
     if (message.state && message.state.status !== "running") update();
     else updateSoon();
   };
-  socket.onclose = () => {
+  socket.onclose = ({ reason }) => {
     connected.value = false;
-    abandon(() => new Error("the connection was lost"));
+    abandon(() => new Error(reason ? `the workbench ended the connection: ${reason}` : "the connection was lost"));
     setTimeout(connect, AGAIN);
   };
 }

@@ -105,9 +105,12 @@ class _Page:
                 message = await self._websocket.receive()
                 if message["type"] == "websocket.disconnect":
                     return
-                text: str = message.get("text") or ""  # pages send only text; other data counts as empty text
-                if len(text) > LONGEST or (feed is not None and feed.choked):
-                    await self._websocket.close(1009 if len(text) > LONGEST else 1008)
+                text: str | None = message.get("text")
+                if text is not None and len(text) > LONGEST:
+                    await self._websocket.close(1009, f"a message has at most {LONGEST:,} characters, not {len(text):,}")
+                    return
+                if feed is not None and feed.choked:
+                    await self._websocket.close(1008, "too many replies were not read")
                     return
                 attach, request, problem = _read(text)
                 if attach is not None:
@@ -156,17 +159,19 @@ def _reply(number: int | None, result: bytes = b"null", error: str | None = None
     return msgspec.json.encode({"id": number, "result": Raw(result), "error": error})
 
 
-def _number_of(text: str) -> int | None:
+def _number_of(text: str | None) -> int | None:
     """Returns the number of a page's message, even if the rest is invalid, so that the sender gets a reply; None if it has none."""
     try:
-        number = json.loads(text)["id"]
+        number = json.loads(text or "")["id"]
     except (ValueError, TypeError, LookupError, RecursionError):
         return None
     return number if isinstance(number, int) and 0 <= number < 2**53 else None
 
 
-def _read(text: str) -> tuple[protocol.Attach | None, protocol.Request | None, str]:
-    """Parses a page's message: an `Attach`, a `Request`, or the reason why it is neither."""
+def _read(text: str | None) -> tuple[protocol.Attach | None, protocol.Request | None, str]:
+    """Parses a page's message: an `Attach`, a `Request`, or the reason why it is neither. The text of a binary message is None."""
+    if text is None:
+        return None, None, "a message must be text (JSON), not binary data"
     try:
         if '"attach"' in text[:200]:
             return protocol.Attach.model_validate_json(text), None, ""

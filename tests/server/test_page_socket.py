@@ -15,7 +15,7 @@ from tests.helpers.workbench_server import Served, served
 from tests.server.test_live import attached, heard, opened
 from workbench.page_commands import COMMANDS
 from workbench.page_commands.session import Restart, Stop
-from workbench.sockets import MOST_PAGES
+from workbench.sockets import LONGEST, MOST_PAGES
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +60,9 @@ def test_what_is_wrong_is_told(server: Served, session: str, text: str | bytes) 
         await heard(socket, lambda message: "state" in message)
         await socket.send(text)
         told = await heard(socket, lambda message: "replies" in message or message["type"] == "refused")
-        assert told.get("error") or told["replies"][0]["error"]
+        error = told.get("error") or told["replies"][0]["error"]
+        assert error
+        assert ("not binary data" in error) == isinstance(text, bytes)
         await socket.send(json.dumps({"id": 7, "command": {"type": "events", "most": 1}}))  # and it goes on
         assert (await heard(socket, lambda message: "replies" in message))["replies"][-1]["error"] is None
         await socket.close()
@@ -99,6 +101,16 @@ def test_each_field_of_each_command_takes_any_nonsense_and_who_said_it_is_told(s
     asyncio.run(talk())
     assert server.get(f"/api/sessions/{session}").json()["session"]["alive"]
     assert server.post(f"/api/sessions/{session}/command", {"command": {"type": "speed", "factor": None}}).status_code == 200
+
+
+def test_a_message_that_is_too_long_ends_the_connection_with_the_reason(server: Served, session: str) -> None:
+    async def talk() -> None:
+        socket = await attached(server, session)
+        await socket.send("x" * (LONGEST + 1))
+        with pytest.raises(websockets.ConnectionClosed, match="at most 100,000 characters, not 100,001"):
+            await heard(socket, lambda message: "replies" in message)
+
+    asyncio.run(talk())
 
 
 @pytest.mark.slow
