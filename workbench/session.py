@@ -23,6 +23,9 @@ from workbench.worker.messages import At, Branched, Cut, Draw, Facts, FromWorker
 from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import LAST_WORDS, Receiver, WorkerMonitor
 
+ENDED = ("ended", "failed")
+"""The statuses of a run that is over."""
+
 Watcher = Callable[[Facts | State | ViewSettings | None], None]
 
 
@@ -35,9 +38,18 @@ class Session(Broadcast, Receiver):
         workers: The pool that starts workers.
         recording: Returns a new file for a recording of a model with the given name.
         shown_path: The model's path as pages show it.
+        tell_lists: Called whenever lists of recordings must be read again because of a run of this session.
     """
 
-    def __init__(self, name: str, path: Path, workers: Workers, recording: Callable[[str], Path], shown_path: str) -> None:
+    def __init__(
+        self,
+        name: str,
+        path: Path,
+        workers: Workers,
+        recording: Callable[[str], Path],
+        shown_path: str,
+        tell_lists: Callable[[], None],
+    ) -> None:
         super().__init__(name)
         self.path = path
         self.model = shown_path
@@ -52,7 +64,7 @@ class Session(Broadcast, Receiver):
         self.branched: Branched | None = None
         """What was kept when a user last changed something in the past of the current run."""
         self.listings: int = 0
-        """Counts how often a recording was labelled, renamed or deleted: then pages list recordings again."""
+        """Counts how often a recording began, ended, or was labelled, renamed or deleted: then pages list recordings again."""
         self.has_scene = False
         """Whether there is a 3D view."""
         self._shown: LaunchedRun | None = None
@@ -78,6 +90,9 @@ class Session(Broadcast, Receiver):
         """Whether runs with a body go in real time; until a user chooses a speed."""
         self._workers = workers
         self._new_recording = recording
+        self._tell_lists = tell_lists
+        self._listed: tuple[Any, ...] = ()
+        """What lists show of the run on screen."""
         self._beginning = asyncio.Lock()
         """Held while a new run is being given a worker."""
         self._given_up = 0
@@ -235,12 +250,19 @@ class Session(Broadcast, Receiver):
             self._loading = None
         else:
             self._stuck = None
-            if self.state is not None and self.state.status not in ("ended", "failed"):
+            if self.state is not None and self.state.status not in ENDED:
                 status_now = "failed" if self._ending != "stopped" else "ended"
                 reason = self._ending or self._after_end
                 self.state = msgspec.structs.replace(self.state, status=status_now, reason=reason, measured=None)
                 self.state_version += 1
         self.changed(facts=True)
+
+    def changed(self, *, facts: bool = False) -> None:
+        super().changed(facts=facts)
+        listed = (self._recording, self.alive, self.state is not None and self.state.status in ENDED, self.branched)
+        if listed != self._listed:
+            self._listed = listed
+            self._tell_lists()
 
     @property
     def is_loading(self) -> bool:
@@ -278,6 +300,7 @@ class Session(Broadcast, Receiver):
             await worker.stop()
             if useless is not None:
                 erase(Path(useless))
+            self._tell_lists()
 
         self.run_task(end())
 

@@ -210,7 +210,7 @@ class Sessions:
             await self.close(next((one for one in idle if one.recorded is not None), idle[0]).name)
         self._count += 1
         name = f"s{self._count}"
-        session = Session(name, path, self.workers, self.recordings.new, model)
+        session = Session(name, path, self.workers, self.recordings.new, model, self.listings_changed)
         self._sessions[name] = session
         self._views[name] = SceneView(session)
         return session
@@ -230,7 +230,7 @@ class Sessions:
         await asyncio.gather(*(self.close(name) for name in list(self._sessions)))
 
     def listings_changed(self) -> None:
-        """Informs all browsers that a recording was labelled, renamed or deleted."""
+        """Informs all browsers that a recording began, ended, or was labelled, renamed or deleted."""
         for session in self.all():
             session.listings += 1
             session.changed(facts=True)

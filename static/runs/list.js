@@ -2,7 +2,6 @@
 
 import { batch, computed, effect, signal, untracked } from "../vendor/preact.js";
 import { call } from "../server.js";
-import { isOver } from "../run_status.js";
 import { session, state, way } from "../store.js";
 
 const PART = 250;
@@ -68,10 +67,10 @@ export function forgetRun(id) {
   total.value -= 1;
 }
 
-/** Keeps the list up to date while it is shown, also when the run goes another way, or another browser names or deletes a recording; returns
- * the function that stops this. */
+/** Keeps the list up to date while it is shown: the server tells whenever a recording of any session began, ended or was changed. Returns the
+ * function that stops this. */
 export function follow() {
-  const key = computed(() => `${session.value?.id} ${session.value?.run} ${session.value?.alive} ${isOver.value} ${session.value?.branched?.recording} ${session.value?.listings} ${way.value}`);
+  const key = computed(() => `${session.value?.id} ${session.value?.listings} ${way.value}`);
   return effect(() => {
     key.value;
     untracked(() => void listRuns());

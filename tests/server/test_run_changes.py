@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 import pytest
@@ -21,6 +22,7 @@ from workbench.retention import Keeping, branched_at
 
 AGENT = counter_text("PMNoise(noise=0.3)")
 PROGRAM = AGENT + "\nfirst = Counter()\nfirst.run(0.4)\nsecond = Counter()\nsecond.run(3)\nprint('over')\n"
+COUNTING = (Path(__file__).parents[2] / "models" / "tutorial" / "counting.py").read_text(encoding="utf-8")
 BUILT = (
     AGENT
     + """
@@ -191,13 +193,30 @@ def test_all_browsers_hear_that_a_recording_was_labelled_renamed_or_deleted(desk
         sent = json.dumps(body).encode()
         return desk.do(call(app, f"/api/recordings/{path}", HOST, COOKIE, ORIGIN, JSON, OURS, method="POST", body=sent)).status
 
-    heard: list[int] = []
     for path, body in ((f"{name}/label", {"name": "x"}), (f"{name}/rename", {"to": "other"}), ("other/delete", {})):
-        before = talk.session.facts_version
+        before, heard = talk.session.facts_version, talk.facts["listings"]
         assert post(path, body) == 200
         assert talk.session.facts_version > before
-        heard.append(talk.facts["listings"])
-    assert heard == [1, 2, 3]
+        assert talk.facts["listings"] == heard + 1
+
+
+def test_browsers_hear_that_a_run_of_another_session_has_begun_and_ended(desk: Desk, tmp_path: Path) -> None:
+    watching = desk.begin(tmp_path, BUILT)
+    (tmp_path / "counting.py").write_text(COUNTING, encoding="utf-8")
+    other: list[Talk] = []
+
+    def begins() -> None:
+        other.append(Talk(desk, desk.do(watching.sessions.open("counting.py", {}, seed=1, record=True, run=False)), watching.sessions))
+
+    def is_left() -> None:
+        other[0].say("restart")
+        other[0].wait(lambda: other[0].facts["run"] == 2)
+
+    for change in (begins, lambda: other[0].say("run"), is_left, lambda: desk.do(other[0].session.stop())):
+        heard = watching.facts["listings"]
+        change()
+        watching.wait(lambda before=heard: watching.facts["listings"] > before)
+        sleep(0.2)  # in which the rest of what this change tells arrives
 
 
 def test_a_damaged_file_of_labels_is_kept_and_nothing_is_deleted_without_it(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
