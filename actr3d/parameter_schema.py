@@ -150,11 +150,18 @@ def _of_field(field: Any, declared: Any, words: str) -> Parameter:
                 found = _with_mark(found, mark)
         else:
             found = replace(found, optional=found.optional or NoneType in parts)
-            declared = next(part for part in parts if part is not NoneType)
+            several = [part for part in parts if part is not NoneType]
+            if len(several) > 1:
+                return replace(found, takes="number" if set(several) == {int, float} else " | ".join(map(_name_of, several)))
+            (declared,) = several
     if get_origin(declared) is Literal:
         return replace(found, takes="choice", choices=get_args(declared))
-    name = getattr(get_origin(declared) or declared, "__name__", str(declared))
+    name = _name_of(declared)
     return replace(found, takes=_TAKES.get(name, name))
+
+
+def _name_of(declared: Any) -> str:
+    return getattr(get_origin(declared) or declared, "__name__", str(declared))
 
 
 def _with_mark(found: Parameter, mark: object) -> Parameter:

@@ -80,6 +80,13 @@ def test_a_field_without_default_must_be_given() -> None:
     assert "must be given" in options_help([field])
 
 
+def test_a_field_of_several_types_names_them_all() -> None:
+    text = "from dataclasses import dataclass\n@dataclass\nclass A:\n    a: bool | str | None\n    b: int | float\n"
+    first, second = parameters_of(load_text(text, "a.py").A)
+    assert (first.takes, first.optional, first.value("True"), first.value("x")) == ("bool | str", True, True, "x")
+    assert second.takes == "number"
+
+
 @pytest.mark.parametrize(
     ("words", "settings"),
     [
