@@ -33,7 +33,7 @@ class SceneView:
     """Shows the world of a session's run with overlays and viser's own panel.
 
     Everything is drawn in a separate thread from a copy of the model. If states arrive faster than they can be drawn, only the newest is
-    drawn. If no browser is connected, nothing is drawn, and the worker computes no data for overlays.
+    drawn. As long as no browser wants it, nothing is built or drawn, and the worker computes no data for overlays.
 
     Args:
         session: The session to show; it receives the commands that users give in the panel.
@@ -45,6 +45,8 @@ class SceneView:
         self._secret = secrets.token_urlsafe(32)
         self._lock = threading.Lock()
         self._changed = asyncio.Event()
+        self._asked = False
+        """Whether a browser is about to connect."""
         self._facts: Facts | None = None
         self._state: State | None = None
         self._look = session.look
@@ -52,8 +54,8 @@ class SceneView:
         self._moments: Moments
         self._scene: _Drawn | None = None
         self._panel: Panel | None = None
-        self.ready = asyncio.Event()
-        """Set once there is something to show."""
+        self._ready = asyncio.Event()
+        """Set while the scene is that of the newest run."""
         self.over = False
         session.watchers.append(self._watch)
         self._task = asyncio.create_task(self._draw_on())
@@ -68,6 +70,7 @@ class SceneView:
                 threading.Thread(target=self._stop, daemon=True).start()
         elif isinstance(what, Facts):
             self._facts, self._state = what, None
+            self._ready.clear()
         elif isinstance(what, ViewSettings):
             self._look = what
         elif what.physics is not None:
@@ -79,24 +82,43 @@ class SceneView:
         while True:
             await self._changed.wait()
             self._changed.clear()
+            watched = self._server is not None and bool(self._server.get_clients())
+            if not (watched or self._asked):
+                self._session.draw(())
+                continue
             facts, self._facts = self._facts, None
             if facts is not None:
                 await asyncio.to_thread(self._build, facts)
-            if self._scene is None:
-                self._session.draw(())
-                continue
-            watched = bool(self._server.get_clients())
-            self._session.draw(self._scene.asked(self._look) if watched else ())
-            # Without a browser nothing is drawn; a browser that connects later gets the newest state.
-            if self.ready.is_set() and not watched:
-                continue
+            self._session.draw(self._scene.asked(self._look) if watched and self._scene is not None else ())
             state, self._state = self._state, None
+            if self._scene is None:
+                continue
             await asyncio.to_thread(self._draw, self._scene, state)
-            if state is not None and not self.ready.is_set():
-                self.ready.set()
-                self._session.scene_ready()
+            if state is not None and self._facts is None:
+                self._asked = False
+                self._ready.set()
 
-    # -- access for the bridge
+    # -- access for browsers
+
+    @property
+    def exists(self) -> bool:
+        """Whether the run on screen has a world."""
+        facts = self._session.facts
+        return facts is not None and facts.mj_model is not None
+
+    def prepare(self) -> None:
+        """Builds the scene of the newest run for a browser that is about to connect, unless it is there already."""
+        if not self._ready.is_set():
+            self._asked = True
+            self._changed.set()
+
+    async def wait(self) -> bool:
+        """Waits until the scene is that of the newest run; returns whether there is one."""
+        self.prepare()
+        ready = asyncio.ensure_future(self._ready.wait())
+        await asyncio.wait([ready, self._task], return_when=asyncio.FIRST_COMPLETED)
+        ready.cancel()
+        return self._ready.is_set() and not self.over
 
     def address(self, *, shadows: bool) -> tuple[int, dict[str, str]]:
         """Returns the port of viser's server, and the headers that admit the bridge and say whether shadows are wanted."""

@@ -65,8 +65,6 @@ class Session(Broadcast, Receiver):
         """What was kept when a user last changed something in the past of the current run."""
         self.listings: int = 0
         """Counts how often a recording began, ended, or was labelled, renamed or deleted: then pages list recordings again."""
-        self.has_scene = False
-        """Whether there is a 3D view."""
         self._shown: LaunchedRun | None = None
         """The run on screen, even after its worker has ended."""
         self._loading: LaunchedRun | None = None
@@ -447,7 +445,6 @@ class Session(Broadcast, Receiver):
             if self.branched is None
             else {"recording": self.branched.recording, "at": self.branched.at, "until": self.branched.until},
             "listings": self.listings,
-            "scene": self.has_scene,
             **self.look.as_dict(),
             "breakpoints": self.breakpoints,
             "settings": start.settings if start is not None else {},
@@ -528,11 +525,6 @@ class Session(Broadcast, Receiver):
         self.notices.append((self._notice_number, msgspec.json.encode(shown)))
         self._notice_number += 1
         self.changed()
-
-    def scene_ready(self) -> None:
-        """Records that the 3D view is ready."""
-        self.has_scene = True
-        self.changed(facts=True)
 
     def file_changed(self, path: Path) -> None:
         """Informs pages that a file may have changed: a run that was made from it is stale."""

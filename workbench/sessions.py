@@ -89,9 +89,9 @@ class Sessions:
         }
 
     def view(self, name: str) -> SceneView | None:
-        """Returns the 3D view of a session; None until there is something to show."""
+        """Returns the 3D view of a session; None if the run on screen has no world."""
         view = self._views.get(name)
-        return view if view is not None and view.ready.is_set() else None
+        return view if view is not None and view.exists else None
 
     async def open(
         self, model: str, settings: dict[str, Any], *, seed: int | None, record: bool, run: bool, real_time: bool = False

@@ -49,11 +49,13 @@ def any_scene(request: Request) -> Response:
 
 
 @router.get("/viser/{session}/")
-def scene(session: str, request: Request) -> Response:
-    """Returns viser's page for a session."""
+async def scene(session: str, request: Request) -> Response:
+    """Returns viser's page for a session. While the browser loads its scripts, the scene is built."""
     sessions: Sessions = request.app.state.sessions
-    if sessions.view(session) is None:
+    view = sessions.view(session)
+    if view is None:
         return PlainTextResponse("there is no 3D view of that session\n", status_code=404)
+    view.prepare()
     return HTMLResponse(request.app.state.files.with_versions(page()), headers={"content-security-policy": POLICY})
 
 

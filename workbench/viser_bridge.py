@@ -58,7 +58,10 @@ class Bridge:
             return
         self._open += 1
         try:
-            await self._carry(browser, view)
+            if await view.wait():
+                await self._carry(browser, view)
+            else:
+                await browser.close(1008)
         finally:
             self._open -= 1
 

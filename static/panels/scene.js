@@ -104,7 +104,7 @@ async function makeVideo() {
 }
 
 /** Whether there is a scene to look at. */
-const isShown = () => Boolean(session.value?.world && session.value.scene);
+const isShown = () => Boolean(session.value?.world);
 command({ text: "Next view: with the body, free, from the side, from above, through the eye", key: "v", group: "3D view", work: nextView, ready: isShown });
 const reset = command({ text: "Reset view", key: "Shift+v", group: "3D view", work: resetView, ready: isShown });
 const keep = command({ text: "Save the 3D view as a picture (PNG)", group: "3D view", work: keepPicture, ready: isShown });
@@ -137,9 +137,7 @@ function Lag({ frame }) {
 
 /** Returns why there is no picture: [text, whether there will be one]; null if there is one. `drawn` is reported by the frame. */
 function missing(drawn) {
-  const { world, scene, alive } = session.value ?? {};
-  if (world && scene) return drawn === null ? ["The 3D view loads …", true] : drawn ? null : [NO_WEBGL, false];
-  if (world && alive) return ["The 3D view is being made …", true];
+  if (isShown()) return drawn === null ? ["The 3D view loads …", true] : drawn ? null : [NO_WEBGL, false];
   if (state.value === null) return [runStatus.value.text, runStatus.value.is === "loading"];
   return ["This model has no world: there is nothing to see. Its buffers, productions and memory stand beside.", false];
 }
@@ -150,7 +148,7 @@ function Cover({ text, awaited }) {
 
 export function Scene() {
   const facts = session.value;
-  const shown = Boolean(facts?.world && facts.scene);
+  const shown = isShown();
   const address = useRef("about:blank");
   const frame = useRef(null);
   const pictured = useSignal({ of: "", drawn: null });

@@ -123,7 +123,7 @@ def opened(server: Served, model: str, **options: Any) -> str:
 def await_scene(server: Served, session: str) -> None:
     """Waits until a session has a 3D view to look at."""
     end = time.monotonic() + LONGEST
-    while not server.get(f"/api/sessions/{session}").json()["session"]["scene"]:
+    while not server.get(f"/api/sessions/{session}").json()["session"].get("world"):
         if time.monotonic() > end:
             raise TimeoutError("there is no 3D view")
         time.sleep(0.02)

@@ -44,7 +44,7 @@ def page(users: Users, workbench: Served) -> Iterator[Page]:
 @pytest.fixture
 def session(workbench: Served) -> Iterator[str]:
     name: str = workbench.post("/api/sessions", {"model": "aperture_passage.py", "seed": 1}).json()["id"]
-    wait(lambda: told(workbench, name)["session"]["scene"])
+    wait(lambda: told(workbench, name)["session"].get("world"))
     yield name
     workbench.post(f"/api/sessions/{name}/close")
 
@@ -235,7 +235,7 @@ def test_what_a_model_calls_its_things_is_text(workbench: Served, page: Page) ->
     )
     (Path(workbench.folder) / "evil.py").write_text(source, encoding="utf-8")
     name = workbench.post("/api/sessions", {"model": "evil.py", "seed": 1}).json()["id"]
-    wait(lambda: told(workbench, name)["session"]["scene"] or told(workbench, name)["session"]["ending"])
+    wait(lambda: told(workbench, name)["session"].get("world") or told(workbench, name)["session"]["ending"])
     page.goto(f"{workbench.url}/viser/{name}/")
     expect(page.get_by_text("<img src=x")).to_be_visible(timeout=PATIENCE)
     assert page.title() != "run"

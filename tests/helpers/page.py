@@ -53,7 +53,14 @@ def chromium() -> Generator[Browser]:
 PART = "window.part = (path) => import(new URL(path, document.querySelector('script[type=module]').src))"
 """Defines `part("store.js")`, the module of the page with which a test looks inside."""
 
-NO_SCENE = "if (location.pathname.startsWith('/viser/')) { window.stop(); parent.postMessage({ drawn: true }, location.origin); }"
+NO_SCENE = """{
+  const kind = HTMLIFrameElement.prototype;
+  const { get, set } = Object.getOwnPropertyDescriptor(kind, "src");
+  Object.defineProperty(kind, "src", { get, set(address) {
+    if (!address.startsWith("/viser/")) return set.call(this, address);
+    setTimeout(() => window.dispatchEvent(new MessageEvent("message", { source: this.contentWindow, data: { drawn: true } })));
+  } });
+}"""
 """Leaves the 3D view empty where a test is about something else: to draw it without a graphics card takes seconds of two processors."""
 
 

@@ -276,6 +276,9 @@ class _View:
     def __init__(self, port: int) -> None:
         self._port = port
 
+    async def wait(self) -> bool:
+        return True
+
     def address(self, *, shadows: bool) -> tuple[int, dict[str, str]]:
         return self._port, {"x-workbench-bridge": "secret"}
 
