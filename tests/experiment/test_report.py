@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import re
-import shutil
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -43,10 +42,19 @@ def count(trial: Any) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def walked(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An experiment with apertures, and its report."""
+def people(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Data of a user's own participants."""
+    path = tmp_path_factory.mktemp("people") / "people.csv"
+    rows = [f"{n},{group},{wide},normal,{30 + n}" for group in ("small", "large") for n in range(3) for wide in (0.4, 0.5, 0.6)]
+    path.write_text("\n".join(["participant,group,aperture,condition,wall_angle_deg", *rows]), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def walked(people: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An experiment with apertures, and its report beside people."""
     folder = store_rows(tmp_path_factory.mktemp("report") / "walks", "warren_whang_1987", walk, trials=1)
-    write_report(folder)
+    write_report(folder, human=people)
     return folder
 
 
@@ -63,10 +71,12 @@ def test_a_report_needs_nothing_from_elsewhere_and_its_links_lead_somewhere(walk
     assert named == {name for name in files(walked) if name != "index.html"}, "each file is named on the page"
 
 
-def test_the_same_rows_give_the_same_files(walked: Path, tmp_path: Path) -> None:
-    again = store_rows(tmp_path / "walks", "warren_whang_1987", walk, trials=1)
-    write_report(again)
-    assert files(again) == files(walked)
+def test_the_same_rows_give_the_same_files(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path, participants=3))
+    folders = [store_rows(tmp_path / name / "out", path, count) for name in ("one", "two")]
+    for folder in folders:
+        write_report(folder)
+    assert files(folders[0]) == files(folders[1])
 
 
 def test_apertures_have_their_own_sections(walked: Path) -> None:
@@ -88,26 +98,27 @@ def test_apertures_have_their_own_sections(walked: Path) -> None:
     for row in table(walked, "critical_ratios"):
         assert float(row["low"]) < 1.3 < float(row["high"])
     assert {row["left_mean"] for row in table(walked, "margins")} == {"6.9"}
-    assert "Human mean angles for each aperture are not available in print" in page(walked)
+    assert "Starts aside" not in page(walked)
 
 
-def test_published_speeds_are_shown_with_their_source(walked: Path) -> None:
-    (fit,) = table(walked, "fit_to_people")
+@pytest.mark.slow
+def test_published_speeds_are_shown_with_their_source_and_each_time_in_the_same_files(tmp_path: Path) -> None:
+    folder, again = (store_rows(tmp_path / name / "walks", "warren_whang_1987", walk, trials=1) for name in ("one", "two"))
+    write_report(folder)
+    (fit,) = table(folder, "fit_to_people")
     assert (fit["measure"], fit["cells"]) == ("speed_m_s", "4")
-    assert "doi 10.1037/0096-1523.13.3.371" in page(walked)
+    assert "doi 10.1037/0096-1523.13.3.371" in page(folder)
+    assert "Human mean angles for each aperture are not available in print" in page(folder)
+    write_report(again)
+    assert files(again) == files(folder)
 
 
-def test_own_human_data_are_drawn_and_compared(walked: Path, tmp_path: Path) -> None:
-    people = tmp_path / "people.csv"
-    rows = [f"{n},{group},{wide},normal,{30 + n}" for group in ("small", "large") for n in range(3) for wide in (0.4, 0.5, 0.6)]
-    people.write_text("\n".join(["participant,group,aperture,condition,wall_angle_deg", *rows]), encoding="utf-8")
-    folder = Path(shutil.copytree(walked, tmp_path / "walks"))
-    write_report(folder, human=people)
-    fit = next(row for row in table(folder, "fit_to_people") if row["measure"] == "wall_angle_deg")
+def test_own_human_data_are_drawn_and_compared(walked: Path) -> None:
+    fit = next(row for row in table(walked, "fit_to_people") if row["measure"] == "wall_angle_deg")
     assert fit["cells"] == "6"
-    assert "people.csv: 18 rows of trials of 6 people" in page(folder)
-    assert ">people</text>" in (folder / "report/figures/rotation_by_aperture.svg").read_text(encoding="utf-8")
-    assert "Human mean angles for each aperture are not available" not in page(folder)
+    assert "people.csv: 18 rows of trials of 6 people" in page(walked)
+    assert ">people</text>" in (walked / "report/figures/rotation_by_aperture.svg").read_text(encoding="utf-8")
+    assert "Human mean angles for each aperture are not available" not in page(walked)
 
 
 def test_the_entries_of_a_legend_fit_into_the_figure() -> None:
@@ -247,7 +258,7 @@ def test_an_experiment_that_was_run_has_a_report(tmp_path: Path, capsys: Any) ->
 
 
 @pytest.mark.slow
-def test_starts_aside_and_aslant_have_a_figure_and_a_table(walked: Path, tmp_path: Path) -> None:
+def test_starts_aside_and_aslant_have_a_figure_and_a_table(tmp_path: Path) -> None:
     def misaligned(trial: Any) -> dict[str, Any]:
         return {**walk(trial), "outcome": "passed" if trial.values["start_aside"] < 0.2 else "stopped"}
 
@@ -259,4 +270,3 @@ def test_starts_aside_and_aslant_have_a_figure_and_a_table(walked: Path, tmp_pat
     assert {float(row["passed"]) for row in rows if float(row["start_aside"]) < 0.2} == {1.0}
     assert {float(row["passed"]) for row in rows if float(row["start_aside"]) > 0.2} == {0.0}
     assert "Starts aside and aslant" in page(folder)
-    assert "Starts aside" not in page(walked)

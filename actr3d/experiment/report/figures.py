@@ -202,8 +202,9 @@ def legend_columns(lengths: Sequence[int], width: float) -> int:
 
 def _save(figure: Any, out: Any, **options: Any) -> None:
     with matplotlib().rc_context(STYLE):
-        if figure.get_layout_engine() is not None:  # laid out once for all formats
-            figure.draw_without_rendering()
+        layout = figure.get_layout_engine()
+        if layout is not None:  # laid out once for all formats
+            layout.execute(figure)
             figure.set_layout_engine(None)
         figure.savefig(out, **options)
 
