@@ -107,18 +107,18 @@ def drawing(page: Page) -> dict[str, Any]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("time", ["0.00", "1.96", "2.00", "3.50"])
-def test_labels_of_the_ruler_and_the_playhead_never_overlap(ended: Page, time: str) -> None:
+def test_labels_of_the_ruler_and_the_playhead_never_overlap(ended: Page) -> None:
     page = ended
-    page.evaluate("async (time) => (await part('timeline/seek.js')).seek(time)", float(time))
-    when(page, time)
-    told = drawing(page)
-    texts = [text for text, *_ in told["labels"]]
-    assert ("2 s" in texts) == (time not in ("1.96", "2.00"))  # it gives way, and only then
-    assert len(texts) >= 7
-    assert told["now"][0] == f"{time} s"
-    for (_, _, end), (_, begin, _) in pairwise(sorted([*told["labels"], told["now"]], key=lambda label: label[1])):
-        assert end < begin
+    for time in ("0.00", "1.96", "2.00", "3.50"):
+        page.evaluate("async (time) => (await part('timeline/seek.js')).seek(time)", float(time))
+        when(page, time)
+        told = drawing(page)
+        texts = [text for text, *_ in told["labels"]]
+        assert ("2 s" in texts) == (time not in ("1.96", "2.00"))  # it gives way, and only then
+        assert len(texts) >= 7
+        assert told["now"][0] == f"{time} s"
+        for (_, _, end), (_, begin, _) in pairwise(sorted([*told["labels"], told["now"]], key=lambda label: label[1])):
+            assert end < begin
 
 
 def test_what_happens_at_the_start_is_seen_whole(page: Page) -> None:
@@ -349,25 +349,24 @@ def test_many_events_are_taken_in_one_by_one(pages: Callable[..., Page]) -> None
     assert counts["calls"] < 3 * 900
 
 
-@pytest.mark.daily(1)
-@pytest.mark.parametrize(("end", "width"), [(1, 400), (12.5, 1100), (3, 1700), (0.02, 900)])
-def test_no_text_of_the_axis_is_cut(page: Page, end: float, width: int) -> None:
+AXIS = """async ([end, width]) => {
+  const { drawTimes } = await part("parts/curve.js");
+  const { widthOf } = await part("parts/surface.js");
+  const found = [];
+  const text = (text, x, y, name, style) => found.push([x - widthOf(text, style) / 2, x + widthOf(text, style) / 2]);
+  drawTimes({ line() {}, text }, { x: 0, y: 0, width, height: 20 }, { from: 0, to: end }, { y: 0 });
+  return found;
+}"""
+
+
+def test_no_text_of_the_axis_is_cut(page: Page) -> None:
     shows(page, "#time", "t =")
-    drawn = page.evaluate(
-        """async ([end, width]) => {
-          const { drawTimes } = await part("parts/curve.js");
-          const { widthOf } = await part("parts/surface.js");
-          const found = [];
-          const text = (text, x, y, name, style) => found.push([x - widthOf(text, style) / 2, x + widthOf(text, style) / 2]);
-          drawTimes({ line() {}, text }, { x: 0, y: 0, width, height: 20 }, { from: 0, to: end }, { y: 0 });
-          return found;
-        }""",
-        [end, width],
-    )
-    assert len(drawn) > 2
-    assert drawn[0][0] >= 4
-    assert drawn[-1][1] <= width - 4
-    assert all(one[1] < other[0] for one, other in pairwise(drawn))
+    for end, width in ((1, 400), (12.5, 1100), (3, 1700), (0.02, 900)):
+        drawn = page.evaluate(AXIS, [end, width])
+        assert len(drawn) > 2
+        assert drawn[0][0] >= 4
+        assert drawn[-1][1] <= width - 4
+        assert all(one[1] < other[0] for one, other in pairwise(drawn))
 
 
 EVERY_TICK = """async () => {
