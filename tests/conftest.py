@@ -48,7 +48,10 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 @pytest.hookimpl(tryfirst=True)  # before pytest leaves out what is marked as slow
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks as `slow` all cases of a test but the `n` that are marked to be run daily: `@pytest.mark.daily(n)`, evenly spaced."""
+    """Marks as `slow` all cases of a test but the `n` that are marked to be run daily: `@pytest.mark.daily(n)`, evenly spaced.
+
+    Tests that are marked as `long` come first, so that no process still runs them when the others have nothing left to do.
+    """
     cases: dict[str, list[pytest.Item]] = {}
     for item in items:
         if item.get_closest_marker("daily") is not None:
@@ -60,3 +63,4 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for number, item in enumerate(test):
             if number not in kept:
                 item.add_marker(pytest.mark.slow)
+    items.sort(key=lambda item: item.get_closest_marker("long") is None)

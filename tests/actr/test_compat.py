@@ -17,7 +17,7 @@ def cases(*programs: Program) -> list[object]:
     return [pytest.param(program, seed, id=f"{program.name}-{seed}") for program in programs for seed in program.seeds]
 
 
-@pytest.mark.daily(70)
+@pytest.mark.daily(35)
 @pytest.mark.parametrize(("program", "seed"), cases(*PROGRAMS))
 def test_prints_what_python_actr_prints(program: Program, seed: int, tmp_path: Path) -> None:
     folder = tmp_path / "ours"  # a model's log goes into a folder beside its file

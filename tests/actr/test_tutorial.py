@@ -82,7 +82,7 @@ def test_does_the_same_twice_in_one_process(name: str, capsys: pytest.CaptureFix
         compare(name, capsys.readouterr().out.encode())
 
 
-@pytest.mark.daily(6)
+@pytest.mark.daily(3)
 @pytest.mark.parametrize("name", NAMES)
 def test_another_seed_changes_noisy_models_only(name: str) -> None:
     same = without_start(record(name, *options(name, seed=2))) == without_start(golden_file(name).read_bytes())

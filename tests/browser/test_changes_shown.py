@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.helpers.page import open_tab, shows
@@ -25,6 +26,7 @@ def commands(page: Page) -> list[str]:
     }""")
 
 
+@pytest.mark.slow
 def test_a_mind_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", refusals=True)
     shows(page, "#status", "at its start")

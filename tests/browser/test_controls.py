@@ -19,6 +19,7 @@ ENDED = """async () => {
 """Tells which run has ended; null where that is shown goes on."""
 
 
+@pytest.mark.slow
 def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     shows(page, "#time", "0.00 s")

@@ -267,7 +267,7 @@ def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page],
     shows(third, ".strip", "has changed on disk")
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("choice", "seen"), [("An agent alone", "the program is over"), ("An agent with a body in a world", r"the model called stop\(\)")]
 )

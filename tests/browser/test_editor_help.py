@@ -73,6 +73,7 @@ def choose(page: Page, label: str) -> None:
     option.click()
 
 
+@pytest.mark.slow
 def test_help_while_writing(opened: Callable[[str], Page]) -> None:
     page = opened(SHORT)
     at_end_of(page, "print(word)")

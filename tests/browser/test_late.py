@@ -179,6 +179,7 @@ def test_a_question_to_a_run_that_is_shown_no_more_does_not_keep_others_waiting(
     shows(page, "#time", "0.02 s")
 
 
+@pytest.mark.slow
 def test_keys_say_nothing_to_a_run_that_is_not_shown_any_more(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")

@@ -29,6 +29,7 @@ def arrange(page: Page, part: str, what: str) -> None:
     page.get_by_role("group", name=f"Arrange: {part}").get_by_role("button", name=what).click()
 
 
+@pytest.mark.slow
 def test_parts_of_the_page_are_maximised_collapsed_and_swapped(page: Page) -> None:
     shows(page, "#status", "at its start")
     scene, timeline = page.get_by_role("region", name="3D view", exact=True), page.get_by_role("region", name="Timeline")

@@ -40,7 +40,7 @@ def replay(tmp_path_factory: pytest.TempPathFactory) -> Path:
         return file
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_it_plays_from_disk_with_scene_and_trace_at_one_time(browser: Browser, replay: Path, scheme: Any) -> None:
     complaints: list[str] = []

@@ -132,6 +132,7 @@ def test_a_recording_that_is_run_again_shows_how_far_it_is(page: Page, workbench
     (workbench.folder / "half.py").unlink()
 
 
+@pytest.mark.slow
 def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, workbench: Served, recordings: Path, two: list[str]) -> None:
     spare = [recorded(workbench, "counting.py") for _ in range(2)]
     open_tab(page, "Runs")

@@ -203,6 +203,7 @@ RESTING = """async () => {
 }"""
 
 
+@pytest.mark.slow
 def test_between_slow_pictures_of_a_hurried_run_it_rests(page: Page) -> None:
     assert page.evaluate(RESTING) == [[True, False, False], [True, True, False], [True, True, True], 0]
 

@@ -163,6 +163,7 @@ def drag_aperture(page: Page) -> None:
     page.locator("#aperture").fill("90")  # a pixel is more than a centimetre
 
 
+@pytest.mark.slow
 def test_going_back_and_forth(ended: Page) -> None:
     page = ended
     end = slider(page, "valuemax")

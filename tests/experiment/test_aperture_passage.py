@@ -67,7 +67,7 @@ def test_people_turn_below_the_critical_ratio_the_more_the_narrower(model: Any, 
     assert wider == pytest.approx(0, abs=0.1)
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize(("group", "least", "most"), [("small", 0.055, 0.075), ("large", 0.06, 0.09)])
 @pytest.mark.parametrize("aperture", [0.4, 0.45])
 def test_hips_that_turn_leave_the_margin_where_it_is_narrow(model: Any, group: str, least: float, most: float, aperture: float) -> None:
@@ -183,7 +183,7 @@ def shrunk(model: Any, at: float, to: float, seed: int = 1, **given: Any) -> Pas
     return simulation.result()
 
 
-@pytest.mark.daily(2)
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     ("at", "to", "given"),
     [
@@ -257,7 +257,7 @@ def test_who_is_held_gives_up(model: Any) -> None:
 # -- the replication
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("aperture", [0.55, 0.7])
 def test_the_replication_turns_before_any_doorway(model: Any, aperture: float) -> None:
     turns = [passed(model, seed, variant="replication", aperture=aperture).logged_angle_deg or 0 for seed in range(1, 6)]
@@ -339,7 +339,7 @@ def test_another_seed_is_another_trial(model: Any) -> None:
     assert len(results) > 1
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_it_is_recorded_and_replayed(variant: str, tmp_path: Path, capsys: Any) -> None:
     recording = tmp_path / "run"

@@ -93,6 +93,7 @@ def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anythin
         Fit(f"{tmp_path / 'line.py'}:line", ranges, means((1, 7)), tmp_path / "fit", client)
 
 
+@pytest.mark.slow
 def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client)
     held_out = {f"{tmp_path / 'line.py'}:steeper": means((10, 20, 30))}

@@ -120,12 +120,14 @@ def chosen(model: Any, seeds: int = 4, **given: Any) -> float:
     return sum(walked(model, seed, **given)[1].chosen for seed in range(seeds)) / seeds
 
 
+@pytest.mark.slow
 def test_before_a_doorway_that_closes_it_turns_for_a_width_that_it_saw_before(model: Any) -> None:
     """It commits itself at 47 cm, by a plan that it began nearly a second before."""
     assert 0 < chosen(model, 3, aperture=0.9, closing=0.065) < chosen(model, 2, aperture=0.47) - 15
     assert chosen(model, 1, aperture=0.9) == 0
 
 
+@pytest.mark.slow
 def test_it_turns_the_more_the_narrower_the_doorway_is_and_not_at_all_if_it_is_wide(model: Any) -> None:
     narrow, narrower = chosen(model, aperture=0.45), chosen(model, aperture=0.38)
     assert chosen(model, 2, aperture=0.7) == 0
@@ -139,6 +141,7 @@ def test_it_turns_more_if_it_fears_contacts_and_not_if_they_cost_nothing(model: 
     assert chosen(model, aperture=0.52, contact_cost=100.0) > chosen(model, aperture=0.52, contact_cost=1.0) + 10
 
 
+@pytest.mark.slow
 def test_a_larger_body_turns_more(model: Any) -> None:
     assert chosen(model, aperture=0.5, shoulder_width=0.484) > chosen(model, aperture=0.5, shoulder_width=0.404) + 8
 

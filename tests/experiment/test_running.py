@@ -28,6 +28,8 @@ from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
 from tests.helpers.experiments import COUNTER, write_experiment
 
+pytestmark = pytest.mark.long
+
 COMMAND = [sys.executable, "-m", "actr3d", "experiment"]
 UNREPRODUCIBLE = ("wall_s", "worker")
 SLOW_MODEL = COUNTER.replace('if mode == "fail"', 'import time\ntime.sleep(0.03)\nif mode == "fail"')

@@ -329,6 +329,7 @@ def test_a_store_that_cannot_be_written_says_so_and_keeps_its_rows(tmp_path: Pat
     gc.collect()
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_rows(tmp_path: Path) -> None:
     """Of 40,000 rows, no more are in memory at a time than of 10,000."""
     import tracemalloc

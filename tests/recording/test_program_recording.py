@@ -125,7 +125,7 @@ def last_number(data: bytes) -> bytes:
 SOURCE = "UPDATE facts SET value = replace(value, '{}', '{}') WHERE name = 'sources'"
 
 
-@pytest.mark.daily(3)
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(
     ("alter", "message"),
     [

@@ -81,7 +81,7 @@ def told(answer: httpx.Response) -> None:
         assert error["error"]
 
 
-@pytest.mark.daily(8)
+@pytest.mark.daily(4)
 @pytest.mark.parametrize(("method", "path"), OPERATIONS, ids=[" ".join(operation) for operation in OPERATIONS])
 def test_what_cannot_be_taken_is_told(method: str, path: str, server: Served, session: str) -> None:
     operation = DESCRIPTION["paths"][path][method]

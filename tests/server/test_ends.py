@@ -57,7 +57,7 @@ def all_end(processes: set[int]) -> None:
         time.sleep(0.02)
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_nothing_stays_behind(tmp_path: Path, sign: signal.Signals) -> None:
     with served(tmp_path / "models") as running:

@@ -20,6 +20,8 @@ import pytest
 from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.workbench_server import Served, served
 
+pytestmark = pytest.mark.long
+
 PATIENCE = 120.0
 SLOW = COUNTER.replace('if mode == "fail"', 'import time\ntime.sleep(0.05)\nif mode == "fail"')
 COUNTING = "counting_design.py:counting"
@@ -148,6 +150,7 @@ def test_a_trial_is_recorded_and_opened(workbench: Served, finished: str) -> Non
     assert (missing.status_code, "from 0 to 23" in missing.text) == (409, True)
 
 
+@pytest.mark.slow
 def test_failed_trials_are_rows_with_their_errors(workbench: Served) -> None:
     name = started(workbench, values={"n": [1], "mode": "fail"}, participants=1, trials=2)
     now = awaited(workbench, name, "finished")
@@ -245,6 +248,7 @@ def test_code_of_an_experiment_from_elsewhere_runs_only_with_permission(workbenc
     assert workbench.get("/api/experiments/from-elsewhere/code").json()["made_here"] is True
 
 
+@pytest.mark.slow
 def test_means_of_a_measure_with_several_numbers(workbench: Served) -> None:
     folder = workbench.folder / "numbered"
     folder.mkdir(exist_ok=True)
@@ -394,6 +398,7 @@ def test_odd_questions_get_an_answer_and_change_nothing(workbench: Served, finis
     assert workbench.get(f"/api/experiments/{finished}/rows?most=1").json()["total"] == 24
 
 
+@pytest.mark.slow
 def test_an_experiment_of_the_command_line_is_shown_with_its_facts(workbench: Served, tmp_path: Path) -> None:
     path = write_experiment(tmp_path, trials=1)
     folder = workbench.folder / ".workbench/experiments" / "by-hand"

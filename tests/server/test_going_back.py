@@ -182,7 +182,7 @@ def test_every_answer_is_that_of_its_moment_for_a_model_that_looks_in_many_ways(
         check_going_back(shown, 160, 5, random_seed=1)
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_every_answer_is_that_of_its_moment_for_a_walk_to_a_doorway(variant: str) -> None:
     source = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")

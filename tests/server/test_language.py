@@ -99,7 +99,7 @@ class Pole(Feature):
 """
 
 
-@pytest.mark.daily(12)
+@pytest.mark.daily(6)
 @pytest.mark.parametrize(
     ("text", "first"),
     [
@@ -418,6 +418,7 @@ def test_questions_at_once_are_answered_in_turn_and_too_many_refused(alone: Aske
     assert [type(answer) for answer in answers[MOST_WAITING:]] == [TooManyQuestionsError] * 5
 
 
+@pytest.mark.daily(4)
 @pytest.mark.parametrize(
     "text",
     [

@@ -206,7 +206,7 @@ API: dict[str, Any] = server_app.openapi()
 OPERATIONS = [f"{method} {path}" for path, methods in API["paths"].items() for method in methods]
 
 
-@pytest.mark.daily(8)
+@pytest.mark.daily(4)
 @pytest.mark.parametrize("operation", OPERATIONS)
 def test_no_input_gives_an_error_of_the_server(operation: str, server: Served) -> None:
     import schemathesis  # takes a second to load

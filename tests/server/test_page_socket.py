@@ -52,7 +52,7 @@ WRONG: list[Any] = [
 ]
 
 
-@pytest.mark.daily(6)
+@pytest.mark.daily(3)
 @pytest.mark.parametrize("text", WRONG, ids=range(len(WRONG)))
 def test_what_is_wrong_is_told(server: Served, session: str, text: str | bytes) -> None:
     async def talk() -> None:

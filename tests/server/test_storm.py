@@ -27,6 +27,8 @@ from tests.helpers.experiments import write_experiment
 from tests.helpers.workbench_server import Served, served
 from tests.server.test_bad_input import DESCRIPTION, OPERATIONS, resolved, valid
 
+pytestmark = pytest.mark.long
+
 SOURCE = "counting.py"
 RECORDINGS = tuple(f"r{number}" for number in range(5))
 MODELS = tuple(f"m{number}.py" for number in range(3))

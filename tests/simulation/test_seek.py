@@ -82,7 +82,7 @@ def test_a_run_whose_agents_use_what_going_back_cannot_undo_says_so_and_does_not
             simulation.step()
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("answers", [10_000, 7, 0], ids=["all answers", "first answers", "no answers"])
 def test_any_past_time_comes_back_exactly_and_goes_on_exactly(answers: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(timeline, "MOST_ANSWERS", answers)

@@ -60,6 +60,7 @@ def test_a_detector_finds_nothing_in_nothing(every: Detector) -> None:
     assert every(seen("")[1]) == ()
 
 
+@pytest.mark.daily(1)
 def test_a_detector_reads_the_view_only_and_leaves_it_alone(every: Detector) -> None:
     _, view = seen(SCENE)
     copy = View(view.parameters, view.extents.copy(), view.axes.copy())

@@ -48,7 +48,7 @@ def test_they_are_made_once(cache: Path, monkeypatch: pytest.MonkeyPatch) -> Non
             convex_parts(ring(), coarseness, seed)
 
 
-@pytest.mark.daily(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("broken", [b"", b"short", b"\0" * 400])
 def test_a_broken_file_is_made_anew(cache: Path, broken: bytes) -> None:
     made = convex_parts(ring(), 0.2, 1)

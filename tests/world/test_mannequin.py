@@ -200,7 +200,7 @@ def hesitating(body: Body, tick: int) -> None:
     body.set("walk", 0.0 if tick % 2 else 3.0)
 
 
-@pytest.mark.daily(12)
+@pytest.mark.daily(4)
 @pytest.mark.parametrize("thickness", WALLS)
 @pytest.mark.parametrize("heading", [0.0, 0.6, 1.3])
 @pytest.mark.parametrize(
