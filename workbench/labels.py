@@ -82,7 +82,7 @@ class Labels:
         aside = sorted(path.name for path in self._file.parent.glob(ASIDE.format("*")))
         if aside:
             return (
-                f"The names, notes and tags of recordings began anew: their file was damaged, and is kept as {', '.join(aside)} in "
+                f"The names, notes and tags of recordings are new: the earlier file was damaged, and is kept as {', '.join(aside)} in "
                 f"{self._file.parent}. Nothing is deleted automatically until you repair it or delete it."
             )
         return None

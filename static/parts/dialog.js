@@ -1,5 +1,6 @@
 // Dialogs, based on the browser's own: they hold the focus, and Escape closes them.
 
+import { Problem } from "./problem.js";
 import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 
 const open = signal(null);
@@ -78,9 +79,9 @@ export function Dialogs() {
     ${shown.ask
       ? html`<label class="field">
           ${shown.ask.label}
-          <input ref=${line} autofocus value=${shown.ask.value} spellcheck=${false} aria-invalid=${Boolean(shown.ask.problem)} />
-          ${shown.ask.problem ? html`<span class="bad" role="alert">${shown.ask.problem}</span>` : null}
-        </label>`
+          <input ref=${line} autofocus value=${shown.ask.value} spellcheck=${false} aria-invalid=${Boolean(shown.ask.problem)} aria-describedby="dialog-problem" />
+        </label>
+        <${Problem} id="dialog-problem" text=${shown.ask.problem} />`
       : null}
     ${shown.ask?.choices?.map(
       ({ value, text }, n) => html`<label class="choice"><input type="radio" name="choice" value=${value} defaultChecked=${n === 0} />${text}</label>`,

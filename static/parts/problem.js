@@ -2,7 +2,7 @@
 
 import { html } from "../vendor/preact.js";
 
-/** @param text What is wrong; null or empty for nothing. */
-export function Problem({ text }) {
-  return text ? html`<p class="problem bad" role="alert">${text}</p>` : null;
+/** @param text What is wrong; null or empty for nothing. @param id For the `aria-describedby` of what it is about. */
+export function Problem({ text, id }) {
+  return text ? html`<p class="problem bad" role="alert" id=${id}>${text}</p>` : null;
 }

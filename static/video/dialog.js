@@ -62,10 +62,10 @@ export async function askForVideo() {
   };
 
   const Time = ({ name, label, first = false }) => html`<label class="field">
-    <span>${label} <span class="quiet">[s]</span></span>
-    <input inputmode="decimal" autofocus=${first} disabled=${made.value !== null} aria-invalid=${Boolean(wrong.value[name])} value=${texts.value[name]} onInput=${put(name)} />
-    ${wrong.value[name] ? html`<span class="bad" role="alert">${wrong.value[name]}</span>` : null}
-  </label>`;
+      <span>${label} <span class="quiet">[s]</span></span>
+      <input inputmode="decimal" autofocus=${first} disabled=${made.value !== null} aria-invalid=${Boolean(wrong.value[name])} aria-describedby="video-${name}" value=${texts.value[name]} onInput=${put(name)} />
+    </label>
+    <${Problem} id="video-${name}" text=${wrong.value[name]} />`;
 
   function Summary() {
     if (Object.keys(problemsOf(texts.value, furthest.value)).length) return html`<p class="quiet">No video yet: see the times.</p>`;
