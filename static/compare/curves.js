@@ -93,7 +93,7 @@ function Overlaid({ curve, runs, samples, cursor, span }) {
   const series = useMemo(
     () =>
       both.flatMap((of, n) =>
-        of?.values.some((value) => value !== null) ? [{ name: `${SIDES[n]} ${whenText(runs[n].made)}`, unit: curve.unit, times: of.times, values: of.values, colour: COLOURS[n], dash: DASHES[n] }] : [],
+        of?.values.some((value) => value !== null) ? [{ name: `${SIDES[n]}: ${runs[n].label.name || whenText(runs[n].made)}`, unit: curve.unit, times: of.times, values: of.values, colour: COLOURS[n], dash: DASHES[n] }] : [],
       ),
     [...both],
   );

@@ -237,6 +237,10 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     sides = dialog.get_by_role("table", name="Side by side")
     expect(sides.locator("tr.other").first).to_have_text(re.compile("≠width0.[59]0.[59]"))
     expect(sides).to_contain_text("seed11")
+    page.set_viewport_size({"width": 853, "height": 533})  # 1280 x 800 at 150 %
+    facts = dialog.locator(".compare-facts")
+    assert facts.evaluate("box => box.scrollWidth <= box.clientWidth"), "the table fits"
+    page.set_viewport_size({"width": 1280, "height": 800})
     sides.get_by_label("differences only").check()
     expect(sides).not_to_contain_text("seed")
 
