@@ -5,7 +5,7 @@ import { cut, cutBefore } from "../parts/surface.js";
 import { session } from "../store.js";
 import { headingOf } from "./curves.js";
 import { bandText } from "./lanes.js";
-import { firstWhere } from "./search.js";
+import { firstWhere, nextWhere } from "./search.js";
 import { AXIS, MARGIN } from "./rows.js";
 
 const SCALE = 44; // the width of a plot's scale in the column of names [px]
@@ -89,11 +89,14 @@ function drawBands(surface, bands, y, height, scene) {
   const { column, width, span, end } = scene;
   const first = firstWhere(bands, (band) => band.to === null || band.to >= span.from);
   let last = column - 10; // the end of the last drawn band: of several in one pixel, one is enough
+  const endOf = (band) => Math.min(width + 4, placeOf(band.to ?? Math.max(end, band.from), scene));
+  const isSeen = (band) => endOf(band) >= last + 0.7;
   for (let n = first; n < bands.length && bands[n].from <= span.to; n += 1) {
+    if (!isSeen(bands[n])) n = nextWhere(bands, isSeen, n + 1);
     const band = bands[n];
+    if (!band || band.from > span.to) break;
     const from = Math.max(column - 4, placeOf(band.from, scene));
-    const to = Math.min(width + 4, placeOf(band.to ?? Math.max(end, band.from), scene));
-    if (to < last + 0.7) continue;
+    const to = endOf(band);
     last = Math.max(to, from + 1);
     if (band.mark) {
       const next = bands[n + 1] ? placeOf(bands[n + 1].from, scene) : width;

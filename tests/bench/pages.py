@@ -38,6 +38,31 @@ CLICKS = """async (count) => {
 """Clicks on step, one time after the other, and returns how long it took each time until the time on the page was another [ms]."""
 
 
+PANS = """async ([events, pictures]) => {
+    const { Lanes } = await part("timeline/lanes.js");
+    const { drawTimeline } = await part("timeline/draw.js");
+    const { CanvasSurface, scaled } = await part("parts/surface.js");
+    const lanes = new Lanes(), hour = 3600;
+    for (let n = 0; n < events; n += 1) {
+        lanes.take([Math.round((n * hour * 1e6) / events), `mind.buffer_${n % 10}`, "buffer", { chunk: { 0: `chunk ${n}` } }]);
+    }
+    const canvas = document.createElement("canvas");
+    const surface = new CanvasSurface(scaled(canvas, 900, 260));
+    const rows = [...lanes.lanes.values()].map((lane, n) => ({ lane, label: `buffer ${n}`, y: 24 + 22 * n, height: 18 }));
+    const taken = [];
+    for (const span of [10, 100, 1000, hour]) {
+        for (let n = 0; n < pictures; n += 1) {
+            const from = ((hour - span) * n) / pictures, begin = performance.now();
+            const seen = { width: 900, height: 260, column: 100, scroll: 0, span: { from, to: from + span } };
+            drawTimeline(surface, { ...seen, layout: { rows }, end: hour, begin: 0 });
+            taken.push(performance.now() - begin);
+        }
+    }
+    return taken;
+}"""
+"""Moves the timeline of a run of an hour with so many events along, at four scales, and returns the script time of each picture [ms]."""
+
+
 class Client:
     """What a page is to the server: a websocket for state and commands.
 

@@ -24,8 +24,8 @@ from statistics import median
 from typing import Any, TypeVar
 
 from actr3d.benchmark import Figure, report
-from tests.bench.pages import CLICKS, Client, attached, await_scene, looking, opened
-from tests.helpers.page import browser_path, launched
+from tests.bench.pages import CLICKS, PANS, Client, attached, await_scene, looking, opened
+from tests.helpers.page import PART, browser_path, launched
 from tests.helpers.workbench_server import MODELS, Served, served
 
 T = TypeVar("T")
@@ -33,6 +33,7 @@ MODEL = "aperture_passage.py"
 STARTS = 3
 RUNS = 7
 CLICKED = 60
+EVENTS = 1_000_000
 CLIENTS = 8
 LOOKING = 2
 """So many of the clients take the 3D view, too."""
@@ -79,6 +80,9 @@ def main() -> int:
         with _workbench(folder) as server, _page(server, browser) as page:
             session = opened(server, MODEL)
             await_scene(server, session)
+            if page is not None:
+                page.locator(".scene-cover").wait_for(state="detached", timeout=60_000)
+                figures += [_loads(page), _pans(page)]
             figures.append(_now(_speed(server, session, with_page=page is not None)))
             figures.append(_clicks(page) if page is not None else _now(_steps(server, session)))
             figures.append(_now(_edits(server, session)))
@@ -109,6 +113,7 @@ def _page(server: Served, browser: Any) -> Generator[Any]:
         yield None
         return
     context = browser.new_context(viewport={"width": 1280, "height": 800})
+    context.add_init_script(PART)
     page = context.new_page()
     page.goto(f"{server.address}&model={MODEL}")
     _shows_the_start(page)
@@ -136,7 +141,7 @@ def _starts(folder: Path, browser: Any) -> Figure:
             taken += [ready] if number else []  # the first is not warm
             _say(f"start: address after {printed:.2f} s, ready to run after {ready:.2f} s")
     what = "[s] from the command to the model ready to run on the page, median of warm starts"
-    return Figure(name="start", value=median(taken), sense="at most", bar=5, what=what)
+    return Figure(name="start", value=median(taken), sense="at most", bar=3, what=what)
 
 
 async def _ready(server: Served) -> None:
@@ -149,6 +154,7 @@ async def _speed(server: Served, session: str, *, with_page: bool) -> Figure:
     headless = _headless()
     rates: list[float] = []
     async with attached(server, session) as client, nullcontext() if with_page else looking(server, session):
+        await client.say("speed", factor=None)
         for _ in range(RUNS):
             await client.restart(seed=1)
             await client.until(lambda state: state["status"] == "paused")
@@ -167,6 +173,25 @@ async def _speed(server: Served, session: str, *, with_page: bool) -> Figure:
 def _headless() -> float:
     command = [sys.executable, "-c", HEADLESS, str(MODELS / MODEL), str(RUNS)]
     return float(subprocess.run(command, capture_output=True, text=True, check=True).stderr.splitlines()[-1])
+
+
+def _loads(page: Any) -> Figure:
+    """Measures how long the page takes to load again and show the model."""
+    taken: list[float] = []
+    for _ in range(RUNS):
+        begin = time.perf_counter()
+        page.reload(wait_until="commit")
+        _shows_the_start(page)
+        taken.append(time.perf_counter() - begin)
+    page.locator(".scene-cover").wait_for(state="detached", timeout=60_000)
+    return Figure(name="page", value=median(taken), sense="at most", bar=1.5, what="[s] to load the page with the model, median")
+
+
+def _pans(page: Any) -> Figure:
+    """Measures the script time of a picture of the timeline that is moved along."""
+    taken = sorted(page.evaluate(PANS, [EVENTS, RUNS * 4]))
+    what = f"[ms] of script for a picture of the timeline of an hour with {EVENTS:,} events, of ten nine"
+    return Figure(name="pan", value=taken[9 * len(taken) // 10], sense="at most", bar=16, what=what)
 
 
 def _clicks(page: Any) -> Figure:
