@@ -28,7 +28,7 @@ def main() -> int:
     begin = time.monotonic()
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
-        _run(sys.executable, "-m", "mkdocs", "build", "--quiet", "--config-file", str(ROOT / "mkdocs.yml"))
+        _run(sys.executable, "-m", "mkdocs", "build", "--config-file", str(ROOT / "mkdocs.yml"))
         _run("uv", "build", "--quiet", "--wheel", "--out-dir", str(folder / "dist"), str(ROOT))
         (wheel,) = (folder / "dist").glob("*.whl")
         _complete(wheel)

@@ -24,11 +24,13 @@ class Sighting:
     module: str
     """The path of the vision module."""
     bottom_up: bool
+    """Whether the search was bottom-up."""
     time: float
     """Time of the view [s]."""
     chosen: bool
     """Whether the search puts it into the buffer."""
     feature: Feature
+    """What it has noticed."""
     view: View
     """The view in which it was found, with noise."""
     stood: Stand

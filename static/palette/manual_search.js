@@ -7,7 +7,8 @@ const MOST = 6;
 const LEAST = 3; // letters of a search
 const AROUND = 60; // letters of a text shown before the word found
 
-/** The sections of the manual: {title, text, low, address}; null before they have been read. */
+/** The sections of the manual: {title, page, text, low, address}; null before they have been read. `page` is the title of the page of a
+ * section that does not begin one. */
 const sections = signal(null);
 let asked = false;
 
@@ -17,9 +18,11 @@ export async function readManual() {
   asked = true;
   try {
     const { docs } = await (await fetch("/manual/search/search_index.json")).json();
+    const pages = new Map(docs.map(({ location, title }) => [location, plainText(title)]));
     sections.value = docs.map(({ location, title, text }) => {
-      const plain = plainText(text);
-      return { title: plainText(title), text: plain, low: plain.toLowerCase(), address: `/manual/${location}`, depth: location.includes("#") ? 1 : 0 };
+      const [plain, isPart] = [plainText(text), location.includes("#")];
+      const page = isPart ? (pages.get(location.split("#")[0]) ?? "") : "";
+      return { title: plainText(title), page, text: plain, low: plain.toLowerCase(), address: `/manual/${location}`, depth: isPart ? 1 : 0 };
     });
   } catch {
     asked = false; // it is asked again when the palette is opened again
@@ -34,7 +37,7 @@ function plainText(markup) {
   return text.replace(/\s+/g, " ").trim();
 }
 
-/** Returns the sections that contain all words of a search, the best first: {title, text, address}, with a piece of the text around
+/** Returns the sections that contain all words of a search, the best first: {title, page, text, address}, with a piece of the text around
  * the first word. */
 export function inManual(search) {
   const words = search.toLowerCase().split(/\s+/).filter(Boolean);
@@ -47,9 +50,9 @@ export function inManual(search) {
     found.push({ section, score });
   }
   found.sort((one, other) => other.score - one.score);
-  return found.slice(0, MOST).map(({ section: { title, text, low, address } }) => {
+  return found.slice(0, MOST).map(({ section: { title, page, text, low, address } }) => {
     const at = Math.max(0, ...words.map((word) => low.indexOf(word)).filter((place) => place >= 0).slice(0, 1));
     const from = at > AROUND ? text.indexOf(" ", at - AROUND) + 1 : 0;
-    return { title, text: `${from > 0 ? "… " : ""}${text.slice(from, from + 3 * AROUND)}`, address };
+    return { title, page, text: `${from > 0 ? "… " : ""}${text.slice(from, from + 3 * AROUND)}`, address };
   });
 }

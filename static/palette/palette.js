@@ -48,7 +48,7 @@ function found() {
 /** Returns everything that is offered. */
 function offered() {
   const pages = inManual(search.value.trim()).map((section) => ({
-    of: { text: section.title, group: section.text, key: null, ready: () => true, work: () => open(section.address, "_blank", "noopener") },
+    of: { text: section.title, group: [section.page, section.text].filter(Boolean).join(": "), key: null, ready: () => true, work: () => open(section.address, "_blank", "noopener") },
     heading: "Manual",
   }));
   return [...found(), ...pages];

@@ -3,7 +3,7 @@
 import { effect, html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
 import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
 import { timeText } from "../parts/ticks.js";
-import { events, running, state } from "../store.js";
+import { events, running, state, way } from "../store.js";
 import { dark } from "../theme.js";
 import { chosen, names, plots } from "./curves.js";
 import { drawAxis, drawTimeline, placeOf, secondsPerPixel, timeOf } from "./draw.js";
@@ -126,6 +126,10 @@ export function Stage() {
   const stage = useRef(null);
   const at = useSignal(null);
   useEffect(() => attend(stage.current), []);
+  // What is at the pointer is known until something else is there.
+  useEffect(() => {
+    at.value = null;
+  }, [present.value, span.value, scroll.value, way.value]);
 
   function hover(event) {
     const there = event.buttons ? null : lookUp(event, stage.current);

@@ -66,6 +66,10 @@ def test_a_mind_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[...
     field.press("Escape")
     expect(field).to_have_count(0)
     expect(page.get_by_role("button", name="Edit goal")).to_be_focused()
+    page.get_by_role("button", name="Edit goal").click()
+    expect(field).to_be_focused()
+    page.keyboard.press("Tab")  # nothing was written, so nothing is kept
+    expect(field).to_have_count(0)
     assert commands(other) == ["set buffer goal task:count number:2 last:5 -> task:count number:7 last:9 <b>"]
 
     # a memory

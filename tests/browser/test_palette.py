@@ -13,6 +13,7 @@ INDEX = {
     "docs": [
         {"location": "how-to/profile/", "title": "Profile a model", "text": "<p>It says where <b>time</b> goes.</p>"},
         {"location": "x/#y", "title": "<img src=x onerror=alert(1)>Chunks", "text": "<script>alert(1)</script><p>Time and chunks.</p>"},
+        {"location": "x/", "title": "Memory", "text": ""},
         {"location": "z/", "title": "Nothing of that", "text": ""},
     ]
 }
@@ -54,7 +55,7 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
     expect(page.get_by_role("dialog")).to_contain_text("Nothing has this in its name")
     page.keyboard.press("Escape")
     expect(page.get_by_role("dialog")).to_have_count(0)
-    search(page, "model count")
+    search(page, "model counting")
     page.keyboard.press("Enter")
     expect(page.get_by_label("Model", exact=True)).to_have_value("counting.py")
     shows(page, "#status", "at its start")
@@ -99,7 +100,7 @@ def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Cal
     shows(page, "#status", "at its start")
     search(page, "time chunk")
     found = page.get_by_role("group", name="Manual").get_by_role("option")
-    expect(found).to_have_text(["Chunksalert(1) Time and chunks."])
+    expect(found).to_have_text(["ChunksMemory: alert(1) Time and chunks."])
     page.keyboard.press("Control+a")
     page.keyboard.insert_text("where time goes")
     expect(found).to_have_text(["Profile a modelIt says where time goes."])

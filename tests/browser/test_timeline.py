@@ -121,6 +121,17 @@ def test_labels_of_the_ruler_and_the_playhead_never_overlap(ended: Page) -> None
             assert end < begin
 
 
+@pytest.mark.slow
+def test_what_is_at_the_pointer_is_told_no_more_once_something_else_is_there(ended: Page) -> None:
+    page, tip = ended, ended.get_by_role("tooltip")
+    next(told(page, 5.0 / 8))
+    expect(tip).to_have_count(1)
+    page.locator("#timeline").focus()
+    page.keyboard.press("Home")
+    when(page, "0.00")
+    expect(tip).to_have_count(0)
+
+
 def test_what_happens_at_the_start_is_seen_whole(page: Page) -> None:
     shows(page, "#status", "at its start")
     page.locator("#aperture").fill("90")
