@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -130,6 +131,10 @@ def test_openings_are_shown_where_they_are_with_their_width(desk: Desk, tmp_path
     upright = np.array(found["lines"][1])
     assert upright[0, :2] == pytest.approx(upright[1, :2])
     assert upright[1, 2] - upright[0, 2] > 1
+    talk.say("step", ticks=120)
+    talk.until("paused", tick=180)
+    (old,) = drawn(talk, 180, ("features",))["features"]["walker"]
+    assert re.fullmatch(r"opening 60 cm, seen at 0\.\d\d s", old["text"])
 
 
 def test_the_path_is_known_to_who_comes_late_and_after_going_back(desk: Desk, tmp_path: Path) -> None:

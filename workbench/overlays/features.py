@@ -24,6 +24,8 @@ MOST = 24
 """Maximum number of features of one search that are drawn."""
 DIAMOND = 0.08
 """Half the height of the mark of a feature without a size [m]."""
+OLD = 1.0
+"""Age from which a label says when its feature was seen [s]: the agent may have moved on since, and the world have changed."""
 LEAST = 0.01
 """Minimum height at which an obstacle without a height is drawn [m]."""
 
@@ -77,7 +79,8 @@ def drawn_features(agent: Model, body: Body) -> list[dict[str, Any]]:
         for sighting in found:
             lines = _outline(sighting, points)
             place = lines[0].mean(axis=0).tolist()
-            drawn.append({"text": _text(sighting.feature), "place": place, "lines": lines.tolist(), "chosen": sighting.chosen})
+            ago = f", seen at {sighting.time:.2f} s" if agent.now() - sighting.time > OLD else ""
+            drawn.append({"text": _text(sighting.feature) + ago, "place": place, "lines": lines.tolist(), "chosen": sighting.chosen})
     return drawn
 
 
