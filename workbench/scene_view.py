@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from workbench.page_commands.command import PageCommand
     from workbench.session import Session
 
+PATIENCE = 60.0
+"""Longest time for which a browser waits for the scene of a run [s]: a large one takes seconds to build, a run may never get that far."""
+
 
 class SceneView:
     """Shows the world of a session's run with overlays and viser's own panel.
@@ -113,10 +116,10 @@ class SceneView:
             self._changed.set()
 
     async def wait(self) -> bool:
-        """Waits until the scene is that of the newest run; returns whether there is one."""
+        """Waits until the scene is that of the newest run, but not longer than `PATIENCE`; returns whether there is one."""
         self.prepare()
         ready = asyncio.ensure_future(self._ready.wait())
-        await asyncio.wait([ready, self._task], return_when=asyncio.FIRST_COMPLETED)
+        await asyncio.wait([ready, self._task], timeout=PATIENCE, return_when=asyncio.FIRST_COMPLETED)
         ready.cancel()
         return self._ready.is_set() and not self.over
 
