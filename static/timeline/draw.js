@@ -9,6 +9,7 @@ import { firstWhere, nextWhere } from "./search.js";
 import { AXIS, MARGIN } from "./rows.js";
 
 const SCALE = 44; // the width of a plot's scale in the column of names [px]
+const THIN = 3; // the width up to which a band is only a stroke [px]
 const ROOM = 34; // the minimum width for a text [px]
 
 /**
@@ -91,6 +92,11 @@ function drawBands(surface, bands, y, height, scene) {
   let last = column - 10; // the end of the last drawn band: of several in one pixel, one is enough
   const endOf = (band) => Math.min(width + 4, placeOf(band.to ?? Math.max(end, band.from), scene));
   const isSeen = (band) => endOf(band) >= last + 0.7;
+  let thin = null; // thin bands of one tone that touch are drawn as one: {from, to, tone}
+  const drawThin = () => {
+    if (thin) surface.fill(thin.from, y + 1.5, thin.to - thin.from, height - 3, thin.tone, 0.75);
+    thin = null;
+  };
   for (let n = first; n < bands.length && bands[n].from <= span.to; n += 1) {
     if (!isSeen(bands[n])) n = nextWhere(bands, isSeen, n + 1);
     const band = bands[n];
@@ -98,16 +104,23 @@ function drawBands(surface, bands, y, height, scene) {
     const from = Math.max(column - 4, placeOf(band.from, scene));
     const to = endOf(band);
     last = Math.max(to, from + 1);
+    if (!band.mark && to - from <= THIN) {
+      if (thin?.tone !== band.tone || from > thin.to + 0.7) drawThin();
+      thin = { from: thin?.from ?? from, to: last, tone: band.tone };
+      continue;
+    }
+    drawThin();
     if (band.mark) {
       const next = bands[n + 1] ? placeOf(bands[n + 1].from, scene) : width;
       drawMark(surface, band, from, next, y, height);
     } else drawBand(surface, band, from, to, y, height);
   }
+  drawThin();
 }
 
 function drawBand(surface, band, from, to, y, height) {
   const wide = to - from;
-  surface.fill(from, y + 1.5, Math.max(1, wide - (wide > 3 ? 0.5 : 0)), height - 3, band.tone, wide < 4 ? 0.75 : 0.26);
+  surface.fill(from, y + 1.5, wide - 0.5, height - 3, band.tone, wide < 4 ? 0.75 : 0.26);
   if (wide >= 4) surface.fill(from, y + 1.5, 2, height - 3, band.tone);
   if (wide < ROOM) return;
   const text = cut(bandText(band), wide - 8, { mono: true });

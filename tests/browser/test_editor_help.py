@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, expect
 
-from tests.helpers.page import open_tab, shows
+from tests.helpers.page import open_tab, shows, until
 from tests.helpers.workbench_server import Served
 
 CODE = ".code .cm-content"
@@ -73,6 +73,18 @@ def choose(page: Page, label: str) -> None:
     option.click()
 
 
+def hover_until_told(page: Page, place: Locator) -> None:
+    """Moves the pointer over a place until its documentation is shown, as a user does where the text was still being read."""
+
+    def told() -> bool:
+        page.mouse.move(0, 0)
+        place.hover()
+        page.wait_for_timeout(1500)
+        return page.locator(".documentation").count() > 0
+
+    until(page, told)
+
+
 @pytest.mark.slow
 def test_help_while_writing(opened: Callable[[str], Page]) -> None:
     page = opened(SHORT)
@@ -89,7 +101,7 @@ def test_help_while_writing(opened: Callable[[str], Page]) -> None:
     page.keyboard.type("p")  # the values of the slot are offered at once
     choose(page, "pet")
     has_line(page, 'def answer(facts="meaning:pet")')
-    page.locator(".cm-line", has_text="memory = Memory").get_by_text("Memory").hover()
+    hover_until_told(page, page.locator(".cm-line", has_text="memory = Memory").get_by_text("Memory"))
     shows(page, ".documentation", "Declarative memory: stores chunks")
     page.locator("#status").hover()
     expect(page.locator(".documentation")).to_have_count(0)
