@@ -19,12 +19,9 @@ from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
 from workbench.retention import erase
 from workbench.run_request import LaunchedRun, RunOptions, start_of
-from workbench.worker.messages import At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
+from workbench.worker.messages import ENDED, At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import LAST_WORDS, Receiver, WorkerMonitor
-
-ENDED = ("ended", "failed")
-"""The statuses of a run that is over."""
 
 Watcher = Callable[[Facts | State | ViewSettings | None], None]
 
@@ -257,7 +254,7 @@ class Session(Broadcast, Receiver):
 
     def changed(self, *, facts: bool = False) -> None:
         super().changed(facts=facts)
-        listed = (self._recording, self.alive, self.state is not None and self.state.status in ENDED, self.branched)
+        listed = (self.run, self.alive, self.state is not None and self.state.status in ENDED, self.branched)
         if listed != self._listed:
             self._listed = listed
             self._tell_lists()

@@ -18,11 +18,11 @@ export async function readManual() {
   asked = true;
   try {
     const { docs } = await (await fetch("/manual/search/search_index.json")).json();
-    const pages = new Map(docs.map(({ location, title }) => [location, plainText(title)]));
-    sections.value = docs.map(({ location, title, text }) => {
+    const titles = new Map(docs.map(({ location, title }) => [location, plainText(title)]));
+    sections.value = docs.map(({ location, text }) => {
       const [plain, isPart] = [plainText(text), location.includes("#")];
-      const page = isPart ? (pages.get(location.split("#")[0]) ?? "") : "";
-      return { title: plainText(title), page, text: plain, low: plain.toLowerCase(), address: `/manual/${location}`, depth: isPart ? 1 : 0 };
+      const page = isPart ? (titles.get(location.split("#")[0]) ?? "") : "";
+      return { title: titles.get(location), page, text: plain, low: plain.toLowerCase(), address: `/manual/${location}`, depth: isPart ? 1 : 0 };
     });
   } catch {
     asked = false; // it is asked again when the palette is opened again

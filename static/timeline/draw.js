@@ -97,10 +97,8 @@ function drawBands(surface, bands, y, height, scene) {
     if (thin) surface.fill(thin.from, y + 1.5, thin.to - thin.from, height - 3, thin.tone, 0.75);
     thin = null;
   };
-  for (let n = first; n < bands.length && bands[n].from <= span.to; n += 1) {
-    if (!isSeen(bands[n])) n = nextWhere(bands, isSeen, n + 1);
+  for (let n = first; n < bands.length && bands[n].from <= span.to; n = nextWhere(bands, isSeen, n + 1)) {
     const band = bands[n];
-    if (!band || band.from > span.to) break;
     const from = Math.max(column - 4, placeOf(band.from, scene));
     const to = endOf(band);
     last = Math.max(to, from + 1);

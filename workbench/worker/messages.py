@@ -10,6 +10,8 @@ import msgspec
 from actr3d.values import escape_surrogates
 
 Status = Literal["loading", "paused", "running", "ended", "failed"]
+ENDED = ("ended", "failed")
+"""The statuses of a run that is over."""
 
 
 class Message(msgspec.Struct, frozen=True, kw_only=True, tag=str.lower, tag_field="type"):

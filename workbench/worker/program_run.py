@@ -34,7 +34,7 @@ from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
 from workbench.worker.kept_branch import KeptBranch
 from workbench.worker.known_run import KnownRun
-from workbench.worker.messages import Facts
+from workbench.worker.messages import ENDED, Facts
 from workbench.worker.names import Names, Top, names_of_program
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.shown import Kept, Shown
@@ -437,7 +437,7 @@ class ProgramRun(ControlledRun):
         raise _refusal(name)  # a program may hold what the command would change
 
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
-        if self._controller.status in ("ended", "failed"):
+        if self._controller.status in ENDED:
             raise SimulationError("the run is over: go back to an earlier time, or restart it")
         if self._shown is not None or body is not None:
             raise _refusal(word)
@@ -468,7 +468,7 @@ class ProgramRun(ControlledRun):
     def go_to(self, time: int) -> None:
         if time > self._furthest:
             raise SimulationError(f"the run has only reached {seconds(self._furthest):g} s; continue it instead")
-        over = self._controller.status in ("ended", "failed")
+        over = self._controller.status in ENDED
         self._rush = time
         self._controller.status = "running"
         if over or time < self._clock:

@@ -21,7 +21,7 @@ from workbench.worker.channel import Channel
 from workbench.worker.controlled_run import ControlledRun
 from workbench.worker.error_report import describe_error
 from workbench.worker.known_run import KnownRun, difference_notice
-from workbench.worker.messages import Cut, Do, Draw, Leave, Reply, State, Status, shortened
+from workbench.worker.messages import ENDED, Cut, Do, Draw, Leave, Reply, State, Status, shortened
 from workbench.worker.names import lost_breakpoints
 from workbench.worker.pacer import Pacer
 from workbench.worker.stop_conditions import Watch
@@ -236,7 +236,7 @@ class RunController:
         Raises:
             Actr3dError: If the run is over.
         """
-        if self.status in ("ended", "failed"):
+        if self.status in ENDED:
             raise Actr3dError("the run is over: go back to an earlier time, or restart it")
         self.watch = self.watch.renewed(**wanted)
         trace = self.run.trace
@@ -358,7 +358,7 @@ class RunController:
         """Compares new events with the recording; if they differ, returns the state without any time ahead."""
         events = trace.since(self._compared)[: max(0, state.events - self._compared)]
         found = known_run.difference(self._compared, events)
-        is_over = state.status in ("ended", "failed")
+        is_over = state.status in ENDED
         if found is None and not (is_over and state.events < known_run.count):
             self._compared = max(self._compared, state.events)
             return state
