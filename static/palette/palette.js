@@ -12,7 +12,8 @@ const MOST_RECENT = 6;
 const MOST = 60; // entries shown
 const WEAK = 0.6; // what fits worse than this share of the best is left out
 
-const isOpen = signal(false);
+const shown = signal(0); // which opening of the palette is shown; 0 if none
+let openings = 0;
 const search = signal("");
 const chosen = signal(0);
 /** The names of the commands used last, the newest first. */
@@ -56,7 +57,7 @@ function offered() {
 
 function take({ of, heading }) {
   if (!of.ready()) return;
-  isOpen.value = false;
+  shown.value = 0;
   if (heading !== "Manual") recent.value = [nameOf(of), ...recent.value.filter((name) => name !== nameOf(of))].slice(0, MOST_RECENT);
   setTimeout(() => run(of)); // after the palette has closed and given back the focus
 }
@@ -88,7 +89,7 @@ function Entry({ entry, n }) {
   </li>`;
 }
 
-function Palette() {
+function Palette({ opening }) {
   const box = useRef(null);
   const entries = offered();
   const at = Math.min(chosen.value, entries.length - 1);
@@ -102,13 +103,14 @@ function Palette() {
     const to = { ArrowDown: at + 1, ArrowUp: at - 1, PageDown: Math.min(at + 8, entries.length - 1), PageUp: Math.max(at - 8, 0) }[event.key];
     if (to !== undefined && entries.length > 0) chosen.value = (to + entries.length) % entries.length;
     else if (event.key === "Enter" && entries[at]) take(entries[at]);
-    else if (event.key.toLowerCase() === "k" && (event.ctrlKey || event.metaKey)) isOpen.value = false;
+    else if (event.key.toLowerCase() === "k" && (event.ctrlKey || event.metaKey)) shown.value = 0;
     else return;
     event.preventDefault();
   }
 
   const groups = [...Map.groupBy(entries.map((entry, n) => ({ entry, n })), ({ entry }) => entry.heading)];
-  return html`<dialog class="palette" ref=${box} aria-label="Commands" onClose=${() => (isOpen.value = false)} onClick=${(event) => event.target === box.current && (isOpen.value = false)}>
+  // The browser tells a moment after Escape that a dialog has closed; until then the palette may have been opened again.
+  return html`<dialog class="palette" ref=${box} aria-label="Commands" onClose=${() => shown.value === opening && (shown.value = 0)} onClick=${(event) => event.target === box.current && (shown.value = 0)}>
     <input
       type="text"
       role="combobox"
@@ -142,11 +144,11 @@ export const opening = command({
   work: () => {
     search.value = "";
     chosen.value = 0;
-    isOpen.value = true;
+    shown.value = ++openings;
   },
 });
 
 /** The container of the palette. */
 export function CommandPalette() {
-  return isOpen.value ? html`<${Palette} />` : null;
+  return shown.value ? html`<${Palette} key=${shown.value} opening=${shown.value} />` : null;
 }

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page
 
-from tests.helpers.page import PATIENCE, Users, chromium
+from tests.helpers.page import Users, chromium
 from tests.helpers.workbench_server import Served, served
 
 REFUSED = re.compile("Failed to load resource: the server responded with a status of 40[0-9]")
@@ -46,16 +46,9 @@ def pages(users: Users, workbench: Served, request: pytest.FixtureRequest) -> It
         workbench.post(f"/api/sessions/{session['id']}/close")
     complaints: list[str] = []
 
-    def note(message: Any) -> None:
-        if message.type == "error":
-            complaints.append(message.text)
-
-    def note_unless_refused(message: Any) -> None:
-        if not REFUSED.match(message.text):
-            note(message)
-
-    def fault(error: Any) -> None:
-        complaints.append(str(error))
+    def note_unless_refused(complaint: str) -> None:
+        if not REFUSED.match(complaint):
+            complaints.append(complaint)
 
     def opened(
         model: str = "doorway.py",
@@ -66,14 +59,11 @@ def pages(users: Users, workbench: Served, request: pytest.FixtureRequest) -> It
         paced: bool = False,
         refusals: bool = False,
     ) -> Page:
-        page = users.new(request.node.get_closest_marker("scene") is not None).new_page()
+        page = users.new(request.node.get_closest_marker("scene") is not None, note_unless_refused if refusals else complaints.append)
         page.set_viewport_size({"width": width, "height": height})
         page.emulate_media(color_scheme=theme)
         if tab is not None:
-            page.add_init_script(f"localStorage.getItem('actr3d.tab') ?? localStorage.setItem('actr3d.tab', '\"{tab}\"')")
-        page.set_default_timeout(PATIENCE)
-        page.on("console", note_unless_refused if refusals else note)
-        page.on("pageerror", fault)
+            page.evaluate("(tab) => localStorage.setItem('actr3d.tab', JSON.stringify(tab))", tab)
         if not paced and not any(one["model"] == model for one in workbench.get("/api/sessions").json()["sessions"]):
             workbench.post("/api/sessions", {"model": model})
         page.goto(f"{workbench.address}&model={model}")

@@ -85,6 +85,21 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
         assert any(name in one for one in names), name
 
 
+def test_the_palette_opens_again_as_soon_as_it_is_closed(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    search(page, "step")
+    page.evaluate(
+        """() => {
+          document.querySelector("dialog").close();
+          document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "k", ctrlKey: true, bubbles: true }));
+        }"""
+    )
+    expect(page.get_by_role("combobox", name="Search commands")).to_have_value("")
+    expect(page.get_by_role("combobox", name="Search commands")).to_be_focused()
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+
+
 def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Callable[..., Page]) -> None:
     built = [False, True]
     page = pages("counting.py")

@@ -33,9 +33,8 @@ def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 @pytest.fixture
 def page(users: Users, workbench: Served) -> Iterator[Page]:
-    page = users.new(scene=True).new_page()
+    page = users.new(scene=True)
     page.set_viewport_size({"width": 800, "height": 600})
-    page.set_default_timeout(PATIENCE)
     page.goto(workbench.address)
     yield page
     users.leave()

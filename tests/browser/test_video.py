@@ -100,7 +100,9 @@ def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[...,
     shows(page, "#time", r"t = 0\.40 s")
 
     video = f"data:video/webm;base64,{b64encode((tmp_path / 'video.webm').read_bytes()).decode()}"
-    found = users.new(scene=False).new_page().evaluate(DECODED, [video, picture, 10])
+    player = users.new(scene=False)
+    player.goto("about:blank")
+    found = player.evaluate(DECODED, [video, picture, 10])
     width, height = frame.evaluate("() => [innerWidth, innerHeight]")
     assert found["size"] == [width // 2 * 2, height // 2 * 2]
     assert found["duration"] == pytest.approx(1 / 3, abs=0.001)

@@ -89,7 +89,7 @@ class Standing:
 @pytest.fixture
 def blank(users: Users, workbench: Served) -> Iterator[Page]:
     """A page that imports the modules, and shows nothing."""
-    page = users.new(scene=False).new_page()
+    page = users.new(scene=False)
     page.goto(workbench.address)
     yield page
     users.leave()

@@ -8,9 +8,10 @@ import shutil
 import time
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
+from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
+from playwright.sync_api import Browser, ConsoleMessage, Error, Page, expect, sync_playwright
 
 PATIENCE = 60_000
 """So long a test waits for what must come [ms]; machines are slow at times."""
@@ -64,40 +65,92 @@ NO_SCENE = """{
 """Leaves the 3D view empty where a test is about something else: to draw it without a graphics card takes seconds of two processors."""
 
 
+LASTING = ("on", "once", "add_init_script", "expose_binding", "expose_function")
+"""Methods of a page whose effect lasts, and cannot be undone here."""
+
+
 class Users:
-    """The users of a workbench in one browser: each has a memory of its own, but for the page's files, which a browser loads once."""
+    """The users of a workbench in one browser, each with a page and a memory of its own.
+
+    A page that a user has left is given to the next one, as the browser starts a process for a new one, which must read and compile
+    all files of the page again: half of the time that a page takes to load. A page that keeps something of a test is closed.
+    """
 
     def __init__(self, browser: Browser, url: str) -> None:
         self._browser = browser
         self._url = url
-        self._free: dict[bool, list[BrowserContext]] = {True: [], False: []}
-        self._taken: list[tuple[bool, BrowserContext]] = []
+        self._elsewhere = f"{url}/nothing"  # what the workbench does not have: of its origin, so that the browser keeps the page's process
+        self._free: dict[bool, list[Page]] = {True: [], False: []}
+        self._taken: list[tuple[bool, Page]] = []
+        self._spoilt: set[Page] = set()
+        self._hear: dict[Page, Callable[[str], object]] = {}
 
-    def new(self, scene: bool) -> BrowserContext:
-        """Returns the context of a user who has not been here before, and who sees the 3D view or not."""
-        if self._free[scene]:
-            context = self._free[scene].pop()
-        else:
-            context = self._browser.new_context()
-            context.add_init_script(PART)
-            if not scene:
-                context.add_init_script(NO_SCENE)
-        self._taken.append((scene, context))
-        return context
+    def new(self, scene: bool, hear: Callable[[str], object] = len) -> Page:
+        """Returns the page of a user who has not been here before, and who sees the 3D view or not.
+
+        `hear` is told each error on the page's console.
+        """
+        page = self._free[scene].pop() if self._free[scene] else self._opened(scene)
+        self._hear[page] = hear
+        self._taken.append((scene, page))
+        return page
 
     def leave(self) -> None:
-        """Closes all pages; what the users did is forgotten."""
-        for scene, context in self._taken:
-            context.unroute_all()
-            context.clear_permissions()
-            for page in context.pages:
-                page.close()
-            blank = context.new_page()
-            storage = context.new_cdp_session(blank)
-            storage.send("Storage.clearDataForOrigin", {"origin": self._url, "storageTypes": "all"})  # pyright: ignore[reportUnknownMemberType]
-            blank.close()
-            self._free[scene].append(context)
-        self._taken.clear()
+        """Empties all pages; what the users did is forgotten."""
+        taken, self._taken = self._taken, []
+        for scene, page in taken:
+            for other in page.context.pages:
+                if other != page:
+                    other.close()
+            if page in self._spoilt or page.is_closed():
+                page.context.close()
+            else:
+                self._forget(page)
+                self._free[scene].append(page)
+
+    def _opened(self, scene: bool) -> Page:
+        context = self._browser.new_context()
+        context.add_init_script(PART)
+        if not scene:
+            context.add_init_script(NO_SCENE)
+        page = context.new_page()
+        page.set_default_timeout(PATIENCE)
+
+        def hear(complaint: str) -> None:
+            if page in self._hear:
+                self._hear[page](complaint)
+
+        def hear_console(message: ConsoleMessage) -> None:
+            if message.type == "error":
+                hear(message.text)
+
+        def hear_error(error: Error) -> None:
+            hear(str(error))
+
+        page.on("console", hear_console)
+        page.on("pageerror", hear_error)
+        page.goto(self._elsewhere)
+        for method in LASTING:
+            setattr(page, method, self._noted(page, getattr(page, method)))
+        return page
+
+    def _noted(self, page: Page, method: Callable[..., Any]) -> Callable[..., Any]:
+        def called(*given: Any, **named: Any) -> Any:
+            self._spoilt.add(page)
+            return method(*given, **named)
+
+        return called
+
+    def _forget(self, page: Page) -> None:
+        page.unroute_all()
+        page.context.unroute_all()
+        del self._hear[page]
+        page.goto(self._elsewhere)
+        page.evaluate("sessionStorage.clear()")
+        page.context.clear_permissions()
+        storage = page.context.new_cdp_session(page)
+        storage.send("Storage.clearDataForOrigin", {"origin": self._url, "storageTypes": "all"})  # pyright: ignore[reportUnknownMemberType]
+        storage.detach()
 
 
 def shows(page: Page, where: str, text: str) -> None:
