@@ -94,6 +94,10 @@ let inner = null; // the window of the 3D view
 /** Handles the keys of the 3D view's window too: they work as elsewhere on the page; the 3D view gets only the camera keys. */
 export function hearKeys(frame) {
   inner = frame;
+  // The browser does not tell which way the focus came into a frame.
+  frame.addEventListener("pointerdown", () => (byPointer = true), true);
+  frame.addEventListener("focus", () => frame.frameElement.classList.toggle("reached", !byPointer));
+  frame.addEventListener("blur", () => frame.frameElement.classList.remove("reached"));
   for (const kind of ["keydown", "keyup"]) {
     frame.addEventListener(
       kind,

@@ -90,11 +90,18 @@ function documentationBox() {
   return Object.assign(document.createElement("div"), { className: "documentation", role: "note", ariaLabel: "Documentation", tabIndex: 0 }); // it may have to be scrolled
 }
 
+/** Returns the text of a documentation as an element; what stands between backticks is code. */
+function paragraph(text) {
+  const box = document.createElement("p");
+  text.split(/`+([^`]+)`+/).forEach((part, n) => box.append(n % 2 ? Object.assign(document.createElement("code"), { textContent: part }) : part));
+  return box;
+}
+
 /** Returns documentation as an element; everything in it is text. */
 function documentation({ title, text }) {
   const box = documentationBox();
   if (title) box.append(Object.assign(document.createElement("pre"), { textContent: title }));
-  if (text) box.append(Object.assign(document.createElement("p"), { textContent: text }));
+  if (text) box.append(paragraph(text));
   return box;
 }
 
@@ -131,7 +138,7 @@ function parametersOf({ name, parameters, active, text }) {
   });
   line.append(")");
   dom.append(line);
-  if (text) dom.append(Object.assign(document.createElement("p"), { textContent: text }));
+  if (text) dom.append(paragraph(text));
   return dom;
 }
 

@@ -5,6 +5,7 @@ import { remembered } from "../local_storage.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { call } from "../server.js";
+import { session } from "../store.js";
 import { experiments, isRunning, shown, startExperiment } from "./list.js";
 import { baseName, durationText, levelsText, readLevels } from "./wording.js";
 
@@ -92,11 +93,11 @@ function useCheck(wanted, problem) {
   return found.value.of === key ? found.value.error : null;
 }
 
-function DesignChoice({ design }) {
+function DesignChoice({ design, choose }) {
   const { designs } = known.value;
   const files = [...new Set(designs.map(({ file }) => file))];
   const option = ({ id, name }) => html`<option key=${id} value=${id}>${name}</option>`;
-  return html`<select aria-label="Design" value=${design} onChange=${(event) => (DESIGN.value = event.currentTarget.value)}>
+  return html`<select aria-label="Design" value=${design} onChange=${(event) => choose(event.currentTarget.value)}>
     ${files.map((file) => html`<optgroup key=${file} label=${file ?? "The library's designs"}>${designs.filter((one) => one.file === file).map(option)}</optgroup>`)}
   </select>`;
 }
@@ -215,14 +216,19 @@ export function NewExperiment() {
   useLayoutEffect(() => {
     call("GET", "/api/designs").then((answer) => (known.value = answer)).catch((error) => (problem.value = error.message));
   }, []);
+  const picked = useSignal(null);
+  const choose = (id) => (picked.value = DESIGN.value = id);
   const designs = known.value?.designs ?? [];
-  const chosen = designs.find(({ id }) => id === DESIGN.value) ?? designs.find(({ file }) => file !== null) ?? designs[0];
+  const last = designs.find(({ id }) => id === (picked.value ?? DESIGN.value));
+  // At first one of the model that is shown.
+  const own = designs.filter(({ file }) => file !== null && file === session.value?.model);
+  const chosen = (picked.value === null && !own.includes(last) ? own[0] : null) ?? last ?? designs.find(({ file }) => file !== null) ?? designs[0];
   const design = chosen?.id ?? "";
   const { facts, error } = useFacts(design);
   return html`
     <div class="tools">
       <button class="bare" title="All experiments" onClick=${() => (shown.value = "")}><span class="back"><${Icon} name="right" /></span>Experiments</button>
-      ${known.value ? html`<${DesignChoice} design=${design} />` : null}
+      ${known.value ? html`<${DesignChoice} design=${design} choose=${choose} />` : null}
     </div>
     ${problem.value ? html`<p class="problem bad" role="alert">The designs cannot be listed: ${problem.value}</p>` : null}
     <div class="new">

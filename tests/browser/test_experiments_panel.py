@@ -23,11 +23,14 @@ def design(workbench: Served) -> Iterator[str]:
 
 
 def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page], workbench: Served, design: str) -> None:
-    page = pages("counting.py", tab=None)
+    page = pages(design.partition(":")[0], tab=None)
     open_tab(page, "Experiments")
     expect(page.get_by_text("No experiments yet.")).to_be_visible()
     page.get_by_role("button", name="New experiment").click()
-    page.get_by_label("Design", exact=True).select_option(design)
+    designs = page.get_by_label("Design", exact=True)
+    expect(designs).to_have_value(design)  # of the file that is shown
+    designs.select_option("fan_effect")
+    designs.select_option(design)
     foot = page.locator(".foot")
     expect(foot).to_contain_text("24 trials")
     levels = page.get_by_label("Levels of n")

@@ -545,6 +545,15 @@ def test_keys_work_after_a_click_into_the_3d_view_and_do_nothing_in_a_field_of_t
     inside = box["x"] + box["width"] / 3, box["y"] + box["height"] / 2
     page.mouse.click(*inside)
     assert page.evaluate("document.activeElement.tagName") == "IFRAME"
+    focused = page.locator("#scene iframe.reached")  # outlined, as it is not after a click
+    expect(focused).to_have_count(0)
+    page.locator("#scene .view-bar").locator("select, button").first.focus()
+    page.keyboard.press("Shift+Tab")
+    expect(focused).to_have_count(1)
+    page.mouse.click(*inside)
+    page.get_by_role("tab", name="Buffers").focus()
+    expect(focused).to_have_count(0)
+    page.mouse.click(*inside)
     page.keyboard.press("ArrowRight")
     shows(page, "#time", "t = 0.01 s")
     before = look(page, frame)["position"]

@@ -138,6 +138,13 @@ def test_what_may_stand_at_a_place(ask: Asked, text: str, first: list[str]) -> N
     assert ask.labels(text)[: len(first)] == first
 
 
+def test_private_names_are_offered_when_one_begins(ask: Asked) -> None:
+    names = ask.labels(COUNTING.replace("goal.clear()", "goal.|"))
+    assert "chunk" in names
+    assert not any(name.startswith("_") for name in names)
+    assert "__class__" in ask.labels(COUNTING.replace("goal.clear()", "goal._|"))
+
+
 @pytest.mark.daily(2)
 @pytest.mark.parametrize("end", ["", "\n\nclass Other(AC", '\n    def more(goal="task:', "\n    def more(goal=", "\n)]}\n", "\nprint(f'{"])
 def test_texts_that_are_not_complete_yet(ask: Asked, end: str) -> None:

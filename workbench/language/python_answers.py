@@ -69,10 +69,13 @@ class Python:
         return jedi.Script(text, path=where, project=project, environment=self._environment)
 
     def complete(self, explicit: ExplicitText, path: str, at: int) -> list[Item]:
-        """Returns what can be written at a position; nothing in a string or a comment."""
+        """Returns what can be written at a position; nothing in a string or a comment. Private names are left out until one begins."""
         script, (line, column) = self._script(explicit.text, path), explicit.place(at)
-        found = [one for one in script.complete(line, column) if one.type != "path"][:MOST_ITEMS]
+        found = [one for one in script.complete(line, column) if one.type != "path"]
         start = column - len(found[0].name_with_symbols) + len(found[0].complete or "") if found else column
+        if start == column or _before(explicit, line, start + 1) != "_":
+            found = [one for one in found if not one.name.startswith("_")]
+        found = found[:MOST_ITEMS]
         owners = (
             [f"{one.full_name}." for one in script.infer(line, start - 2)] if start > 1 and _before(explicit, line, start) == "." else []
         )
