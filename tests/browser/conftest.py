@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -22,16 +24,49 @@ def workbench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         yield running
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """A browser; no longer than for one file of tests, for Playwright's event loop is in the way of others."""
-    with chromium() as started:
-        yield started
+class Opened:
+    """The browser of this process, and the users in it: while tests of this folder follow one another."""
+
+    def __init__(self) -> None:
+        self._ending = ExitStack()
+        self._browser: Browser | None = None
+        self._users: dict[str, Users] = {}
+
+    def browser(self) -> Browser:
+        if self._browser is None:
+            self._browser = self._ending.enter_context(chromium())
+        return self._browser
+
+    def users(self, url: str) -> Users:
+        if url not in self._users:
+            self._users[url] = Users(self.browser(), url)
+        return self._users[url]
+
+    def close(self) -> None:
+        self._browser = None
+        self._users.clear()
+        self._ending.close()
 
 
-@pytest.fixture(scope="module")
-def users(browser: Browser, workbench: Served) -> Users:
-    return Users(browser, workbench.url)
+OPENED = Opened()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(nextitem: pytest.Item | None) -> Iterator[None]:
+    """Ends the browser before tests of other folders, for Playwright's event loop is in their way."""
+    yield
+    if nextitem is None or nextitem.path.parent != Path(__file__).parent:
+        OPENED.close()
+
+
+@pytest.fixture
+def browser() -> Browser:
+    return OPENED.browser()
+
+
+@pytest.fixture
+def users(workbench: Served) -> Users:
+    return OPENED.users(workbench.url)
 
 
 @pytest.fixture

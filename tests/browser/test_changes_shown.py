@@ -139,7 +139,7 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
     # the branch is shown as a recording with its own address; a change there is a branch of it, and the live run is left alone
     rows.nth(1).locator(".branch-name").click()
     shows(page, ".recording-banner", r"0\.30 s are known")
-    page.wait_for_url("**/?run=*")
+    expect(page).to_have_url(re.compile(r"/\?run="))
     shows(page, "#time", r"0\.12 s")  # from where it differs
     say(page, type="seek", time=0.2)
     say(page, type="command", word="clear_buffer", named={"buffer": "goal"})

@@ -60,7 +60,8 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
     expect(page.get_by_role("columnheader").filter(has_text="luck")).to_have_attribute("aria-sort", "descending")
     number = rows.first.locator("td").first.inner_text()
     rows.first.click()
-    page.wait_for_url(re.compile(rf"run=counting_trial_{number}-"))
+    expect(page).to_have_url(re.compile(rf"run=counting_trial_{number}-"))
+    assert page.evaluate("document.readyState") == "complete"
     expect(page.get_by_text("Recording", exact=True)).to_be_visible()
 
     page.reload()

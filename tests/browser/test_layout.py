@@ -120,13 +120,13 @@ def test_a_link_leads_to_a_moment_of_a_run(pages: Pages, workbench: Served) -> N
     other = page.context.new_page()
     other.goto(link)  # the run itself, for it is still open
     shows(other, "#time", r"0\.05 s")
-    other.wait_for_url(re.compile(r"\?model=counting.py$"))
+    expect(other).to_have_url(re.compile(r"\?model=counting.py$"))
     other.close()
     page.click("#restart")  # which ends it
     shows(page, "#time", r"0\.00 s")
     page.goto(link.replace("0.05", "1.2"))
     expect(page.locator(".recording-banner")).to_be_visible()
     shows(page, "#time", r"1\.20 s")
-    page.wait_for_url(re.compile(r"\?run=counting-[\w-]+$"))
+    expect(page).to_have_url(re.compile(r"\?run=counting-[\w-]+$"))
     page.get_by_role("button", name="Copy a link").click()
     until(page, lambda: page.evaluate("navigator.clipboard.readText()") == link.replace("0.05", "1.2"))

@@ -266,7 +266,9 @@ def test_a_breakpoint_is_a_dot_that_can_be_seen(pages: Pages, workbench: Served,
     wanted = tuple(int(number) for number in re.findall(r"\d+", colour)[:3])
     counts: list[int] = []
     for dot in dots:
-        picture = Image.open(BytesIO(dot.screenshot())).convert("RGB")
+        box = dot.bounding_box()
+        assert box is not None
+        picture = Image.open(BytesIO(page.screenshot(clip=box))).convert("RGB")  # pyright: ignore[reportArgumentType]
         counts.append(sum(picture.getpixel((x, y)) == wanted for x in range(picture.width) for y in range(picture.height)))
     assert 30 < counts[0] < 81, counts  # a disc 9 pixels wide
     assert counts[1] == 0, counts
