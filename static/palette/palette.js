@@ -100,6 +100,7 @@ function Palette({ opening }) {
   }, []);
 
   function press(event) {
+    if (!box.current.open) return; // for a moment a closed dialog keeps the focus
     const to = { ArrowDown: at + 1, ArrowUp: at - 1, PageDown: Math.min(at + 8, entries.length - 1), PageUp: Math.max(at - 8, 0) }[event.key];
     if (to !== undefined && entries.length > 0) chosen.value = (to + entries.length) % entries.length;
     else if (event.key === "Enter" && entries[at]) take(entries[at]);

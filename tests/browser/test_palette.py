@@ -90,8 +90,9 @@ def test_the_palette_opens_again_as_soon_as_it_is_closed(page: Page) -> None:
     search(page, "step")
     page.evaluate(
         """() => {
+          const field = document.activeElement; // which has the focus for a moment after the dialog has closed
           document.querySelector("dialog").close();
-          document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "k", ctrlKey: true, bubbles: true }));
+          field.dispatchEvent(new KeyboardEvent("keydown", { key: "k", ctrlKey: true, bubbles: true, cancelable: true }));
         }"""
     )
     expect(page.get_by_role("combobox", name="Search commands")).to_have_value("")
