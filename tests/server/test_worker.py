@@ -50,7 +50,7 @@ def runs_again(talk: Talk, folder: Path) -> None:
     run = talk.facts["run"]
     (folder / "model.py").write_text(of("goal.set('done')"), encoding="utf-8")
     talk.say("restart", run=True)
-    talk.wait(lambda: talk.facts["run"] > run and talk.state["status"] == "ended")
+    talk.wait(lambda: talk.facts["run"] > run and talk.session.state is not None and talk.state["status"] == "ended")
     assert talk.state["time"] == 10.0
 
 
