@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+import threading
 import time
 import tracemalloc
 from itertools import islice
@@ -19,6 +20,7 @@ import mujoco
 
 from actr3d.benchmark import Figure, benchmark, processor_time_of, ratio, report
 from actr3d.experiment.specification import Experiment, specify
+from actr3d.experiment.store import Store
 from actr3d.experiment.trial import parameters_for, record_trial, run_trial
 from actr3d.output import ModelOutput, printing_to
 
@@ -128,7 +130,7 @@ def _small(folder: Path) -> list[Figure]:
 
 def _rows(folder: Path) -> list[Figure]:
     """Returns how fast rows are written and how the memory for them grows."""
-    from actr3d.experiment.store import Finished, Store
+    from actr3d.experiment.store import Finished
 
     peaks: list[int] = []
     with Store.create(folder / "rows", specify(str(folder / "counting.py")).specification) as store:
@@ -163,18 +165,28 @@ def _rows(folder: Path) -> list[Figure]:
     ]
 
 
+def _begin(experiment: Experiment, store: Store, client: Any) -> None:
+    """Runs a few trials, so that the processes of all workers have loaded the model."""
+    from actr3d.experiment.cluster import run_experiment
+
+    enough = threading.Event()
+    run_experiment(experiment, store, client, show=lambda now: now.done < 8 or enough.set(), stop=enough)
+
+
 def _workers(folder: Path) -> list[Figure]:
     """Returns the speed of two workers relative to one."""
     from actr3d.experiment.cluster import local_cluster, run_experiment
-    from actr3d.experiment.store import Store
 
     experiment = specify(DESIGN, participants=2, trials=2)
     took: list[float] = []
     for workers in (1, 2):
-        with local_cluster(workers) as client, Store.create(folder / f"workers {workers}", experiment.specification) as store:
-            seen: list[float] = []
-            run_experiment(experiment, store, client, show=lambda _, seen=seen: seen.append(time.perf_counter()))
-            took.append(seen[-1] - seen[workers])  # without the start of the processes
+        with local_cluster(workers) as client:
+            with Store.create(folder / f"{workers} workers at first", experiment.specification) as store:
+                _begin(experiment, store, client)
+            with Store.create(folder / f"{workers} workers", experiment.specification) as store:
+                begin = time.perf_counter()
+                run_experiment(experiment, store, client)
+                took.append(time.perf_counter() - begin)
     return [Figure(name="two workers", value=took[0] / took[1], sense="at least", bar=1.9, what="trials a second / with one worker")]
 
 

@@ -48,6 +48,11 @@ SETTINGS: dict[str, Any] = {
     "distributed.worker.preload": ["import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"],
     "distributed.comm.timeouts.connect": PATIENCE,
     "distributed.admin.log-length": 0,
+    # Dask would look at itself many times a second, for a page that nobody opens.
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.scheduler.active-memory-manager.start": False,
 }
 
 
@@ -186,11 +191,12 @@ class _Run:
             cluster.scale(len(cluster.worker_spec))
 
     def _next_batches(self, numbers: Iterator[int]) -> Iterator[list[int]]:
-        """Yields batches until each worker has enough of them."""
-        room = max(1, self._workers()) * AHEAD - len(self._waiting)
-        size = max(1, min(MOST, round(BATCH / max(self._seconds, 1e-6))))
-        for _ in range(room):
-            batch = list(islice(numbers, size))
+        """Yields batches until each worker has enough of them; the last ones are small, so that all workers end at about the same time."""
+        most = max(1, self._workers()) * AHEAD
+        usual = min(MOST, round(BATCH / max(self._seconds, 1e-6)))
+        for _ in range(most - len(self._waiting)):
+            left = len(self._experiment.design) - self._done - sum(map(len, self._waiting.values()))
+            batch = list(islice(numbers, max(1, min(usual, left // most))))
             if not batch:
                 return
             yield batch

@@ -6,6 +6,7 @@ experiment, then the numbers of its trials, then perhaps another specification; 
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import selectors
@@ -182,6 +183,11 @@ def _answer(asked: _Questions, answers: BinaryIO) -> None:
                     news = experiment.about if len(experiment.about) > described else {}
                     described = len(experiment.about)
                     answers.write(json.dumps({"row": row, "about": news}, allow_nan=False).encode() + b"\n")
+                    if not gc.get_freeze_count():
+                        # All is loaded now, and stays: to look through it for garbage again and again takes time.
+                        gc.collect()
+                        gc.freeze()
+                gc.unfreeze()
         except BrokenPipeError:
             raise
         except Exception as error:  # noqa: BLE001 - the client reports it, and ends this process
