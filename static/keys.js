@@ -94,7 +94,7 @@ let inner = null; // the window of the 3D view
 /** Handles the keys of the 3D view's window too: they work as elsewhere on the page; the 3D view gets only the camera keys. */
 export function hearKeys(frame) {
   inner = frame;
-  // The browser does not tell which way the focus came into a frame.
+  // The browser does not report whether the focus came into a frame by a key.
   frame.addEventListener("pointerdown", () => (byPointer = true), true);
   frame.addEventListener("focus", () => frame.frameElement.classList.toggle("reached", !byPointer));
   frame.addEventListener("blur", () => frame.frameElement.classList.remove("reached"));

@@ -57,7 +57,7 @@ class KnownLabel(PageMessage):
 
 
 class Labelling(KnownLabel):
-    """What a user writes about a recording; what is left out stays as it is."""
+    """What a user writes about a recording; what is left out is not changed."""
 
     known: KnownLabel | None = None
     """What the label was before; then a field that somebody else has changed since is not replaced."""

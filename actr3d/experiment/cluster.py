@@ -48,7 +48,7 @@ SETTINGS: dict[str, Any] = {
     "distributed.worker.preload": ["import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"],
     "distributed.comm.timeouts.connect": PATIENCE,
     "distributed.admin.log-length": 0,
-    # Dask would look at itself many times a second, for a page that nobody opens.
+    # Dask would measure itself many times a second, for a page that nobody opens.
     "distributed.worker.profile.enabled": False,
     "distributed.admin.tick.interval": "1s",
     "distributed.admin.system-monitor.interval": "5s",

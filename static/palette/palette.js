@@ -110,7 +110,7 @@ function Palette({ opening }) {
   }
 
   const groups = [...Map.groupBy(entries.map((entry, n) => ({ entry, n })), ({ entry }) => entry.heading)];
-  // The browser tells a moment after Escape that a dialog has closed; until then the palette may have been opened again.
+  // The event comes a moment after the dialog has closed; by then the palette may have been opened again.
   return html`<dialog class="palette" ref=${box} aria-label="Commands" onClose=${() => shown.value === opening && (shown.value = 0)} onClick=${(event) => event.target === box.current && (shown.value = 0)}>
     <input
       type="text"

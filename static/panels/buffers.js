@@ -73,7 +73,7 @@ function Edit({ path, name, draft, chosen, onLeft }) {
 
   const write = () => keepDraft(path, { ...draft, text: line.current.value });
   const leave = () => draft.text === draft.from && done();
-  return html`<input class="mono edit" ref=${line} aria-label="Chunk of ${name}" aria-invalid=${problem !== null} value=${draft.text} placeholder="empty" maxlength="10000" title="Enter sets the buffer, Escape leaves it as it is" onInput=${write} onKeyDown=${press} onBlur=${leave} />
+  return html`<input class="mono edit" ref=${line} aria-label="Chunk of ${name}" aria-invalid=${problem !== null} value=${draft.text} placeholder="empty" maxlength="10000" title="Enter sets the buffer, Escape leaves it unchanged" onInput=${write} onKeyDown=${press} onBlur=${leave} />
     <${Problem} text=${problem} />`;
 }
 

@@ -8,7 +8,7 @@ import { html, signal } from "../vendor/preact.js";
 import { listRuns } from "./list.js";
 
 /** Asks for the name, the note and the tags of a run, and stores those that were changed. They are read first, and what another browser
- * has changed while they were asked for is told before it is replaced. */
+ * has changed meanwhile is shown before it is replaced. */
 export async function labelRun(run) {
   const path = `/api/recordings/${encodeURIComponent(run.id)}`;
   let known;

@@ -67,7 +67,7 @@ export function forgetRun(id) {
   total.value -= 1;
 }
 
-/** Keeps the list up to date while it is shown: the server tells whenever a recording of any session began, ended or was changed. Returns the
+/** Keeps the list up to date while it is shown: the server reports whenever a recording of any session began, ended or was changed. Returns the
  * function that stops this. */
 export function follow() {
   const key = computed(() => `${session.value?.id} ${session.value?.listings} ${way.value}`);

@@ -38,7 +38,7 @@ function scene() {
   return inner?.scene?.picture ? inner.scene : null;
 }
 
-/** Returns the size of a video of the 3D view as it is now [pixels]: what the screen shows, with even numbers; null if there is no view. */
+/** Returns the size of a video of the present 3D view [pixels]: what the screen shows, with even numbers; null if there is no view. */
 export function sizeNow() {
   const view = document.querySelector("#scene iframe");
   if (!view || !scene()) return null;
