@@ -52,12 +52,11 @@ CHECKS = {
         assert KINDS["ring"].group == "other"
     """,
     "actr3d/experiment/distance.py": """
-        import actr3d.experiment.distance
+        from actr3d.experiment import find_measures
         from actr3d.simulation import Simulation
-        from actr3d.simulation.measure import MEASURES
         from actr3d.world import Floor, Mannequin, Scene
         simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), seed=1)
-        simulation.measure(MEASURES["Distance"]("walker"))
+        simulation.measure(find_measures()["Distance"]("walker"))
         simulation.command("walk", 1.0, body="walker")
         simulation.run(1)
         assert simulation.result().distance_m > 0.8

@@ -7,7 +7,8 @@ import inspect
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from string import Formatter
+from typing import Any, get_args
 
 import pytest
 from mujoco import MjSpec
@@ -18,10 +19,10 @@ import actr3d.world
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.modules import MODULES
 from actr3d.bench import find_benchmarks
-from actr3d.change import CHANGES, change
+from actr3d.change import CHANGES, Target, change
 from actr3d.errors import SimulationError, WorldError
+from actr3d.experiment import find_measures
 from actr3d.simulation import Simulation
-from actr3d.simulation.measure import MEASURES
 from actr3d.vision import DETECTORS
 from actr3d.world import Body, Car, Floor, ImportedBody, Scene, World
 from actr3d.world.anatomy import BODY_KINDS, Anatomy, Embodied, body_kind
@@ -150,6 +151,18 @@ def test_a_new_change_of_the_world_reaches_it_from_a_simulation() -> None:
     assert heights == [(simulation.world, 0.5)]
 
 
+@pytest.mark.parametrize("word", CHANGES)
+def test_each_change_is_described_and_its_text_names_its_fields(word: str) -> None:
+    kind = CHANGES[word]
+    assert kind.word == word
+    assert kind.of in get_args(Target)
+    assert kind.title
+    assert (inspect.getdoc(kind) or "").endswith(".")
+    in_text = {field for _, field, _, _ in Formatter().parse(kind.text) if field is not None}
+    assert in_text
+    assert in_text <= set(inspect.signature(kind).parameters)
+
+
 @pytest.mark.parametrize("name", MODULES)
 def test_each_module_can_be_put_into_an_agent(name: str) -> None:
     kind = MODULES[name]
@@ -158,9 +171,9 @@ def test_each_module_can_be_put_into_an_agent(name: str) -> None:
     assert getattr(actr3d.actr, name, kind) is kind  # what models import by this name
 
 
-@pytest.mark.parametrize("name", MEASURES)
+@pytest.mark.parametrize("name", find_measures())
 def test_each_measure_reads_a_world_and_says_what_it_cannot_find(name: str) -> None:
-    kind = MEASURES[name]
+    kind = find_measures()[name]
     assert inspect.getdoc(kind)
     assert {"begin", "look", "result"} <= set(dir(kind))
     arguments = ["nobody" for one in inspect.signature(kind).parameters.values() if one.default is one.empty]

@@ -16,6 +16,7 @@ from unittest import mock
 import actr3d.cli
 import workbench.cli
 from actr3d.change import CHANGES
+from actr3d.experiment import find_measures
 from actr3d.motor import Motor
 from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportUnusedImport] # registers the sensor `view`
 from actr3d.trace_kinds import KINDS
@@ -132,6 +133,13 @@ def changes() -> str:
         takes = ", ".join(str(one.replace(annotation=one.empty)) for one in inspect.signature(kind).parameters.values())
         rows.append((_code(f"{word}({takes})"), _first_sentence(kind)))
     return _rows(("Command", "What it does"), rows)
+
+
+@_registered
+def measures() -> str:
+    """Returns the table of all measures of the library."""
+    rows = [(_code(name), _code(kind.__module__), _first_sentence(kind)) for name, kind in sorted(find_measures().items())]
+    return _rows(("Measure", "Module", "What it measures"), rows)
 
 
 @_registered
