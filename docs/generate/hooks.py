@@ -15,6 +15,7 @@ import docstrings
 import model_pages
 import packages
 import tables
+import workbench_pages
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
@@ -26,9 +27,11 @@ GENERATED = re.compile(r"^<!-- (table|help|diagram): ([\w -]+) -->$", re.MULTILI
 
 
 def on_config(config: Any) -> None:
-    """Adds the page of each model to the navigation, and checks the docstrings of everything public."""
+    """Adds the pages of models and of panels to the navigation, and checks the docstrings of everything public."""
     section = next(entry["Models"] for entry in config.nav if "Models" in entry)
     section[1:] = [page.address for page in model_pages.pages()]
+    section = next(entry["Workbench"] for entry in config.nav if "Workbench" in entry)
+    section[1:] = workbench_pages.pages()
     config.extra["inline_scripts"] = {}
     for problem in docstrings.missing():
         LOG.warning(problem)

@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from unittest import mock
 
+import workbench_pages
+
 import actr3d.cli
 import workbench.cli
 from actr3d.change import CHANGES
@@ -140,6 +142,12 @@ def measures() -> str:
     """Returns the table of all measures of the library."""
     rows = [(_code(name), _code(kind.__module__), _first_sentence(kind)) for name, kind in sorted(find_measures().items())]
     return _rows(("Measure", "Module", "What it measures"), rows)
+
+
+@_registered
+def parts_of_the_page() -> str:
+    """Returns the table of the parts of the workbench's page."""
+    return workbench_pages.table()
 
 
 @_registered
