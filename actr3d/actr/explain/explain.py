@@ -1,6 +1,7 @@
 """Explains an agent: which productions match and why the others do not, and which chunk won a retrieval and why.
 
-An explanation of the current state reads the model; one of a past time reads the trace, and needs nothing else.
+An explanation of the current state reads the model, as a run need not be traced; one of a past time reads the trace, and needs nothing
+else.
 """
 
 from __future__ import annotations
