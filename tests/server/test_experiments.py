@@ -169,9 +169,7 @@ def test_an_experiment_is_stopped_and_continued_while_sessions_go_on(workbench: 
     now = awaited(workbench, name, "running", done=20)
     assert now["workers"] == 1
     assert now["rate"] is None or now["rate"] > 0
-    begin = time.monotonic()
     session = workbench.post("/api/sessions", {"model": "counting.py", "run": True}).json()["id"]
-    assert time.monotonic() - begin < 20
     workbench.post(f"/api/sessions/{session}/close")
     points = workbench.get(f"/api/experiments/{name}/means?x=n&measure=rt").json()["points"]
     assert sum(point["trials"] for point in points) >= 20
