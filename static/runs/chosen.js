@@ -82,7 +82,7 @@ function One({ run }) {
   const noCompare = own ? "It is the present run" : present.value ? "Beside the present run" : "The present run is not recorded";
   return html`
     <div class="actions" role="toolbar" aria-label="The chosen run">
-      <button class="primary" disabled=${idle} title="Live through it again (double-click)" onClick=${() => openRun(run)}>Open</button>
+      <button class="primary" disabled=${idle} title="Open this run again (double-click)" onClick=${() => openRun(run)}>Open</button>
       <button disabled=${idle || Boolean(replays.value[run.id]?.since)} title="Run it again in a process of its own, and compare every byte" onClick=${() => replayRun(run)}>Replay</button>
       <button disabled=${idle || own || !present.value} title=${noCompare} onClick=${() => compareRuns(run.id, present.value)}>Compare with the present run</button>
       <button disabled=${Boolean(run.problem)} title="Give it a name, a note and tags; it is then never deleted automatically" onClick=${() => labelRun(run)}>Name …</button>
