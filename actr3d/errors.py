@@ -60,7 +60,7 @@ class NotebookError(Actr3dError):
 
 
 class UntrustedError(RecordingError):
-    """A recording that another installation made, or that was changed, is not run unless the user declares it trusted."""
+    """A recording from another installation, or a changed one, was not run because the user has not trusted it."""
 
 
 class GridError(Actr3dError):

@@ -148,7 +148,7 @@ def test_a_run_goes_on_until_something_is_touched(desk: Desk, tmp_path: Path) ->
 
 def test_until_what_must_be_said(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, DOORWAY)
-    with pytest.raises(RefusedError, match="until what"):
+    with pytest.raises(RefusedError, match="until: must name a time"):
         talk.say("until", pattern="x")
     talk.say("step", ticks=10)
     talk.until("paused", tick=10)
@@ -414,7 +414,7 @@ def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
     opened = [desk.do(open_watched()) for _ in range(MOST)]
     for session in opened:
         Talk(desk, session, sessions).until("paused")
-    with pytest.raises(SessionError, match="each is watched or goes on"):
+    with pytest.raises(SessionError, match="each is shown on a page or still running"):
         desk.do(open_watched())
     # One that nobody watches any more makes room.
     opened[3].part(opened[3].feeds[0])
