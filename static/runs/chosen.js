@@ -44,8 +44,8 @@ function Replayed({ run }) {
       <button class="bare" onClick=${() => cancelReplay(run.id)}>Cancel</button>
     </div>`;
   }
-  const head = result.agrees === true ? (result.text.startsWith("agrees as far") ? "It agrees as far as it goes." : "Every byte agrees.") : result.agrees === false ? "It differs." : "Not known.";
-  const text = result.text.replace(/^(every byte agrees|agrees as far as it goes|differs): /, "");
+  const head = result.agrees === true ? (result.text.startsWith("agrees up to") ? "It agrees up to the end of the recording." : "Every byte agrees.") : result.agrees === false ? "It differs." : "Not known.";
+  const text = result.text.replace(/^(every byte agrees|agrees up to the end of the recording|differs): /, "");
   return html`<div class="replayed" role="status"><b class=${result.agrees === true ? "good" : "bad"}>${head}</b> <span>${text}</span></div>`;
 }
 
