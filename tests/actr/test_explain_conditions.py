@@ -30,7 +30,7 @@ def told(agent: Any, name: str, at: float | None = None) -> list[tuple[str, bool
     return [(one.condition, one.holds, one.found) for one in agent.explain(at).production(name).conditions]
 
 
-def test_conditions_are_told_one_by_one() -> None:
+def test_conditions_are_explained_one_by_one() -> None:
     agent = agent_of(SOURCE)
     agent.traced()
     agent.run(0.02)

@@ -105,7 +105,7 @@ def test_spreading_takes_any_value_and_knows_what_came_before_it() -> None:
 
 
 @pytest.mark.parametrize("copied", [False, True])
-def test_a_module_made_late_counts_each_chunk_once_however_often_it_is_told(copied: bool) -> None:
+def test_a_module_made_late_counts_a_chunk_created_again_once(copied: bool) -> None:
     memory, goal = Memory(Buffer()), Buffer()
     early = DMSpreading(memory, goal)
     for text in ("a b", "a c", "d a"):

@@ -162,7 +162,7 @@ def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, work
 
 
 @pytest.mark.slow
-def test_several_downloads_at_once_arrive_whole_and_one_that_fails_is_told(
+def test_several_downloads_at_once_arrive_whole_and_a_failed_one_is_reported(
     pages: Callable[..., Page], workbench: Served, recordings: Path, two: list[str]
 ) -> None:
     page = pages(refusals=True)

@@ -232,7 +232,7 @@ def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[s
     assert main(["replay", str(path), "--any-version"]) == 0
 
 
-def test_a_damaged_recording_is_told_from_one_that_differs(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_damaged_recording_is_distinguished_from_one_that_differs(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file)
     data = bytearray(path.read_bytes())
     with sqlite3.connect(path) as connection:
@@ -247,7 +247,7 @@ def test_a_damaged_recording_is_told_from_one_that_differs(file: Path, capsys: p
 
 
 @pytest.mark.parametrize("table", ["events", "answers", "commands"])
-def test_texts_in_it_that_are_damaged_are_told(table: str, tmp_path: Path) -> None:
+def test_damaged_texts_are_reported(table: str, tmp_path: Path) -> None:
     simulation = driving()
     with simulation.record(tmp_path / "run"):
         simulation.command("aperture", 0.5)
@@ -265,7 +265,7 @@ def test_a_recording_that_was_killed_before_anything_was_written_cannot_be_compa
         replay(recorded)
 
 
-def test_a_recording_without_its_facts_is_told(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_recording_without_its_facts_is_reported(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file)
     forge(path, "DELETE FROM facts WHERE name IN ('kind', 'versions')")
     capsys.readouterr()
@@ -379,7 +379,7 @@ def test_a_replay_that_fails_differs(
         (1, ["--record", "nowhere/run"], "cannot write the recording 'nowhere/run': No such file or directory"),
     ],
 )
-def test_wrong_options_of_run_are_told(
+def test_wrong_options_of_run_are_reported(
     code: int, words: list[str], message: str, file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(file.parent)
@@ -388,7 +388,7 @@ def test_wrong_options_of_run_are_told(
     assert file.read_text(encoding="utf-8") == BUILT
 
 
-def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_uses_with_a_program_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "noisy.py"
     file.write_text(NOISY, encoding="utf-8")
     assert main(["run", str(file), "--set", "a=1"]) == 2
@@ -436,7 +436,7 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
         ("\ndef build() -> Simulation: return 3", r":3: build must return a Simulation \(returned 3\)"),
     ],
 )
-def test_a_wrong_build_is_told_with_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, message: str) -> None:
+def test_a_wrong_build_is_reported_with_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, message: str) -> None:
     text = f"from actr3d.simulation import Simulation\n{line}\n"
     (tmp_path / "wrong.py").write_text(text, encoding="utf-8")
     with pytest.raises(ModelFileError, match=f"wrong.py{message}" if message[0] == ":" else message):

@@ -78,7 +78,7 @@ def after(desk: Desk, folder: Path, ticks: int) -> Talk:
     return talk
 
 
-def test_nothing_is_told_of_overlays_that_nobody_looks_at(desk: Desk, tmp_path: Path) -> None:
+def test_only_requested_overlays_are_sent(desk: Desk, tmp_path: Path) -> None:
     talk = after(desk, tmp_path, 5)
     assert talk.session.state is not None
     assert talk.session.state.drawn == {}

@@ -50,7 +50,7 @@ def recorded(desk: Desk, folder: Path, source: str) -> Path:
 
 
 @pytest.mark.parametrize("source", [BUILT, PROGRAM], ids=["built", "program"])
-def test_it_is_told_how_much_has_been_run_again(desk: Desk, tmp_path: Path, source: str) -> None:
+def test_the_progress_of_a_replay_is_reported(desk: Desk, tmp_path: Path, source: str) -> None:
     gate = tmp_path / "gate"
     gate.touch()
     path = recorded(desk, tmp_path, source.format(does=HALF.format(gate=str(gate))))
@@ -88,7 +88,7 @@ def test_it_is_told_how_much_has_been_run_again(desk: Desk, tmp_path: Path, sour
         ("os.path.exists({mark!r}) and os.write(1, b'x' * 10**7)", True, "every byte agrees"),
     ],
 )
-def test_whatever_a_model_does_the_second_time_is_told(
+def test_whatever_a_model_does_in_a_replay_is_reported(
     desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, does: str, agrees: bool | None, text: str
 ) -> None:
     mark = tmp_path / "mark"
