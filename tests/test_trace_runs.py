@@ -108,7 +108,7 @@ def test_runs_that_take_turns_are_distinguished() -> None:
     assert [(e.source, e.time) for e in limits.trace.select("command")] == [("top", 0.1), ("top#2", 0.2)]
 
 
-def test_a_model_that_joins_another_says_who_it_was() -> None:
+def test_a_model_that_joins_another_has_its_earlier_name_in_the_trace() -> None:
     with RunLimits(seed=1, trace=Trace()) as limits:
         agent: Any = ACTR()
         agent.goal = Buffer()  # it comes to life by itself

@@ -30,7 +30,7 @@ class Agent(ACTR):
 """
 
 
-def test_what_pattern_functions_bind_and_say_is_told_without_asking_them_again() -> None:
+def test_results_of_pattern_functions_are_explained_without_calling_them_again() -> None:
     agent = agent_of(BINDING)
     calls = told_by(agent, "calls")
     agent.traced()

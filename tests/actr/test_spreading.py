@@ -122,7 +122,7 @@ def test_a_module_made_late_counts_a_chunk_created_again_once(copied: bool) -> N
     assert late.slots == early.slots == {"a": 4, "b": 1, "c": 1, "d": 1, "e": 1}
 
 
-def test_equal_chunks_that_are_told_by_hand_count_each() -> None:
+def test_equal_chunks_that_are_created_by_hand_count_each() -> None:
     memory = Memory(Buffer())
     spreading = DMSpreading(memory)
     for _ in range(2):

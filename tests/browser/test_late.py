@@ -293,7 +293,7 @@ def test_a_slow_replay_shows_its_progress_until_it_is_ready(pages: Callable[...,
 
 
 @pytest.mark.slow
-def test_what_is_written_in_fields_stays_as_it_is_written(pages: Callable[..., Page]) -> None:
+def test_text_in_fields_stays_as_it_was_typed(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     wire = Wire(page)
     shows(page, "#status", "at its start")

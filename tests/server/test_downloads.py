@@ -101,7 +101,7 @@ def test_what_is_taken_of_a_run_that_goes_on_has_what_was_there(desk: Desk, tmp_
     assert talk.notices == []
 
 
-def test_a_recording_that_is_finished_is_given_as_it_is(desk: Desk, tmp_path: Path) -> None:
+def test_a_finished_recording_is_sent_unchanged(desk: Desk, tmp_path: Path) -> None:
     path = written(tmp_path, "m", firing(3))
     assert download(desk, tmp_path, "m").body == path.read_bytes()
     path.write_bytes(b"no recording at all")

@@ -85,7 +85,7 @@ def test_nothing_outside_the_folder_is_touched(folder: ModelFolder, tmp_path: Pa
     assert (folder.root / "one.py").is_file()
 
 
-def test_saving_what_nobody_else_has_changed(folder: ModelFolder) -> None:
+def test_saving_without_a_conflict(folder: ModelFolder) -> None:
     file = folder.read("one.py")
     (folder.root / "one.py").chmod(0o640)
     saved = folder.save("one.py", "ä = 3\n", file.version)

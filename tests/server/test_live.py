@@ -300,7 +300,7 @@ def tick_of(message: dict[str, Any]) -> int | None:
     return message["state"]["tick"] if message.get("state") else None
 
 
-def test_two_pages_see_the_same_and_say_who_controls(server: Served) -> None:
+def test_two_pages_see_the_same_and_show_which_one_controls(server: Served) -> None:
     name = opened(server)
 
     async def talk() -> None:

@@ -109,9 +109,7 @@ def test_what_is_no_recording_cannot_be_run_again(desk: Desk, tmp_path: Path) ->
     assert told == {"agrees": None, "text": "it is not a recording: file is not a database"}
 
 
-def test_it_ends_when_nobody_waits_any_more_and_when_it_comes_no_further(
-    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_it_ends_when_no_client_waits_and_when_it_makes_no_progress(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     gate = tmp_path / "gate"
     gate.touch()
     path = recorded(desk, tmp_path, BUILT.format(does=HALF.format(gate=str(gate))))

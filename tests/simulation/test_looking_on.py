@@ -174,7 +174,7 @@ def test_a_body_without_an_eye_cannot_glance() -> None:
         glance(World(Scene(parts=(blind,))).bodies["blind"])
 
 
-def test_a_program_is_told_when_its_time_goes_on() -> None:
+def test_a_program_is_notified_when_its_time_advances() -> None:
     passed: list[tuple[int, int]] = []
 
     def note(sch: Scheduler, end: int) -> None:

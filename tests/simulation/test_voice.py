@@ -77,7 +77,7 @@ def recorded(path: Path) -> list[str]:
         return [event.to_json() for event in file.events()]
 
 
-def test_a_recording_holds_the_same_lines_whoever_makes_it(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_recording_holds_the_same_lines_however_it_is_made(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "talker.py"
     file.write_text(TALKER, encoding="utf-8")
     assert main(["run", str(file), "--seed", "1", "--record", str(tmp_path / "by command")]) == 0
