@@ -28,7 +28,10 @@ class SchedulerError(Actr3dError):
 
 
 class ParameterError(Actr3dError):
-    """A parameter has a wrong name, type or value."""
+    """A parameter of a module, such as `Memory(latency=...)`, or an argument of a function has a wrong name, type or value.
+
+    Code raises it where the object is made or the function is called. For the parameters of a model file, see `SettingError`.
+    """
 
 
 class ConfigurationError(Actr3dError):
@@ -36,7 +39,11 @@ class ConfigurationError(Actr3dError):
 
 
 class SettingError(ConfigurationError):
-    """A model's parameter does not exist, or was given an invalid value."""
+    """A user of a model file gave a parameter of its `build`, or a command-line option, a wrong name or value.
+
+    It is raised before the model runs; the command then exits with 2. For the parameters of modules in a model's code, see
+    `ParameterError`.
+    """
 
 
 class WorldError(Actr3dError):
@@ -60,7 +67,7 @@ class NotebookError(Actr3dError):
 
 
 class UntrustedError(RecordingError):
-    """A recording that another installation made, or that was changed, is not run unless the user declares it trusted."""
+    """A recording from another installation, or a changed one, was not run because the user has not trusted it."""
 
 
 class GridError(Actr3dError):

@@ -19,7 +19,7 @@ _DETACHED_IN_COPIES: WeakSet[Detachable] = WeakSet()
 
 
 def detach_in_copies(thing: Detachable) -> None:
-    """Has a thing detached in every copy of the process that is forked from now on."""
+    """Detaches an object in every copy of the process that is forked later."""
     _DETACHED_IN_COPIES.add(thing)
 
 

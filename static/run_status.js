@@ -82,7 +82,7 @@ export function nothing(none) {
   return is === "ready" ? `There is no model yet. ${text}` : is === "running" ? "There is no model yet." : text;
 }
 
-/** Returns why there are no events: not yet, or, in a run that is over, `never`. */
+/** Returns the text for an empty list of events; `never` is the text once the run has ended. */
 export function nothingYet(never = "Nothing has happened in this run.") {
   const { is, text } = runStatus.value;
   if (isBare.value && is !== "ready") return nothing("");

@@ -72,7 +72,7 @@ def test_an_unknown_level_is_named() -> None:
 
 
 @pytest.mark.parametrize("level", LEVELS)
-def test_nothing_is_computed_that_nobody_asked_for(level: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_events_are_emitted_only_if_a_trace_is_requested(level: str, monkeypatch: pytest.MonkeyPatch) -> None:
     emitted: list[str] = []
 
     def emit(self: Trace, time_us: int, source: str, kind: str, data: dict[str, Any]) -> None:

@@ -105,7 +105,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     return [*trace, *by_hand, *printed, *(simulation.trace or ()), *(mover.trace or ()), *seeing_for(0.2)]
 
 
-def test_every_kind_is_told_and_no_other(recorded: list[TraceEvent]) -> None:
+def test_every_kind_is_emitted_and_no_other(recorded: list[TraceEvent]) -> None:
     assert {event.kind for event in recorded} == set(KINDS)
 
 
@@ -143,7 +143,7 @@ def remembering() -> tuple[Any, Trace]:
     return agent, agent.traced()
 
 
-def test_what_a_memory_takes_in_is_told() -> None:
+def test_chunks_that_enter_a_memory_are_traced() -> None:
     agent, trace = remembering()
     agent.memory.add("a 1")
     agent.run(0.5)
@@ -157,7 +157,7 @@ def test_what_a_memory_takes_in_is_told() -> None:
     ]
 
 
-def test_how_a_fact_is_given_is_told() -> None:
+def test_the_way_a_fact_is_given_is_traced() -> None:
     module: Any = load_text(
         "from actr3d.actr import *\nclass A(ACTR):\n    b = Buffer()\n    m = Memory(b)\n    l = DMBaseLevel(m)\n    def init():\n"
         "        m.add('x', time=3)\n"
@@ -169,7 +169,7 @@ def test_how_a_fact_is_given_is_told() -> None:
     assert trace.select("initialize")[0].data == {"method": "init"}
 
 
-def test_chunks_that_go_or_come_by_hand_are_told() -> None:
+def test_chunks_removed_or_added_by_hand_are_traced() -> None:
     agent, trace = remembering()
     for word in "abcd":
         agent.memory.add(word)
@@ -202,7 +202,7 @@ def test_a_memory_of_a_class_tells_too() -> None:
 # -- runs
 
 
-def test_runs_are_told_with_their_limit_and_end() -> None:
+def test_runs_are_traced_with_their_limit_and_end() -> None:
     model: Any = Model()
     trace = model.traced()
     model.run(0.5)
@@ -236,7 +236,7 @@ def test_runs_are_told_with_their_limit_and_end() -> None:
     ]
 
 
-def test_the_end_of_the_program_is_told() -> None:
+def test_the_end_of_the_program_is_traced() -> None:
     trace = Trace()
     run_text("from actr3d.actr import *\nm = Model()\nwhile True: m.run(0.3)", limits=RunLimits(until=0.5, trace=trace))
     assert [(event.time, event.data["by"]) for event in trace.select("stop")] == [(0.3, "limit"), (0.5, "until"), (0.5, "until")]
@@ -245,7 +245,7 @@ def test_the_end_of_the_program_is_told() -> None:
 # -- the tree
 
 
-def test_parts_that_come_and_go_are_told() -> None:
+def test_parts_that_are_added_or_removed_are_traced() -> None:
     world: Any = Model()
     trace = world.traced()
     agent: Any = ACTR()

@@ -148,7 +148,7 @@ def test_a_listener_that_fails_is_named_and_harms_nothing(kind: str, module: str
     assert [event.kind for event in others].count(kind) >= 1
 
 
-def test_a_listener_that_fails_outside_a_run_is_told_of_by_the_next() -> None:
+def test_a_listener_that_fails_outside_a_run_is_reported_by_the_next() -> None:
     agent = agent_of()
     trace = agent.traced()
     agent.run(0.1)
@@ -166,7 +166,7 @@ def test_a_listener_that_fails_outside_a_run_is_told_of_by_the_next() -> None:
     assert agent.now() == 0.2
 
 
-def test_a_listener_that_fails_at_once_is_told_of_at_once() -> None:
+def test_a_listener_that_fails_at_once_is_reported_at_once() -> None:
     agent = agent_of()
     trace = agent.traced(keep=False)
 
@@ -187,7 +187,7 @@ def test_a_listener_that_fails_at_once_is_told_of_at_once() -> None:
         trace.command("resize")
 
 
-def test_several_failing_listeners_are_all_told_of() -> None:
+def test_several_failing_listeners_are_all_reported() -> None:
     agent = agent_of()
     trace = agent.traced()
 

@@ -71,7 +71,7 @@ def agent_of(seed: int) -> Any:
 # -- several runs
 
 
-def test_runs_of_one_trace_are_told_apart() -> None:
+def test_runs_of_one_trace_are_distinguished() -> None:
     program = AGENT + "\nfor i in range(3):\n    agent = Agent()\n    agent.run(0.06)\n"
     trace = Trace()
     run_text(program, "three.py", limits=RunLimits(seed=4, trace=trace))
@@ -90,7 +90,7 @@ def test_runs_of_one_trace_are_told_apart() -> None:
     assert trace.select("buffer", "goal") != trace.select("buffer", "top#2.goal") != []
 
 
-def test_runs_that_take_turns_are_told_apart() -> None:
+def test_runs_that_take_turns_are_distinguished() -> None:
     with RunLimits(seed=1, trace=Trace()) as limits:
         first, second = load_text(AGENT).Agent(), load_text(AGENT).Agent()
         first.run(0)
@@ -108,7 +108,7 @@ def test_runs_that_take_turns_are_told_apart() -> None:
     assert [(e.source, e.time) for e in limits.trace.select("command")] == [("top", 0.1), ("top#2", 0.2)]
 
 
-def test_a_model_that_joins_another_says_who_it_was() -> None:
+def test_a_model_that_joins_another_has_its_earlier_name_in_the_trace() -> None:
     with RunLimits(seed=1, trace=Trace()) as limits:
         agent: Any = ACTR()
         agent.goal = Buffer()  # it comes to life by itself
@@ -181,7 +181,7 @@ def test_a_late_trace_tells_what_is_under_way() -> None:
 
 
 @pytest.mark.parametrize(("steps", "outcome"), [(0.06, "pending"), (0.13, "retrieved"), (0.6, "failed")])
-def test_the_outcome_of_an_earlier_request_is_told(steps: float, outcome: str) -> None:
+def test_the_outcome_of_an_earlier_request_is_explained(steps: float, outcome: str) -> None:
     agent: Any = ACTR()
     agent.retrieval = Buffer()
     agent.memory = Memory(agent.retrieval, threshold=0)

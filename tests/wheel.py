@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[1]
 SITE = ROOT / "build" / "site"
 """The built manual."""
 PATIENCE = 300.0
-"""So long the workbench may take to start, and a model to end [s]: the camera is compiled there for the first time."""
+"""Maximum time that a test waits for the workbench to start, or for a model to end [s]: the camera is compiled there for the first time."""
 
 
 def main() -> int:

@@ -99,7 +99,7 @@ async def stop_experiment(request: Request, experiment: Id) -> dict[str, Any]:
 
 @router.post("/experiments/{experiment}/resume")
 async def resume_experiment(request: Request, experiment: Id, body: Continuing | None = None) -> Response:
-    """Continues an experiment; 409 if it runs already, 403 if this installation did not make it, unless `trust` is true."""
+    """Continues an experiment; 409 if it is already running, 403 if this installation did not make it, unless `trust` is true."""
     said = body or Continuing()
     await experiments_of(request).resume(experiment, said.workers, trust=said.trust)
     return _json(await experiments_of(request).one(experiment))

@@ -283,12 +283,12 @@ class Experiments:
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
             UntrustedError: If its code may not be run.
-            ExperimentRunError: If it runs already, cannot be continued, or too many experiments run.
+            ExperimentRunError: If it is already running, cannot be continued, or too many experiments run.
             OSError: If no process can be started.
         """
         folder = self._trusted(name, trust=trust)
         if name in self._running or folder.is_locked:
-            raise ExperimentRunError("this experiment runs already")
+            raise ExperimentRunError("this experiment is already running")
         await self._begin(name, ["experiment", str(folder.path), "--json", "--resume", *_workers(workers)], new=False)
 
     async def _begin(self, name: str, arguments: Sequence[str], *, new: bool) -> None:
@@ -300,7 +300,7 @@ class Experiments:
             new: Whether the command makes the experiment; else it continues it.
         """
         if self._closed or len(self._running) + self._starting >= MOST_RUNNING:
-            raise ExperimentRunError(f"{MOST_RUNNING} experiments run already: stop one, or wait for its end")
+            raise ExperimentRunError(f"{MOST_RUNNING} experiments are already running: stop one, or wait for its end")
         folder = ExperimentFolder(self._root / name)
         facts = None if new else folder.facts
         self._starting += 1
@@ -345,12 +345,12 @@ class Experiments:
 
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            ExperimentRunError: If it does not run.
+            ExperimentRunError: If it is not running.
         """
         self.folder(name)
         run = self._running.get(name)
         if run is None:
-            raise ExperimentRunError("this experiment does not run")
+            raise ExperimentRunError("this experiment is not running")
         if not run.command.interrupted:
             run.command.interrupt()
             asyncio.get_running_loop().call_later(STOP_TIME, _end_late, run)

@@ -36,7 +36,7 @@ class ReadingError(Actr3dError):
 
 
 class BusyError(Actr3dError):
-    """Enough recordings are run again already."""
+    """Too many recordings are being replayed."""
 
     status = 409
 
@@ -122,11 +122,11 @@ class Reruns:
             left: Returns whether the client has disconnected; then the replay is ended.
 
         Raises:
-            BusyError: If enough are run again already.
+            BusyError: If too many are being replayed.
             OSError: If no worker can be started.
         """
         if len(self._going_on) >= MOST_REPLAYS:
-            raise BusyError(f"{MOST_REPLAYS} recordings are run again already; wait for one of them, or cancel it")
+            raise BusyError(f"{MOST_REPLAYS} recordings are already being replayed; wait for one of them, or cancel it")
         job = Job()
         self._going_on.append((path, job))
         try:

@@ -47,7 +47,7 @@ class Summary:
     origin: str | None = None
     """For a branch: the recording that has the other way of its run."""
     ended: str | None = None
-    """How the run ended; None if it was broken off, or is still going on."""
+    """How the run ended; None if it was interrupted, or is still running."""
     failed: str | None = None
     """The error that ended the model, if any."""
     result: dict[str, Any] | None = None

@@ -206,7 +206,8 @@ class Sessions:
             # Users who try many models leave sessions behind: their runs are recorded and can be opened again.
             idle = [one for one in self.all() if one.state is not None and not one.feeds and not one.going_on]
             if not idle:
-                raise SessionError(f"there are {MOST} sessions already, and each is watched or goes on: close a page, or stop a run")
+                busy = "each is shown on a page or still running: close a page, or stop a run"
+                raise SessionError(f"there are {MOST} sessions already, and {busy}")
             await self.close(next((one for one in idle if one.recorded is not None), idle[0]).name)
         self._count += 1
         name = f"s{self._count}"

@@ -38,6 +38,9 @@ _NOTHING = object()
 class Motor(WithParameters, Port):
     """Moves the body of its agent, and learns what the body is like in each posture.
 
+    It is for agents with a body in a physical world. `from actr3d.motor import Motor` after `from actr3d.actr import *` replaces the
+    `Motor` of Python ACT-R, which presses keys.
+
     Commands begin a movement and return at once. A movement continues at a constant speed until it is done, until `stop`, until
     the joint's limit, or until an obstacle has blocked it for a while; `<group>_end` holds the reason: «done», «stopped»,
     «limit» or «blocked». There is one muscle group for each part with joints, and one for the legs; groups move in parallel.

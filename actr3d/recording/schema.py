@@ -15,7 +15,7 @@ OWN_FACTS = frozenset({"form", "versions", "kind", "whole", "ended"})
 LEFT = "left"
 """The value of the fact `ended` if the user left the run before its end. All other values mean that the run ended by itself: `end` and
 `exit` (`SystemExit`) of programs; `stop`, `done` and `limits` of a simulation that a file builds, see `RunReport`. A run that raised
-anything else has the fact `failed` instead; a run that was broken off has neither."""
+anything else has the fact `failed` instead; a run that was interrupted has neither."""
 
 SCHEMA = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID",

@@ -1,7 +1,7 @@
 """The command-line options of a model file: `--name value` for each parameter of its `build`, and their help.
 
-Written here and not taken from tyro: a model's options come from its text or its dataclass only after its file has been named, stand
-beside the general ones, and have the same errors and bounds as on the page, which tyro's own parsing would say in other words.
+Not tyro: the options are known only after the model file is named, they appear beside general options, and their errors must read as
+on the page.
 """
 
 from __future__ import annotations

@@ -207,7 +207,7 @@ def _failed(recorded: Recorded) -> bool:
 
 
 def _compared(recorded: Recorded, comparator: Comparator, trouble: str) -> Comparison:
-    """Returns the result of a comparison whose run is over; further recorded events differ, unless the recorded run was broken off.
+    """Returns the result of a comparison whose run is over; further recorded events differ, unless the recorded run was interrupted.
 
     Args:
         recorded: The recording.
@@ -255,14 +255,14 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
     helpers, used = then.get("helpers", {}), now.get("helpers", {})
     early = comparator.commands > 0 or not (recorded.over or _failed(recorded))
     if early and {name: helpers[name] for name in used if name in helpers} == used:
-        # A run that went back and another way, or was broken off, may have loaded more than its recording needs.
+        # A run that went back and another way, or was interrupted, may have loaded more than its recording needs.
         (named if len(used) < len(helpers) else silent).add("helpers")
     names = [f"'{name}'" for name in sorted(named) if then.get(name) is not None]
     return named | silent, [f"not checked: {', '.join(names)}"] if names else []
 
 
 def _recorded_end(recorded: Recorded) -> str | None:
-    """Returns how and when a run was broken off; None if it ended by itself."""
+    """Returns how and when a run was interrupted; None if it ended by itself."""
     facts = recorded.facts
     if recorded.over:
         return None
@@ -276,5 +276,5 @@ def _recorded_end(recorded: Recorded) -> str | None:
         return f"the run failed after {at:g} s ({facts['failed']})"
     if facts.get("ended") is None and facts.get("whole") and not facts.get("built"):
         return None  # the end of a run that a program makes is not recorded
-    how = "left" if facts.get("ended") is not None else "stopped" if facts.get("whole") else "broken off"
+    how = "left" if facts.get("ended") is not None else "stopped" if facts.get("whole") else "interrupted"
     return f"the recording says that the run was {how} at {at:g} s, which cannot be checked"

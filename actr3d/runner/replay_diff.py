@@ -28,7 +28,7 @@ class Comparison:
     difference: str | None
     """Where it first differs; None where every byte agrees, as far as the recording goes."""
     to_its_end: bool = True
-    """Whether the run was compared to its end; False where the recording says that it was left, broken off or failed before."""
+    """Whether the run was compared to its end; False where the recording says that it was left, interrupted or failed before."""
     notes: tuple[str, ...] = ()
     """How the recorded run ended before its end, and what cannot be checked by running it again."""
     unfinished: int = 0
@@ -39,7 +39,7 @@ class Comparison:
             return f"differs: {self.difference}"
         counts = f"{self.ticks:,} ticks, {self.events:,} events" if self.ticks else f"{self.events:,} events"
         rest = f" ({self.unfinished:,} more events of a tick that did not end)" if self.unfinished else ""
-        head = "every byte agrees" if self.to_its_end else "agrees as far as it goes"
+        head = "every byte agrees" if self.to_its_end else "agrees up to the end of the recording"
         return "; ".join((f"{head}: {counts}{rest}", *self.notes))
 
 
@@ -52,7 +52,7 @@ class Comparator:
 
     Args:
         recorded: The recording.
-        open_end: Whether the run may do more than is recorded, because it was broken off.
+        open_end: Whether the run may do more than is recorded, because it was interrupted.
     """
 
     def __init__(self, recorded: Recorded, *, open_end: bool = False) -> None:

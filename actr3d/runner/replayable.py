@@ -33,7 +33,7 @@ def check_replayable(recorded: Recorded, *, trust: bool, any_version: bool) -> N
         _check_versions(recorded.facts["versions"])
     if not (recorded.over or recorded.state_count or recorded.event_count):
         raise RecordingError(
-            f"the recording '{recorded.path}' holds nothing to compare: its run was left or broken off before anything was written"
+            f"the recording '{recorded.path}' holds nothing to compare: its run was left or interrupted before anything was written"
         )
     if not (trust or recorded.made_here):
         raise UntrustedError(
@@ -51,10 +51,10 @@ def _check_facts(recorded: Recorded) -> None:
     if missing:
         raise RecordingError(f"the recording '{recorded.path}' cannot be run again: it lacks {', '.join(missing)}")
     if facts["kind"] == "program" or facts.get("built"):
-        foreign = sorted(facts.keys() - (PROGRAM if facts["kind"] == "program" else BUILT))
-        if foreign:
-            names = ", ".join(f"'{name}'" for name in foreign)
-            raise RecordingError(f"the recording '{recorded.path}' is foreign: no recording of its kind has the fact {names}")
+        unknown = sorted(facts.keys() - (PROGRAM if facts["kind"] == "program" else BUILT))
+        if unknown:
+            names = ", ".join(f"'{name}'" for name in unknown)
+            raise RecordingError(f"the recording '{recorded.path}' cannot be run again: such a run cannot have the fact {names}")
 
 
 def _check_versions(then: dict[str, str]) -> None:

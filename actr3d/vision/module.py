@@ -32,6 +32,9 @@ BITS = 64
 class Vision(WithParameters, Searching):
     """Searches for features with a body's eye, and puts one of those that it notices into a buffer, as a chunk.
 
+    It is for agents with a body in a physical world. `from actr3d.vision import Vision` after `from actr3d.actr import *` replaces the
+    `Vision` of Python ACT-R, which sees the objects of an environment that have `x` and `y`.
+
     The view is private to this module: an agent receives features only, with opaque labels and no names. A request is answered from
     the view at the end of the tick in which it is made; the chunk arrives `delay` after the request, or at the end of that tick, if
     later, and describes that view, even if the scene has changed since. If nothing is found, the buffer is cleared and `error` is

@@ -75,6 +75,8 @@ class Body:
 
     Commands are given between physics steps only. A reading is of the present state; nothing in it changes later.
 
+    This is a body in the physical world. The `Body` of Python ACT-R, in a map of cells, is `ccm.lib.grid.Body` in model files.
+
     Args:
         physics: The compiled scene and its state.
         description: The part of the scene that the body was made from.

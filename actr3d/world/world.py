@@ -50,6 +50,8 @@ class WorldState:
 class World:
     """Holds the compiled scene (`mj_model`) and its state (`mj_data`), and steps them.
 
+    This is the physical world. The `World` of Python ACT-R, a map of cells, is `ccm.lib.grid.World` in model files.
+
     Args:
         scene: What is in it.
         seed: The seed of sensor noise.

@@ -54,11 +54,11 @@ export function Branch() {
   if (closed.value.includes(which)) return null;
   const where = `the recording ${recording}, which is listed in Runs`;
   if (recording === recorded) {
-    const title = `Changed at ${seconds(at)}; how it had gone on is still in ${where}. What follows is recorded as a branch of it.`;
+    const title = `Changed at ${seconds(at)}; the original continuation is still in ${where}. What follows is recorded as a branch of it.`;
     return html`<${Notice} key=${which} which=${which} title=${title}>The recording is unchanged: it still has the run up to ${seconds(until)}<//>`;
   }
   const open = () => openRun({ id: recording, model, made: Date.now() / 1000 });
-  return html`<${Notice} key=${which} which=${which} title="Changed at ${seconds(at)}; how it had gone on is kept as ${where}">
+  return html`<${Notice} key=${which} which=${which} title="Changed at ${seconds(at)}; the original continuation is kept as ${where}">
     The run up to ${seconds(until)} is kept as <button class="link" onClick=${open}>a branch</button>
   <//>`;
 }

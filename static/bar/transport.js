@@ -120,7 +120,7 @@ export function Transport() {
       </button>${button.id === "new-seed" ? html`<${SeedField} />` : null}`,
     )}
     <button id="until" class="bare" disabled=${isIdle("until")} title=${buttonTitle(until)} aria-label="Run until" onClick=${() => run(until)}><${Icon} name="until" /></button>
-    <select aria-label="Speed" title="How fast it goes at most, in times real time (${keyText(faster.key)} and ${keyText(slower.key)})" value=${String(speedNumber())} disabled=${!session.value} onChange=${(event) => setSpeed(Number(event.currentTarget.value))}>
+    <select aria-label="Speed" title="Maximum speed, as a multiple of real time (${keyText(faster.key)} and ${keyText(slower.key)})" value=${String(speedNumber())} disabled=${!session.value} onChange=${(event) => setSpeed(Number(event.currentTarget.value))}>
       ${SPEEDS.map(([text], n) => html`<option value=${String(n)}>${text}</option>`)}
     </select>
   </div>`;

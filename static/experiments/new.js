@@ -206,7 +206,7 @@ function Foot({ design, facts, error }) {
     <div class="foot">
       <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${estimate(design, trials, wanted.workers)}</span>`}</span>
       <span class="stretch"></span>
-      <button class="primary" disabled=${starting.value || full || problem !== null || trials === null} title=${full ? "Two experiments run already" : "Run all trials in the background"} onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}</button>
+      <button class="primary" disabled=${starting.value || full || problem !== null || trials === null} title=${full ? "Two experiments are already running" : "Run all trials in the background"} onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}</button>
     </div>
   `;
 }

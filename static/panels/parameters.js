@@ -143,7 +143,7 @@ function Field({ parameter }) {
   return html`<div class="parameter ${changed ? "waits" : ""}">
     <label for=${id}>${name}</label>
     <span class="control"><${Control} parameter=${parameter} id=${id} text=${text} problem=${problem} /><${Slider} parameter=${parameter} text=${text} />${unit ? html`<span class="quiet">${unit}</span>` : null}</span>
-    <span class="mark">${live ? html`<span class="badge" title="Acts on the run that goes on, and is recorded">live</span>` : changed ? html`<span class="badge" title="In force with the next run">next run</span>` : null}</span>
+    <span class="mark">${live ? html`<span class="badge" title="Acts on the run that goes on, and is recorded">live</span>` : changed ? html`<span class="badge" title="Used from the next run on">next run</span>` : null}</span>
     <p id="${id}-help" class="help">
       ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}${help} <span class="bounds">${[boundsText(parameter), parameter.default === null ? "" : `default ${written(parameter.default)}`].filter(Boolean).join(" · ")}</span>
     </p>

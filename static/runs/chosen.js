@@ -44,8 +44,8 @@ function Replayed({ run }) {
       <button class="bare" onClick=${() => cancelReplay(run.id)}>Cancel</button>
     </div>`;
   }
-  const head = result.agrees === true ? (result.text.startsWith("agrees as far") ? "It agrees as far as it goes." : "Every byte agrees.") : result.agrees === false ? "It differs." : "Not known.";
-  const text = result.text.replace(/^(every byte agrees|agrees as far as it goes|differs): /, "");
+  const head = result.agrees === true ? (result.text.startsWith("agrees up to") ? "It agrees up to the end of the recording." : "Every byte agrees.") : result.agrees === false ? "It differs." : "Not known.";
+  const text = result.text.replace(/^(every byte agrees|agrees up to the end of the recording|differs): /, "");
   return html`<div class="replayed" role="status"><b class=${result.agrees === true ? "good" : "bad"}>${head}</b> <span>${text}</span></div>`;
 }
 
@@ -82,7 +82,7 @@ function One({ run }) {
   const noCompare = own ? "It is the present run" : present.value ? "Beside the present run" : "The present run is not recorded";
   return html`
     <div class="actions" role="toolbar" aria-label="The chosen run">
-      <button class="primary" disabled=${idle} title="Live through it again (double-click)" onClick=${() => openRun(run)}>Open</button>
+      <button class="primary" disabled=${idle} title="Open this run again (double-click)" onClick=${() => openRun(run)}>Open</button>
       <button disabled=${idle || Boolean(replays.value[run.id]?.since)} title="Run it again in a process of its own, and compare every byte" onClick=${() => replayRun(run)}>Replay</button>
       <button disabled=${idle || own || !present.value} title=${noCompare} onClick=${() => compareRuns(run.id, present.value)}>Compare with the present run</button>
       <button disabled=${Boolean(run.problem)} title="Give it a name, a note and tags; it is then never deleted automatically" onClick=${() => labelRun(run)}>Name …</button>

@@ -159,7 +159,7 @@ export function Stage() {
       >
         <canvas aria-hidden="true"></canvas>
         <div class="timeline-veil"></div>
-        <div class="timeline-end" title="As far as the run has come"></div>
+        <div class="timeline-end" title="Newest time of the run"></div>
         <div class="timeline-head"></div>
         <div class="timeline-now" aria-hidden="true"></div>
       </div>

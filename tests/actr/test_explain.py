@@ -76,7 +76,7 @@ def agent_of(source: str, seed: int = 3) -> Any:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_past_is_told_as_the_present_was(seed: int) -> None:
+def test_the_past_is_explained_as_the_present_was(seed: int) -> None:
     agent = agent_of(NOISY, seed)
     agent.traced()
     agent.run(0.0)
@@ -166,7 +166,7 @@ def test_the_first_failing_condition_is_named_with_what_was_expected_and_found()
         why.production("matchin")
 
 
-def test_a_retrieval_is_told_with_every_candidate_and_why_it_won_or_lost() -> None:
+def test_a_retrieval_is_explained_with_every_candidate_and_why_it_won_or_lost() -> None:
     agent = agent_of(SIMPLE)
     agent.traced()
     with pytest.warns(UserWarning, match="sizes"):
@@ -194,7 +194,7 @@ def test_a_retrieval_is_told_with_every_candidate_and_why_it_won_or_lost() -> No
     assert agent.explain(0.0).retrievals == ()
 
 
-def test_utility_is_told_with_its_parts() -> None:
+def test_utility_is_explained_with_its_parts() -> None:
     agent = agent_of(
         """
 from actr3d.actr import *
@@ -253,7 +253,7 @@ class Agent(ACTR):
     assert "ask-answer-1" not in [reason.name for reason in agent.explain(0.05).productions]
 
 
-def test_what_cannot_be_told_is_an_error() -> None:
+def test_what_cannot_be_explained_is_an_error() -> None:
     agent = agent_of(NOISY)
     agent.run(0.1)
     with pytest.raises(ParameterError, match="only a run traced"):
@@ -310,7 +310,7 @@ class Agent(ACTR):
     assert len({what for _, what in runs[0]}) > 2
 
 
-def test_a_modellers_own_activation_is_told() -> None:
+def test_a_modellers_own_activation_is_explained() -> None:
     agent = agent_of(
         """
 from actr3d.actr import *

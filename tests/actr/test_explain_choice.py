@@ -28,14 +28,14 @@ def verdicts(source: str) -> dict[str, str | None]:
     return {reason.name: reason.verdict for reason in live.productions}
 
 
-def test_the_loser_is_told_by_how_much() -> None:
+def test_the_utilities_of_the_loser_and_the_winner_are_explained() -> None:
     told = verdicts(TWO.format(more="", high=2.5))
     assert told["high"] == "selected: the highest utility, 2.5"
     assert told["low"] == "lost to high: utility 1 against 2.5"
     assert told["never"] == "did not match when high was selected"
 
 
-def test_a_tie_is_told() -> None:
+def test_a_tie_is_explained() -> None:
     told = sorted(str(verdict) for verdict in verdicts(TWO.format(more="", high=1)).values())
     assert any(verdict.startswith("selected at random among 2 of utility 1") for verdict in told)
     assert any("which was chosen at random: both have utility 1" in verdict for verdict in told)
@@ -54,7 +54,7 @@ def test_noise_is_that_of_the_choice() -> None:
     assert agent.explain(0.01).production("low") == low
 
 
-def test_the_threshold_that_holds_the_best_back_is_told() -> None:
+def test_the_threshold_that_excludes_the_best_is_explained() -> None:
     agent = agent_of(TWO.format(more="noise = PMNoise(noise=0.1)\n    production_threshold = 50", high=2))
     agent.traced()
     agent.run(0.2)
@@ -163,7 +163,7 @@ def test_noise_that_is_off_uses_up_no_random_number_when_a_trace_begins() -> Non
         "PMNoise(0, 0.3)",
     ],
 )
-def test_every_utility_module_is_told_later_as_it_was(module: str) -> None:
+def test_every_utility_module_is_explained_later_as_it_was(module: str) -> None:
     agent = agent_of(f"""
 class Agent(ACTR):
     goal = Buffer()

@@ -30,7 +30,7 @@ def told(agent: Any, name: str, at: float | None = None) -> list[tuple[str, bool
     return [(one.condition, one.holds, one.found) for one in agent.explain(at).production(name).conditions]
 
 
-def test_conditions_are_told_one_by_one() -> None:
+def test_conditions_are_explained_one_by_one() -> None:
     agent = agent_of(SOURCE)
     agent.traced()
     agent.run(0.02)
@@ -44,7 +44,7 @@ def test_conditions_are_told_one_by_one() -> None:
         assert told(agent, "asks", at)[-1] == ("goal: small()", True, "it agreed")
 
 
-def test_what_comes_after_the_failing_condition_is_told_as_far_as_it_can_be() -> None:
+def test_conditions_after_the_failing_one_are_explained_as_far_as_possible() -> None:
     agent = agent_of(SOURCE)
     agent.traced()
     agent.run(0.02)

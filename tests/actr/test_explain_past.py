@@ -30,7 +30,7 @@ class Agent(ACTR):
 """
 
 
-def test_what_pattern_functions_bind_and_say_is_told_without_asking_them_again() -> None:
+def test_results_of_pattern_functions_are_explained_without_calling_them_again() -> None:
     agent = agent_of(BINDING)
     calls = told_by(agent, "calls")
     agent.traced()
@@ -80,7 +80,7 @@ class Agent(ACTR):
     assert "? q" in str(q)
 
 
-def test_plain_objects_are_told_as_last_seen() -> None:
+def test_plain_objects_are_explained_as_last_seen() -> None:
     agent = agent_of("""
 class Lamp:
     colour = 'red'
@@ -106,7 +106,7 @@ class Agent(ACTR):
     assert past.source == "as seen since 0.000 s"
 
 
-def test_a_chunk_changed_in_place_is_told_from_that_moment_on() -> None:
+def test_a_chunk_changed_in_place_is_explained_from_that_moment_on() -> None:
     agent = agent_of("""
 class Agent(ACTR):
     goal = Buffer()
@@ -152,7 +152,7 @@ class Agent(ACTR):
 """
 
 
-def test_values_of_any_type_are_told_alike_at_both_times() -> None:
+def test_values_of_any_type_are_explained_alike_at_both_times() -> None:
     agent = agent_of(ODD)
     agent.traced()
     agent.run(0.0)
@@ -264,7 +264,7 @@ class Agent(ACTR):
     assert "in eye:" in str(agent.explain())
 
 
-def test_the_candidates_are_told_as_they_were_at_the_request() -> None:
+def test_the_candidates_are_explained_as_they_were_at_the_request() -> None:
     class Asking(ACTR):
         goal = Buffer()
         retrieval = Buffer()
@@ -329,7 +329,7 @@ class Agent(Model):
 """
 
 
-def test_every_module_and_two_agents_are_told_later_as_they_were() -> None:
+def test_every_module_and_two_agents_are_explained_later_as_they_were() -> None:
     world = agent_of(WORLD)
     world.traced()
     world.run(0.0)

@@ -65,7 +65,7 @@ def source_of(numbers: random.Random) -> str:
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("seed", range(25))
-def test_the_past_of_any_model_is_told_as_its_present_was(seed: int) -> None:
+def test_the_past_of_any_model_is_explained_as_its_present_was(seed: int) -> None:
     numbers = random.Random(seed)
     agent = agent_of(source_of(numbers), seed)
     agent.traced()

@@ -122,7 +122,7 @@ def test_numpys_numbers_can_still_be_kept_copied_and_seeded() -> None:
     assert draw()[1:] == expected == [copied.normal(), copied.uniform()]
 
 
-def test_whoever_looks_on_may_draw_numbers_of_its_own() -> None:
+def test_observers_may_draw_their_own_numbers() -> None:
     simulation = drawing(1)
     seed()
     expected = random.Random(7), np.random.RandomState(7)
@@ -140,7 +140,7 @@ def test_whoever_looks_on_may_draw_numbers_of_its_own() -> None:
     assert len(seen) > 40
 
 
-def test_a_mind_that_fails_gives_the_numbers_back() -> None:
+def test_an_agent_that_fails_gives_the_numbers_back() -> None:
     text = """
 import random
 from actr3d.actr import *

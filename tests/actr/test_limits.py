@@ -81,7 +81,7 @@ def test_limits_inside_others_end_with_them() -> None:
         assert outer.ended
 
 
-def test_who_swallows_every_end_meets_the_last_resort() -> None:
+def test_a_model_that_swallows_every_end_is_stopped_by_the_last_resort() -> None:
     called: list[int] = []
     with RunLimits(until=1, last_resort=lambda: called.append(1)):
         model: Any = Clock()
@@ -93,7 +93,7 @@ def test_who_swallows_every_end_meets_the_last_resort() -> None:
         assert called == [1]
 
 
-def test_threads_keep_to_the_limits_of_who_starts_them() -> None:
+def test_threads_keep_to_the_limits_of_their_starter() -> None:
     trace = Trace("all")
     seen: list[Any] = []
 

@@ -189,7 +189,7 @@ class Agent(ACTR):
 """
 
 
-def test_nothing_is_left_of_texts_that_nobody_uses(folders: list[Path]) -> None:
+def test_nothing_is_left_of_unused_texts(folders: list[Path]) -> None:
     def load(number: int) -> Any:
         module: Any = load_text(AGENT.replace("NUMBER", str(number)) + "import helper\n", "agent.py", folder=folders[0])
         module.Agent().run(1)

@@ -250,7 +250,7 @@ def test_a_program_is_over_when_its_threads_are() -> None:
     assert module.seen == [1]
 
 
-def test_a_changed_helper_is_read_anew(folder: Path) -> None:
+def test_a_changed_helper_is_read_again(folder: Path) -> None:
     source = "import helper, late\nvalue = (helper.VALUE, late.VALUE)"
     for value in (10, 200):
         for name in ("helper", "late"):

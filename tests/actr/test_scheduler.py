@@ -137,7 +137,7 @@ def test_the_event_of_a_call_can_be_waited_for_by_several_and_after_its_end() ->
     assert [time for _, time in seen(world)] == [1, 1, 1, 1, 1.5, 1.5]
 
 
-def test_an_event_waited_for_in_a_tuple_is_over_for_whoever_waits_later() -> None:
+def test_an_event_waited_for_in_a_tuple_is_over_for_later_waits() -> None:
     class World(Part):
         def job(self) -> Iterator[Any]:
             yield 1

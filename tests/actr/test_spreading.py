@@ -105,7 +105,7 @@ def test_spreading_takes_any_value_and_knows_what_came_before_it() -> None:
 
 
 @pytest.mark.parametrize("copied", [False, True])
-def test_a_module_made_late_counts_each_chunk_once_however_often_it_is_told(copied: bool) -> None:
+def test_a_module_made_late_counts_a_chunk_created_again_once(copied: bool) -> None:
     memory, goal = Memory(Buffer()), Buffer()
     early = DMSpreading(memory, goal)
     for text in ("a b", "a c", "d a"):
@@ -122,7 +122,7 @@ def test_a_module_made_late_counts_each_chunk_once_however_often_it_is_told(copi
     assert late.slots == early.slots == {"a": 4, "b": 1, "c": 1, "d": 1, "e": 1}
 
 
-def test_equal_chunks_that_are_told_by_hand_count_each() -> None:
+def test_equal_chunks_that_are_created_by_hand_count_each() -> None:
     memory = Memory(Buffer())
     spreading = DMSpreading(memory)
     for _ in range(2):

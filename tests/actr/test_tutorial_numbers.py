@@ -140,7 +140,7 @@ def test_two_agents_take_turns(last: int, capsys: pytest.CaptureFixture[str]) ->
 
 
 @pytest.mark.parametrize("smoke_time", [0.02, 0.29, 0.305, 0.33])
-def test_the_mind_reacts_to_an_alarm_in_its_next_cycle(smoke_time: float, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_agent_reacts_to_an_alarm_in_its_next_cycle(smoke_time: float, capsys: pytest.CaptureFixture[str]) -> None:
     run("parallel_system", smoke_time=smoke_time)
     said = capsys.readouterr().out
     when = {what: times(next(line for line in said.splitlines() if what in line))[0] for what in ("alarm", "off")}

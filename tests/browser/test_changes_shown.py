@@ -27,7 +27,7 @@ def commands(page: Page) -> list[str]:
 
 
 @pytest.mark.slow
-def test_a_mind_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[..., Page]) -> None:
+def test_an_agent_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", refusals=True)
     shows(page, "#status", "at its start")
     say(page, type="until", time=0.12)

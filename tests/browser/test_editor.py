@@ -383,7 +383,7 @@ def test_each_text_keeps_its_history_and_tab_can_leave(page: Page, workbench: Se
 
 
 @pytest.mark.slow
-def test_what_cannot_be_opened_or_saved_is_told(pages: Callable[..., Page], workbench: Served, written: Callable[[str, str], Path]) -> None:
+def test_failed_opening_or_saving_is_reported(pages: Callable[..., Page], workbench: Served, written: Callable[[str, str], Path]) -> None:
     page = pages("counting.py")
     open_tab(page, "Editor")
     mark = workbench.folder / "ran"

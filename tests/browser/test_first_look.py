@@ -139,7 +139,7 @@ def test_before_its_first_run_a_program_shows_what_its_text_has_and_takes_breakp
     expect(page.get_by_role("table", name="Buffers of top")).to_be_visible()
 
 
-def test_the_console_has_what_is_printed_as_it_is_printed_and_goes_back_with_the_run(pages: Pages, workbench: Served) -> None:
+def test_the_console_shows_output_as_it_is_printed_and_goes_back_with_the_run(pages: Pages, workbench: Served) -> None:
     (workbench.folder / "prints.py").write_text(PRINTS, encoding="utf-8")
     page = pages("prints.py", tab="about")
     page.on("dialog", lambda dialog: dialog.dismiss())

@@ -271,7 +271,7 @@ def test_a_recording_chosen_while_another_is_deleted_stays_chosen(pages: Callabl
 
 
 @pytest.mark.slow
-def test_a_replay_that_takes_long_to_make_is_told_of_until_it_is_there(pages: Callable[..., Page]) -> None:
+def test_a_slow_replay_shows_its_progress_until_it_is_ready(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     shows(page, "#status", "at its start")
     page.click("#run")
@@ -293,7 +293,7 @@ def test_a_replay_that_takes_long_to_make_is_told_of_until_it_is_there(pages: Ca
 
 
 @pytest.mark.slow
-def test_what_is_written_in_fields_stays_as_it_is_written(pages: Callable[..., Page]) -> None:
+def test_text_in_fields_stays_as_it_was_typed(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     wire = Wire(page)
     shows(page, "#status", "at its start")

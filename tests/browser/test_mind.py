@@ -179,7 +179,7 @@ def test_a_long_chunk_takes_few_lines_unless_all_of_it_is_asked_for(pages: Pages
     until(page, lambda: height() == one)  # an emptied buffer takes one line again
 
 
-def test_two_agents_are_told_apart(pages: Pages, workbench: Served) -> None:
+def test_two_agents_are_shown_separately(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "two_agents.py")
     page.click("#run")
     shows(page, "#status", "ended")
@@ -347,7 +347,7 @@ def test_the_chunks_of_a_memory_are_shown_with_their_slots_in_the_order_of_the_m
     expect(page.locator("#chunks tbody td:first-child").first).to_contain_text("ant")
 
 
-def test_a_mind_with_nothing_in_it_says_so(pages: Pages, workbench: Served) -> None:
+def test_an_empty_agent_says_so(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "quiet.py", QUIET)
     expect(page.locator("#panel-buffers")).to_contain_text("These are in its text. Press Run: the program makes its model as it goes.")
     open_tab(page, "Productions")

@@ -162,7 +162,7 @@ def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, work
 
 
 @pytest.mark.slow
-def test_several_downloads_at_once_arrive_whole_and_one_that_fails_is_told(
+def test_several_downloads_at_once_arrive_whole_and_a_failed_one_is_reported(
     pages: Callable[..., Page], workbench: Served, recordings: Path, two: list[str]
 ) -> None:
     page = pages(refusals=True)
@@ -265,7 +265,7 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
 
 
 @pytest.mark.slow
-def test_what_was_changed_while_a_run_went_on_is_told_beside_what_it_began_with(page: Page, two: list[str]) -> None:
+def test_changes_during_a_run_are_shown_beside_its_initial_values(page: Page, two: list[str]) -> None:
     expect(page.locator("#status")).to_have_text(re.compile("at its start"))
     page.click("#step")
     expect(page.locator("#time")).to_have_text("t = 0.01 s")

@@ -105,7 +105,7 @@ def test_framed_there_is_the_scene_only_and_the_dark_is_dark(workbench: Served, 
 
 
 @pytest.mark.slow
-def test_the_frame_is_covered_until_it_has_drawn_and_has_the_page_s_theme_without_loading_anew(workbench: Served, page: Page) -> None:
+def test_the_frame_is_covered_until_it_has_drawn_and_has_the_page_s_theme_without_reloading(workbench: Served, page: Page) -> None:
     held: list[Route] = []
     released: list[bool] = []
     page.route("**/static/*/viser_shim.js", lambda route: route.continue_() if released else held.append(route))
@@ -142,7 +142,7 @@ def test_the_frame_is_covered_until_it_has_drawn_and_has_the_page_s_theme_withou
 
 
 @pytest.mark.slow
-def test_a_browser_that_cannot_draw_in_3d_is_told_what_to_do(workbench: Served, page: Page) -> None:
+def test_a_browser_that_cannot_draw_in_3d_shows_what_to_do(workbench: Served, page: Page) -> None:
     page.add_init_script("""
         const made = HTMLCanvasElement.prototype.getContext;
         HTMLCanvasElement.prototype.getContext = function (kind, ...more) {

@@ -122,7 +122,7 @@ def test_labels_of_the_ruler_and_the_playhead_never_overlap(ended: Page) -> None
 
 
 @pytest.mark.slow
-def test_what_is_at_the_pointer_is_told_no_more_once_something_else_is_there(ended: Page) -> None:
+def test_the_text_at_the_pointer_disappears_once_something_else_is_there(ended: Page) -> None:
     page, tip = ended, ended.get_by_role("tooltip")
     next(told(page, 5.0 / 8))
     expect(tip).to_have_count(1)

@@ -223,7 +223,7 @@ WRONG: dict[str, tuple[Any, ...]] = {
 
 
 @pytest.mark.parametrize(("field", "value"), [(field, value) for field, values in WRONG.items() for value in values])
-def test_wrong_parameters_are_told(field: str, value: Any) -> None:
+def test_wrong_parameters_are_reported(field: str, value: Any) -> None:
     with pytest.raises(ConfigurationError, match=rf"CameraParameters\.{field}.*: must be .* \(got "):
         CameraParameters(**{field: value})
 

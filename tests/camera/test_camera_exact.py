@@ -118,7 +118,7 @@ def test_parts_of_one_object_are_one_extent() -> None:
     assert [len(extents) for extents in only_row(view).values()] == [1]
 
 
-def test_the_ground_hides_and_is_not_told() -> None:
+def test_the_ground_hides_and_is_not_in_the_view() -> None:
     cellar = '<geom name="floor" type="plane" size="0 0 .1"/><geom name="low" type="sphere" size=".3" pos="3 0 -.4"/>'
     _, view = seen(cellar, rows=9)
     assert view.as_dict() == {(row + 0.5) / 9: {} for row in range(9)}

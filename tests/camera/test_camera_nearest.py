@@ -32,7 +32,7 @@ def things(random: Random) -> str:
 
 @pytest.mark.parametrize("tilt", [0, 25])
 @pytest.mark.parametrize("seed", range(6))
-def test_nothing_between_two_edges_is_nearer_than_the_nearest_point_that_is_told(seed: int, tilt: int) -> None:
+def test_nothing_between_two_edges_is_nearer_than_the_nearest_point_returned(seed: int, tilt: int) -> None:
     eye = f'<site name="eye" pos="0 0 1.5" euler="0 {tilt} 0"/>'
     mj_model, mj_data = compiled(things(Random(seed)), eye=eye)
     parameters = CameraParameters(rows=60)

@@ -77,7 +77,7 @@ def test_labels_are_part_of_the_state() -> None:
     assert other.state().bodies == known.bodies
 
 
-def test_what_does_not_fit_is_told() -> None:
+def test_mismatches_are_reported() -> None:
     walker = doorway().bodies["walker"]
     wrong: list[tuple[dict[str, Any], str]] = [
         ({"row": 3}, "CameraParameters has no field 'row'; did you mean 'rows'"),
@@ -148,7 +148,7 @@ def seeing() -> Simulation:
     return Simulation(doorway().scene, {"walker": SEEING.Seeing}, seed=3, trace="all")
 
 
-def test_a_mind_sees_through_its_port_also_again_after_going_back() -> None:
+def test_an_agent_sees_through_its_port_also_after_going_back() -> None:
     simulation = seeing()
     simulation.step(150)
     first, seen = digest(simulation), list(simulation.agents["walker"].widest)

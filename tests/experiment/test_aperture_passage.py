@@ -100,14 +100,14 @@ def test_it_walks_at_the_speed_it_was_given(model: Any) -> None:
 
 @pytest.mark.daily(1)
 @pytest.mark.parametrize("speed", [0.3, 0.6, 0.9])
-def test_who_walks_slowly_has_turned_in_time_too(model: Any, speed: float) -> None:
+def test_a_slow_walker_has_turned_in_time_too(model: Any, speed: float) -> None:
     """As far as it can, where it must: it used to stop before the wall where it had not done so in time."""
     assert passed(model, aperture=0.37, group="large", speed=speed).wall_angle_deg == pytest.approx(80, abs=1)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("speed", [0.1, 0.3])
-def test_who_walks_slowly_turns_in_time_too(model: Any, speed: float) -> None:
+def test_a_slow_walker_turns_in_time_too(model: Any, speed: float) -> None:
     """1.6 s before the wall, the doorway's edges are beside a slow walker's eye; it used to walk into the wall."""
     assert (passed(model, aperture=0.4, speed=speed).wall_angle_deg or 0.0) > 30
 
@@ -198,7 +198,7 @@ def shrunk(model: Any, at: float, to: float, seed: int = 1, **given: Any) -> Pas
         (3.3, 0.31, {"variant": "replication"}),
     ],
 )
-def test_who_notices_late_touches_nothing(model: Any, at: float, to: float, given: dict[str, Any]) -> None:
+def test_a_walker_that_notices_late_touches_nothing(model: Any, at: float, to: float, given: dict[str, Any]) -> None:
     """The edges of a doorway are off the way ahead when they are near, and a fast walker goes some way until it stands."""
     for seed in range(1, 5):
         assert shrunk(model, at, to, seed, aperture=0.6, **given).contacts == 0
@@ -206,7 +206,7 @@ def test_who_notices_late_touches_nothing(model: Any, at: float, to: float, give
 
 @pytest.mark.daily(1)
 @pytest.mark.parametrize(("at", "given"), [(6.45, {}), (6.6, {"speed": 0.5}), (6.0, {"variant": "replication"})])
-def test_who_notices_that_there_is_no_way_through_stops(model: Any, at: float, given: dict[str, Any]) -> None:
+def test_a_walker_that_notices_that_there_is_no_way_through_stops(model: Any, at: float, given: dict[str, Any]) -> None:
     for seed in (1, 2):
         result = shrunk(model, at, 0.2, seed, aperture=0.6, **given)
         assert (result.outcome, result.contacts, result.wall_angle_deg) == ("stopped", 0, None)
@@ -214,7 +214,7 @@ def test_who_notices_that_there_is_no_way_through_stops(model: Any, at: float, g
 
 @pytest.mark.daily(1)
 @pytest.mark.parametrize(("at", "speed"), [(6.0, None), (6.3, None), (6.4, 0.5), (5.3, 3.0)])
-def test_who_notices_in_time_turns_where_it_stands_and_goes_on(model: Any, at: float, speed: float | None) -> None:
+def test_a_walker_that_notices_in_time_turns_where_it_stands_and_goes_on(model: Any, at: float, speed: float | None) -> None:
     result = shrunk(model, at, 0.38, 2, aperture=0.6, speed=speed)
     assert (result.outcome, result.contacts) == ("passed", 0)
     assert (result.wall_angle_deg or 0) > 54
@@ -222,7 +222,7 @@ def test_who_notices_in_time_turns_where_it_stands_and_goes_on(model: Any, at: f
 
 @pytest.mark.daily(1)
 @pytest.mark.parametrize(("aperture", "first", "then"), [(0.3, 0.3, 2.0), (0.35, 0.3, None), (0.3, 0.5, 3.0)])
-def test_who_is_to_walk_faster_close_before_it_still_turns_in_time(model: Any, aperture: float, first: float, then: float | None) -> None:
+def test_a_walker_that_speeds_up_close_before_it_still_turns_in_time(model: Any, aperture: float, first: float, then: float | None) -> None:
     """The turn that is under way gets faster, too, and it stands still earlier."""
     simulation = built(model, aperture=aperture, speed=first)
     simulation.run(until=lambda seen: simulation.world.bodies["walker"].base.place[0] > 5.3)
@@ -249,7 +249,7 @@ def test_a_doorway_whose_edges_are_out_of_sight_is_not_doubted(model: Any) -> No
         assert (result.outcome, result.contacts) == ("passed", 0)
 
 
-def test_who_is_held_gives_up(model: Any) -> None:
+def test_a_walker_that_is_held_gives_up(model: Any) -> None:
     """A doorway that closes right before it cannot be noticed in time; then it does not push on for ever."""
     assert shrunk(model, 6.75, 0.1, aperture=0.6).outcome == "stopped"
 
@@ -373,7 +373,7 @@ def test_the_last_line_of_json_is_the_result(capsys: Any) -> None:
     assert units[:4] == [("pass_doorway", "begun"), ("pass_doorway", "interrupted"), ("squeeze", "begun"), ("squeeze", "ended")]
 
 
-def test_who_declines_ends_with_0(capsys: Any) -> None:
+def test_a_walker_that_declines_ends_with_0(capsys: Any) -> None:
     assert main(["run", str(FILE), "--aperture", "0.2", "--seed", "1"]) == 0
     assert capsys.readouterr().out.splitlines()[-1].startswith("declined after")
 
@@ -393,7 +393,7 @@ def test_who_declines_ends_with_0(capsys: Any) -> None:
         (["--apertur", "0.4"], "no option '--apertur'; did you mean '--aperture'?"),
     ],
 )
-def test_impossible_parameters_are_told_in_one_line(words: list[str], message: str, capsys: Any) -> None:
+def test_impossible_parameters_are_reported_in_one_line(words: list[str], message: str, capsys: Any) -> None:
     assert main(["run", str(FILE), *words]) == 2
     told = capsys.readouterr()
     assert (told.out, told.err.count("\n")) == ("", 1)
@@ -419,7 +419,7 @@ def test_noticing_that_a_doorway_shrinks_interrupts_again(model: Any) -> None:
 @pytest.mark.daily(2)
 @pytest.mark.parametrize("variant", ["descriptive", "replication"])
 @pytest.mark.parametrize(("first", "then"), [(None, 0.6), (0.8, 1.7), (0.8, None)])
-def test_who_is_to_walk_at_another_speed_does_on_the_way(model: Any, variant: str, first: float | None, then: float | None) -> None:
+def test_a_walker_changes_its_speed_on_the_way(model: Any, variant: str, first: float | None, then: float | None) -> None:
     simulation = built(model, variant=variant, aperture=0.45, speed=first)
     simulation.run(7)
     base = simulation.world.bodies["walker"].base

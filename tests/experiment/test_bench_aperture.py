@@ -117,7 +117,7 @@ def with_margin(trial: WalkerTrial, room: float) -> PassageResult:
     return replace(good(trial), clearance_left_m=room, clearance_right_m=room)
 
 
-def test_who_does_not_turn_has_no_margin() -> None:
+def test_a_walker_that_does_not_turn_has_no_margin() -> None:
     """At wide apertures there is more room than anyone wants, which is no margin."""
     found = findings(lambda trial: with_margin(trial, 0.07 if good(trial).wall_angle_deg else 0.14))
     assert found.margin("large", "fast", 0.45) == pytest.approx(0.07)
@@ -158,7 +158,7 @@ def test_where_it_can_pass_is_one_of_them() -> None:
     assert unmet(good, 1.0) == [9]
 
 
-def test_a_cell_that_nobody_reached_is_no_agreement() -> None:
+def test_a_cell_without_trials_is_no_agreement() -> None:
     original = original_means()
     found = dict(original)
     assert benchmark.root_mean_square(found, original) == 0
@@ -206,7 +206,7 @@ def test_a_number_of_trials_that_is_none_is_refused(capsys: Any) -> None:
     assert "must be a whole number >= 1 (got 0)" in capsys.readouterr().err
 
 
-def test_trials_that_fail_are_told_and_count(monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+def test_trials_that_fail_are_reported_and_count(monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
     """One walker in a cell never reaches the wall, another touches it: no mean of a cell would show the first."""
     original = original_means()
 

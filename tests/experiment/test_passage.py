@@ -57,7 +57,7 @@ def result_of(simulation: Simulation) -> PassageResult:
 
 
 @pytest.mark.parametrize("heading", [0.0, 2.0])
-def test_who_walks_straight_through_has_half_the_rest_on_each_side(heading: float) -> None:
+def test_a_straight_walk_through_has_half_the_rest_on_each_side(heading: float) -> None:
     result = result_of(walked(0.8, heading=heading))
     assert result.outcome == "passed"
     assert (result.clearance_left_m, result.clearance_right_m) == (pytest.approx(0.175, abs=2e-4), pytest.approx(0.175, abs=2e-4))
@@ -66,7 +66,7 @@ def test_who_walks_straight_through_has_half_the_rest_on_each_side(heading: floa
     assert (result.wall_angle_deg, result.speed_m_s) == (pytest.approx(0, abs=0.01), pytest.approx(1.25, abs=1e-3))
 
 
-def test_clearance_is_told_for_each_side() -> None:
+def test_clearance_is_measured_for_each_side() -> None:
     result = result_of(walked(0.8, sideways=0.1))
     assert result.clearance_left_m == pytest.approx(0.075, abs=2e-4)
     assert result.clearance_right_m == pytest.approx(0.275, abs=2e-4)
@@ -99,7 +99,7 @@ def test_clearance_of_a_turned_body_is_exact() -> None:
     assert result.clearance_left_m == pytest.approx(0.35 - line * math.cos(clavicle) - r, abs=1e-3)
 
 
-def test_who_walks_into_the_wall_touches_it_and_stops() -> None:
+def test_a_walk_into_the_wall_touches_it_and_stops() -> None:
     result = result_of(walked(0.3))
     assert result.outcome == "stopped"
     assert result.contacts >= 2
@@ -107,7 +107,7 @@ def test_who_walks_into_the_wall_touches_it_and_stops() -> None:
     assert (result.wall_angle_deg, result.clearance_left_m) == (None, pytest.approx(0, abs=2e-3)) or result.clearance_left_m is None
 
 
-def test_who_never_sets_out_declines_unless_it_was_cut_short() -> None:
+def test_a_walker_that_never_starts_declines_unless_it_was_cut_short() -> None:
     simulation = walked(0.8, speed=0)
     simulation.run(1)
     assert simulation.result().outcome == "stopped"
@@ -160,7 +160,7 @@ def test_another_future_has_another_result() -> None:
     assert changed.result().clearance_left_m == pytest.approx(0.275, abs=2e-4)
 
 
-def test_what_is_not_there_is_told() -> None:
+def test_a_missing_object_is_reported() -> None:
     scene = Scene(parts=(Floor(), Aperture(), Mannequin(name="walker"), Car(name="car", position=(0, 5))))
     simulation = Simulation(scene)
     for body, aperture, message in [

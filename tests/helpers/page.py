@@ -14,7 +14,7 @@ import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Error, Page, expect, sync_playwright
 
 PATIENCE = 60_000
-"""So long a test waits for what must come [ms]; machines are slow at times."""
+"""Maximum time that a test waits [ms]; machines are slow at times."""
 expect.set_options(timeout=PATIENCE)  # whatever is expected, and not for five seconds only
 
 OPTIONS = ("--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader")

@@ -1,4 +1,4 @@
-"""Sessions with real workers, for tests that speak to them from outside their event loop."""
+"""Sessions with real workers, for tests that use them from outside their event loop."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from workbench.worker.workers import Workers
 
 T = TypeVar("T")
 PATIENCE = 180.0
-"""So long a test waits for what must come [s]; machines are slow at times."""
+"""Maximum time that a test waits [s]; machines are slow at times."""
 
 
 class Desk:
@@ -41,7 +41,7 @@ class Desk:
         self._loop.call_soon_threadsafe(self.workers.begin)
 
     def do(self, work: Coroutine[Any, Any, T]) -> T:
-        """Does something in the event loop, and returns what comes of it."""
+        """Runs a coroutine in the event loop; returns its result."""
         return asyncio.run_coroutine_threadsafe(work, self._loop).result(PATIENCE)
 
     def sessions(self, folder: Path) -> Sessions:
@@ -94,29 +94,29 @@ class Talk:
         self.sessions = sessions
 
     def say(self, kind: str, **more: Any) -> Any:
-        """Says something; returns the result, or raises what went wrong."""
+        """Sends a command; returns the result, or raises the error."""
         reply = self.desk.do(COMMAND.validate_python({"type": kind, **more}).submit(self.session, "test"))
         if reply.error is not None:
             raise RefusedError(reply.error)
         return json.loads(reply.result)
 
     def until(self, status: str, **more: float) -> dict[str, Any]:
-        """Waits for a status, and for numbers to be what they should; returns the state."""
+        """Waits for a status, and for numbers of the state to have these values; returns the state."""
         return self.wait(
             lambda: self.state["status"] == status and all(abs(self.state[name] - value) < 1e-9 for name, value in more.items())
         )
 
     def wait(self, condition: Callable[[], Any]) -> dict[str, Any]:
-        """Waits until something is so; returns the state."""
+        """Waits until a condition holds; returns the state."""
         end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
             if self.session.state is not None and condition():
                 return self.state
             time.sleep(0.005)
-        raise AssertionError(f"it did not come: {self.facts}, {self.session.state and self.state}, {self.notices}")
+        raise AssertionError(f"the condition never held: {self.facts}, {self.session.state and self.state}, {self.notices}")
 
     def summary(self, name: str) -> Summary:
-        """Returns what is known of a recording."""
+        """Returns the summary of a recording."""
         return self.desk.do(self.sessions.listing.one(name))
 
     @property
@@ -126,12 +126,12 @@ class Talk:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What is known of the session."""
+        """The facts of the session."""
         return json.loads(self.session.facts_json())
 
     @property
     def notices(self) -> list[dict[str, Any]]:
-        """What the user was told."""
+        """The notices that the user received."""
         return [json.loads(notice) for _, notice in list(self.session.notices)]
 
     @property
@@ -141,14 +141,14 @@ class Talk:
         return [json.loads(event) for event in list(self.session.log._events)]
 
     def wait_for_notice(self, text: str) -> dict[str, Any]:
-        """Waits for something that the user is told; returns it."""
+        """Waits for a notice with a text; returns it."""
         end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
             for notice in self.notices:
                 if text in notice["text"]:
                     return notice
             time.sleep(0.01)
-        raise AssertionError(f"'{text}' was not told: {self.notices}")
+        raise AssertionError(f"no notice with '{text}': {self.notices}")
 
 
 class RefusedError(Exception):

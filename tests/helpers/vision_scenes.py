@@ -1,4 +1,4 @@
-"""What a mind's eye makes of scenes, for tests of vision: agents at bodies without physics, and detectors at bare cameras."""
+"""Small scenes for tests of vision: agents at bodies without physics, and detectors with a camera alone."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def agent(text: str, body: str = "walker") -> Any:
 
 
 class Mindful:
-    """A mind that asks a body in a world that stands still: the ticks of `Simulation` without its physics.
+    """An agent whose body is in a world without physics: the ticks of `Simulation` alone.
 
     Args:
         world: The world.
-        kind: What makes the mind.
-        seed: What its random choices come from.
+        kind: The class of the agent.
+        seed: The seed of its random choices.
     """
 
     def __init__(self, world: World, kind: Any, seed: int = 1, trace: Any = None) -> None:
@@ -58,7 +58,7 @@ class Mindful:
         self.mind: Any = self._minds.environment["walker"]
 
     def tick(self, n: int = 1) -> Mindful:
-        """Lets it think for some ticks, and answers what it asks."""
+        """Runs the agent for some ticks, and answers its requests."""
         for _ in range(n):
             self._minds.run(PERIOD / 1e6, self._minds.time + PERIOD)
             asked, self._minds.outbox[:] = list(self._minds.outbox), []

@@ -91,7 +91,7 @@ def test_extending_brings_a_shoulder_forward_and_compressing_backward(side: str)
     assert ahead["extend_shoulder"] > 0.03
 
 
-def test_a_movement_is_stopped_when_told_to_and_stands_where_it_was() -> None:
+def test_a_stopped_movement_stays_where_it_was() -> None:
     simulation, motor = moving()
     motor.rotate_torso()
     simulation.step(20)
@@ -133,7 +133,7 @@ def test_groups_move_at_once_while_it_walks_and_turns() -> None:
 
 
 @pytest.mark.parametrize(("by", "speed"), [(90, 120), (-200, 240), (360, 180)])
-def test_it_turns_by_an_angle_as_far_round_as_it_is_told(by: float, speed: float) -> None:
+def test_it_turns_by_the_commanded_angle(by: float, speed: float) -> None:
     simulation, motor = moving()
     motor.turn(by, speed)
     assert until(simulation, lambda: not motor.turning) == near(abs(by) / speed * 100 + 1, abs=1)
@@ -181,7 +181,7 @@ def test_a_turn_without_an_end_changes_its_speed_while_it_walks() -> None:
     assert motor.legs_end == "stopped"
 
 
-def test_it_turns_until_told_to_stop() -> None:
+def test_it_turns_until_the_command_to_stop() -> None:
     simulation, motor = moving()
     motor.turn(speed=-50)
     simulation.step(100)
@@ -341,7 +341,7 @@ def test_parameters_are_checked_when_a_user_changes_them(parameter: str, value: 
     assert motor.patience is None
 
 
-def test_an_agent_without_a_body_is_told_so() -> None:
+def test_an_agent_without_a_body_gets_an_error() -> None:
     agent: Any = type("Ghost", (ACTR,), {"motor": Motor()})()
     agent.run(0.1)
     with pytest.raises(SimulationError, match="has no body"):
@@ -397,7 +397,7 @@ def test_a_limb_that_something_holds_back_is_blocked_and_stops_pushing() -> None
     assert motor.parent.posture.chunk["end"] == "blocked"
 
 
-def test_who_stands_at_a_wall_can_walk_away_from_it() -> None:
+def test_a_body_at_a_wall_can_walk_away_from_it() -> None:
     simulation, motor = moving(Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0)))
     motor.walk(1.5)
     until(simulation, lambda: not motor.walking)
@@ -511,7 +511,7 @@ def test_an_imported_body_may_have_names_for_movements() -> None:
     assert (motor.shoulder_angle, motor.elbow_angle) == near((45, 45), abs=0.5)
 
 
-def test_a_pattern_that_names_no_muscle_group_is_told_once_the_body_is_known() -> None:
+def test_a_pattern_without_a_muscle_group_is_reported_once_the_body_is_known() -> None:
     text = """
 from actr3d.actr import *
 from actr3d.motor import Motor

@@ -122,7 +122,7 @@ def test_what_has_new_checksums_is_compared_all_the_same(original: Path, tmp_pat
         (["""UPDATE facts SET value = '"x"' WHERE name = 'scene'"""], "differs: the fact 'scene'; recorded: \"x\"; now: "),
         (
             ["""UPDATE facts SET value = 'null' WHERE name = 'ended'""", "DELETE FROM facts WHERE name = 'whole'"],
-            "agrees as far as it goes: 40 ",
+            "agrees up to the end of the recording: 40 ",
         ),
         (["UPDATE commands SET tick = 39 WHERE first = 3"], "differs: "),
         (["UPDATE commands SET tick = 4000 WHERE first = 3"], "the recording holds 1 event, 1 command more"),

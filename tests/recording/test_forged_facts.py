@@ -97,7 +97,7 @@ def test_what_is_not_forged_agrees(run: str, recordings: dict[str, Path]) -> Non
             assert recorded.facts["ended"] == by(run)
     code, text = verdict(recordings[run])
     assert code == 0
-    assert text.startswith("agrees as far as it goes: " if run == "failed" else "every byte agrees: ")
+    assert text.startswith("agrees up to the end of the recording: " if run == "failed" else "every byte agrees: ")
 
 
 BUILT_RUNS = ("limits", "stop", "done")

@@ -71,7 +71,7 @@ def gone(path: Path) -> None:
 
 
 @pytest.mark.parametrize(("change", "problem"), [(link, "its journal is a symbolic link"), (gone, "no recording")])
-def test_what_lies_beside_a_file_and_what_is_gone_is_told(path: Path, change: Callable[[Path], None], problem: str) -> None:
+def test_files_beside_a_recording_and_missing_ones_are_reported(path: Path, change: Callable[[Path], None], problem: str) -> None:
     kept = path.with_name("kept.sqlite")
     shutil.copy(path, kept)
     change(path)

@@ -220,7 +220,7 @@ def test_a_full_disk_stops_the_run_and_spoils_nothing(before: str, reason: str, 
     assert again.world.state_bytes() == states[-1]
 
 
-def test_a_folder_that_cannot_be_written_is_told_before_the_run_begins() -> None:
+def test_a_folder_that_cannot_be_written_is_reported_before_the_run_begins() -> None:
     with TemporaryDirectory() as name:
         folder = Path(name)
         text = f"""

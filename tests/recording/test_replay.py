@@ -232,7 +232,7 @@ def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[s
     assert main(["replay", str(path), "--any-version"]) == 0
 
 
-def test_a_damaged_recording_is_told_from_one_that_differs(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_damaged_recording_is_distinguished_from_one_that_differs(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file)
     data = bytearray(path.read_bytes())
     with sqlite3.connect(path) as connection:
@@ -247,7 +247,7 @@ def test_a_damaged_recording_is_told_from_one_that_differs(file: Path, capsys: p
 
 
 @pytest.mark.parametrize("table", ["events", "answers", "commands"])
-def test_texts_in_it_that_are_damaged_are_told(table: str, tmp_path: Path) -> None:
+def test_damaged_texts_are_reported(table: str, tmp_path: Path) -> None:
     simulation = driving()
     with simulation.record(tmp_path / "run"):
         simulation.command("aperture", 0.5)
@@ -260,12 +260,12 @@ def test_texts_in_it_that_are_damaged_are_told(table: str, tmp_path: Path) -> No
 def test_a_recording_that_was_killed_before_anything_was_written_cannot_be_compared(file: Path) -> None:
     path = recorded_run(file)
     forge(path, "DELETE FROM events", "DELETE FROM states", "DELETE FROM facts WHERE name IN ('ended', 'whole')")
-    message = "holds nothing to compare: its run was left or broken off before anything was written"
+    message = "holds nothing to compare: its run was left or interrupted before anything was written"
     with Recorded(path) as recorded, pytest.raises(RecordingError, match=message):
         replay(recorded)
 
 
-def test_a_recording_without_its_facts_is_told(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_recording_without_its_facts_is_reported(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file)
     forge(path, "DELETE FROM facts WHERE name IN ('kind', 'versions')")
     capsys.readouterr()
@@ -288,7 +288,7 @@ def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path, capsys: py
 CUT = """UPDATE events SET count = count - 1, data = json_remove(data, '$[#-1]') WHERE first = (SELECT max(first) FROM events)"""
 
 
-BROKEN_OFF = "the recording says that the run was broken off at 0.25 s, which cannot be checked"
+INTERRUPTED = "the recording says that the run was interrupted at 0.25 s, which cannot be checked"
 
 
 def test_a_recording_that_was_broken_off_agrees_as_far_as_it_goes(tmp_path: Path) -> None:
@@ -299,7 +299,7 @@ def test_a_recording_that_was_broken_off_agrees_as_far_as_it_goes(tmp_path: Path
     with Recorded(path) as recorded:
         comparison = replay(recorded)
     assert comparison.events > 20
-    assert str(comparison) == f"agrees as far as it goes: {comparison.events} events; {BROKEN_OFF}"
+    assert str(comparison) == f"agrees up to the end of the recording: {comparison.events} events; {INTERRUPTED}"
 
 
 def test_what_a_program_of_its_own_has_simulated_is_replayed_by_it(tmp_path: Path) -> None:
@@ -329,7 +329,7 @@ def test_a_run_that_fails_is_recorded_until_then(tmp_path: Path, capsys: pytest.
     assert main(["replay", str(path)]) == 0
     out = capsys.readouterr().out
     assert re.fullmatch(
-        r"agrees as far as it goes: 14 ticks, \d+ events; the run failed after 0.14 s \(AttributeError: .*'halt'\)\n",
+        r"agrees up to the end of the recording: 14 ticks, \d+ events; the run failed after 0.14 s \(AttributeError: .*'halt'\)\n",
         out,
     )
 
@@ -379,7 +379,7 @@ def test_a_replay_that_fails_differs(
         (1, ["--record", "nowhere/run"], "cannot write the recording 'nowhere/run': No such file or directory"),
     ],
 )
-def test_wrong_options_of_run_are_told(
+def test_wrong_options_of_run_are_reported(
     code: int, words: list[str], message: str, file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(file.parent)
@@ -388,7 +388,7 @@ def test_wrong_options_of_run_are_told(
     assert file.read_text(encoding="utf-8") == BUILT
 
 
-def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_uses_with_a_program_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "noisy.py"
     file.write_text(NOISY, encoding="utf-8")
     assert main(["run", str(file), "--set", "a=1"]) == 2
@@ -436,7 +436,7 @@ def test_wrong_uses_with_a_program_are_told(tmp_path: Path, capsys: pytest.Captu
         ("\ndef build() -> Simulation: return 3", r":3: build must return a Simulation \(returned 3\)"),
     ],
 )
-def test_a_wrong_build_is_told_with_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, message: str) -> None:
+def test_a_wrong_build_is_reported_with_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, message: str) -> None:
     text = f"from actr3d.simulation import Simulation\n{line}\n"
     (tmp_path / "wrong.py").write_text(text, encoding="utf-8")
     with pytest.raises(ModelFileError, match=f"wrong.py{message}" if message[0] == ":" else message):
@@ -545,7 +545,7 @@ def test_a_replay_compares_how_the_run_ended(
     capsys.readouterr()
     assert main(["replay", str(path)]) == 0
     assert f"{events} events" in (agrees := capsys.readouterr().out)
-    assert agrees.startswith("every byte agrees" if name == "ended" else "agrees as far as it goes")
+    assert agrees.startswith("every byte agrees" if name == "ended" else "agrees up to the end of the recording")
     forge(path, in_fact(name, then, other))
     assert main(["replay", str(path)]) == 1
     assert f"differs: the fact '{name}'; recorded: " in (differs := capsys.readouterr().out)

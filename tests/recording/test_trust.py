@@ -84,7 +84,7 @@ def test_a_run_that_was_killed_went_back_or_was_copied_is_known_too(tmp_path: Pa
     assert made_here(tmp_path / "copy")
 
 
-def test_many_who_need_the_first_key_have_the_same(data: Path) -> None:
+def test_many_processes_that_need_the_first_key_have_the_same(data: Path) -> None:
     code = "import sys; from actr3d.recording.key import make_key; sys.stdin.read(); print(make_key().hex())"
     pipe = subprocess.PIPE
     many = [subprocess.Popen([sys.executable, "-c", code], text=True, stdin=pipe, stdout=pipe) for _ in range(4)]
@@ -109,7 +109,7 @@ def test_a_key_that_is_none_is_replaced(tmp_path: Path) -> None:
     assert len(key_file().read_bytes()) == SIZE
 
 
-def test_where_no_key_can_be_kept_recordings_are_nobodys(tmp_path: Path, data: Path) -> None:
+def test_without_a_key_no_recording_is_of_this_installation(tmp_path: Path, data: Path) -> None:
     data.write_text("no folder", encoding="utf-8")
     path = recorded(tmp_path / "run")
     assert not made_here(path)

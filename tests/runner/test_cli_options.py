@@ -59,7 +59,7 @@ def lamp() -> Any:
     return load_text(LAMP, "lamp.py")
 
 
-def test_fields_are_told_as_they_are_written(lamp: Any) -> None:
+def test_fields_are_read_as_they_are_written(lamp: Any) -> None:
     fields = parameters_of(lamp.Parameters)
     assert [(field.option, field.domain(), field.default) for field in fields] == [
         ("--power", "number, > 0, <= 100 [W]", 60.0),
@@ -120,7 +120,7 @@ def test_options_are_read(lamp: Any, words: list[str], settings: dict[str, Any])
         (["3"], "unexpected '3': a parameter is given as --name value"),
     ],
 )
-def test_wrong_options_are_told(lamp: Any, words: list[str], message: str) -> None:
+def test_wrong_options_are_reported(lamp: Any, words: list[str], message: str) -> None:
     with pytest.raises(SettingError, match=message):
         read_options(words, parameters_of(lamp.Parameters), ["--seed"])
 

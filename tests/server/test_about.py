@@ -136,7 +136,7 @@ def test_what_is_told_of_a_run_says_after_how_many_events_it_came(desk: Desk, tm
     assert {notice["text"]: notice["events"] for notice in talk.notices} == {"beware": 2, "ValueError: no": 3}
 
 
-def test_the_largest_seed_is_told_without_loss(desk: Desk, tmp_path: Path) -> None:
+def test_the_largest_seed_is_shown_without_loss(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, "print(1)\n", seed=2**63 - 1)
     assert talk.facts["seed"] == str(2**63 - 1)
     talk.say("restart", seed=str(2**63 - 2))

@@ -283,7 +283,7 @@ class _View:
         return self._port, {"x-workbench-bridge": "secret"}
 
 
-def test_the_bridge_tells_viser_nothing_of_who_asks() -> None:
+def test_the_bridge_sends_viser_nothing_about_the_client() -> None:
     asked: list[dict[str, str]] = []
 
     async def viser(socket: Any) -> None:
@@ -354,7 +354,7 @@ def test_every_answer_has_the_headers_that_keep_others_out(app: Any) -> None:
         assert "frame-ancestors 'self'" in headers["content-security-policy"]
 
 
-def test_strange_cookies_hurt_nobody() -> None:
+def test_strange_cookies_do_no_harm() -> None:
     for cookie in ("", ";;;", "=", "workbench_8000", "a=b; workbench_8000", "\xff=\xfe", 'x="'):
         assert ask(guarded, "/", HOST, ("cookie", cookie)).status == 401
         assert ask(guarded, "/", HOST, ("cookie", f"{cookie}; workbench_8000={TOKEN}")).status == 200

@@ -71,7 +71,7 @@ def test_outlines_are_those_of_walls_and_go_with_them() -> None:
     assert np.abs(lines[-1][..., 1]).min() > 1
 
 
-def test_the_stage_is_told_with_the_body_s_middle_and_size() -> None:
+def test_the_stage_is_sent_with_the_middle_and_size_of_the_body() -> None:
     model, _ = scene(Mannequin(name="walker"), Aperture(width=0.6))
     told = SceneFraming(model).data(["/floor"])
     assert told["height"] == pytest.approx(1.75, abs=0.1)
@@ -99,7 +99,7 @@ def test_the_stage_is_that_of_the_agent_s_body_whatever_else_moves() -> None:
     assert SceneFraming(model).data([])["start"][:2] == pytest.approx([-3, 0], abs=1e-6)  # without an agent, the first that moves
 
 
-def test_who_comes_later_is_told_the_newest_only() -> None:
+def test_only_the_newest_data_is_kept_for_late_clients() -> None:
     server = start_viser("secret")
     try:
         for number in range(5):

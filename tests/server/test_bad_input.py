@@ -83,7 +83,7 @@ def told(answer: httpx.Response) -> None:
 
 @pytest.mark.daily(4)
 @pytest.mark.parametrize(("method", "path"), OPERATIONS, ids=[" ".join(operation) for operation in OPERATIONS])
-def test_what_cannot_be_taken_is_told(method: str, path: str, server: Served, session: str) -> None:
+def test_invalid_input_is_reported(method: str, path: str, server: Served, session: str) -> None:
     operation = DESCRIPTION["paths"][path][method]
     described = operation.get("requestBody", {}).get("content", {}).get("application/json", {}).get("schema")
     here = {**dict.fromkeys(PLACES, "x"), "session": session}
@@ -106,7 +106,7 @@ def test_pages_take_every_address(server: Served) -> None:
             assert answer.status_code < 500, (answer.request.url, answer.text)
 
 
-def test_what_is_wrong_is_told_with_its_place_and_not_echoed(server: Served) -> None:
+def test_errors_name_the_place_and_do_not_echo_the_input(server: Served) -> None:
     for path, body, status, words in (
         ("/api/sessions", "NaN", 422, "body: Input should be a valid dictionary or object"),
         ("/api/sessions", '{"model": "counting.py", "seed": 1e400}', 422, "body.seed: Input should be a finite number"),

@@ -1,4 +1,4 @@
-"""Changing something in the past of a run: how it had gone on is kept as a branch, or the change is refused."""
+"""Changing something in the past of a run: the original continuation is kept as a branch, or the change is refused."""
 
 from __future__ import annotations
 

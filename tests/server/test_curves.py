@@ -73,7 +73,7 @@ def test_curves_of_a_passage_agree_with_its_result_live_and_recorded(desk: Desk,
     assert curves_of(path, names=None, first=1.0, most=3, last=0.5)["times"] == []
 
 
-def test_the_force_of_a_wall_is_told_and_that_of_the_ground_is_not(desk: Desk, tmp_path: Path) -> None:
+def test_the_force_of_a_wall_is_a_curve_and_that_of_the_ground_is_not(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, PUSHED)
     talk.say("until", contact="walker")
     touched = talk.wait(lambda: "of walker touches" in talk.state["reason"])["time"]
@@ -85,7 +85,7 @@ def test_the_force_of_a_wall_is_told_and_that_of_the_ground_is_not(desk: Desk, t
     assert max(force.values()) > 10
 
 
-def test_only_what_is_asked_for_is_told_from_a_time_on_and_evenly(desk: Desk, tmp_path: Path) -> None:
+def test_only_requested_curves_are_returned_from_a_time_on_evenly_spaced(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, PUSHED)
     talk.say("step", ticks=50)
     talk.until("paused", tick=50)

@@ -101,7 +101,7 @@ def test_what_is_taken_of_a_run_that_goes_on_has_what_was_there(desk: Desk, tmp_
     assert talk.notices == []
 
 
-def test_a_recording_that_is_finished_is_given_as_it_is(desk: Desk, tmp_path: Path) -> None:
+def test_a_finished_recording_is_sent_unchanged(desk: Desk, tmp_path: Path) -> None:
     path = written(tmp_path, "m", firing(3))
     assert download(desk, tmp_path, "m").body == path.read_bytes()
     path.write_bytes(b"no recording at all")
@@ -128,7 +128,7 @@ def test_a_copy_that_takes_long_does_not_hold_up_the_server(desk: Desk, tmp_path
         assert recorded.event_count == 3
 
 
-def test_a_copy_that_nobody_waits_for_any_more_is_given_up(desk: Desk, tmp_path: Path) -> None:
+def test_a_copy_is_cancelled_when_no_client_waits_for_it(desk: Desk, tmp_path: Path) -> None:
     path = written(tmp_path, "m", firing(3))
     app = make_app(tmp_path, GATE)
     app.state.sessions = desk.sessions(tmp_path)
@@ -159,7 +159,7 @@ def nearly_full_disk(desk: Desk, room: int) -> Generator[None]:
         resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE, limits)
 
 
-def test_a_copy_that_cannot_be_written_is_told(desk: Desk, tmp_path: Path) -> None:
+def test_a_copy_that_cannot_be_written_is_reported(desk: Desk, tmp_path: Path) -> None:
     (tmp_path / ".workbench" / "recordings").mkdir(parents=True)
     with Recording(tmp_path / ".workbench" / "recordings" / "m.sqlite", {"kind": "program", "text": "x" * 200_000}):
         assert download(desk, tmp_path, "m", "events.csv").status == 200  # all that a worker needs is loaded now

@@ -94,7 +94,7 @@ def test_a_feed_begins_with_everything_and_goes_on_with_what_is_new() -> None:
     assert told(feed, feed.wake) == {"type": "update", "of": "s1", "run": 1, "epoch": 1, "state": {"version": 9}}
 
 
-def test_who_comes_again_is_told_what_is_new_only() -> None:
+def test_a_client_that_reconnects_gets_only_new_events() -> None:
     shown = Shown()
     shown.add(*range(5))
     feed = Feed(shown, "page 1")
@@ -103,7 +103,7 @@ def test_who_comes_again_is_told_what_is_new_only() -> None:
 
 
 @pytest.mark.parametrize("known", [(1, 0, 3), (2, 1, 3), (1, 1, 9)])
-def test_who_comes_again_and_knows_something_else_is_told_everything(known: tuple[int, int, int]) -> None:
+def test_a_client_that_reconnects_with_another_state_gets_everything(known: tuple[int, int, int]) -> None:
     shown = Shown()
     shown.add(*range(5))
     feed = Feed(shown, "page 1")
@@ -125,7 +125,7 @@ def test_a_run_that_goes_another_way_takes_events_back() -> None:
     assert message["events"] == {"first": 2, "list": [20, 30], "cut": 2}
 
 
-def test_a_slow_browser_is_told_of_its_gap(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_slow_browser_learns_of_its_gap(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(event_log, "MOST_EVENTS", 4)
     shown = Shown()
     shown.add(0)
@@ -145,7 +145,7 @@ def test_much_that_is_new_comes_in_parts_of_bounded_size() -> None:
     assert told(feed) is None
 
 
-def test_a_new_run_begins_anew() -> None:
+def test_a_new_run_begins_with_its_own_events() -> None:
     shown = Shown()
     shown.add(*range(5))
     feed = Feed(shown, "page 1")
@@ -156,7 +156,7 @@ def test_a_new_run_begins_anew() -> None:
     assert (message["run"], message["events"]) == (2, {"first": 0, "list": [100], "cut": 0})
 
 
-def test_replies_go_to_who_has_asked() -> None:
+def test_replies_go_to_the_client_that_asked() -> None:
     shown = Shown()
     one, other = Feed(shown, "page 1"), Feed(shown, "page 2")
     told(one)

@@ -85,7 +85,7 @@ def test_nothing_outside_the_folder_is_touched(folder: ModelFolder, tmp_path: Pa
     assert (folder.root / "one.py").is_file()
 
 
-def test_saving_what_nobody_else_has_changed(folder: ModelFolder) -> None:
+def test_saving_without_a_conflict(folder: ModelFolder) -> None:
     file = folder.read("one.py")
     (folder.root / "one.py").chmod(0o640)
     saved = folder.save("one.py", "ä = 3\n", file.version)
@@ -94,7 +94,7 @@ def test_saving_what_nobody_else_has_changed(folder: ModelFolder) -> None:
     assert [path.name for path in folder.root.iterdir() if path.name.endswith(".tmp")] == []
 
 
-def test_a_conflict_is_told_and_nothing_is_overwritten(folder: ModelFolder) -> None:
+def test_a_conflict_is_reported_and_nothing_is_overwritten(folder: ModelFolder) -> None:
     file = folder.read("one.py")
     (folder.root / "one.py").write_text("other = 1\n", encoding="utf-8")
     with pytest.raises(ConflictError, match="has changed"):

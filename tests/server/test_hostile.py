@@ -218,7 +218,7 @@ for _ in range(1000):
 # -- what bounds what is shown
 
 
-def test_what_is_short_is_told_as_it_is() -> None:
+def test_short_values_are_unchanged() -> None:
     values: list[Any] = [[1, "a", "b", {"text": "x" * 1000}], {}, None, [list(range(1000))]]
     for value in values:
         assert json.loads(bounded_json(value)) == value
@@ -227,7 +227,7 @@ def test_what_is_short_is_told_as_it_is() -> None:
 @pytest.mark.parametrize(
     "number", [float("nan"), float("inf"), -float("inf"), 10**30, 1e300, -0.0, True, None, pytest.param(10**5000, id="huge")]
 )
-def test_numbers_that_json_does_not_have_are_told_as_in_recordings(number: Any) -> None:
+def test_numbers_that_json_does_not_have_are_written_as_in_recordings(number: Any) -> None:
     value = plain([5, "top.goal", "buffer", {"n": number, "text": "\ud800 ü", "list": (1, number)}])
     assert json.loads(bounded_json(value)) == json.loads(to_json(value))
 
@@ -236,7 +236,7 @@ def test_numbers_that_json_does_not_have_are_told_as_in_recordings(number: Any) 
     "data",
     [{"text": "x" * 10**6}, {"a": ["y" * 10**6] * 10}, {str(n): "z" * 100 for n in range(10_000)}, {"deep": [["w" * 1000] * 300] * 300}],
 )
-def test_what_is_long_is_told_in_part_and_so_that_it_fits(data: dict[str, Any]) -> None:
+def test_long_values_are_shortened_to_the_limit(data: dict[str, Any]) -> None:
     told = bounded_json([5, "top.goal", "buffer", data])
     assert len(told) <= LARGEST + 100
     time, source, kind, some = json.loads(told)

@@ -123,7 +123,7 @@ ZOO = """
 """One of each kind of shape; the browser's tests draw it, too."""
 
 
-def test_each_kind_of_shape_is_told_and_a_mesh_once() -> None:
+def test_each_kind_of_shape_is_included_and_a_mesh_once() -> None:
     told = shapes.Shapes(mujoco.MjModel.from_xml_string(ZOO))
     assert told.bodies == [0, 1, 2]
     kinds = [[part["kind"] for part in parts] for parts in told.parts]
@@ -166,7 +166,7 @@ def test_long_runs_and_large_scenes_have_bounds(walked: Path, tmp_path: Path, mo
         write_replay(walked, tmp_path / "replay.html")
 
 
-def test_it_is_made_aside_and_what_goes_wrong_is_told(desk: Desk, walked: Path, tmp_path: Path) -> None:
+def test_it_is_made_in_another_process_and_errors_are_reported(desk: Desk, walked: Path, tmp_path: Path) -> None:
     with desk.do(Readers(desk.workers).make("replay.html", walked)) as made:
         assert inside(made.read().decode())["model"] == "model.py"
     broken = tmp_path / "broken.sqlite"

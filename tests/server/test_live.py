@@ -37,7 +37,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 # -- the command
 
 
-def test_the_address_is_the_last_line_and_told_once(server: Served) -> None:
+def test_the_address_is_the_last_line_and_printed_once(server: Served) -> None:
     assert server.lines == [f"models: {server.folder}", server.address]
     assert len(server.token) >= 32
 
@@ -73,13 +73,13 @@ def test_others_are_let_in_only_with_a_warning(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("options", [["--port", "70000"], ["--memory", "-1"], ["--port", "x"]])
-def test_wrong_options_are_told(options: list[str]) -> None:
+def test_wrong_options_are_reported(options: list[str]) -> None:
     done = subprocess.run([sys.executable, "-m", "workbench", *options], capture_output=True, text=True)
     assert done.returncode == 2
     assert "error" in done.stderr
 
 
-def test_a_port_that_is_taken_is_told(server: Served) -> None:
+def test_a_port_in_use_is_reported(server: Served) -> None:
     done = subprocess.run([sys.executable, "-m", "workbench", "--port", str(server.port)], capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == f"error: cannot listen at 127.0.0.1, port {server.port}: Address already in use\n"
@@ -300,7 +300,7 @@ def tick_of(message: dict[str, Any]) -> int | None:
     return message["state"]["tick"] if message.get("state") else None
 
 
-def test_two_pages_see_the_same_and_say_who_controls(server: Served) -> None:
+def test_two_pages_see_the_same_and_show_which_one_controls(server: Served) -> None:
     name = opened(server)
 
     async def talk() -> None:
@@ -333,7 +333,7 @@ def test_two_pages_see_the_same_and_say_who_controls(server: Served) -> None:
     server.post(f"/api/sessions/{name}/close")
 
 
-def test_nonsense_on_the_websocket_is_told_and_hurts_nobody(server: Served) -> None:
+def test_nonsense_on_the_websocket_is_reported_and_does_no_harm(server: Served) -> None:
     name = opened(server, "counting.py")
 
     async def talk() -> None:
@@ -353,7 +353,7 @@ def test_nonsense_on_the_websocket_is_told_and_hurts_nobody(server: Served) -> N
 
 
 @pytest.mark.slow
-def test_a_frozen_browser_holds_up_nobody(server: Served) -> None:
+def test_a_frozen_browser_delays_no_other(server: Served) -> None:
     (server.folder / "busy.py").write_text(
         "from actr3d.actr import *\nclass Busy(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('n:0')\n"
         "    def go(goal='n:?n'):\n        goal.set('n:' + str(int(n) + 1) + ' text:' + 'x' * 2000)\nBusy().run(2000)\n",

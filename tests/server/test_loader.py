@@ -122,13 +122,13 @@ def test_every_model_is_listed_without_complaint() -> None:
         ("async def build() -> Simulation: ...", 1, "build is an async function"),
     ],
 )
-def test_what_is_wrong_is_told_with_its_line(text: str, line: int | None, message: str) -> None:
+def test_errors_are_reported_with_their_line(text: str, line: int | None, message: str) -> None:
     (problem,) = listing_of(text).problems
     assert (problem.level, problem.line) == ("error", line)
     assert message in problem.message
 
 
-def test_what_compiling_warns_of_is_told() -> None:
+def test_warnings_of_compiling_are_reported() -> None:
     (problem,) = listing_of("def f():\n    return 1 is 1\n").problems
     assert (problem.level, problem.line) == ("warning", 2)
 

@@ -196,7 +196,7 @@ def test_a_simulation_that_fails_in_a_cell_is_shown_as_failed() -> None:
     in_notebook(cells)
 
 
-def test_a_simulation_that_nobody_holds_ends_its_run() -> None:
+def test_a_simulation_without_references_ends_its_run() -> None:
     async def cells() -> None:
         simulation = counter()
         server = Server(simulation)

@@ -78,7 +78,7 @@ def after(desk: Desk, folder: Path, ticks: int) -> Talk:
     return talk
 
 
-def test_nothing_is_told_of_overlays_that_nobody_looks_at(desk: Desk, tmp_path: Path) -> None:
+def test_only_requested_overlays_are_sent(desk: Desk, tmp_path: Path) -> None:
     talk = after(desk, tmp_path, 5)
     assert talk.session.state is not None
     assert talk.session.state.drawn == {}
@@ -137,7 +137,7 @@ def test_openings_are_shown_where_they_are_with_their_width(desk: Desk, tmp_path
     assert re.fullmatch(r"opening 60 cm, seen at 0\.\d\d s", old["text"])
 
 
-def test_the_path_is_known_to_who_comes_late_and_after_going_back(desk: Desk, tmp_path: Path) -> None:
+def test_the_path_is_sent_to_late_clients_and_after_going_back(desk: Desk, tmp_path: Path) -> None:
     talk = after(desk, tmp_path, 200)
     way = np.array(drawn(talk, 200, ("path",))["path"]["walker"])
     assert way[0] == pytest.approx((0, 0))

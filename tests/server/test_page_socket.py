@@ -54,7 +54,7 @@ WRONG: list[Any] = [
 
 @pytest.mark.daily(3)
 @pytest.mark.parametrize("text", WRONG, ids=range(len(WRONG)))
-def test_what_is_wrong_is_told(server: Served, session: str, text: str | bytes) -> None:
+def test_errors_are_reported(server: Served, session: str, text: str | bytes) -> None:
     async def talk() -> None:
         socket = await attached(server, session)
         await heard(socket, lambda message: "state" in message)
@@ -76,7 +76,7 @@ LEFT_OUT = (Restart, Stop)
 USUAL = {"name": "width", "memory": "memory", "value": 1, "word": "teleport", "time": 0.01, "width": 0.5, "view": "free", "shown": True}
 
 
-def test_each_field_of_each_command_takes_any_nonsense_and_who_said_it_is_told(server: Served, session: str) -> None:
+def test_nonsense_in_any_field_of_any_command_is_reported_to_its_sender(server: Served, session: str) -> None:
     frames: dict[int, dict[str, Any]] = {}
     for kind in (kind for kind in COMMANDS.values() if kind not in LEFT_OUT):
         known = {"type": kind.model_fields["type"].default}

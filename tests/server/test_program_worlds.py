@@ -168,7 +168,7 @@ def test_a_program_that_makes_a_simulation_and_fails_before_that_says_so(desk: D
     assert talk.facts["world"] is None
 
 
-def test_a_build_that_is_not_right_is_told_with_its_line(desk: Desk, tmp_path: Path) -> None:
+def test_a_wrong_build_is_reported_with_its_line(desk: Desk, tmp_path: Path) -> None:
     source = "from actr3d.simulation import Simulation\n\ndef build():\n    return Simulation(1)\n"
     talk = desk.begin(tmp_path, source, wait=None)
     notice = talk.wait_for_notice("build must")

@@ -81,5 +81,5 @@ def test_a_run_that_is_left_says_so_and_agrees(text: str, desk: Desk, tmp_path: 
         assert recorded.facts["ended"] == {"by": "left"}
         assert [event.data["text"] for event in recorded.events() if event.kind == "output"] == ["count 0", "count 1"]
         comparison = replay(recorded)
-    assert str(comparison).startswith("agrees as far as it goes: ")
+    assert str(comparison).startswith("agrees up to the end of the recording: ")
     assert "; the recording says that the run was left at 0.1" in str(comparison)

@@ -50,7 +50,7 @@ def recorded(desk: Desk, folder: Path, source: str) -> Path:
 
 
 @pytest.mark.parametrize("source", [BUILT, PROGRAM], ids=["built", "program"])
-def test_it_is_told_how_much_has_been_run_again(desk: Desk, tmp_path: Path, source: str) -> None:
+def test_the_progress_of_a_replay_is_reported(desk: Desk, tmp_path: Path, source: str) -> None:
     gate = tmp_path / "gate"
     gate.touch()
     path = recorded(desk, tmp_path, source.format(does=HALF.format(gate=str(gate))))
@@ -88,7 +88,7 @@ def test_it_is_told_how_much_has_been_run_again(desk: Desk, tmp_path: Path, sour
         ("os.path.exists({mark!r}) and os.write(1, b'x' * 10**7)", True, "every byte agrees"),
     ],
 )
-def test_whatever_a_model_does_the_second_time_is_told(
+def test_whatever_a_model_does_in_a_replay_is_reported(
     desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, does: str, agrees: bool | None, text: str
 ) -> None:
     mark = tmp_path / "mark"
@@ -109,9 +109,7 @@ def test_what_is_no_recording_cannot_be_run_again(desk: Desk, tmp_path: Path) ->
     assert told == {"agrees": None, "text": "it is not a recording: file is not a database"}
 
 
-def test_it_ends_when_nobody_waits_any_more_and_when_it_comes_no_further(
-    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_it_ends_when_no_client_waits_and_when_it_makes_no_progress(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     gate = tmp_path / "gate"
     gate.touch()
     path = recorded(desk, tmp_path, BUILT.format(does=HALF.format(gate=str(gate))))

@@ -126,7 +126,7 @@ def test_a_change_says_what_is_lost_if_the_opened_recording_has_been_deleted(des
     assert opened.state["reason"] == "changed at 0.10 s; the rest was lost"
 
 
-def test_an_opened_recording_that_nobody_changes_leaves_no_other(desk: Desk, tmp_path: Path) -> None:
+def test_an_opened_recording_without_changes_leaves_no_other(desk: Desk, tmp_path: Path) -> None:
     path, opened = reopened(desk, tmp_path, BUILT)
     there(opened, 0.2)
     assert recording(opened).exists()

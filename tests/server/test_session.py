@@ -148,7 +148,7 @@ def test_a_run_goes_on_until_something_is_touched(desk: Desk, tmp_path: Path) ->
 
 def test_until_what_must_be_said(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, DOORWAY)
-    with pytest.raises(RefusedError, match="until what"):
+    with pytest.raises(RefusedError, match="until: must name a time"):
         talk.say("until", pattern="x")
     talk.say("step", ticks=10)
     talk.until("paused", tick=10)
@@ -318,7 +318,7 @@ def test_an_error_names_its_line_and_an_earlier_time_can_be_seen(desk: Desk, tmp
     talk.until("paused", time=1.0)
 
 
-def test_what_a_model_raises_is_told_as_it_is(desk: Desk, tmp_path: Path) -> None:
+def test_the_error_of_a_model_is_reported_unchanged(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, "raise ValueError('<img src=x onerror=alert(1)>')", wait=None, run=True)
     assert "<img src=x onerror=alert(1)>" in talk.wait_for_notice("<img")["text"]
 
@@ -340,7 +340,7 @@ def test_a_file_that_is_wrong_leaves_the_last_run_on_screen(desk: Desk, tmp_path
     assert talk.until("ended")["time"] == 6.8
 
 
-def test_a_warning_is_told_with_its_line(desk: Desk, tmp_path: Path) -> None:
+def test_a_warning_is_reported_with_its_line(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, COUNTING.replace("goal.clear()", "goal.clear"))
     talk.say("run")
     notice = talk.wait_for_notice("goal.clear")
@@ -414,7 +414,7 @@ def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
     opened = [desk.do(open_watched()) for _ in range(MOST)]
     for session in opened:
         Talk(desk, session, sessions).until("paused")
-    with pytest.raises(SessionError, match="each is watched or goes on"):
+    with pytest.raises(SessionError, match="each is shown on a page or still running"):
         desk.do(open_watched())
     # One that nobody watches any more makes room.
     opened[3].part(opened[3].feeds[0])

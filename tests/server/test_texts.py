@@ -66,7 +66,7 @@ def test_a_run_is_stale_when_a_module_that_it_has_loaded_has_changed(desk: Desk,
     assert not talk.facts["stale"]
 
 
-def test_pages_are_told_when_a_module_is_saved_that_the_run_has_loaded(desk: Desk, tmp_path: Path) -> None:
+def test_pages_are_notified_when_a_loaded_module_is_saved(desk: Desk, tmp_path: Path) -> None:
     for name in ("helper.py", "other.py"):
         (tmp_path / name).write_text("COUNT = 1\n", encoding="utf-8")
     talk = desk.begin(tmp_path, WALKING)
@@ -80,7 +80,7 @@ def test_pages_are_told_when_a_module_is_saved_that_the_run_has_loaded(desk: Des
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
-def test_a_file_that_never_comes_to_its_end_holds_up_nobody(desk: Desk, tmp_path: Path) -> None:
+def test_an_endless_file_blocks_no_other_request(desk: Desk, tmp_path: Path) -> None:
     (tmp_path / "helper.py").write_text("COUNT = 1\n", encoding="utf-8")
     talk = desk.begin(tmp_path, WALKING)
     for name in ("helper.py", "model.py"):

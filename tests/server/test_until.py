@@ -50,7 +50,7 @@ def test_what_there_is_not_is_refused_before_anything_runs(desk: Desk, tmp_path:
         ({"contact": "walker"}, "walker touched nothing more"),
     ],
 )
-def test_what_has_not_come_is_told_at_the_end(desk: Desk, tmp_path: Path, wanted: dict[str, Any], told: str) -> None:
+def test_a_condition_that_was_not_met_is_reported_at_the_end(desk: Desk, tmp_path: Path, wanted: dict[str, Any], told: str) -> None:
     talk = desk.begin(tmp_path, DOORWAY, settings={"width": 0.9})
     talk.say("until", **wanted)
     assert talk.until("ended")["reason"] == f"the model called stop(); {told}"

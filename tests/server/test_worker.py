@@ -175,7 +175,7 @@ def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_
         ("input()", "EOFError"),
     ],
 )
-def test_a_worker_that_ends_is_told_of(desk: Desk, tmp_path: Path, does: str, told: str) -> None:
+def test_the_end_of_a_worker_is_reported(desk: Desk, tmp_path: Path, does: str, told: str) -> None:
     talk = desk.begin(tmp_path, of(does), run=True, wait=None)
     talk.wait(lambda: talk.facts["run"] == 1 and talk.state["status"] in ("failed", "ended"))
     if told:
@@ -226,7 +226,7 @@ def test_processes_that_a_model_has_left_end_with_it(desk: Desk, tmp_path: Path)
     talk.wait(lambda: gone(child))
 
 
-def test_what_is_printed_past_print_is_told_and_bounded(desk: Desk, tmp_path: Path) -> None:
+def test_output_past_print_is_forwarded_and_bounded(desk: Desk, tmp_path: Path) -> None:
     does = "os.write(1, b'past print\\n'); "
     does += " os.write(2, b'\\xff\\n' + b'x' * 100000 + b'\\n'); [os.write(2, b'more\\n') for _ in range(1000)]; goal.set('done')"
     talk = desk.begin(tmp_path, of(does), run=True, wait=None)
@@ -268,7 +268,7 @@ def test_the_order_of_sets_is_that_of_the_command(desk: Desk, tmp_path: Path) ->
     assert talk.events[-1][3]["text"] == said.stdout.strip()
 
 
-def test_texts_with_half_characters_are_told(desk: Desk, tmp_path: Path) -> None:
+def test_texts_with_half_characters_are_forwarded(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, of("raise ValueError('half \\ud800 a character')"), run=True, wait=None)
     talk.wait_for_notice("half \\ud800 a character")
 
@@ -359,7 +359,7 @@ Mind().run()
 """
 
 
-def test_lines_on_standard_error_are_told_once_at_the_moment_when_they_are_written(desk: Desk, tmp_path: Path) -> None:
+def test_lines_on_standard_error_are_forwarded_once_when_they_are_written(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, WRITES)
     talk.say("run")
     talk.until("ended")

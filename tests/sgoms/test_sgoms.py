@@ -93,7 +93,7 @@ def test_of_several_unit_tasks_that_fit_utility_decides_and_chance_between_equal
     assert firsts.keys() == {"wash", "sweep"}
 
 
-def test_every_level_is_told_with_its_path() -> None:
+def test_every_level_is_traced_with_its_path() -> None:
     module = cooking(
         """
 class Agent(SGOMS):

@@ -43,7 +43,7 @@ def test_an_interruption_at_the_end_lets_the_unit_task_end() -> None:
     assert [event.get("by") for event in events] == [None, "phone", None, None, None, None]
 
 
-def test_an_interruption_at_once_cuts_the_unit_task_which_begins_anew() -> None:
+def test_an_interruption_at_once_cuts_the_unit_task_which_begins_again() -> None:
     module = cooking(AGENT, 0.22, NOW)
     # At 0.22 s a step of work is under way; it is done at 0.25 s, then the interruption is decided on.
     assert tasks(module) == ["boil", *PHONE, "boil", "steep", "pour"]

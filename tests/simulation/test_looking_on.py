@@ -137,7 +137,7 @@ def test_what_is_drawn_or_a_modeller_s_own_is_not_told() -> None:
     assert model.random.getstate() == before
 
 
-def test_who_looks_on_takes_no_warning_away() -> None:
+def test_an_observer_takes_no_warning_away() -> None:
     model: Any = Knowing()
     model.run(0)
     spreading: Any = DMSpreading(model.memory, model.goal)
@@ -161,20 +161,20 @@ def test_a_glance_changes_no_labels() -> None:
     assert digest(seen) == digest(unseen)
 
 
-def test_a_glance_is_what_the_mind_sees() -> None:
+def test_a_glance_is_what_the_agent_sees() -> None:
     simulation = doorway()
     simulation.step(10)
     body = simulation.world.bodies["walker"]
     assert (glance(body).as_array() == body.get("view").as_array()).all()
 
 
-def test_who_has_no_eye_cannot_glance() -> None:
+def test_a_body_without_an_eye_cannot_glance() -> None:
     blind = ImportedBody(name="blind", text="<mujoco><worldbody><body name='b'><freejoint/><geom size='.1'/></body></worldbody></mujoco>")
     with pytest.raises(CameraError, match="'blind' has no eye"):
         glance(World(Scene(parts=(blind,))).bodies["blind"])
 
 
-def test_a_program_is_told_when_its_time_goes_on() -> None:
+def test_a_program_is_notified_when_its_time_advances() -> None:
     passed: list[tuple[int, int]] = []
 
     def note(sch: Scheduler, end: int) -> None:
@@ -196,7 +196,7 @@ def test_a_program_can_be_ended_there() -> None:
     assert "over" not in module.__dict__
 
 
-def test_a_simulation_is_traced_by_who_has_not_made_it() -> None:
+def test_a_simulation_can_be_traced_after_it_was_made() -> None:
     simulation = driving()
     simulation.traced("buffer")
     simulation.step(10)
@@ -229,7 +229,7 @@ def test_planned_commands_are_done_again() -> None:
         second.plan([])
 
 
-def test_a_simulation_is_done_when_no_mind_has_anything_left_to_do() -> None:
+def test_a_simulation_is_done_when_no_agent_has_anything_left_to_do() -> None:
     simulation = doorway(speed=3.0)
     assert not simulation.done
     simulation.run()

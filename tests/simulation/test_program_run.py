@@ -68,7 +68,7 @@ def test_going_back_makes_no_new_run() -> None:
     assert {event.run for event in trace} == {1, 2}
 
 
-def test_who_listens_later_is_told_of_the_present_under_that_name() -> None:
+def test_a_late_listener_gets_the_present_state_under_that_name() -> None:
     trace = Trace("all")
     heard: list[TraceEvent] = []
     with RunLimits(seed=5, trace=trace):

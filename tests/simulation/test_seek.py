@@ -180,7 +180,7 @@ def test_a_time_between_ticks_is_refused() -> None:
         simulation.seek(-0.01)
 
 
-def test_a_mind_that_uses_more_than_the_seed_is_found_out() -> None:
+def test_an_agent_that_uses_more_than_the_seed_is_found_out() -> None:
     text = """
 from actr3d.actr import *
 from actr3d.simulation import BodyPort

@@ -260,7 +260,7 @@ def test_a_glimpse_shows_positions_of_its_own_moment() -> None:
     assert places[-1][0] > places[0][0] > 0
 
 
-def test_a_body_without_a_mind_and_a_mind_without_a_body(asked: Counter[str]) -> None:
+def test_a_body_without_an_agent_and_an_agent_without_a_body(asked: Counter[str]) -> None:
     simulation = Simulation(scene_of("walker", "empty"), {"walker": Driver}, bodiless={"watcher": MINDS.First}, seed=1)
     environment: Any = simulation.agents["watcher"].parent
     said: list[tuple[str, float]] = []
@@ -272,7 +272,7 @@ def test_a_body_without_a_mind_and_a_mind_without_a_body(asked: Counter[str]) ->
     assert said == [("watcher", 0.01), ("watcher", 0.02), ("watcher", 0.03)]
 
 
-def test_simultaneous_events_of_several_minds_have_one_order() -> None:
+def test_simultaneous_events_of_several_agents_have_one_order() -> None:
     simulation = Simulation(Scene(), bodiless={"b": MINDS.First, "a": MINDS.First, "c": MINDS.First})
     environment: Any = simulation.agents["a"].parent
     said: list[tuple[str, float]] = []
@@ -281,7 +281,7 @@ def test_simultaneous_events_of_several_minds_have_one_order() -> None:
     assert said == [(name, tick / 100) for tick in (1, 2, 3) for name in "bac"]
 
 
-def test_a_mind_that_says_stop_ends_the_run_with_its_tick() -> None:
+def test_an_agent_that_calls_stop_ends_the_run_with_its_tick() -> None:
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Stopper})
     report = simulation.run(1)
     mind: Any = simulation.agents["walker"]
@@ -290,7 +290,7 @@ def test_a_mind_that_says_stop_ends_the_run_with_its_tick() -> None:
     assert simulation.run(0.02).ended_by == "seconds"
 
 
-def test_a_run_without_limits_ends_when_no_mind_has_anything_left_to_do() -> None:
+def test_a_run_without_limits_ends_when_no_agent_has_anything_left_to_do() -> None:
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker})
     report = simulation.run()
     assert report.ended_by == "done"
@@ -304,7 +304,7 @@ def test_until_is_asked_after_each_tock() -> None:
     assert (report.ended_by, report.ticks, report.simulated) == ("until", 7, 0.07)
 
 
-def test_real_time_is_kept_and_measured_and_lateness_told() -> None:
+def test_real_time_is_kept_and_measured_and_lateness_reported() -> None:
     simulation = Simulation(Scene(), bodiless={"idle": MINDS.Idle})
     report = simulation.run(0.2, real_time=2)
     assert report.wall >= 0.1  # never faster than asked for
@@ -317,7 +317,7 @@ def test_real_time_is_kept_and_measured_and_lateness_told() -> None:
         simulation.run(1, real_time=0)
 
 
-def test_commands_work_between_steps_on_world_bodies_and_minds() -> None:
+def test_commands_work_between_steps_on_world_bodies_and_agents() -> None:
     simulation = driving("all")
     simulation.step(3)
     simulation.command("aperture", width=0.4)
@@ -409,7 +409,7 @@ def test_numbers_of_numpy_are_numbers() -> None:
     assert type(simulation.seed) is int
 
 
-def test_no_name_of_a_living_environment_is_left_to_a_mind() -> None:
+def test_agents_cannot_use_the_names_of_a_living_environment() -> None:
     environment = Environment()
     before = set(dir(environment))
     ensure_converted(environment)
@@ -428,7 +428,7 @@ def test_an_unknown_word_names_the_modellers_line() -> None:
     assert simulation.time == 0.01
 
 
-def test_one_agent_cannot_be_two_minds() -> None:
+def test_one_object_cannot_be_two_agents() -> None:
     agent: Any = MINDS.Idle()
     simulation = Simulation(Scene(), bodiless={"a": lambda: agent, "b": lambda: agent})
     with pytest.raises(SimulationError, match=r"agents\['b'\]: must make a new agent each time"):
@@ -496,7 +496,7 @@ class Agent(Model):
     assert numbers[0] == numbers[1] != numbers[2]
 
 
-def test_nothing_is_asked_of_a_body_that_nobody_wants(asked: Counter[str]) -> None:
+def test_a_body_without_requests_is_asked_nothing(asked: Counter[str]) -> None:
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Idle})
     simulation.run(0.1)
     assert not asked

@@ -77,7 +77,7 @@ def recorded(path: Path) -> list[str]:
         return [event.to_json() for event in file.events()]
 
 
-def test_a_recording_holds_the_same_lines_whoever_makes_it(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_recording_holds_the_same_lines_however_it_is_made(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "talker.py"
     file.write_text(TALKER, encoding="utf-8")
     assert main(["run", str(file), "--seed", "1", "--record", str(tmp_path / "by command")]) == 0
@@ -160,7 +160,7 @@ def test_what_onlookers_and_other_threads_print_is_no_event(capsys: pytest.Captu
     assert list(loud.trace) == list(quiet.trace)
 
 
-def test_another_thread_may_print_while_minds_think(capsys: pytest.CaptureFixture[str]) -> None:
+def test_another_thread_may_print_while_agents_run(capsys: pytest.CaptureFixture[str]) -> None:
     simulation = Simulation(Scene(), bodiless={"mind": load_text(THREADED, "threaded.py").Threaded}, trace="all")
     simulation.run(0.02)
     assert capsys.readouterr().out == "elsewhere\n"
@@ -168,7 +168,7 @@ def test_another_thread_may_print_while_minds_think(capsys: pytest.CaptureFixtur
     assert said(simulation.trace) == []
 
 
-def test_a_mind_may_print_elsewhere(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_agent_may_print_elsewhere(capsys: pytest.CaptureFixture[str]) -> None:
     before, aside = sys.stdout, io.StringIO()
     simulation = talking()
     simulation.agents["talker"].aside = aside
@@ -192,7 +192,7 @@ def test_output_goes_where_the_program_lets_it_go(capsys: pytest.CaptureFixture[
     assert capsys.readouterr().out.startswith("made\nnumber 0")
 
 
-def test_a_line_printed_to_an_output_that_the_file_has_kept_is_told_too(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_line_printed_to_an_output_that_the_file_has_kept_is_recorded_too(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "talker.py"
     file.write_text(TALKER.replace('print("number"', 'print("kept", file=kept); print("number"'), encoding="utf-8")
     assert main(["run", str(file), "--seed", "1", "--record", str(tmp_path / "run")]) == 0

@@ -179,12 +179,12 @@ def test_the_time_to_contact_is_known_from_two_looks() -> None:
         ("vision.request('feature:obstacle', bearing='>20')", r"bearing takes one number \[degrees\]"),
     ],
 )
-def test_what_cannot_be_asked_is_told(request_: str, says: str) -> None:
+def test_invalid_requests_are_reported(request_: str, says: str) -> None:
     with pytest.raises(Actr3dError, match=says.replace("? ", r"\? ")):
         Mindful(room(), asking(request_)).tick(11)
 
 
-def test_parameters_that_are_none_are_told() -> None:
+def test_invalid_parameters_are_reported() -> None:
     wrong: list[tuple[dict[str, Any], str]] = [
         ({"dely": 1}, "Vision has no parameter 'dely'; did you mean 'delay'"),
         ({"horizontal_fof": 1}, "did you mean 'horizontal_fov'"),
@@ -357,7 +357,7 @@ class Agent(ACTR):
     assert seer.visual.chunk["feature"] == "obstacle"
 
 
-def test_a_top_down_request_is_not_delayed_by_a_search_under_way_which_begins_anew() -> None:
+def test_a_top_down_request_is_not_delayed_by_a_running_search_which_begins_again() -> None:
     trace = Trace("all")
     kind = agent(
         HEAD
@@ -381,7 +381,7 @@ class Agent(Model):
     assert [(data["bottom_up"], data["chunk"]["feature"]) for _, data in events(trace, "sight")] == [(False, "opening"), (True, "obstacle")]
 
 
-def test_a_bottom_up_search_that_finds_nothing_leaves_everything_as_it_is() -> None:
+def test_a_bottom_up_search_that_finds_nothing_changes_nothing() -> None:
     kind = agent(
         HEAD
         + """

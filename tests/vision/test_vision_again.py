@@ -81,7 +81,7 @@ def test_it_lives_through_the_same_again(options: str) -> None:
 # -- what onlookers are told
 
 
-def test_onlookers_are_told_what_was_seen_where() -> None:
+def test_observers_learn_what_was_seen_where() -> None:
     simulation = seen_of(0.9, 0.9, "")
     mind, body = simulation.agents["walker"], simulation.world.bodies["walker"]
     before: Any = digest(simulation)
@@ -119,7 +119,7 @@ def test_what_was_seen_stays_where_it_was_though_the_eye_has_gone_on_looking() -
     assert places() == before
 
 
-def test_who_has_not_looked_has_seen_nothing() -> None:
+def test_an_agent_that_has_not_looked_has_seen_nothing() -> None:
     scene = Scene(parts=(Floor(), Aperture(), Mannequin(name="walker")))
     simulation = Simulation(scene, {"walker": agent(KIND.replace(" OPTIONS", ""))}, seed=1)
     assert sightings(simulation.agents["walker"], simulation.world.bodies["walker"]) == []

@@ -124,7 +124,7 @@ def test_distances_are_on_the_ground(height: float) -> None:
     assert one.top == near(height + 0.1 - 1.5, abs=0.06)
 
 
-def test_any_number_of_objects_is_told() -> None:
+def test_any_number_of_objects_is_found() -> None:
     posts = "".join(pole(f"p{n}", 5.0, (n - 35) / 8) for n in range(70))
     assert sorted(one.object for one in found("obstacle", posts)) == list(range(1, 71))
     assert len([one for one in found("opening", posts) if one.height > 1]) == 69

@@ -118,7 +118,7 @@ def test_directions_are_from_the_body_wherever_the_eye_looks() -> None:
     assert turned == near(straight, abs=0.2)
 
 
-def test_a_mind_turns_its_eye_in_degrees() -> None:
+def test_an_agent_turns_its_eye_in_degrees() -> None:
     class_ = agent(
         """
 from actr3d.actr import *
@@ -197,7 +197,7 @@ class Agent(Model):
     assert [data["call"] for _, data in events(trace, "request")] == ["request", "request"]
 
 
-def test_an_encoding_that_is_none_is_told() -> None:
+def test_an_invalid_encoding_is_reported() -> None:
     for wrong in ("ema", -1, None, True):
         with pytest.raises(ParameterError, match=r"Vision\.encoding: must be a time >= 0 \[s\], 'emma' or an Emma"):
             Vision(None, encoding=wrong)

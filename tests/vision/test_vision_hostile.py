@@ -109,7 +109,7 @@ def test_labels_of_numpy_and_infinite_bounds_are_meant_as_they_are() -> None:
         ("vision.gaze(10**400)", "gaze: left: must be a finite number"),
     ],
 )
-def test_what_a_production_says_by_mistake_is_told_at_once(line: str, says: str) -> None:
+def test_mistakes_in_requests_are_reported_at_once(line: str, says: str) -> None:
     with pytest.raises(Actr3dError, match=says):
         lives(LOOK + line)
 

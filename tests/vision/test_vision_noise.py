@@ -68,7 +68,7 @@ def test_distances_change_by_a_part_of_them_and_stay_above_0() -> None:
 
 @pytest.mark.parametrize(("edges", "distances"), [(0.005, 0.0), (0.0, 0.1)])
 @pytest.mark.parametrize("distance", [7.0, 1.5])
-def test_a_doorway_looks_as_wide_on_average_as_it_is(distance: float, edges: float, distances: float) -> None:
+def test_the_average_seen_width_of_a_doorway_is_its_width(distance: float, edges: float, distances: float) -> None:
     _, view = seen(doorway(distance, 0.6), rows=5)
     widths = [max(openings(blurred(view, edges, distances, seed)), key=lambda one: one.height).width for seed in range(1000)]
     sd = distance * edges * math.sqrt(2) if edges else 0.6 * distances

@@ -36,7 +36,7 @@ def high(openings: tuple[Any, ...]) -> tuple[Any, ...]:
 
 @pytest.mark.parametrize("distance", [7.0, 3.0, 1.44, 0.5])
 @pytest.mark.parametrize("width", [0.35, 0.45, 0.7])
-def test_a_doorway_is_as_wide_as_it_is_from_straight_ahead(width: float, distance: float) -> None:
+def test_the_width_of_a_doorway_is_exact_from_straight_ahead(width: float, distance: float) -> None:
     one = only(found("opening", doorway(distance, width), vertical_fov=1.0))
     assert one.width == near(width, abs=1e-6)
     assert one.distance == near(distance + 0.1, abs=1e-6)  # its sides are seen up to their far ends
@@ -139,12 +139,12 @@ def test_a_pole_in_a_doorway_makes_two_openings() -> None:
     assert widest.depth == near(5.0 - 0.02 - 4.1, abs=0.03)
 
 
-def test_nested_gaps_are_each_told() -> None:
+def test_nested_gaps_are_each_found() -> None:
     openings = high(found("opening", doorway(3.0, 1.6) + doorway(6.0, 0.6).replace('"a"', '"c"').replace('"b"', '"d"')))
     assert sorted((o.width, o.depth) for o in openings) == [(near(0.6), math.inf), (near(1.6), near(6.0 - 3.1, abs=1e-3))]
 
 
-def test_a_niche_is_as_deep_as_it_is() -> None:
+def test_the_depth_of_a_niche_is_exact() -> None:
     for aside in (0.0, 0.8):
         one = max(found("opening", doorway(3.0, 1.0) + wall("c", 3.5, 2, -2), eye(0, aside)), key=lambda o: o.height)
         assert one.depth == near(3.45 - 3.1, abs=CENTIMETRE)
@@ -159,7 +159,7 @@ def test_gaps_in_a_crowd() -> None:
     assert [o.width for o in sorted(openings, key=lambda o: -o.direction)] == near(gaps, abs=0.03)  # round things hide their nearest points
 
 
-def test_an_opening_hidden_in_part_is_told_as_far_as_it_is_seen() -> None:
+def test_an_opening_hidden_in_part_is_found_as_far_as_it_is_visible() -> None:
     box = '<body pos="2 0.4 0.6"><geom type="box" size="0.1 0.5 0.6"/></body>'
     openings = sorted(found("opening", doorway(5.0, 0.6) + box), key=lambda o: -o.height)
     assert openings[0].width == near(0.6, abs=CENTIMETRE)
@@ -193,7 +193,7 @@ def test_edges_that_touch_or_lie_in_one_another_leave_no_gap() -> None:
     assert found("opening", "") == ()
 
 
-def test_a_walker_sees_the_aperture_from_everywhere_as_wide_as_it_is() -> None:
+def test_a_walker_sees_the_width_of_the_aperture_from_everywhere() -> None:
     world = World(Scene(parts=(Floor(), Aperture(width=0.5), Mannequin(name="walker"))))
     walker = world.bodies["walker"]
     for x, y, heading, torso in ((0, 0, 0, 0), (3, 1.5, -0.3, 0.5), (6.3, 0.0, 0, 0.6), (6.0, -0.4, 0.2, -0.5)):

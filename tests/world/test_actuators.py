@@ -73,7 +73,7 @@ def test_a_posture_moves_several_joints_while_walking() -> None:
 
 
 @pytest.mark.parametrize(("by", "speed"), [(1.5, 2.0), (-7.0, 4.0)])
-def test_a_turn_goes_as_far_round_as_told_while_walking(by: float, speed: float) -> None:
+def test_a_turn_while_walking_has_the_commanded_angle(by: float, speed: float) -> None:
     world, body = living()
     body.set("walk", 0.5)
     body.set("turn", by, speed)

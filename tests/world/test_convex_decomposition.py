@@ -50,7 +50,7 @@ def test_they_are_made_once(cache: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 
 @pytest.mark.slow
 @pytest.mark.parametrize("broken", [b"", b"short", b"\0" * 400])
-def test_a_broken_file_is_made_anew(cache: Path, broken: bytes) -> None:
+def test_a_broken_file_is_made_again(cache: Path, broken: bytes) -> None:
     made = convex_parts(ring(), 0.2, 1)
     (file,) = cache.iterdir()
     whole = file.read_bytes()
@@ -66,7 +66,7 @@ def test_where_nothing_can_be_written_they_are_made_all_the_same(cache: Path) ->
     assert len(convex_parts(ring(), 0.2, 1)) > 2
 
 
-def test_two_who_write_at_once_leave_one_whole_file(cache: Path) -> None:
+def test_threads_that_write_at_once_leave_one_whole_file(cache: Path) -> None:
     parts = [np.full((1000, 3), 1.5) for _ in range(20)]
     with ThreadPoolExecutor(8) as pool:
         list(pool.map(convex_decomposition.write_cached, ["name"] * 40, [parts] * 40))

@@ -509,7 +509,7 @@ def test_triangles_in_any_order_and_turned_at_random_come_out_as_one_surface(dat
     assert whole.volume == near(ball.volume, rel=1e-9)
 
 
-def test_a_moebius_strip_has_no_outside_and_is_left_as_it_is() -> None:
+def test_a_moebius_strip_has_no_outside_and_is_unchanged() -> None:
     angles = np.linspace(0, 2 * np.pi, 12, endpoint=False)
     vertices = np.array(
         [

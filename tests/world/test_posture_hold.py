@@ -26,7 +26,7 @@ def flailing(body: Body, tick: int, names: list[str], speed: float) -> None:
 
 @pytest.mark.parametrize("speed", [4.2, 16.0])
 @pytest.mark.parametrize("load", [None, Load(size=(2.0, 0.03), mass=5), Load(shape="box", size=(0.3, 0.3, 0.1), mass=2)])
-def test_its_own_limbs_do_not_move_who_stands(load: Load | None, speed: float) -> None:
+def test_a_standing_body_is_not_moved_by_its_own_limbs(load: Load | None, speed: float) -> None:
     world, body = living(load=load, position=(1.0, 2.0), heading=0.5)
     names = ["pelvis_pitch", "torso_yaw", "torso_roll", "left_upper_arm_pitch", "right_upper_arm_roll", "head_pitch"]
     for tick in range(300):
@@ -57,7 +57,7 @@ def test_extreme_postures_do_not_move_it_nor_turn_it_from_its_way(sideways: bool
     assert pose.y == near(0.0, abs=0.15)  # who walks keeps speed and heading, and is not led back to a line
 
 
-def test_a_joint_that_is_told_nothing_bears_a_load() -> None:
+def test_a_joint_without_a_command_bears_a_load() -> None:
     """Six kilograms lie on the box that it holds; the bound of the servos, 60 N m, is more."""
     lies = Loose(name="weight", shape="box", size=(0.2, 0.2, 0.1), mass=6, position=(0.36, 0.0, 1.2))
     world, body = living(lies, load=Load(shape="box", size=(0.4, 0.5, 0.1), mass=2))
@@ -70,7 +70,7 @@ def test_a_joint_that_is_told_nothing_bears_a_load() -> None:
         assert joint.position == near(0, abs=1e-3), name
 
 
-def test_a_push_moves_who_stands_and_it_stays_there() -> None:
+def test_a_push_moves_a_standing_body_and_it_stays_there() -> None:
     other = Mannequin(name="other", position=(0.7, 0.0), push=200)
     world, body = living(other, push=400)
     body.set("walk", 0.5)

@@ -70,7 +70,7 @@ def test_what_is_off_is_found(which: str) -> None:
     assert body.hold.before_step(0.01) == math.inf
 
 
-def test_how_fast_it_is_as_told_is_a_bound_on_all_its_points() -> None:
+def test_its_commanded_speed_bounds_all_its_points() -> None:
     world, body = standing()
     fastest = body.hold.before_step(0.01)
     assert 1.0 <= fastest < 1.001

@@ -160,7 +160,7 @@ def test_an_aperture_does_not_close_on_what_stands_in_it() -> None:
 
 
 @pytest.mark.parametrize("rate", [0.001, 0.005, 0.02])
-def test_an_aperture_narrowed_bit_by_bit_squeezes_out_or_stops_at_who_stands_in_it(rate: float) -> None:
+def test_an_aperture_narrowed_bit_by_bit_squeezes_out_or_stops_at_the_body_in_it(rate: float) -> None:
     world = World(Scene(parts=(Floor(), Aperture(position=(0.0, 0.0), width=0.6), Mannequin(name="walker"))))
     for _ in range(round(0.6 / rate) + 100):
         with suppress(Actr3dError):

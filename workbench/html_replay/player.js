@@ -22,7 +22,7 @@ const came = data.events.result && data.events.result.outcome;
 const ENDINGS = { stop: "the model called stop()", done: "no agent had anything left to do", end: "the program was over", exit: "the program ended itself", limits: "its time was over",
   left: "left before its end" };
 get("outcome").textContent =
-  (came ? `Outcome: ${came}. ` : "") + (data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : "It was broken off, or was still going on.");
+  (came ? `Outcome: ${came}. ` : "") + (data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : "It was interrupted, or was still running.");
 
 let drawing = null;
 try {

@@ -45,7 +45,7 @@ class NotebookWorker(Worker):
         return cls(0, reader, writer, (nothing_printed, writer.transport))
 
     async def receive(self) -> FromWorker | None:
-        """Returns the next message; None if the simulation is no more."""
+        """Returns the next message; None if the simulation has ended."""
         message = await super().receive()
         if message is None:
             self.kill()

@@ -38,7 +38,7 @@ class Until(PageCommand):
         from workbench.worker.slots import check_slots
 
         if not self.model_dump(exclude={"type", "pattern"}, exclude_none=True):
-            raise Actr3dError("until what? name a time, a production, a buffer with a pattern, or a contact")
+            raise Actr3dError("until: must name a time, a production, a buffer with a pattern, or a contact")
         run, start = controller.run, controller.channel.start
         names = run.names()
         buffer = names.buffer(self.buffer) if self.buffer else None

@@ -92,6 +92,8 @@ class Body(Model):
 
     Directions are whole numbers from 0 (north, up) clockwise; with 8 directions 1 is north-east, with 4 it is east.
     Every movement returns whether it was complete: a wall, or the edge of the map, stops it.
+
+    Models of Python ACT-R import it as `ccm.lib.grid.Body`; it has nothing to do with `actr3d.world.Body`, a body in the physical world.
     """
 
     color: str | None = None
@@ -306,6 +308,8 @@ class Body(Model):
 
 class World(Model):
     """A map of cells, and the agents in it.
+
+    Models of Python ACT-R import it as `ccm.lib.grid.World`; it has nothing to do with `actr3d.world.World`, the physical world.
 
     Args:
         cell: The class of its cells.

@@ -20,7 +20,7 @@ class ListObserver(Protocol):
         ...
 
     def changed(self, by: str, before: list[Chunk], after: list[Chunk]) -> None:
-        """Is called after a change by the list's method `by`."""
+        """Runs after each change; `by` is the list method that made it."""
         ...
 
 

@@ -15,6 +15,9 @@ from actr3d.actr.modules.registry import module
 class Motor(WithParameters, Model):
     """Presses keys; the environment's `key_pressed(key)` is called when the finger comes down. One press at a time.
 
+    This is the module of Python ACT-R, for agents without a body. `from actr3d.motor import Motor` after `from actr3d.actr import *`
+    replaces it with the module that moves a body in a physical world.
+
     Source: ACT-R's times: 0.25 s preparation, 0.05 s initiation, 0.1 s until the key is struck, 0.15 s to finish.
     """
 

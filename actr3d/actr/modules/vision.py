@@ -20,6 +20,9 @@ class Vision(WithParameters, Model):
 
     A new object's place is put into the location buffer automatically while that is empty.
 
+    This is the module of Python ACT-R, for agents without a body. `from actr3d.vision import Vision` after
+    `from actr3d.actr import *` replaces it with the module that sees with the eye of a body in a physical world.
+
     Args:
         visual: The buffer for what is seen.
         location: The buffer for where it is, as `'x y'`.

@@ -1,4 +1,4 @@
-"""One trial at an aperture in the form that is analysed, whichever experiment it is from; and the baseline that any model must beat."""
+"""A trial at an aperture as the analysis reads it, and the baseline model."""
 
 from __future__ import annotations
 
