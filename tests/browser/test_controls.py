@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.helpers.page import choose, drawn, open_tab, shows, until
-from tests.helpers.workbench_server import Served
+from tests.helpers.workbench_server import MODELS, Served
 
 ENDED = """async () => {
   const { alive, session, state } = await part("store.js");
@@ -296,11 +297,22 @@ def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
 
 @pytest.mark.slow
 def test_nothing_overflows_at_any_usual_size(pages: Callable[..., Page]) -> None:
-    for width, height in ((1280, 800), (1920, 1080), (1024, 700)):
+    for width, height in ((1280, 800), (1920, 1080), (1024, 700), (853, 533)):
         page = pages("doorway.py", width, height)
         shows(page, "#time", "0.00 s")
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight")
         page.close()
+
+
+@pytest.mark.slow
+def test_all_tools_of_the_timeline_are_in_reach_at_150_percent(pages: Callable[..., Page], workbench: Served) -> None:
+    shutil.copy(MODELS / "aperture_passage.py", workbench.folder)
+    page = pages("aperture_passage.py", 853, 533)
+    page.click("#run")
+    shows(page, "#status", "ended")
+    expect(page.get_by_role("button", name="SGOMS")).to_be_visible()
+    assert page.evaluate("(({ scrollWidth, clientWidth }) => scrollWidth <= clientWidth)(document.querySelector('.timeline-tools'))")
+    (workbench.folder / "aperture_passage.py").unlink()
 
 
 @pytest.mark.slow
