@@ -22,7 +22,7 @@ CHILD, WAIT = "child = os.fork()\nif not child:\n    who = 'child'\n", "if child
 FORKS = {
     "a pool": "from multiprocessing import get_context\n"
     "def trial(number):\n    global who\n    who = 'child'\n    Counter().run()\n    return number\n"
-    "with get_context('fork').Pool(2) as pool:\n    print(pool.map(trial, range(4)))\nCounter().run()\n",
+    "with get_context('fork').Pool(2) as pool:\n    print(pool.map(trial, range(4)))\n    pool.close()\n    pool.join()\nCounter().run()\n",
     "before a run": CHILD + "Counter().run()\n" + WAIT,
     "between two runs": "Counter().run()\n" + CHILD + "Counter().run()\n" + WAIT,
     "a code": "child = os.fork()\nif not child:\n    print('child', flush=True)\n    os._exit(7)\nprint(os.waitpid(child, 0)[1] >> 8)\n",
