@@ -37,7 +37,7 @@ What to expect
 - An aperture of 0.6 m is passed without a turn, but with a turn by the `large` group.
 - An aperture of 0.25 m is declined.
 
-The run begins with about 8 s of learning. At its end the tab *Buffers* shows the result, as measured in the world.
+The run begins with some seconds of learning. At its end the tab *Buffers* shows the result, as measured in the world.
 
 What to try
 -----------

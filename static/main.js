@@ -15,7 +15,8 @@ function fault(text) {
   complain(`The page has a fault: ${text}${more}`);
 }
 
-addEventListener("error", (event) => fault(event.message));
+// Nothing is wrong if a change of size causes another: the browser reports that one with the next picture.
+addEventListener("error", (event) => event.message.startsWith("ResizeObserver loop") || fault(event.message));
 addEventListener("unhandledrejection", (event) => fault(String(event.reason?.message ?? event.reason)));
 
 render(html`<${Workbench} />`, document.body);

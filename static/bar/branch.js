@@ -6,6 +6,7 @@ import { remembered } from "../local_storage.js";
 import { isLeft, say } from "../server.js";
 import { complain, session } from "../store.js";
 import { openRun } from "../runs/actions.js";
+import { deleted } from "../runs/list.js";
 import { furthest, inThePast, present } from "../timeline/seek.js";
 
 const seconds = (time) => `${time.toFixed(2)} s`;
@@ -51,7 +52,7 @@ export function Branch() {
   if (!branched) return null;
   const { recording, at, until } = branched;
   const which = `${id} ${born} ${recording}`;
-  if (closed.value.includes(which)) return null;
+  if (closed.value.includes(which) || deleted.value.has(recording)) return null;
   const where = `the recording ${recording}, which is listed in Runs`;
   if (recording === recorded) {
     const title = `Changed at ${seconds(at)}; the original continuation is still in ${where}. What follows is recorded as a branch of it.`;

@@ -2,6 +2,7 @@
 
 import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
+import { runs } from "../runs/list.js";
 import { whenInFull } from "../runs/wording.js";
 import { call } from "../server.js";
 import { session, state } from "../store.js";
@@ -45,9 +46,10 @@ export function RecordingBanner() {
   const { id, recorded = null, made, model, cuts = [] } = session.value ?? {};
   if (recorded === null) return null;
   const changed = cuts.length > 0;
+  const name = runs.value?.find((run) => run.id === recorded)?.label?.name;
   return html`<div class="recording-banner" role="status">
     <b>Recording</b>
-    <span title=${recorded}>${fileOf(model)}, made ${whenInFull(made)} <span class="mono quiet">${recorded}</span></span>
+    <span title=${recorded}>${fileOf(model)}, made ${whenInFull(made)} ${name ? html`<b>${name}</b>` : html`<span class="mono quiet">${recorded}</span>`}</span>
     <span class="quiet" title=${changed ? "What follows is new, and is recorded as a branch of it." : "Running it shows again what happened."}>
       ${changed
         ? "You have changed its course: what follows is recorded as a branch of it"

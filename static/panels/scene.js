@@ -18,7 +18,7 @@ import { runStatus } from "../run_status.js";
 import { openWindow } from "../windows.js";
 import { alive, complain, running, session, state } from "../store.js";
 
-const open = remembered("overlays open", false);
+const open = signal(false); // whether the list of overlays is shown
 const view = remembered("view", "follow");
 if (!(view.value in VIEWS)) view.value = "follow";
 const resets = signal(0); // how often the view was reset
@@ -38,6 +38,13 @@ function overlay(name) {
   return overlays.get(name);
 }
 
+function hideByEscape(event) {
+  if (event.key !== "Escape" || !open.value) return;
+  event.stopPropagation();
+  open.value = false;
+  document.querySelector(".view-bar [aria-expanded]").focus();
+}
+
 /** The controls for this browser's view of the scene, and for the overlays shared by all viewers. */
 function ViewBar() {
   return html`<div class="view-controls"><div class="view-bar" role="toolbar" aria-label="3D view">
@@ -46,14 +53,14 @@ function ViewBar() {
       </select>
       <button aria-label="Reset view" title=${buttonTitle(reset)} onClick=${resetView}><${Icon} name="restart" /></button>
       ${canMove() ? html`<button title="Move or push a body or an object of the scene" onClick=${moveOrPush}>Move, push …</button>` : null}
-      <button aria-expanded=${open.value} title="What is drawn over the scene" onClick=${() => (open.value = !open.value)}>Overlays</button>
+      <button aria-expanded=${open.value} title="What is drawn over the scene" onClick=${() => (open.value = !open.value)} onKeyDown=${hideByEscape}>Overlays</button>
       <button aria-label="Save the 3D view as a picture" title=${buttonTitle(keep)} onClick=${keepPicture}><${Icon} name="download" /></button>
       <button aria-label="Make a video of the 3D view" title=${buttonTitle(film)} onClick=${makeVideo}><${Icon} name="film" /></button>
       <${ManualLink} page="scene" title="3D view" />
       <${AreaMenu} area="scene" opening=${openScene} />
     </div>
     ${open.value &&
-    html`<div class="overlay-list" role="group" aria-label="Overlays">
+    html`<div class="overlay-list" role="group" aria-label="Overlays" onKeyDown=${hideByEscape}>
       ${session.value.overlays.map(
         ({ name, title }) => html`<label key=${name}>
           <input type="checkbox" checked=${overlay(name).value.value} onChange=${(event) => overlay(name).set(event.currentTarget.checked)} />${title}

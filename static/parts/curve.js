@@ -5,7 +5,6 @@ import { cut, widthOf } from "./surface.js";
 
 export const COLOURS = 6;
 const LEAST_RANGE = 0.01; // smaller differences are drawn as a straight line, not as amplified numerical noise
-const DOT = 2; // the width of a single value [px]
 const BETWEEN = 4; // the minimum distance between two labels of an axis [px]
 const EDGE = 6; // the distance of the first and last text from the ends of an axis [px]
 
@@ -76,25 +75,19 @@ function pointsOf({ times, values, steps, slope }, span, box, yOf, until) {
   if (slope !== undefined && end >= 0 && values[end] !== null && until > times[end]) {
     points.push(box.x + (until - span.from) * scale, yOf(values[end] + slope * (until - times[end])));
   }
-  return withDots(points);
-}
-
-/** Returns points of which none is alone between two gaps: a line through a single point would be invisible. */
-function withDots(points) {
-  const made = [];
-  for (let n = 0; n < points.length; n += 2) {
-    const [x, y] = [points[n], points[n + 1]];
-    const alone = !Number.isNaN(y) && [points[n - 1], points[n + 3]].every((other) => other === undefined || Number.isNaN(other));
-    if (alone) made.push(x - DOT / 2, y, x + DOT / 2, y);
-    else made.push(x, y);
-  }
-  return made;
+  return points;
 }
 
 /** Returns the values labelled on a scale: at least two, because one alone shows no size; otherwise as many as fit. */
 function scaleOf(least, most, room) {
   const values = ticks(least, most, stepFor(most - least, room));
   return values.length > 1 ? values : ticks(least, most, stepFor(most - least, room + 1));
+}
+
+/** Yields the points [x, y] of [x, y, x, y, …] that no line would show: those between two breaks. */
+function* alone(points) {
+  const broken = (n) => n < 0 || n >= points.length || Number.isNaN(points[n + 1]);
+  for (let n = 0; n < points.length; n += 2) if (!broken(n) && broken(n - 2) && broken(n + 2)) yield [points[n], points[n + 1]];
 }
 
 /**
@@ -121,6 +114,7 @@ export function drawCurves(surface, box, { series, times, span, range, until }) 
     series.forEach(({ colour, dash, ...curve }, n) => {
       const points = pointsOf({ times, ...curve }, span, box, yOf, until);
       surface.line(points, colour ?? seriesColour(n), { width: 1.5, dash: dash ?? [] });
+      for (const [x, y] of alone(points)) surface.fill(x - 2, y - 2, 4, 4, colour ?? seriesColour(n));
     });
   });
 }

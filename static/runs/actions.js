@@ -9,7 +9,7 @@ import { complain, session } from "../store.js";
 import { forgetRun, listRuns } from "./list.js";
 import { chosen } from "./table.js";
 import { withTrust } from "./trust.js";
-import { whenText } from "./wording.js";
+import { nameOf, whenText } from "./wording.js";
 
 /** The results of replays by id: {since, share} while one is running, then {agrees, text}. */
 export const replays = signal({});
@@ -79,7 +79,7 @@ export async function deleteRuns(all) {
     complain(`Not deleted, for a run that is open still writes it: ${names}. Show that model and restart it, and delete this then.`);
   }
   if (list.length === 0) return;
-  const one = list.length === 1 ? `the recording of ${list[0].model || list[0].id}, ${whenText(list[0].made)}` : counted(list.length, "recording");
+  const one = list.length === 1 ? `the recording «${nameOf(list[0])}»` : counted(list.length, "recording");
   if (!(await confirmed(`Delete ${one}?`, "It cannot be undone: recordings do not go to the trash folder.", "Delete"))) return;
   const refused = [];
   for (const [n, run] of list.entries()) {

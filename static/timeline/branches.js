@@ -91,13 +91,17 @@ function Row({ run, depth, width }) {
   const [from, to] = [inside(placeOf(run.branched ?? 0, view)), inside(placeOf(end, view))];
   const name = run.label?.name || (run.branched === null ? whenText(run.made) : `at ${run.branched.toFixed(2)} s`);
   const title = `${name}: ${outcomeText(run)}, ${end.toFixed(2)} s${run.label?.note ? `\n${run.label.note}` : ""}`;
+  const remove = async () => {
+    await deleteRuns([run]);
+    if (document.activeElement === document.body) document.querySelector(".branches-head, .timeline-stage")?.focus(); // its button is gone
+  };
   return html`<li class=${mine ? "mine" : ""} data-branch=${run.id}>
     <button class="branch-name" style=${{ width: `${view.column}px`, paddingLeft: `${8 + 10 * depth}px` }} aria-current=${mine} title=${mine ? `${title}\nshown` : `${title}\nShow it`} disabled=${Boolean(run.problem)} onClick=${() => mine || show(run)}>${depth > 0 ? "└ " : ""}${name}</button>
     <span class="branch-way" style=${{ left: `${from}px`, width: `${Math.max(2, to - from)}px` }} aria-hidden="true"></span>
     <span class="branch-actions">
       ${mine ? null : html`<button class="bare" title="Compare with the shown run" onClick=${() => compare(run)}>Compare</button>`}
       <button class="bare" aria-label="Name ${name}" title="Name, note, tags" onClick=${() => labelRun(run)}><${Icon} name="pen" /></button>
-      ${run.session || mine ? null : html`<button class="bare" aria-label="Delete ${name}" title="Delete" onClick=${() => deleteRuns([run])}><${Icon} name="trash" /></button>`}
+      ${run.session || mine ? null : html`<button class="bare" aria-label="Delete ${name}" title="Delete" onClick=${remove}><${Icon} name="trash" /></button>`}
     </span>
   </li>`;
 }

@@ -50,7 +50,7 @@ export async function savePictures() {
   const body = html`<label class="field">
     Of what
     <select value=${which.value} onChange=${(event) => (which.value = event.currentTarget.value)}>
-      <option value="">the timeline: all rows that are shown, from edge to edge; as CSV, all curves of the whole run</option>
+      <option value="">the timeline as shown; as CSV, all its curves</option>
       ${offered.map((plot, n) => html`<option key=${n} value=${n}>the plot of ${headingOf(plot)}</option>`)}
     </select>
   </label>`;

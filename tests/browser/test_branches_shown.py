@@ -29,6 +29,20 @@ def change_the_past(page: Page) -> None:
 
 
 @pytest.mark.slow
+def test_a_branch_is_deleted_by_its_name_and_its_notice_goes_with_it(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    change_the_past(page)
+    expect(page.locator(".branched")).to_have_count(1)
+    page.get_by_role("button", name="Delete at 0.50 s").click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_contain_text(re.compile(r"Delete the recording «doorway\.py .* branch at 0\.50 s»[?]"))
+    dialog.get_by_role("button", name="Delete").click()
+    expect(page.locator(".branched")).to_have_count(0)
+    expect(page.locator(".branches")).to_have_count(0)
+    assert page.evaluate("document.activeElement !== document.body")
+
+
+@pytest.mark.slow
 def test_a_branch_of_a_paused_run_is_not_listed_as_ended_and_its_notice_is_shown_once(page: Page) -> None:
     shows(page, "#status", "at its start")
     change_the_past(page)

@@ -113,6 +113,7 @@ def test_a_page_shows_what_a_cell_has_left_before_the_cell_is_over() -> None:
         facts = server.hear()
         assert isinstance(facts, Facts)
         assert facts.mj_model is not None
+        assert {"move", "aperture", "set_buffer"} <= {change["word"] for change in json.loads(facts.changes)}
         simulation.run(0.5)  # no turn of the event loop from here on
         assert json.loads(server.state(0.5).parts)["counter.goal"]["chunk"] == {"0": "count", "1": "5"}
         simulation.seek(0.2)

@@ -15,6 +15,7 @@ from actr3d.simulation.observers import Glimpse
 from actr3d.values import to_json
 from workbench.html_replay.make import MOST_FRAMES
 from workbench.loader import listing_of
+from workbench.worker.change_menu import change_menu
 from workbench.worker.channel import Channel
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.messages import Facts, Over
@@ -86,7 +87,8 @@ class LiveRun(SimulationRun):
         simulation, shown = self._simulation, self._shown
         world = to_json(shown.world()).encode()
         seed, period = simulation.seed, simulation.period
-        return Facts(kind="simulation", seed=seed, period=period, parameters=b"{}", world=world, mj_model=shown.mj_model)
+        changes = change_menu(agents_only=False)
+        return Facts(kind="simulation", seed=seed, period=period, parameters=b"{}", world=world, mj_model=shown.mj_model, changes=changes)
 
     # -- what cells do
 
