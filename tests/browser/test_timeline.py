@@ -422,7 +422,7 @@ def test_a_short_run_fits_and_the_slider_keeps_its_keys(pages: Callable[..., Pag
     page.mouse.move(*at(page, 0.5))
     assert page.evaluate("async () => (await part('timeline/view.js')).span.value.to") < 0.1
     for one, another in ((page, other), (other, page)):
-        shows(one, "#browsers", r"2 browsers: you are page \d+, ")
+        shows(one, "#browsers", r"2 pages: you are page \d+, ")
         one.click("#step")
         shows(one, "#browsers", "you control")
         shows(another, "#browsers", r"page \d+ controls")

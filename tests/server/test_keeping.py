@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
+import time
 from pathlib import Path
 
 import pytest
@@ -117,6 +118,26 @@ def test_a_run_that_never_began_leaves_no_recording(desk: Desk, tmp_path: Path) 
     desk.do(talk.session.stop())
     names = {Path(start.record).stem for start in (second, talk.session.start) if start is not None and start.record is not None}
     assert {summary.id for summary in desk.listed(tmp_path)[1]} == names
+
+
+def test_quick_restarts_leave_no_recordings_of_runs_that_never_began(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "print('hello')\n", record=True)
+    for pause in (0.0, 0.02, 0.05, 0.1, 0.0):
+        talk.say("restart")
+        time.sleep(pause)
+
+    def last_is_there() -> bool:
+        session = talk.session
+        return not session.is_loading and session.state is not None and session.start is not None and session.start.attempt == 6
+
+    talk.wait(last_is_there)
+    last = talk.session.start
+    assert last is not None
+    assert last.record is not None
+    folder = Path(last.record).parent
+    talk.wait(
+        lambda: [path.name for path in folder.iterdir() if path.suffix == Path(last.record or "").suffix] == [Path(last.record or "").name]
+    )
 
 
 def test_what_was_printed_before_the_first_tick_is_kept(desk: Desk, tmp_path: Path) -> None:
