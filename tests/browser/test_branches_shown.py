@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.page import open_tab, shows
+from tests.helpers.page import open_tab, shows, until
 from tests.helpers.workbench_server import Served
 
 
@@ -39,7 +39,7 @@ def test_a_branch_is_deleted_by_its_name_and_its_notice_goes_with_it(page: Page)
     dialog.get_by_role("button", name="Delete").click()
     expect(page.locator(".branched")).to_have_count(0)
     expect(page.locator(".branches")).to_have_count(0)
-    assert page.evaluate("document.activeElement !== document.body")
+    until(page, lambda: page.evaluate("document.activeElement !== document.body"))
 
 
 @pytest.mark.slow
