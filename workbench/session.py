@@ -213,9 +213,11 @@ class Session(Broadcast, Receiver):
         """Shows a newly built run in place of the previous one."""
         before, worker = self._shown, self._worker
         self._shown, self._loading = launched, None
-        # A run that waits at its start may not have sent its first state yet.
-        begun = self.state is not None or (before is not None and before.start.run)
-        useless = before.start.record if before is not None and (not begun or never_begun(self.state, self.log)) else None
+        useless = None
+        if before is not None:
+            # A run that waits at its start may not have sent its first state yet.
+            waits = self.state is None and not before.start.run
+            useless = before.start.record if waits or never_begun(self.state, self.log) else None
         useless = useless or (None if self.spare_recording is None else str(self.spare_recording))
         if before is not None and worker is not None:
             self._leave(worker, useless)

@@ -216,13 +216,17 @@ export function NewExperiment() {
   useLayoutEffect(() => {
     call("GET", "/api/designs").then((answer) => (known.value = answer)).catch((error) => (problem.value = error.message));
   }, []);
-  const picked = useSignal(null);
-  const choose = (id) => (picked.value = DESIGN.value = id);
+  const isPicked = useSignal(false);
+  function choose(id) {
+    isPicked.value = true;
+    DESIGN.value = id;
+  }
   const designs = known.value?.designs ?? [];
-  const last = designs.find(({ id }) => id === (picked.value ?? DESIGN.value));
+  const last = designs.find(({ id }) => id === DESIGN.value);
   // At first one of the model that is shown.
   const own = designs.filter(({ file }) => file !== null && file === session.value?.model);
-  const chosen = (picked.value === null && !own.includes(last) ? own[0] : null) ?? last ?? designs.find(({ file }) => file !== null) ?? designs[0];
+  const wanted = isPicked.value || own.includes(last) ? last : (own[0] ?? last);
+  const chosen = wanted ?? designs.find(({ file }) => file !== null) ?? designs[0];
   const design = chosen?.id ?? "";
   const { facts, error } = useFacts(design);
   return html`

@@ -13,7 +13,10 @@ import { state } from "../store.js";
 export function howItStands(reason) {
   if (!reason) return ["", "", ""];
   if (reason.matches === null) return ["unknown", "?", "unknown here"];
-  if (reason.selected) return ["selected", "▸", `${reason.matches ? "matches, and " : ""}${chosenText(at.value === null)}${reason.matches ? "" : ", though it matches no longer"}`];
+  if (reason.selected) {
+    const text = chosenText(at.value === null);
+    return ["selected", "▸", reason.matches ? `matches, and ${text}` : `${text}, though it matches no longer`];
+  }
   return reason.matches ? ["matches", "✓", "matches"] : ["no", "–", "does not match"];
 }
 

@@ -47,8 +47,9 @@ function named({ command, data }) {
 
 /** Returns what a command sets, and to which value: {of, key, text}; null for a command that sets no value. */
 function settingOf(command) {
-  if (!changeOf(command)) return null; // the names of its values are not known
-  const { of } = changeOf(command);
+  const change = changeOf(command);
+  if (!change) return null; // the names of its values are not known
+  const { of } = change;
   const values = named(command);
   if (command.command === "aperture") return typeof values.width === "number" ? { of: "aperture", key: `aperture ${values.name}`, text: cm(values.width) } : null;
   if (of === "parameter") return { of, key: `parameter ${values.path}`, text: valueText(values.value) };

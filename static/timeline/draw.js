@@ -154,6 +154,7 @@ function shortName(name, { title, series }) {
   const bodies = Object.keys(session.peek()?.world?.bodies ?? {});
   const body = bodies.length === 1 && /^[_ .]/.test(name.slice(bodies[0].length)) && name.startsWith(bodies[0]) ? bodies[0] : "";
   const rest = name.slice(body ? body.length + 1 : 0);
-  const short = rest.startsWith(title) ? rest.slice(title.length).trim() : rest.replace(`.${title}`, "").replace(new RegExp(` ${title}$`), "");
+  const last = ` ${title}`;
+  const short = rest.startsWith(title) ? rest.slice(title.length).trim() : rest.endsWith(last) ? rest.slice(0, -last.length) : rest.replace(`.${title}`, "");
   return short || (series.length === 1 && body) || rest;
 }

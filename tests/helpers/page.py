@@ -82,16 +82,17 @@ class Users:
         self._elsewhere = f"{url}/nothing"  # what the workbench does not have: of its origin, so that the browser keeps the page's process
         self._free: dict[bool, list[Page]] = {True: [], False: []}
         self._taken: list[tuple[bool, Page]] = []
-        self._spoilt: set[Page] = set()
+        self._changed: set[Page] = set()
         self._hear: dict[Page, Callable[[str], object]] = {}
 
-    def new(self, scene: bool, hear: Callable[[str], object] = len) -> Page:
+    def new(self, scene: bool, hear: Callable[[str], object] | None = None) -> Page:
         """Returns the page of a user who has not been here before, and who sees the 3D view or not.
 
-        `hear` is told each error on the page's console.
+        `hear` receives each error on the page's console.
         """
         page = self._free[scene].pop() if self._free[scene] else self._opened(scene)
-        self._hear[page] = hear
+        if hear is not None:
+            self._hear[page] = hear
         self._taken.append((scene, page))
         return page
 
@@ -102,7 +103,7 @@ class Users:
             for other in page.context.pages:
                 if other != page:
                     other.close()
-            if page in self._spoilt or page.is_closed():
+            if page in self._changed or page.is_closed():
                 page.context.close()
             else:
                 self._forget(page)
@@ -136,7 +137,7 @@ class Users:
 
     def _noted(self, page: Page, method: Callable[..., Any]) -> Callable[..., Any]:
         def called(*given: Any, **named: Any) -> Any:
-            self._spoilt.add(page)
+            self._changed.add(page)
             return method(*given, **named)
 
         return called
@@ -144,7 +145,7 @@ class Users:
     def _forget(self, page: Page) -> None:
         page.unroute_all()
         page.context.unroute_all()
-        del self._hear[page]
+        self._hear.pop(page, None)
         page.goto(self._elsewhere)
         page.evaluate("sessionStorage.clear()")
         page.context.clear_permissions()
