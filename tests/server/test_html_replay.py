@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -83,16 +84,25 @@ def test_scene_and_trace_are_those_of_the_recording(walked: Path, tmp_path: Path
     assert not any("{" in text for text in told_of)  # chunks stand there as modellers write them
 
 
-def test_the_view_follows_the_agent_s_body_whatever_else_moves(tmp_path: Path) -> None:
-    parts = (Floor(), Loose(name="box", position=(-3, 0, 0.2)), Mannequin(name="walker"))
-    simulation = Simulation(Scene(parts=parts), {"walker": Waiting}, seed=1)
+def followed(folder: Path, parts: Sequence[Any], *agents: str) -> Any:
+    """Returns where the shape is that the view of a replay follows, x and y [m]."""
+    simulation = Simulation(Scene(parts=(Floor(), *parts)), dict.fromkeys(agents, Waiting), seed=1)
     simulation.traced()
-    with simulation.record(tmp_path / "run.sqlite"):
+    with simulation.record(folder / "run.sqlite"):
         simulation.run(0.05)
-    write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
-    scene = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))["scene"]
-    poses = numbers(scene["poses"]).reshape(-1, len(scene["shapes"]), 7)
-    assert poses[0, scene["stage"]["follow"], :2] == pytest.approx([0, 0], abs=0.05)
+    write_replay(folder / "run.sqlite", folder / "replay.html")
+    scene = inside((folder / "replay.html").read_text(encoding="utf-8"))["scene"]
+    return numbers(scene["poses"]).reshape(-1, len(scene["shapes"]), 7)[0, scene["stage"]["follow"], :2]
+
+
+def test_the_view_follows_the_agent_s_body_whatever_else_moves(tmp_path: Path) -> None:
+    parts = Loose(name="box", position=(-3, 0, 0.2)), Mannequin(name="walker")
+    assert followed(tmp_path, parts, "walker") == pytest.approx([0, 0], abs=0.05)
+
+
+def test_the_view_follows_the_first_agent_of_the_model_as_the_live_view_does(tmp_path: Path) -> None:
+    parts = Mannequin(name="first", position=(0, 2)), Mannequin(name="second", position=(0, -2))
+    assert followed(tmp_path, parts, "second", "first") == pytest.approx([0, -2], abs=0.05)
 
 
 ZOO = """

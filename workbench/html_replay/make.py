@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import itertools
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
@@ -44,7 +44,7 @@ def write_replay(path: Path, to: Path) -> None:
     """
     with Recorded(path) as recorded:
         facts, events = _facts(recorded), _events(recorded)
-        agents = {source.partition(".")[0] for _, source, _, _ in events["rows"]}
+        agents = list(dict.fromkeys(source.partition(".")[0] for _, source, _, _ in events["rows"]))
         content = {**facts, "palette": palette(), "events": events, "scene": _scene(recorded, agents)}
     # No text from a model can close the HTML element that contains it.
     data = msgspec.json.encode(content).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
@@ -120,18 +120,19 @@ def _word(value: Any) -> str:
     return value if isinstance(value, str) else to_json(value)
 
 
-def _scene(recorded: Recorded, agents: Collection[str]) -> dict[str, Any] | None:
+def _scene(recorded: Recorded, agents: Sequence[str]) -> dict[str, Any] | None:
     """Returns the shapes and their poses in each stored frame; None without a world.
 
     Args:
         recorded: The recording.
-        agents: The names of the agents.
+        agents: The names of the agents, in the order of their first events, which is the model's; the view follows the first one.
     """
     facts = recorded.facts
     if "compiled" not in facts:
         return None
     model, period = loaded(from_text(facts["compiled"])), facts["period_us"]
-    roots = [body["root"] for name, body in facts["world"]["bodies"].items() if name in agents]
+    bodies_by_name = facts["world"]["bodies"]
+    roots = [bodies_by_name[name]["root"] for name in agents if name in bodies_by_name]
     dress(model, roots)
     shapes = Shapes(model)
     bodies = shapes.bodies
