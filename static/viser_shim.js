@@ -63,6 +63,7 @@
 
   // Without a graphics card, shadows take half of a picture's time, and smooth edges four tenths of the rest.
   const bySoftware = drawnBySoftware();
+  window.scene.bySoftware = bySoftware;
   if (!asked.has("websocket") && bySoftware) {
     asked.set("websocket", `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${location.pathname.replace(/\/$/, "")}?shadows=off`);
     history.replaceState(null, "", `?${asked}`);

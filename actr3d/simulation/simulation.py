@@ -200,6 +200,21 @@ class Simulation:
                 self.tick()
                 self.tock()
 
+    def advance(self, most: int) -> Literal["stop", "done"] | None:
+        """Runs up to a number of ticks, fewer if the run is over before; returns why it is, as `over` does. One tick always runs.
+
+        Raises:
+            SimulationError: If the number is not a whole number, or is negative; and as `tick` does.
+            Exception: As `tick` and `tock` do.
+        """
+        with self._call():
+            for _ in range(count_of(most, "advance(most)")):
+                self.tick()
+                self.tock()
+                if self.over is not None:
+                    break
+        return self.over
+
     def run(
         self, seconds: float | None = None, *, until: Callable[[Glimpse], bool] | None = None, real_time: float | None = None
     ) -> RunReport:

@@ -26,7 +26,25 @@ function theme() {
   return around ?? (document.documentElement.dataset.mantineColorScheme === "dark" ? "dark" : "light");
 }
 
+const VISER_DRAWS = 250; // how long viser draws picture after picture once something has changed [ms]
+const ENOUGH = 60; // how long that is if the processor draws, which has other work to do [ms]: two or three pictures
+
+/** Draws for a shorter time after each change; what viser loads later requests a picture itself. */
+function drawLess() {
+  const { requestRender } = viewer;
+  viewer.requestRender = () => {
+    const { now } = performance;
+    performance.now = () => now.call(performance) - (VISER_DRAWS - ENOUGH); // viser adds its time to this
+    try {
+      requestRender();
+    } finally {
+      delete performance.now;
+    }
+  };
+}
+
 const viewer = await ready();
+if (given.bySoftware) drawLess();
 const camera = new SceneCamera(viewer);
 const ground = new Ground(viewer);
 const labels = new Captions();

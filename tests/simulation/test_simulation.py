@@ -290,6 +290,24 @@ def test_an_agent_that_calls_stop_ends_the_run_with_its_tick() -> None:
     assert simulation.run(0.02).ended_by == "seconds"
 
 
+def test_advance_runs_up_to_a_number_of_ticks_and_ends_with_the_run() -> None:
+    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Stopper})
+    assert (simulation.advance(2), simulation.ticks) == (None, 2)
+    assert (simulation.advance(5), simulation.ticks) == ("stop", 3)
+    assert (simulation.advance(5), simulation.ticks) == ("done", 4)  # nothing prevents one more
+    with pytest.raises(SimulationError, match=r"advance\(most\)"):
+        simulation.advance(-1)
+
+
+def test_advance_gives_the_same_bytes_as_single_steps() -> None:
+    some, single = driving("all"), driving("all")
+    for most in (1, 40, 59):
+        some.advance(most)
+    for _ in range(100):
+        single.step()
+    assert digest(some) == digest(single)
+
+
 def test_a_run_without_limits_ends_when_no_agent_has_anything_left_to_do() -> None:
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker})
     report = simulation.run()

@@ -19,6 +19,7 @@ import struct
 import sys
 import time
 from contextlib import suppress
+from pathlib import Path
 
 from workbench.worker.orphans import adopt, end_orphans
 
@@ -31,6 +32,29 @@ ASK = struct.Struct("!i")
 """A request: the maximum memory of a new worker's model [MB]."""
 FAREWELL = 1.0
 """Maximum time to wait for the end of its workers at shutdown [s]."""
+SMALL = """
+from actr3d.actr import *
+from actr3d.motor import Motor
+from actr3d.sgoms import SGOMS
+from actr3d.simulation import Simulation
+from actr3d.vision import Vision
+from actr3d.world import Aperture, Floor, Mannequin, Scene
+
+
+class Walker(SGOMS):
+    b_visual = Buffer()
+    vision = Vision(b_visual)
+    motor = Motor()
+
+    def init():
+        motor.rotate("torso", "yaw", 10)
+        vision.request("feature:opening")
+
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Aperture(), Mannequin(name="walker"))), {"walker": Walker})
+"""
+"""A model that uses what most models use: whatever it makes the library load, parse or compile is ready in every worker."""
 
 
 def main(number: int) -> None:
@@ -75,18 +99,14 @@ def main(number: int) -> None:
 
 
 def _preload() -> None:
-    """Imports and compiles what models need, so that runs start at once."""
-    import actr3d.runner.model_factory  # pyright: ignore[reportUnusedImport] # noqa: F401
-    from actr3d.camera import glance
-    from actr3d.world import Floor, Mannequin, Scene, World
+    """Imports and compiles what models need, so that runs start at once: it runs a small one for a tenth of a second."""
+    from actr3d.actr.kernel.run_limits import RunLimits
+    from actr3d.runner.model_factory import build
+    from workbench.worker import program_run, recorded, simulation_run  # pyright: ignore[reportUnusedImport] # noqa: F401
 
-    world = World(Scene(parts=(Floor(), Mannequin(name="walker"))))
-    walker = world.bodies["walker"]
-    # The first view compiles the camera or loads it from its cache; so do the first steps what is computed in every tick.
-    glance(walker)
-    walker.get("proprioception")
-    walker.set("joint", "torso_yaw", 8.0)
-    world.step(10)
+    with RunLimits(seed=0):
+        simulation, _ = build(SMALL, "small.py", {}, Path())
+        simulation.run(0.1)
 
 
 def _end_all(control: socket.socket, children: set[int]) -> None:

@@ -150,11 +150,9 @@ class SimulationRun(ControlledRun):
         Raises:
             Exception: What the simulation raises.
         """
-        simulation, over = self._simulation, None
-        begin, first, last = perf_counter(), simulation.ticks, simulation.ticks + self._allowance()
-        while over is None and simulation.ticks < last:  # it ends at the same tick however many are done at once
-            simulation.step()
-            over = simulation.over
+        simulation = self._simulation
+        begin, first = perf_counter(), simulation.ticks
+        over = simulation.advance(self._allowance())  # it ends at the same tick however many are done at once
         self._tick_time = (perf_counter() - begin) / max(1, simulation.ticks - first)
         return over
 
