@@ -29,7 +29,7 @@ NAMED = (FunctionType, BuiltinFunctionType, MethodType, type)
 """The types of objects that have a name."""
 DEEPEST = 16
 """The maximum depth of nested lists in a record."""
-MOST = 10_000
+MAX_REPEATED = 10_000
 """The maximum number of repeated lists in a record; beyond it, the value is a graph whose copy could grow without limit."""
 LONGEST = 14_000
 """The maximum size of a whole number that is written in decimals [bits]; JSON readers accept no longer ones."""
@@ -83,7 +83,7 @@ class _Copy:
         self._name = name
         self._above: list[int] = []
         self._seen: set[int] = set()
-        self._left = MOST
+        self._left = MAX_REPEATED
 
     def of(self, value: Any) -> Any:
         """Returns the plain form of the value, or of a part of it."""

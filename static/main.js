@@ -4,14 +4,14 @@ import { html, render } from "./vendor/preact.js";
 import { complain } from "./store.js";
 import { Workbench } from "./workbench.js";
 
-const MOST_FAULTS = 10; // a fault repeated at each drawing would hide all other messages
+const MAX_FAULTS = 10; // a fault repeated at each drawing would hide all other messages
 const faults = new Set();
 
 /** Reports an error of the page itself, once. */
 function fault(text) {
-  if (faults.has(text) || faults.size >= MOST_FAULTS) return;
+  if (faults.has(text) || faults.size >= MAX_FAULTS) return;
   faults.add(text);
-  const more = faults.size === MOST_FAULTS ? " There may be more, which are not shown. Reload the page; the run continues." : "";
+  const more = faults.size === MAX_FAULTS ? " There may be more, which are not shown. Reload the page; the run continues." : "";
   complain(`The page has a fault: ${text}${more}`);
 }
 

@@ -3,8 +3,8 @@
 import { remembered } from "./local_storage.js";
 import { batch, computed, signal } from "./vendor/preact.js";
 
-const MOST_EVENTS = 200_000;
-const MOST_NOTICES = 500;
+const MAX_EVENTS = 200_000;
+const MAX_NOTICES = 500;
 
 /** The facts about the session and its run (`Session.facts_json`); null before there is one. */
 export const session = signal(null);
@@ -74,9 +74,9 @@ function withEvents({ list, first, missing }, news) {
     missing = news.first;
   }
   for (const event of news.list) list.push(event);
-  if (list.length > MOST_EVENTS) {
+  if (list.length > MAX_EVENTS) {
     // A tenth more than needed, so that this happens rarely.
-    const drop = list.length - 0.9 * MOST_EVENTS;
+    const drop = list.length - 0.9 * MAX_EVENTS;
     list.splice(0, drop);
     first += drop;
   }
@@ -84,7 +84,7 @@ function withEvents({ list, first, missing }, news) {
 }
 
 function addNotices(added) {
-  notices.value = [...notices.value, ...added].slice(-MOST_NOTICES);
+  notices.value = [...notices.value, ...added].slice(-MAX_NOTICES);
 }
 
 let ownNotices = 0;
@@ -97,7 +97,7 @@ export function complain(text, level = "error") {
 
 // -- what the user has seen or cleared
 
-const MOST_SETTLED = 50; // the number of sessions remembered
+const MAX_SETTLED = 50; // the number of sessions remembered
 
 /** The number of the last message of each session that the user has seen ("seen"), was shown over the page ("shown") or has cleared
  * ("cleared"): {session: {kind: number}}. It is stored, so that these messages do not return when the page is loaded again. */
@@ -121,7 +121,7 @@ export function settle(kind) {
   if (least < (ownSettled.peek()[kind] ?? 0)) ownSettled.value = { ...ownSettled.peek(), [kind]: least };
   const known = settled.peek()[settledKey()] ?? {};
   if (session.peek() === null || most <= (known[kind] ?? -1)) return;
-  const others = Object.entries(settled.peek()).filter(([key]) => key !== settledKey()).slice(-MOST_SETTLED);
+  const others = Object.entries(settled.peek()).filter(([key]) => key !== settledKey()).slice(-MAX_SETTLED);
   settled.value = { ...Object.fromEntries(others), [settledKey()]: { ...known, [kind]: most } };
 }
 

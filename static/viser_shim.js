@@ -7,7 +7,7 @@
   document.hasFocus = () => true;
 
   // What the server sends about the scene besides its shapes, and the chosen view; `scene/view.js` draws both.
-  const MOST_HEARD = 64;
+  const MAX_HEARD = 64;
   window.scene = {
     facts: {},
     heard: [], // the data of the newest moments, with the stage of their scene; some of them are not drawn yet
@@ -15,7 +15,7 @@
     onview: null,
     receive(name, value) {
       this.facts[name] = value;
-      if (name === "now") this.heard = [...this.heard, { ...value, stage: this.facts.stage }].slice(-MOST_HEARD);
+      if (name === "now") this.heard = [...this.heard, { ...value, stage: this.facts.stage }].slice(-MAX_HEARD);
     },
     /** Moves the camera to the start of a view, also if it is that view already. */
     choose(view) {

@@ -25,7 +25,7 @@ import { hurried, session } from "./store.js";
 import { show } from "./server.js";
 import { alone, embedded, follow, openWindow } from "./windows.js";
 
-const LEAST_SCENE = 320; // [px]
+const MIN_SCENE = 320; // [px]
 /** What a window can show alone. */
 const VIEWS = { ...Object.fromEntries(PANELS.map(({ id, title, View }) => [id, { title, View }])), scene: { title: "3D view", View: Scene }, timeline: { title: "Timeline", View: Timeline } };
 
@@ -52,7 +52,7 @@ function Work() {
   return html`<main class="work ${kinds.join(" ")}">
     <${Scene} />
     ${noScene && hasWorld.value ? html`<${Strip} area="scene" />` : null}
-    <${Splitter} size=${panelsWidth} along="columns" reversed=${swapped.value} label="Width of the panels" least=${280} most=${() => innerWidth - LEAST_SCENE} />
+    <${Splitter} size=${panelsWidth} along="columns" reversed=${swapped.value} label="Width of the panels" least=${280} most=${() => innerWidth - MIN_SCENE} />
     ${noPanels ? html`<${Strip} area="panels" />` : null}
     <section class="side" aria-label="Panels">
       <${Tabs} label="Panels" tabs=${TABS} shown=${openTab} more=${html`<${AreaMenu} area="panels" opening=${openPanel} />`} />

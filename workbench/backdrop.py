@@ -22,9 +22,9 @@ DARKEST, FADING = 0.36, 0.45
 """The darkness of the shadow of a shape that touches the ground, and the height [m] at which it falls to about a third (1/e)."""
 SOFT, SOFTER = 0.1, 0.4
 """How far a shadow extends beyond its shape [m], and how much farther for each metre above the ground."""
-MOST_SHADES = 64
-MOST_OUTLINES = 200
-LEAST_OUTLINED = 0.5
+MAX_SHADES = 64
+MAX_OUTLINES = 200
+MIN_OUTLINED = 0.5
 """Boxes whose longest side is shorter than this [m] have no outline."""
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 EDGES = np.array([(a, b) for a in range(8) for b in range(a) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 2])
@@ -87,8 +87,8 @@ class Outlines:
     def __init__(self, server: Any, model: MjModel) -> None:
         standing = (model.geom_type == mjtGeom.mjGEOM_BOX) & (model.geom_rgba[:, 3] > 0) & (model.geom_group < 3)
         standing &= (model.body_weldid[model.geom_bodyid] == 0) | (model.body_mocapid[model.body_rootid[model.geom_bodyid]] >= 0)
-        standing &= model.geom_size.max(axis=1) * 2 > LEAST_OUTLINED
-        self._geoms = np.flatnonzero(standing)[:MOST_OUTLINES]
+        standing &= model.geom_size.max(axis=1) * 2 > MIN_OUTLINED
+        self._geoms = np.flatnonzero(standing)[:MAX_OUTLINES]
         self._corners = CORNERS * model.geom_size[self._geoms][:, None, :]
         self._lines = Lines(server, "/outlines", channels(palette()["outline"]), 1.2)
 
@@ -123,7 +123,7 @@ class Shades:
         low = middle[:, 2] - np.abs(sides[:, 2]).sum(axis=1) - self._ground
         under = np.maximum(low, 0)
         dark = DARKEST * np.exp(-under / FADING) * ((low > -HIGHEST) & (low < HIGHEST))
-        chosen = np.argsort(-dark, kind="stable")[:MOST_SHADES]
+        chosen = np.argsort(-dark, kind="stable")[:MAX_SHADES]
         chosen = chosen[dark[chosen] > 0.01]
         sides, flat = sides[chosen], np.linalg.norm(sides[chosen][:, :2], axis=1)
         longest = sides[np.arange(len(chosen)), :2, flat.argmax(axis=1)]

@@ -16,8 +16,7 @@ from functools import partial
 from pathlib import Path
 
 from workbench.auth import LOOPBACK, Gate, Token
-from workbench.retention import MOST as KEPT
-from workbench.retention import MOST_MEGABYTES, Keeping
+from workbench.retention import MAX_MEGABYTES, MAX_RECORDINGS, Keeping
 from workbench.shipped import models_folder
 from workbench.worker.spawn import MEMORY, spawn
 
@@ -51,14 +50,18 @@ def _parser() -> argparse.ArgumentParser:
         "--memory", type=_count, default=MEMORY, metavar="MB", help=f"how much memory a model may take (default {MEMORY}; 0: any)"
     )
     parser.add_argument(
-        "--recordings", type=_count, default=KEPT, metavar="N", help=f"how many recordings are kept (default {KEPT}; 0: any number)"
+        "--recordings",
+        type=_count,
+        default=MAX_RECORDINGS,
+        metavar="N",
+        help=f"how many recordings are kept (default {MAX_RECORDINGS}; 0: any number)",
     )
     parser.add_argument(
         "--recordings-size",
         type=_count,
-        default=MOST_MEGABYTES,
+        default=MAX_MEGABYTES,
         metavar="MB",
-        help=f"and how much of them (default {MOST_MEGABYTES}; 0: any size); the oldest that nobody has named go at the start",
+        help=f"and how much of them (default {MAX_MEGABYTES}; 0: any size); the oldest that nobody has named go at the start",
     )
     return parser
 

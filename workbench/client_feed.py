@@ -11,8 +11,8 @@ import msgspec
 
 from workbench.event_log import EventLog
 
-MOST_NOTICES = 500
-MOST_REPLIES = 1_000
+MAX_NOTICES = 500
+MAX_REPLIES = 1_000
 """How many replies may wait for a browser; one that keeps asking without reading is disconnected."""
 Raw = msgspec.Raw
 
@@ -33,7 +33,7 @@ class Broadcast(ABC):
         """Counts how often the run has been replaced, or cut and continued differently."""
         self.log = EventLog()
         """The events of the run."""
-        self.notices: deque[tuple[int, bytes]] = deque(maxlen=MOST_NOTICES)
+        self.notices: deque[tuple[int, bytes]] = deque(maxlen=MAX_NOTICES)
         """The notices to the user, numbered, as JSON."""
         self.state_version: int = 0
         self.facts_version: int = 0
@@ -97,7 +97,7 @@ class Feed:
     @property
     def choked(self) -> bool:
         """Whether the browser keeps asking without reading its replies."""
-        return len(self._replies) > MOST_REPLIES
+        return len(self._replies) > MAX_REPLIES
 
     async def next(self) -> bytes:
         """Waits until there is something to send, and returns the next message."""

@@ -6,13 +6,13 @@ from collections import deque
 from collections.abc import Sequence
 from itertools import islice
 
-MOST_EVENTS = 50_000
+MAX_EVENTS = 50_000
 """How many events of a run are kept in memory; older events are in the worker's trace and in the recording."""
-MOST_KEPT = 50_000_000
+MAX_KEPT = 50_000_000
 """Maximum total size of these events [bytes]."""
 AT_ONCE = 2_000
 """Maximum number of events in one message."""
-MOST_BYTES = 500_000
+MAX_BYTES = 500_000
 """Maximum size of the events in one message [bytes]; a single larger event is sent alone."""
 
 
@@ -42,7 +42,7 @@ class EventLog:
         new = events[self.next - first :]
         self._events.extend(new)
         self._size += sum(map(len, new))
-        while len(self._events) > MOST_EVENTS or self._size > MOST_KEPT:
+        while len(self._events) > MAX_EVENTS or self._size > MAX_KEPT:
             self.drop(self.first + 1)
 
     def cut(self, number: int) -> None:
@@ -65,7 +65,7 @@ class EventLog:
         size = 0
         for event in islice(self._events, begin, begin + most):
             size += len(event)
-            if found and size > MOST_BYTES:
+            if found and size > MAX_BYTES:
                 break
             found.append(event)
         return self.first + begin, found

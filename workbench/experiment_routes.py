@@ -22,7 +22,7 @@ from workbench.routes import Id, sessions_of
 
 router = APIRouter(prefix="/api")
 
-MOST_ROWS = 500
+MAX_ROWS = 500
 """Maximum number of rows in one answer."""
 REPORT_POLICY = (
     "default-src 'none'; img-src data:; style-src 'unsafe-inline'; font-src data:; "
@@ -127,7 +127,7 @@ async def rows(
     request: Request,
     experiment: Id,
     first: Annotated[int, Query(ge=0, lt=2**53)] = 0,
-    most: Annotated[int, Query(ge=1, le=MOST_ROWS)] = 100,
+    most: Annotated[int, Query(ge=1, le=MAX_ROWS)] = 100,
     where: Annotated[str, Query(max_length=2_000)] = "{}",
     sort: Column | None = None,
     down: bool = False,

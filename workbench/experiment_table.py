@@ -17,14 +17,14 @@ from typing import Any
 from actr3d.errors import Actr3dError
 from actr3d.recording.opening import opened
 
-MOST_COLUMNS = 1_000
-MOST_CELLS = 50_000
+MAX_COLUMNS = 1_000
+MAX_CELLS = 50_000
 """Maximum number of means of participants."""
-MOST_POINTS = 2_000
+MAX_POINTS = 2_000
 """Maximum number of points of a figure."""
-MOST_NUMBERS = 400
+MAX_NUMBERS = 400
 """Maximum number of values of a measure in one trial."""
-MOST_TEXT = 20_000
+MAX_TEXT = 20_000
 """Maximum length of a value of a row [characters]."""
 NUMBERS = ("integer", "real", "boolean")
 OUTSIDE = {"wall_s": "real", "worker": "text"}
@@ -70,7 +70,7 @@ class Table:
         self._file = opened(path)
         try:
             listed = self._file.execute(
-                "SELECT name, type, unit, meaning FROM column ORDER BY place, name LIMIT ?", (MOST_COLUMNS,)
+                "SELECT name, type, unit, meaning FROM column ORDER BY place, name LIMIT ?", (MAX_COLUMNS,)
             ).fetchall()
         except sqlite3.Error as error:
             raise TableError(f"the table of trials cannot be read: {error}") from None
@@ -143,12 +143,12 @@ class Table:
             f"SELECT {wanted}, json_extract(data, '$.participant'), count(*), avg(value) FROM ({' UNION ALL '.join(parts)}) WHERE "
             f"typeof(value) IN ('integer', 'real') GROUP BY {', '.join(str(n + 1) for n in range(2 * len(keys) + 1))} LIMIT ?"
         )
-        found = self._read(sql, [MOST_CELLS + 1])
+        found = self._read(sql, [MAX_CELLS + 1])
         cells: dict[tuple[Any, ...], list[tuple[int, float]]] = defaultdict(list)
         for row in found:
             key = tuple((row[2 * n], row[2 * n + 1]) for n in range(len(keys)))
             cells[key].append((row[-2], row[-1]))
-        if len(found) > MOST_CELLS or len(cells) > MOST_POINTS:
+        if len(found) > MAX_CELLS or len(cells) > MAX_POINTS:
             raise TableError(f"{' and '.join(keys)} have too many different values for a figure")
         points = [{"at": [_typed(*part) for part in key], **_mean(parts)} for key, parts in cells.items()]
         unit = next((column["unit"] for column in self.columns if column["name"] == columns[0][1]), None)
@@ -169,7 +169,7 @@ class Table:
             raise TableError(f"'{over}' is a column of the trials")
         ends = {name: name.removeprefix(f"{measure}_") for name in self._types if name.startswith(f"{measure}_")}
         found = sorted((int(end), name) for name, end in ends.items() if end.isascii() and end.isdigit() and len(end) < 9)
-        found = [(number, name) for number, name in found if self._types[name] in NUMBERS][:MOST_NUMBERS]
+        found = [(number, name) for number, name in found if self._types[name] in NUMBERS][:MAX_NUMBERS]
         if not found:
             raise TableError(f"there are no columns '{measure}_1', '{measure}_2', ... with numbers")
         return found
@@ -221,4 +221,4 @@ def _row(data: str) -> dict[str, Any]:
         found = None
     if not isinstance(found, dict):
         raise TableError("the table of trials is damaged")
-    return {str(name): value if not isinstance(value, str) else value[:MOST_TEXT] for name, value in found.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
+    return {str(name): value if not isinstance(value, str) else value[:MAX_TEXT] for name, value in found.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]

@@ -29,11 +29,11 @@ from workbench.retention import begun, stamp
 from workbench.sessions import Sessions, UntrustedError
 
 E = TypeVar("E", bound=ExperimentEvent)
-MOST_RUNNING = 2
+MAX_RUNNING = 2
 """Maximum number of experiments that run at once; each takes all processors."""
-MOST_COMMANDS = 2
+MAX_COMMANDS = 2
 """Maximum number of designs checked, and of trials recorded and reports made, at once; others wait."""
-MOST_LISTED = 300
+MAX_LISTED = 300
 """Maximum number of experiments in a list."""
 START_TIME = 180.0
 """How long a design may take to load [s]."""
@@ -130,7 +130,7 @@ class Experiments:
         """The numbers of finished and failed trials by name, and the stamps of the tables in which they were counted."""
         self._checked: OrderedDict[str, ExperimentFacts] = OrderedDict()
         self._recorded: dict[tuple[str, int], str] = {}
-        self._turns = asyncio.Semaphore(MOST_COMMANDS)
+        self._turns = asyncio.Semaphore(MAX_COMMANDS)
 
     # -- listing
 
@@ -169,7 +169,7 @@ class Experiments:
     def _folders(self) -> list[ExperimentFolder]:
         there = self._root.iterdir() if self._root.is_dir() else ()
         found = [folder for path in there if _NAME.fullmatch(path.name) and (folder := ExperimentFolder(path)).is_experiment]
-        return sorted(found, key=lambda folder: (begun(folder.path), folder.path.name), reverse=True)[:MOST_LISTED]
+        return sorted(found, key=lambda folder: (begun(folder.path), folder.path.name), reverse=True)[:MAX_LISTED]
 
     async def _summaries(self, folders: Sequence[ExperimentFolder]) -> list[dict[str, Any]]:
         await self._count([folder for folder in folders if folder.path.name not in self._running])
@@ -299,8 +299,8 @@ class Experiments:
             arguments: Those of the command.
             new: Whether the command makes the experiment; else it continues it.
         """
-        if self._closed or len(self._running) + self._starting >= MOST_RUNNING:
-            raise ExperimentRunError(f"{MOST_RUNNING} experiments are already running: stop one, or wait for its end")
+        if self._closed or len(self._running) + self._starting >= MAX_RUNNING:
+            raise ExperimentRunError(f"{MAX_RUNNING} experiments are already running: stop one, or wait for its end")
         folder = ExperimentFolder(self._root / name)
         facts = None if new else folder.facts
         self._starting += 1

@@ -19,7 +19,7 @@ from actr3d.errors import Actr3dError
 
 LARGEST = 1_000_000
 """Maximum size of a model file [bytes]."""
-MOST_FILES = 2_000
+MAX_FILES = 2_000
 """Maximum number of files that are listed."""
 OWN = ".workbench"
 """The folder inside the models folder in which the workbench keeps recordings and deleted files."""
@@ -69,7 +69,7 @@ class ModelFolder:
         found: list[str] = []
         for path in self._walk(self.root):
             found.append(path.relative_to(self.root).as_posix())
-            if len(found) >= MOST_FILES:
+            if len(found) >= MAX_FILES:
                 break
         return sorted(found, key=lambda path: (path.count("/"), path))
 

@@ -8,7 +8,7 @@ from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager, suppress
 
 from actr3d.errors import Actr3dError
-from workbench.client_feed import MOST_NOTICES
+from workbench.client_feed import MAX_NOTICES
 from workbench.worker.messages import FromWorker, Notice, Reply, Share, Start
 from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import Receiver, WorkerMonitor, subject_of
@@ -33,7 +33,7 @@ class Job(Receiver):
         """The share that is done, from 0 to 1."""
         self.result: bytes | None = None
         """The result as JSON; None if there is none, or none yet."""
-        self.notices: deque[Notice] = deque(maxlen=MOST_NOTICES)
+        self.notices: deque[Notice] = deque(maxlen=MAX_NOTICES)
         """The warnings and errors that the worker has sent."""
         self.subject = "the worker"
         """The name of the worker in error messages."""

@@ -17,11 +17,11 @@ from workbench.recordings import NoSuchRecordingError, Recordings
 from workbench.worker.messages import Reply, Start
 from workbench.worker.workers import Workers
 
-MOST = 1_000
+MAX_LISTED = 1_000
 """Maximum number of recordings in one list."""
 LONGEST = 10.0
 """Maximum time to read one summary [s]."""
-MOST_READERS = 4
+MAX_READERS = 4
 """Maximum number of workers that read summaries at the same time."""
 _Stamp = tuple[int, ...]
 """See `file_stamp`; during a run, new data are in the -wal file beside a recording."""
@@ -41,10 +41,10 @@ class Listing:
         self._known: dict[str, tuple[_Stamp, Summary]] = {}
         self._coming: dict[str, asyncio.Future[Summary]] = {}
         """The summaries that are being read; all who ask for one wait for the same result."""
-        self._turns = asyncio.Semaphore(MOST_READERS)
+        self._turns = asyncio.Semaphore(MAX_READERS)
         self._tasks: set[asyncio.Task[None]] = set()
 
-    async def some(self, first: int = 0, most: int = MOST) -> tuple[int, list[Summary]]:
+    async def some(self, first: int = 0, most: int = MAX_LISTED) -> tuple[int, list[Summary]]:
         """Returns how many recordings there are, and the summaries of some, newest first, including files that cannot be read.
 
         Args:

@@ -17,7 +17,7 @@ from actr3d.errors import ConfigurationError, ModelFileError, alternatives
 from actr3d.parameter_schema import Parameter, default_of, parameters_in
 from actr3d.runner.build_check import build_of, has_build, problem_of_build
 from actr3d.values import escape_surrogates
-from workbench.files import LARGEST, MOST_FILES, file_stamp
+from workbench.files import LARGEST, MAX_FILES, file_stamp
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,7 +115,7 @@ def outline_of(path: Path) -> Outline:
         return Outline()
 
 
-@lru_cache(maxsize=2 * MOST_FILES)
+@lru_cache(maxsize=2 * MAX_FILES)
 def _outline(path: Path, _: tuple[int, ...]) -> Outline:
     """Reads a file; the stamp changes when the file changes, so that the cache is not used for an old version."""
     listing = listing_of(read_source(path), path.name)

@@ -10,7 +10,7 @@ from actr3d.errors import SimulationError
 from workbench.worker.messages import Do, Reply
 from workbench.worker.workers import Worker
 
-MOST = 200
+MAX_WAITING = 200
 """Maximum number of commands and questions of one session that wait for replies."""
 
 
@@ -29,7 +29,7 @@ class PendingRequests:
         """
         if worker is None:
             raise SimulationError("there is no run; start one")
-        if len(self._waiting) >= MOST:
+        if len(self._waiting) >= MAX_WAITING:
             raise SimulationError("too many requests are waiting for a reply; is the model busy?")
         self._number += 1  # starts at 1: number 0 means that nobody waits for the reply
         reply: asyncio.Future[Reply] = asyncio.get_running_loop().create_future()

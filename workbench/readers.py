@@ -21,11 +21,11 @@ from workbench.worker.workers import Workers
 
 MEMORY = 2_000
 """How much memory reading a recording may take [MB]."""
-MOST = 8
+MAX_READERS = 8
 """Maximum number of files made at once; others wait."""
-MOST_OF_ONE = 2
+MAX_OF_ONE = 2
 """Maximum number of those for one recording, so that a slow one does not delay others."""
-MOST_REPLAYS = 2
+MAX_REPLAYS = 2
 """Maximum number of recordings run again at once; each takes a processor."""
 
 
@@ -50,7 +50,7 @@ class Readers:
 
     def __init__(self, workers: Workers) -> None:
         self._workers = workers
-        self._turns = asyncio.Semaphore(MOST)
+        self._turns = asyncio.Semaphore(MAX_READERS)
         self._turns_of: WeakValueDictionary[Path, asyncio.Semaphore] = WeakValueDictionary()
 
     async def make(self, kind: str, *paths: Path, **options: Any) -> FileIO:
@@ -66,7 +66,7 @@ class Readers:
             ReadingError: If it cannot be made.
             OSError: If no file can be created, or no worker started.
         """
-        turns = self._turns_of.setdefault(paths[0], asyncio.Semaphore(MOST_OF_ONE))
+        turns = self._turns_of.setdefault(paths[0], asyncio.Semaphore(MAX_OF_ONE))
         async with turns, self._turns:
             folder = Path(tempfile.mkdtemp(prefix="actr3d-"))
             try:
@@ -125,8 +125,8 @@ class Reruns:
             BusyError: If too many are being replayed.
             OSError: If no worker can be started.
         """
-        if len(self._going_on) >= MOST_REPLAYS:
-            raise BusyError(f"{MOST_REPLAYS} recordings are already being replayed; wait for one of them, or cancel it")
+        if len(self._going_on) >= MAX_REPLAYS:
+            raise BusyError(f"{MAX_REPLAYS} recordings are already being replayed; wait for one of them, or cancel it")
         job = Job()
         self._going_on.append((path, job))
         try:

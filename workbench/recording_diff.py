@@ -18,11 +18,11 @@ from workbench.recording_index import UNREADABLE
 
 CONTEXT = 8
 """How many events are returned before the first difference, and after it from each recording."""
-MOST_COMPARED = 2_000_000
+MAX_COMPARED = 2_000_000
 """Maximum number of events that are compared."""
-MOST_TEXT = 200_000
+MAX_TEXT = 200_000
 """Maximum total length of two model texts that are compared line by line [characters]."""
-MOST_LINES = 400
+MAX_LINES = 400
 """Maximum number of differing lines that are returned for two texts."""
 
 
@@ -95,11 +95,11 @@ def _changes(left: str, right: str) -> list[str]:
     """Returns a unified diff of two texts, like `diff -u`."""
     if left == right:
         return []
-    if len(left) + len(right) > MOST_TEXT:
+    if len(left) + len(right) > MAX_TEXT:
         return ["the texts are too long to be compared line by line"]
     lines = difflib.unified_diff(left.splitlines(), right.splitlines(), "first", "second", n=2, lineterm="")
-    found = list(islice(lines, MOST_LINES + 1))
-    return [*found[:MOST_LINES], "and more"] if len(found) > MOST_LINES else found
+    found = list(islice(lines, MAX_LINES + 1))
+    return [*found[:MAX_LINES], "and more"] if len(found) > MAX_LINES else found
 
 
 # -- events
@@ -111,7 +111,7 @@ def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> 
     before: deque[TraceEvent] = deque(maxlen=CONTEXT)
     number = -1
     for number, (mine, its) in enumerate(zip_longest(left, right)):
-        if number == MOST_COMPARED:
+        if number == MAX_COMPARED:
             return number, None, False
         if mine != its and not (mine is not None and its is not None and _alike(mine, its)):
             after = [[list(event) for event in islice(events, CONTEXT)] for events in (left, right)]

@@ -27,7 +27,7 @@ Event = tuple[int, str, str, msgspec.Raw]
 """Time [us], source, kind, and data as JSON."""
 EVENTS = msgspec.json.Decoder(list[Event])
 """Decodes a row of events, but not their data."""
-MOST_TEXT = 200_000
+MAX_TEXT = 200_000
 """Maximum size of a summary [bytes of JSON]."""
 
 
@@ -79,7 +79,7 @@ def summary_json(path: Path) -> bytes:
         reason = str(error) if isinstance(error, (RecordingError, OSError)) else f"it is damaged ({type(error).__name__}: {error})"
         found = unreadable(path, without_path(reason, path))
     summary = to_json(vars(found)).encode()
-    if len(summary) > MOST_TEXT:
+    if len(summary) > MAX_TEXT:
         return to_json(vars(unreadable(path, "the description of its run is too long to be listed"))).encode()
     return msgspec.json.encode(msgspec.json.decode(_without_surrogates(summary.decode()), type=Summary))
 

@@ -15,7 +15,7 @@ from pydantic import Field
 
 from actr3d.values import escape_surrogates, to_json
 from workbench.labels import Label
-from workbench.listing import MOST as MOST_LISTED
+from workbench.listing import MAX_LISTED
 from workbench.open_file import OpenFile, while_wanted
 from workbench.page_commands import Name, PageMessage
 from workbench.recording_index import Summary
@@ -88,7 +88,7 @@ class Pair(PageMessage):
 
 @router.get("/recordings")
 async def recordings(
-    request: Request, first: Annotated[int, Query(ge=0, le=1_000_000)] = 0, most: Annotated[int, Query(ge=1, le=MOST_LISTED)] = MOST_LISTED
+    request: Request, first: Annotated[int, Query(ge=0, le=1_000_000)] = 0, most: Annotated[int, Query(ge=1, le=MAX_LISTED)] = MAX_LISTED
 ) -> Response:
     """Lists recordings, newest first: the `total` number, and summaries from number `first` on.
 

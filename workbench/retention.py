@@ -13,11 +13,11 @@ from pathlib import Path
 from actr3d.recording.opening import COMPANIONS
 from workbench.labels import Labels
 
-MOST = 500
+MAX_RECORDINGS = 500
 """Default maximum number of recordings."""
-MOST_MEGABYTES = 4_000
+MAX_MEGABYTES = 4_000
 """Default maximum size of all recordings [MB]."""
-MOST_BRANCHES = 20
+MAX_BRANCHES = 20
 """How many of the newest branches of one run are kept; a branch that a user has renamed does not count."""
 _BEGUN = re.compile(r"-(\d{8}-\d{6})-[0-9a-f]{4}")
 _UNNAMED = re.compile(r".*-\d{8}-\d{6}-[0-9a-f]{4}")
@@ -29,9 +29,9 @@ _BRANCH = re.compile(r"(.+)-at-(\d+\.\d+)s-\d{8}-\d{6}-[0-9a-f]{4}")
 class Keeping:
     """Limits for the recordings that are kept."""
 
-    number: int = MOST
+    number: int = MAX_RECORDINGS
     """Maximum number of recordings; 0 for no limit."""
-    megabytes: int = MOST_MEGABYTES
+    megabytes: int = MAX_MEGABYTES
     """Maximum size of all recordings [MB]; 0 for no limit."""
 
 
@@ -138,4 +138,4 @@ def superfluous_branches(recording: Path) -> list[Path]:
     labelled = labels.all()
     branches = [path for path in recording.parent.glob(f"{recording.stem}-at-*{recording.suffix}") if branched_at(path) is not None]
     found = [path for path in branches if path.stem not in labelled]
-    return sorted(found, key=written, reverse=True)[MOST_BRANCHES:]
+    return sorted(found, key=written, reverse=True)[MAX_BRANCHES:]

@@ -15,7 +15,7 @@ from workbench.recorded_start import Beginning
 from workbench.worker.messages import Loaded, Start, digest_of
 from workbench.worker.workers import Worker
 
-MOST_HELPERS = 100
+MAX_HELPERS = 100
 """Maximum number of helper modules that are watched."""
 
 
@@ -71,13 +71,13 @@ class LaunchedRun:
         self.over = asyncio.Event()
         """Set when the worker has ended and its last messages have been read."""
         self._helpers: dict[Path, str] = {}
-        for file, text in list(start.helpers.values())[:MOST_HELPERS]:
+        for file, text in list(start.helpers.values())[:MAX_HELPERS]:
             self._helpers[(Path(start.folder) / file).resolve()] = digest_of(text)
 
     def add_helper(self, loaded: Loaded) -> None:
         """Records a helper module that the run has loaded."""
         path = Path(loaded.file).resolve()
-        if path in self._helpers or len(self._helpers) < MOST_HELPERS:
+        if path in self._helpers or len(self._helpers) < MAX_HELPERS:
             self._helpers[path] = loaded.digest
 
     def has_helper(self, path: Path) -> bool:

@@ -12,11 +12,11 @@ from mujoco import MjData, MjModel, mjtGeom
 
 NEAR = 12.0
 """Objects farther from the body than this are not part of the stage [m]."""
-LEAST = 0.8
+MIN_EXTENT = 0.8
 """Minimum extent of the stage around the body [m]."""
 SMALLEST = 0.3
 """Bodies smaller than this are framed as if they had this size [m]."""
-MOST_CORNERS = 400
+MAX_CORNERS = 400
 """Above this number of corners, browsers get only the corners of the bounding box."""
 
 
@@ -36,7 +36,7 @@ class SceneFraming:
         data = MjData(model)
         mujoco.mj_kinematics(model, data)
         base = self.base(data)
-        around = np.array((LEAST, LEAST, 0.0))
+        around = np.array((MIN_EXTENT, MIN_EXTENT, 0.0))
         boxes = [(base - around, base + around)]
         for low, high in _boxes(model, data):
             if np.linalg.norm((np.clip(base, low, high) - base)[:2]) <= NEAR:
@@ -59,7 +59,7 @@ class SceneFraming:
         self.start = base
         """The position of the body at the start of the run."""
         away = ((self.low + self.high) / 2 - base)[:2]
-        away = away if np.linalg.norm(away) > LEAST else data.xmat[self.body].reshape(3, 3)[:2, 0]
+        away = away if np.linalg.norm(away) > MIN_EXTENT else data.xmat[self.body].reshape(3, 3)[:2, 0]
         size = np.linalg.norm(away)
         self.ahead = np.array((*(away / size), 0.0)) if size > 1e-6 else np.array((1.0, 0.0, 0.0))
         """Horizontal unit vector from the body to the middle of the objects around it; if that is at the body, the body's heading."""
@@ -75,7 +75,7 @@ class SceneFraming:
             grounds: The names of the ground planes in viser's tree.
         """
         around = itertools.product(*zip(self.low, self.high, strict=True))
-        corners = self.corners if len(self.corners) <= MOST_CORNERS else np.array(list(around))
+        corners = self.corners if len(self.corners) <= MAX_CORNERS else np.array(list(around))
         numbers = {
             "corners": corners,
             "low": self.low,

@@ -14,7 +14,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol, RequestResponseCycle
 
 LARGEST_MESSAGE = 60_000_000
 """Maximum size of a websocket message [bytes]; pictures that viser's page sends are the largest."""
-MOST_CONNECTIONS = 500
+MAX_CONNECTIONS = 500
 """Maximum number of open connections; further clients are asked to come again later (status 503)."""
 REQUEST_TIME = 10.0
 """A connection is closed if a complete request header does not arrive within this time after its opening or last response [s]."""
@@ -85,7 +85,7 @@ def config_of(app: Any) -> uvicorn.Config:
         ws="websockets-sansio",
         ws_max_size=LARGEST_MESSAGE,
         ws_per_message_deflate=False,
-        limit_concurrency=MOST_CONNECTIONS,
+        limit_concurrency=MAX_CONNECTIONS,
         timeout_graceful_shutdown=2,
     )
 

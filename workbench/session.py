@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from workbench.client_feed import MOST_NOTICES, Broadcast, Feed, Raw
+from workbench.client_feed import MAX_NOTICES, Broadcast, Feed, Raw
 from workbench.event_log import EventLog
 from workbench.overlays import ViewSettings
 from workbench.pending_requests import PendingRequests
@@ -70,7 +70,7 @@ class Session(Broadcast, Receiver):
         self._attempt = 0
         """The number of the latest attempt to start a run."""
         self._notice_number = 0
-        self._cuts: deque[tuple[int, int]] = deque(maxlen=MOST_NOTICES)
+        self._cuts: deque[tuple[int, int]] = deque(maxlen=MAX_NOTICES)
         """Where the run was cut and continued differently: (number of the next notice, number of events kept).
 
         Earlier notices about later events belong to a past that no longer exists.

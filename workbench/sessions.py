@@ -19,7 +19,7 @@ from workbench.session import Session
 from workbench.worker.messages import Start
 from workbench.worker.workers import Worker, Workers
 
-MOST = 8
+MAX_SESSIONS = 8
 """Maximum number of sessions; each has a worker."""
 CHECK_TIME = 10.0
 """Maximum time for loading a model for a check [s]."""
@@ -202,12 +202,12 @@ class Sessions:
         return session
 
     async def _new(self, path: Path, model: str) -> Session:
-        if len(self._sessions) >= MOST:
+        if len(self._sessions) >= MAX_SESSIONS:
             # Users who try many models leave sessions behind: their runs are recorded and can be opened again.
             idle = [one for one in self.all() if one.state is not None and not one.feeds and not one.going_on]
             if not idle:
                 busy = "each is shown on a page or still running: close a page, or stop a run"
-                raise SessionError(f"there are {MOST} sessions already, and {busy}")
+                raise SessionError(f"there are {MAX_SESSIONS} sessions already, and {busy}")
             await self.close(next((one for one in idle if one.recorded is not None), idle[0]).name)
         self._count += 1
         name = f"s{self._count}"

@@ -21,9 +21,9 @@ from workbench.sessions import Sessions
 from workbench.shipped import static
 from workbench.viser_bridge import POLICY, Bridge, page
 
-MOST_PAGES = 64
+MAX_PAGES = 64
 """Maximum number of connected browsers."""
-MOST_AT_ONCE = 32
+MAX_AT_ONCE = 32
 """Maximum number of commands of one browser that wait for their replies."""
 LONGEST = 100_000
 """Maximum length of a message from a browser [characters]."""
@@ -71,7 +71,7 @@ async def scene_socket(websocket: WebSocket, session: str) -> None:
 async def socket(websocket: WebSocket) -> None:
     """Sends a browser the updates of one session, and carries out its commands."""
     state: Any = websocket.app.state
-    if state.pages >= MOST_PAGES:
+    if state.pages >= MAX_PAGES:
         await websocket.close(1013)
         return
     state.pages += 1
@@ -132,7 +132,7 @@ class _Page:
                     feed, sending = joined, asyncio.create_task(self._send(joined))
                 elif feed is None:
                     await self._refuse(problem or "say first which session is shown: attach")
-                elif request is not None and len(self._tasks) < MOST_AT_ONCE:
+                elif request is not None and len(self._tasks) < MAX_AT_ONCE:
                     task = asyncio.create_task(self._carry_out(session, feed, request))
                     self._tasks.add(task)
                     task.add_done_callback(self._tasks.discard)

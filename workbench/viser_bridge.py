@@ -19,7 +19,7 @@ POLICY = (
     "frame-ancestors 'self'"
 )
 """What viser's page may load: without this policy, a server address in the page's URL could give another server control of it."""
-MOST_VIEWS = 32
+MAX_VIEWS = 32
 """Maximum number of open 3D views."""
 
 
@@ -53,7 +53,7 @@ class Bridge:
             browser: The browser's websocket, not yet accepted. With `?shadows=off` it gets no shadows.
             view: The 3D view that it requests; None if there is none.
         """
-        if view is None or view.over or self._open >= MOST_VIEWS:
+        if view is None or view.over or self._open >= MAX_VIEWS:
             await browser.close(1008)
             return
         self._open += 1

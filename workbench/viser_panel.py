@@ -13,7 +13,7 @@ from workbench.page_commands.session import ShowOverlay
 from workbench.worker.messages import State
 
 WORDS: dict[str, Callable[[], Any]] = {"run": Run, "pause": Pause, "step": Step, "back": Back}
-MOST_SLIDERS = 8
+MAX_SLIDERS = 8
 
 
 class Panel:
@@ -40,7 +40,7 @@ class Panel:
             said(WORDS[buttons.value]())
 
         self._sliders: dict[str, Any] = {}
-        for name, (least, most) in list(apertures.items())[:MOST_SLIDERS]:
+        for name, (least, most) in list(apertures.items())[:MAX_SLIDERS]:
             slider = gui.add_slider(f"{name} [cm]", min=least, max=most, step=1, initial_value=least)
             slider.on_update(partial(self._slid, name, slider))
             self._sliders[name] = slider

@@ -11,7 +11,7 @@ import msgspec
 from actr3d.runner.before_exit import signal_name
 from workbench.worker.channel import WIRE_LOST
 from workbench.worker.memory import TOO_MUCH_MEMORY
-from workbench.worker.messages import MOST_PRINTED, At, FromWorker, Notice, Over, Start, Where, notice
+from workbench.worker.messages import MAX_PRINTED, At, FromWorker, Notice, Over, Start, Where, notice
 from workbench.worker.workers import LOST, PRINTED, Worker
 
 SILENT = 1.0
@@ -118,7 +118,7 @@ class WorkerMonitor:
     async def _print(self) -> None:
         """Shows what the worker prints other than by its model's `print`."""
         output, count = self._worker.output, 0
-        while count < MOST_PRINTED:
+        while count < MAX_PRINTED:
             try:
                 line = await output.readline()
             except ValueError:  # a line longer than the stream's limit

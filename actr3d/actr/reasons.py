@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from actr3d.errors import did_you_mean
 
-MOST_SHOWN = 12
+MAX_SHOWN = 12
 """The number of candidates or features that are printed; the data contain all."""
 
 
@@ -128,7 +128,7 @@ class RetrievalReason:
         lines = [f"  {self.memory}: {asked}, {limit}: {self.outcome}{takes}"]
         if self.finsts:
             lines.append(f"      retrieved recently: {'; '.join(self.finsts)}")
-        shown = self.candidates if len(self.candidates) <= MOST_SHOWN + 1 else self.candidates[:MOST_SHOWN]
+        shown = self.candidates if len(self.candidates) <= MAX_SHOWN + 1 else self.candidates[:MAX_SHOWN]
         lines += [f"      {chunk}: left out, because it was retrieved recently" for chunk in self.excluded]
         if not self.candidates:
             lines.append("      no chunk matches" + (" that is new" if self.excluded else ""))
@@ -176,9 +176,9 @@ class SearchReason:
         lines = [f"  {self.module}: {way} at {self.time:.3f} s for '{self.asked}': {self.outcome}{why}"]
         if not self.features and self.why is None:
             lines.append("      nothing of that kind was seen")
-        lines += map(str, self.features[:MOST_SHOWN])
-        if len(self.features) > MOST_SHOWN:
-            lines.append(f"      and {len(self.features) - MOST_SHOWN} more")
+        lines += map(str, self.features[:MAX_SHOWN])
+        if len(self.features) > MAX_SHOWN:
+            lines.append(f"      and {len(self.features) - MAX_SHOWN} more")
         return "\n".join(lines)
 
 

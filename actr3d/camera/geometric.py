@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from actr3d.camera.eye import Eye, Kind, names_of
 from actr3d.camera.kernel.dtypes import EXTENT
 from actr3d.camera.kernel.lower_envelope import room_for
-from actr3d.camera.kernel.scan import MOST_PIECES_OF_A_PATCH, scan
+from actr3d.camera.kernel.scan import MAX_PIECES_OF_A_PATCH, scan
 from actr3d.camera.kernel.scene import room_for_scene
 from actr3d.camera.parameters import CameraParameters, optics_of
 from actr3d.camera.topology import geoms_of, objects_of, topology_of
@@ -66,7 +66,7 @@ class GeometricCamera:
         self._geoms = geoms_of(mj_model)
         self._topology = topology_of(mj_model, self._objects, self.parameters.groups)
         self._scene = room_for_scene(self._topology, self.parameters.rows)
-        most = MOST_PIECES_OF_A_PATCH * len(self._scene.patches) + len(self._topology.face_geom) + 1
+        most = MAX_PIECES_OF_A_PATCH * len(self._scene.patches) + len(self._topology.face_geom) + 1
         self._row = room_for(most, self._scene.places, self._scene.reaches)
         self._optics = optics_of(self.parameters)
         self._labels = np.zeros(max(0, *self._objects, 0) + 1, np.int64)

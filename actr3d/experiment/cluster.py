@@ -32,7 +32,7 @@ from actr3d.recording.schema import versions
 
 BATCH = 1.0
 """The intended duration of a batch of trials [s]: long enough to make the cost of a task small."""
-MOST = 200
+MAX_BATCH = 200
 """The maximum number of trials of a batch."""
 AHEAD = 2
 """The number of batches for each worker that are submitted at a time."""
@@ -193,7 +193,7 @@ class _Run:
     def _next_batches(self, numbers: Iterator[int]) -> Iterator[list[int]]:
         """Yields batches until each worker has enough of them; the last ones are small, so that all workers end at about the same time."""
         most = max(1, self._workers()) * AHEAD
-        usual = min(MOST, round(BATCH / max(self._seconds, 1e-6)))
+        usual = min(MAX_BATCH, round(BATCH / max(self._seconds, 1e-6)))
         for _ in range(most - len(self._waiting)):
             left = len(self._experiment.design) - self._done - sum(map(len, self._waiting.values()))
             batch = list(islice(numbers, max(1, min(usual, left // most))))

@@ -21,7 +21,7 @@ DIGITS = 6
 """Number of decimals to which drawn values are rounded, so that they are the same on every machine."""
 FAR = 1e-9
 """Probability in the tails of an unbounded distribution within which the bounds of a parameter are checked."""
-MOST_TRIALS = 10_000_000
+MAX_TRIALS = 10_000_000
 """Maximum number of trials of an experiment."""
 OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
 """The columns of every table of trials, whatever the design."""
@@ -202,8 +202,8 @@ class Design(Configuration):
             for twice in self.factors.keys() & group.parameters.keys():
                 raise DesignError(f"Design.groups['{name}']: '{twice}' is a factor already", twice)
         total = math.prod(map(len, self.factors.values())) * self.trials * sum(group.participants for group in self.groups.values())
-        if total > MOST_TRIALS:
-            raise DesignError(f"Design.trials: must give at most {MOST_TRIALS:,} trials in all (got {total:,})", "trials")
+        if total > MAX_TRIALS:
+            raise DesignError(f"Design.trials: must give at most {MAX_TRIALS:,} trials in all (got {total:,})", "trials")
         grouped = {name for group in self.groups.values() for name in group.parameters}
         for twice in self.settings.keys() & {*self.factors, *grouped}:
             raise DesignError(f"Design.settings: '{twice}' is already a factor, or a parameter of a group", twice)

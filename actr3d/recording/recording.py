@@ -19,7 +19,7 @@ from actr3d.trace import TraceEvent
 
 USUAL_PERIOD = 10_000
 """The assumed length of a tick if the facts do not give it [us]: for a program, whose simulations may have different ticks."""
-MOST_WAITING = 100_000
+MAX_WAITING = 100_000
 """The maximum number of events that wait to be written; beyond it, the run waits for the disk."""
 
 _OF_OTHERS: list[object] = []
@@ -124,7 +124,7 @@ class Recording:
         writer.states.append(State(run, tick, data, self.events))
         if tick * self._period != self._time:
             self._pass(tick * self._period)
-        if len(writer.states) > MOST_WAITING or len(writer.events) > MOST_WAITING or writer.failure is not None:
+        if len(writer.states) > MAX_WAITING or len(writer.events) > MAX_WAITING or writer.failure is not None:
             self.check()
 
     def check(self) -> None:
@@ -134,7 +134,7 @@ class Recording:
             RecordingError: If the file can no longer be written.
         """
         writer = self._writer
-        if len(writer.events) > MOST_WAITING or len(writer.states) > MOST_WAITING:
+        if len(writer.events) > MAX_WAITING or len(writer.states) > MAX_WAITING:
             writer.flush()
         if writer.failure is not None:
             raise writer.failure

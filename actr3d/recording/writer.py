@@ -26,7 +26,7 @@ INTERVAL = 0.25
 interval."""
 BLOB = 1_000_000
 """The approximate size of a row of states [bytes]."""
-MOST_EVENTS = 10_000
+MAX_EVENTS = 10_000
 """The maximum number of events in a row."""
 
 MARKS = 4 * 8
@@ -233,7 +233,7 @@ class Writer:
         answers, events = _all_of(self.answers), _all_of(self.events)
         if not (states or facts or commands or answers or events):
             return
-        rows = [(part, plain_to_json(part, _one_by_one)) for part in _parts(events, MOST_EVENTS)]
+        rows = [(part, plain_to_json(part, _one_by_one)) for part in _parts(events, MAX_EVENTS)]
         self._transact(self._insert_all, rows, states, facts, commands, answers)
 
     def _insert_all(
@@ -246,7 +246,7 @@ class Writer:
     ) -> None:
         for part, text in events:
             self._insert("events", len(part), len(part), text)
-        for some in _parts(answers, MOST_EVENTS):
+        for some in _parts(answers, MAX_EVENTS):
             self._insert("answers", len(some), len(some), json.dumps([plain_answer(answer) for answer in some]))
         for row in _parts(states, max(1, BLOB // len(states[0].data)) if states else 1):
             data = b"".join([state.data for state in row])

@@ -16,9 +16,9 @@ SHOWN = 120
 """Greatest length of an event in an error [characters]."""
 SPACING = 50
 """Ticks between two stored states at first."""
-MOST_STATES = 256
+MAX_STATES = 256
 """Greatest number of stored states; beyond it every second one is dropped, so that a long run needs no more memory than a short one."""
-MOST_ANSWERS = 10_000
+MAX_ANSWERS = 10_000
 """Greatest number of stored answers, from the start of the run on: 100 s with one view each 10 ms. Beyond them the physics is
 simulated again when a run goes back."""
 
@@ -50,7 +50,7 @@ class History:
     def keep(self, tick: int, state: WorldState) -> None:
         """Stores the state at the end of a tick."""
         self._states[tick] = state
-        if len(self._states) > MOST_STATES:
+        if len(self._states) > MAX_STATES:
             self._spacing *= 2
             self._states = {tick: kept for tick, kept in self._states.items() if tick % self._spacing == 0}
 
@@ -58,7 +58,7 @@ class History:
         """Adds a tick, with the answers of the bodies at its end."""
         self.simulated = tick
         self.ticks = max(self.ticks, tick)
-        if self.answered == tick - 1 and self._kept + len(answers) <= MOST_ANSWERS:
+        if self.answered == tick - 1 and self._kept + len(answers) <= MAX_ANSWERS:
             self.answered = tick
             if answers:
                 self._answers[tick] = answers

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from actr3d.camera import CameraParameters, View
 
 Floats = NDArray[np.float64]
-LEAST = 0.05
+MIN_SEEN = 0.05
 """Least seen fraction of a distance, however large the noise."""
 
 
@@ -31,7 +31,7 @@ def blurred(view: View, edges: float, distances: float, seed: int) -> View:
     if not len(view.extents):
         return view
     numbers = Generator(PCG64(seed))
-    part = max(LEAST, 1 + distances * float(numbers.standard_normal()))
+    part = max(MIN_SEEN, 1 + distances * float(numbers.standard_normal()))
     extents = view.extents.copy()
     for d in ("d1", "d2", "dn"):
         extents[d] *= part

@@ -14,7 +14,7 @@ from actr3d.vision.detectors.registry import Detector
 from actr3d.vision.encoding import Emma
 from actr3d.vision.salience import RULES, Function, salience_of
 
-MOST = 1e6
+MAX_VALUE = 1e6
 """Upper bound of times [s] and noise: longer than any run, and far from the limit of floats."""
 
 FROM_ZERO = ("delay", "delay_sd", "bottom_up_delay", "hold", "edge_noise", "distance_noise")
@@ -36,8 +36,8 @@ def check_numbers(given: Mapping[str, Any]) -> None:
         number = _number(value)
         if number < 0:
             raise ParameterError(f"Vision.{name}: must be >= 0 (got {value!r})")
-        if number > MOST:
-            raise ParameterError(f"Vision.{name}: must be <= {MOST:g} (got {value!r})")
+        if number > MAX_VALUE:
+            raise ParameterError(f"Vision.{name}: must be <= {MAX_VALUE:g} (got {value!r})")
     for name in ("saccades", "private_view"):
         if not isinstance(given[name], bool):
             raise ParameterError(f"Vision.{name}: must be True or False (got {given[name]!r})")
@@ -103,6 +103,6 @@ def encoding_of(given: Any) -> Emma | float:
         return given
     if isinstance(given, str) and given == "emma":
         return Emma()
-    if 0 <= _number(given) <= MOST:
+    if 0 <= _number(given) <= MAX_VALUE:
         return _number(given)
     raise ParameterError(f"Vision.encoding: must be a time >= 0 [s], 'emma' or an Emma (got {given!r})")

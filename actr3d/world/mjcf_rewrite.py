@@ -35,7 +35,7 @@ MAX_COUNTS = {
 """Greatest values of attributes that are counts; for `count`, of the product of its numbers. Without a limit MuJoCo uses all
 memory, computes for minutes (a flex of 100 x 100 points: 14 s), or ends the process (a height field of 10^7 x 10^7)."""
 
-LEAST_MASS, LEAST_INERTIA = 1e-3, 1e-6
+MIN_MASS, MIN_INERTIA = 1e-3, 1e-6
 """Default mass and inertia of a moving URDF link [kg, kg m^2]: too little to change how a robot moves."""
 
 _NOT_TAKEN = {"skin": "skins", "model": "models inside models", "attach": "models inside models", "flexcomp": "flexcomp from a file"}
@@ -147,12 +147,12 @@ def _prepare_urdf(root: Element, document: Document) -> None:
     light = [link for link in root.children if link.tag == "link" and link.attributes.get("name") in moving and _is_without_mass(link)]
     for link in light:
         link.children = [child for child in link.children if child.tag != "inertial"]
-        inertia = {axes: str(LEAST_INERTIA if axes[1] == axes[2] else 0) for axes in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")}
-        parts = [Element("mass", {"value": str(LEAST_MASS)}, link.where), Element("inertia", inertia, link.where)]
+        inertia = {axes: str(MIN_INERTIA if axes[1] == axes[2] else 0) for axes in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")}
+        parts = [Element("mass", {"value": str(MIN_MASS)}, link.where), Element("inertia", inertia, link.where)]
         link.children.append(Element("inertial", {}, link.where, parts))
     if light:
         names = ", ".join(f"'{link.attributes['name']}'" for link in light)
-        document.remarks.append(f"links that move without a mass are given {LEAST_MASS * 1000:g} g: {names}")
+        document.remarks.append(f"links that move without a mass are given {MIN_MASS * 1000:g} g: {names}")
 
 
 def _is_without_mass(link: Element) -> bool:

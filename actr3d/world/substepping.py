@@ -23,7 +23,7 @@ STRIDE = 0.006
 """The most that any point of a body may move in one physics step when something is near [m]: walking at 3 m/s with steps of 2 ms.
 Contacts get stiffer with shorter steps (see `WALL_SOLREF`), so this limit is valid at any speed. Source: chosen for this library."""
 
-MOST = 500
+MAX_PARTS = 500
 """Greatest number of parts of one physics step; more would mean a speed of 1,500 m/s: the physics has diverged. Source: chosen."""
 
 TICK = 0.01
@@ -114,7 +114,7 @@ class Substepping:
             WorldError: If there would be too many.
         """
         way = self._fastest(self._held()) * self._whole
-        if not way <= STRIDE * MOST:
+        if not way <= STRIDE * MAX_PARTS:
             raise WorldError(f"the physics diverged near {seconds(self._physics.time)} s: forces or speeds without bounds")
         return max(1, math.ceil(way / STRIDE))
 

@@ -12,7 +12,7 @@ from typing import Any
 Event = Mapping[str, Any]
 
 LEVELS = ("planning_unit", "unit_task", "method", "operator")
-MOST_FIRINGS = 12
+MAX_FIRINGS = 12
 """A picture ends with this firing, unless the agent has planning units: then it shows the whole run."""
 WIDTH, LEFT, RIGHT, ROW, TOP = 900, 190, 12, 24, 8
 CHARACTER = 6.4
@@ -70,8 +70,8 @@ def draw(events: Sequence[Event]) -> str:
 def _end(events: Sequence[Event]) -> float:
     """Returns when a picture ends: with one of the first firings, or with the last event that shows."""
     fired = [event["time"] for event in events if event["kind"] == "fire"]
-    if len(fired) > MOST_FIRINGS:
-        return fired[MOST_FIRINGS - 1]
+    if len(fired) > MAX_FIRINGS:
+        return fired[MAX_FIRINGS - 1]
     return max((event["time"] for event in events if event["kind"] in ("fire", "output", "buffer")), default=0.0)
 
 

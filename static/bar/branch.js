@@ -29,7 +29,7 @@ export function orderChange(what) {
   return change(what).catch((error) => isLeft(error) || complain(error.message));
 }
 
-const MOST_SHOWN = 50; // the number of notices remembered
+const MAX_SHOWN = 50; // the number of notices remembered
 
 /** The notices that were shown: they do not return when the page is loaded again. */
 const alreadyShown = remembered("branches shown", []);
@@ -38,7 +38,7 @@ const closed = signal(alreadyShown.peek());
 
 function Notice({ which, title, children }) {
   useEffect(() => {
-    if (!alreadyShown.peek().includes(which)) alreadyShown.value = [...alreadyShown.peek(), which].slice(-MOST_SHOWN);
+    if (!alreadyShown.peek().includes(which)) alreadyShown.value = [...alreadyShown.peek(), which].slice(-MAX_SHOWN);
   }, [which]);
   return html`<span class="former branched" role="status" title=${title}>
     <span>${children}</span>

@@ -4,13 +4,13 @@ import { html, useSignal } from "../vendor/preact.js";
 import { order } from "../server.js";
 import { session } from "../store.js";
 
-const MOST = 2n ** 63n - 1n;
+const MAX_SEED = 2n ** 63n - 1n;
 
 /** Returns why a text is not a valid seed; null if it is one. */
 export function seedProblem(text) {
   const written = text.trim();
   if (!/^\d+$/.test(written)) return `the seed must be a whole number >= 0 (got «${written.slice(0, 40)}»)`;
-  return written.length > 19 || BigInt(written) > MOST ? `a seed is at most ${MOST} (got ${written.slice(0, 40)})` : null;
+  return written.length > 19 || BigInt(written) > MAX_SEED ? `a seed is at most ${MAX_SEED} (got ${written.slice(0, 40)})` : null;
 }
 
 export function SeedField() {

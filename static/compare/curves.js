@@ -7,7 +7,7 @@ import { nameOf, whenText } from "../runs/wording.js";
 
 /** The colours of the two runs, in plots and headings. */
 export const COLOURS = ["series-1", "series-2"];
-const MOST = 20_000; // moments per curve: every tick of a run of up to 200 s
+const MAX_MOMENTS = 20_000; // moments per curve: every tick of a run of up to 200 s
 const AT_FIRST = 3; // the number of curves shown before the user has chosen any
 const SIDES = ["first", "second"];
 const DASHES = [null, [6, 3]];
@@ -17,7 +17,7 @@ function query(names) {
 }
 
 async function read(run, names) {
-  return call("GET", `/api/recordings/${run.id}/curves?most=${MOST}&${query(names)}`);
+  return call("GET", `/api/recordings/${run.id}/curves?most=${MAX_MOMENTS}&${query(names)}`);
 }
 
 /** Returns the default curves: speed, clearance, and the joint that moves most. */

@@ -4,7 +4,7 @@ import { signal } from "../vendor/preact.js";
 import { complain } from "../store.js";
 
 const PREFIX = "actr3d.draft.";
-const MOST = 20;
+const MAX_DRAFTS = 20;
 const LARGEST = 2_000_000; // all drafts together [characters]; browsers store about five million per site
 const PATIENCE = 20_000; // how long to wait for a tab that neither closes nor answers, such as one paused in a debugger [ms]
 
@@ -102,7 +102,7 @@ export function keep(path, text, version) {
 function write(key, draft) {
   const others = all().filter((one) => one.key !== key);
   let size = others.reduce((sum, one) => sum + one.draft.text.length, draft.text.length);
-  while (others.length >= MOST || (size > LARGEST && others.length > 0)) size -= drop(others);
+  while (others.length >= MAX_DRAFTS || (size > LARGEST && others.length > 0)) size -= drop(others);
   for (;;) {
     try {
       localStorage.setItem(key, JSON.stringify(draft));

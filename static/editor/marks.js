@@ -2,7 +2,7 @@
 
 import { setDiagnostics, StateEffect, StateField } from "../vendor/codemirror.js";
 
-const MOST_RUN = 100; // marks of a run in one text
+const MAX_RUN = 100; // marks of a run in one text
 
 /** Replaces the marks of one origin ("check" or "run"): {origin, marks}. */
 const putMarks = StateEffect.define();
@@ -72,7 +72,7 @@ export function markAt(doc, origin, { level, message, detail = "", line }) {
 
 /** Returns the transaction that adds marks of an origin to a state. */
 export function withMarks(state, origin, marks) {
-  const list = origin === "run" ? marks.slice(-MOST_RUN) : marks;
+  const list = origin === "run" ? marks.slice(-MAX_RUN) : marks;
   const all = [...state.field(marksField).filter((mark) => mark.origin !== origin), ...list];
   const shown = setDiagnostics(state, diagnostics(all));
   return { ...shown, effects: [shown.effects ?? [], putMarks.of({ origin, marks: list })].flat() };

@@ -11,7 +11,7 @@ const TOP = 8;
 const AXIS = 34; // the height of the axis with its name [px]
 const SIZE = 3.5; // the radius of a point [px]
 const BETWEEN = 6; // the least distance between two labels [px]
-const MOST_LABELS = 16;
+const MAX_LABELS = 16;
 const SHAPES = [12, 4, 3, 5, 6, 7]; // corners: a circle, a square, a triangle …
 
 /** Returns a value as a key that differs between 1, "1" and true. */
@@ -75,7 +75,7 @@ function drawAxis(surface, box, levels, xOf, room) {
   const bottom = Math.round(box.y + box.height) + 0.5;
   surface.line([box.x, bottom, box.x + box.width, bottom], "strong-line");
   let taken = -Infinity;
-  const every = Math.max(1, Math.ceil(levels.length / MOST_LABELS));
+  const every = Math.max(1, Math.ceil(levels.length / MAX_LABELS));
   levels.forEach((level, n) => {
     const x = xOf(level);
     surface.line([Math.round(x) + 0.5, bottom, Math.round(x) + 0.5, bottom + 3], "strong-line");

@@ -17,8 +17,8 @@ import { experiments, showExperiment } from "./list.js";
 import { Parts } from "./parts.js";
 import { columnText, doneText } from "./wording.js";
 
-const MOST_LINES = 12;
-const MOST_BUTTONS = 300; // points that keys can reach
+const MAX_LINES = 12;
+const MAX_BUTTONS = 300; // points that keys can reach
 const REACH = 12; // [px]
 const UNITS = [["_deg", "°"], ["_m_s", "m/s"], ["_m", "m"], ["_n", "N"], ["_s", "s"]];
 const EMPTY = [];
@@ -228,7 +228,7 @@ function Plot({ lines, known, about, children }) {
     </figcaption>
     <div class="area ${hit.length > 0 ? "hit" : ""}" ref=${area} onPointerMove=${point} onPointerLeave=${leave} onClick=${() => show(hit)}>
       <canvas ref=${canvas} role="img" aria-label=${title} style=${{ width: `${width}px`, height: `${height}px` }}></canvas>
-      ${points.slice(0, MOST_BUTTONS).map((one) => {
+      ${points.slice(0, MAX_BUTTONS).map((one) => {
         const key = `${one.line.key} ${one.point.at[0]}`;
         const press = (event) => (event.stopPropagation(), show([one]));
         return html`<button key=${key} class="point ${hit.includes(one) ? "hit" : ""}" style=${{ left: `${one.x}px`, top: `${one.y}px` }} aria-label="Trials of ${one.text}" onClick=${press} onFocus=${() => (pointed.value = [one.text])} onBlur=${leave}></button>`;
@@ -259,7 +259,7 @@ export function Figure({ experiment, facts, columns: all }) {
   const lines = useMemo(() => {
     if (!answer) return EMPTY;
     const both = [answer, same(second) ? second : null];
-    const combinations = combinationsOf(both, answer.by, facts).slice(0, MOST_LINES);
+    const combinations = combinationsOf(both, answer.by, facts).slice(0, MAX_LINES);
     const [first, dashed] = both.map((one, n) => linesOf(one, facts, combinations, n === 1, n === 1 ? other?.id : experiment.id));
     return [...first, ...dashed];
   }, [answer, second, other?.id]);
@@ -268,7 +268,7 @@ export function Figure({ experiment, facts, columns: all }) {
   return html`
     <${Menus} experiment=${experiment} facts=${facts} columns=${columns} chosen=${chosen} />
     <${Problem} text=${error} />
-    ${combined > MOST_LINES ? html`<p class="problem warning">The first ${MOST_LINES} of ${combined} lines are drawn.</p>` : null}
+    ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
     ${answer && lines.length > 0
       ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOf(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} experiment=${experiment} other=${other} /><//>`
       : html`<p class="empty" role="status">${answer || error ? "No finished trial has a value of this measure." : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}

@@ -5,7 +5,7 @@ import { say } from "../server.js";
 import { alive, listeners, state, whichRun } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 
-const MOST = 500_000; // the maximum number of lines; beyond it, the oldest are dropped
+const MAX_LINES = 500_000; // the maximum number of lines; beyond it, the oldest are dropped
 const AT_ONCE = 20_000; // the number of events requested at once
 const NOTHING = { events: 0, notice: -1 };
 
@@ -55,9 +55,9 @@ function hear({ of: session, run, events: news }) {
     if (kind === "output" && first + n >= next) lines.push({ number: first + n, text: String(data?.text ?? data?.["…"] ?? "") });
   });
   next = Math.max(next, first + list.length);
-  if (lines.length > MOST) {
-    dropped += lines.length - 0.9 * MOST;
-    lines.splice(0, lines.length - 0.9 * MOST);
+  if (lines.length > MAX_LINES) {
+    dropped += lines.length - 0.9 * MAX_LINES;
+    lines.splice(0, lines.length - 0.9 * MAX_LINES);
   }
   printedVersion.value += 1;
 }

@@ -4,7 +4,7 @@ import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { fixed, Part, partName } from "./part_names.js";
 
-const MOST = 200; // the maximum number of candidates listed
+const MAX_CANDIDATES = 200; // the maximum number of candidates listed
 
 function outcomeText({ outcome, candidates, excluded, threshold, latency }) {
   const takes = latency === null ? "" : ` in ${valueText(latency)} s`;
@@ -24,7 +24,7 @@ function Candidates({ reason }) {
         <tr><th>Chunk</th><th>Outcome</th><th class="number">Activation</th>${names.map((name) => html`<th key=${name} class="number" title=${name}>${partName(name)}</th>`)}</tr>
       </thead>
       <tbody>
-        ${candidates.slice(0, MOST).map(
+        ${candidates.slice(0, MAX_CANDIDATES).map(
           (one, n) => html`<tr key=${n} class="${one.verdict.startsWith("won") ? "selected" : ""} ${n === below ? "threshold" : ""}">
             <td class="mono long">${one.chunk}</td>
             <td class="verdict">${one.verdict}</td>
@@ -34,7 +34,7 @@ function Candidates({ reason }) {
         )}
       </tbody>
     </table>
-    ${candidates.length > MOST ? html`<p class="quiet">${candidates.length - MOST} more, none of them more active</p>` : null}
+    ${candidates.length > MAX_CANDIDATES ? html`<p class="quiet">${candidates.length - MAX_CANDIDATES} more, none of them more active</p>` : null}
   </div>`;
 }
 

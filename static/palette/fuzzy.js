@@ -3,7 +3,7 @@
 const START = 8; // for a letter at the start of a word
 const NEXT = 5; // for a letter right after the one found before
 const EARLY = 3; // for a whole word of the search at the start of the text
-const MOST_GAP = 3; // the most that a gap between two letters costs
+const MAX_GAP = 3; // the most that a gap between two letters costs
 
 const isStart = (text, at) => at === 0 || /[^\p{L}\p{N}]/u.test(text[at - 1]);
 
@@ -30,7 +30,7 @@ function wordIn(word, text) {
         }
       }
       if (at < 0) return best;
-      score += at === after ? NEXT : isStart(text, at) ? START : -Math.min(MOST_GAP, at - after);
+      score += at === after ? NEXT : isStart(text, at) ? START : -Math.min(MAX_GAP, at - after);
       places.push(at);
     }
     if (best === null || score > best.score) best = { score, places };

@@ -3,8 +3,8 @@
 import { hasManual } from "../bar/models.js";
 import { signal } from "../vendor/preact.js";
 
-const MOST = 6;
-const LEAST = 3; // letters of a search
+const MAX_RESULTS = 6;
+const MIN_LETTERS = 3; // letters of a search
 const AROUND = 60; // letters of a text shown before the word found
 
 /** The sections of the manual: {title, page, text, low, address}; null before they have been read. `page` is the title of the page of a
@@ -41,7 +41,7 @@ function plainText(markup) {
  * the first word. */
 export function inManual(search) {
   const words = search.toLowerCase().split(/\s+/).filter(Boolean);
-  if (sections.value === null || words.join("").length < LEAST) return [];
+  if (sections.value === null || words.join("").length < MIN_LETTERS) return [];
   const found = [];
   for (const section of sections.value) {
     const title = section.title.toLowerCase();
@@ -50,7 +50,7 @@ export function inManual(search) {
     found.push({ section, score });
   }
   found.sort((one, other) => other.score - one.score);
-  return found.slice(0, MOST).map(({ section: { title, page, text, low, address } }) => {
+  return found.slice(0, MAX_RESULTS).map(({ section: { title, page, text, low, address } }) => {
     const at = Math.max(0, ...words.map((word) => low.indexOf(word)).filter((place) => place >= 0).slice(0, 1));
     const from = at > AROUND ? text.indexOf(" ", at - AROUND) + 1 : 0;
     return { title, page, text: `${from > 0 ? "… " : ""}${text.slice(from, from + 3 * AROUND)}`, address };

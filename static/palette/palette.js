@@ -8,8 +8,8 @@ import { match } from "./fuzzy.js";
 import { inManual, readManual } from "./manual_search.js";
 import { readRecordings } from "./recordings.js";
 
-const MOST_RECENT = 6;
-const MOST = 60; // entries shown
+const MAX_RECENT = 6;
+const MAX_ENTRIES = 60; // entries shown
 const WEAK = 0.6; // what fits worse than this share of the best is left out
 
 const shown = signal(0); // which opening of the palette is shown; 0 if none
@@ -34,7 +34,7 @@ function found() {
   }
   const rank = (one) => {
     const place = recent.value.indexOf(nameOf(one));
-    return place < 0 ? 0 : MOST_RECENT - place;
+    return place < 0 ? 0 : MAX_RECENT - place;
   };
   const hits = all
     .flatMap((of) => {
@@ -43,7 +43,7 @@ function found() {
     })
     .sort((one, other) => other.of.ready() - one.of.ready() || other.score - one.score);
   const best = Math.max(...hits.map(({ score }) => score));
-  return hits.filter(({ score }) => score > WEAK * best).slice(0, MOST);
+  return hits.filter(({ score }) => score > WEAK * best).slice(0, MAX_ENTRIES);
 }
 
 /** Returns everything that is offered. */
@@ -58,7 +58,7 @@ function offered() {
 function take({ of, heading }) {
   if (!of.ready()) return;
   shown.value = 0;
-  if (heading !== "Manual") recent.value = [nameOf(of), ...recent.value.filter((name) => name !== nameOf(of))].slice(0, MOST_RECENT);
+  if (heading !== "Manual") recent.value = [nameOf(of), ...recent.value.filter((name) => name !== nameOf(of))].slice(0, MAX_RECENT);
   setTimeout(() => run(of)); // after the palette has closed and given back the focus
 }
 

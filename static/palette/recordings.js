@@ -5,11 +5,11 @@ import { openRun } from "../runs/actions.js";
 import { listRuns, runs } from "../runs/list.js";
 import { nameOf } from "../runs/wording.js";
 
-const MOST = 300; // the newest
+const MAX_RECORDINGS = 300; // the newest
 
 /** Lists the recordings, if nothing else has done so. */
 export function readRecordings() {
   if (runs.peek() === null) listRuns();
 }
 
-commandsOf(() => (runs.value ?? []).slice(0, MOST).map((run) => ({ text: `Recording: ${nameOf(run)}`, group: run.id, work: () => openRun(run), ready: () => !run.problem })));
+commandsOf(() => (runs.value ?? []).slice(0, MAX_RECORDINGS).map((run) => ({ text: `Recording: ${nameOf(run)}`, group: run.id, work: () => openRun(run), ready: () => !run.problem })));

@@ -10,7 +10,7 @@ import { isGone, nothing } from "../run_status.js";
 import { session } from "../store.js";
 import { dark } from "../theme.js";
 
-const MOST_ROWS = 400;
+const MAX_ROWS = 400;
 const KINDS = [["objects", "Objects"], ["edges", "Edges"]];
 
 /** Returns the bodies of the run that have an eye. */
@@ -73,12 +73,12 @@ function Legend({ fields }) {
 
 function Edges({ view }) {
   const text = (value, at) => (Number.isInteger(value) && at < 2 ? String(value) : value.toFixed(DIGITS[view.fields[at].unit] ?? 3));
-  const rest = view.extents.length - MOST_ROWS;
+  const rest = view.extents.length - MAX_ROWS;
   return html`<${Legend} fields=${view.fields} />
     <table aria-label="Edges">
       <thead><tr>${view.fields.map((field) => html`<th class="number" key=${field.name} title="${field.title}: ${field.about}${field.unit ? ` [${field.unit}]` : ""}">${fieldText(field)}</th>`)}</tr></thead>
       <tbody>
-        ${view.extents.slice(0, MOST_ROWS).map((extent, n) => html`<tr key=${n}>${extent.map((value, at) => html`<td class="number">${text(value, at)}</td>`)}</tr>`)}
+        ${view.extents.slice(0, MAX_ROWS).map((extent, n) => html`<tr key=${n}>${extent.map((value, at) => html`<td class="number">${text(value, at)}</td>`)}</tr>`)}
       </tbody>
     </table>
     ${rest > 0 ? html`<p class="empty">${rest} more; «Copy as JSON» has all.</p>` : null}`;

@@ -15,7 +15,7 @@ import { remembered } from "../local_storage.js";
 import { nothing } from "../run_status.js";
 import { alive, running, session, state } from "../store.js";
 
-const MOST = 5000; // the maximum number of chunks requested
+const MAX_CHUNKS = 5000; // the maximum number of chunks requested
 const LIVE = 150; // a memory with at most this many chunks is also shown while the run is active
 const TYPED = 200; // the delay between the last key and the search [ms]
 
@@ -36,7 +36,7 @@ function Note({ result, schema }) {
   if (!result.answer) return null;
   const { rows, size, threshold } = result.answer;
   const found = rows.length === size ? counted(size, "chunk") : `${rows.length} of ${counted(size, "chunk")}`;
-  const cut = rows.length === MOST ? "; search for fewer" : "";
+  const cut = rows.length === MAX_CHUNKS ? "; search for fewer" : "";
   return html`<span class="quiet">${schema ? counted(schema.length, "posture") : `${found}${cut}${threshold === null ? "" : `, threshold ${valueText(threshold)}`}`}</span>`;
 }
 
@@ -65,7 +65,7 @@ function Chunks({ memory, schema }) {
   }, [typed]);
   const size = state.value?.parts[memory]?.state.size ?? 0;
   const live = size <= LIVE;
-  const result = useAnswer({ type: "memory", memory, words: words.slice(0, 200), most: MOST }, { live });
+  const result = useAnswer({ type: "memory", memory, words: words.slice(0, 200), most: MAX_CHUNKS }, { live });
   const mine = result.answer?.memory === memory ? result.answer : null;
   const found = schema && mine ? postures(mine.rows) : null;
   return html`<div class="tools">

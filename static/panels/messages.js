@@ -7,7 +7,7 @@ import { remembered } from "../local_storage.js";
 import { isSettled, notices, settle } from "../store.js";
 
 const LEVELS = { error: "Errors", warning: "Warnings", info: "Other" };
-const MOST = 300; // the maximum number drawn
+const MAX_DRAWN = 300; // the maximum number drawn
 
 const hidden = remembered("messages hidden", []);
 /** The messages that the user has not cleared. */
@@ -57,9 +57,9 @@ function Messages() {
     <${Filter} />
     ${list.length === 0 ? html`<p class="empty">${none}</p>` : null}
     <ol id="log" class="log" aria-live="polite" hidden=${list.length === 0}>
-      ${list.slice(0, MOST).map((notice) => html`<${Message} key=${notice.number} notice=${notice} />`)}
+      ${list.slice(0, MAX_DRAWN).map((notice) => html`<${Message} key=${notice.number} notice=${notice} />`)}
     </ol>
-    ${list.length > MOST ? html`<p class="empty">${list.length - MOST} older ones are not shown.</p>` : null}
+    ${list.length > MAX_DRAWN ? html`<p class="empty">${list.length - MAX_DRAWN} older ones are not shown.</p>` : null}
   </div>`;
 }
 

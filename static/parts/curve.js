@@ -4,7 +4,7 @@ import { numberText, roundRange, stepFor, ticks, timeText } from "./ticks.js";
 import { cut, widthOf } from "./surface.js";
 
 export const COLOURS = 6;
-const LEAST_RANGE = 0.01; // smaller differences are drawn as a straight line, not as amplified numerical noise
+const MIN_RANGE = 0.01; // smaller differences are drawn as a straight line, not as amplified numerical noise
 const BETWEEN = 4; // the minimum distance between two labels of an axis [px]
 const EDGE = 6; // the distance of the first and last text from the ends of an axis [px]
 
@@ -42,8 +42,8 @@ export function rangeOf(series) {
       if (value > most) most = value;
     }
   }
-  if (Math.max(Math.abs(least), Math.abs(most)) < LEAST_RANGE / 2) return [0, 1]; // nothing has moved yet
-  const room = Math.max(0, LEAST_RANGE - (most - least)) / 2;
+  if (Math.max(Math.abs(least), Math.abs(most)) < MIN_RANGE / 2) return [0, 1]; // nothing has moved yet
+  const room = Math.max(0, MIN_RANGE - (most - least)) / 2;
   return roundRange(least - room, most + room);
 }
 

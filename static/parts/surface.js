@@ -3,7 +3,7 @@
 import { colour } from "../theme.js";
 
 const measure = document.createElement("canvas").getContext("2d");
-const MOST_WIDTHS = 5000;
+const MAX_WIDTHS = 5000;
 const widths = new Map();
 
 /** Returns a font in CSS syntax. */
@@ -18,7 +18,7 @@ export function widthOf(text, style = {}) {
   if (width === undefined) {
     measure.font = fontOf(style);
     width = measure.measureText(text).width;
-    if (widths.size > MOST_WIDTHS) widths.clear();
+    if (widths.size > MAX_WIDTHS) widths.clear();
     widths.set(key, width);
   }
   return width;

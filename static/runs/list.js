@@ -6,7 +6,7 @@ import { session, state, way } from "../store.js";
 
 const PART = 250;
 const LATER = 700; // [ms]
-const MOST_TRIES = 5;
+const MAX_TRIES = 5;
 
 /** The summaries of recordings (`Summary` of the server), the newest first; null before the first arrive. */
 export const runs = signal(null);
@@ -58,7 +58,7 @@ function awaitEnd(mine) {
   const goesOn = own?.ended && own.time > furthest + 1e-6; // it had ended, but was changed in its past
   const late = own ? goesOn || (status === "ended" && !own.ended) : present.value !== null && session.value.alive;
   tries = late ? tries + 1 : 0;
-  if (tries > 0 && tries <= MOST_TRIES) setTimeout(() => mine === asked && listRuns(), LATER);
+  if (tries > 0 && tries <= MAX_TRIES) setTimeout(() => mine === asked && listRuns(), LATER);
 }
 
 /** The recordings that this page has deleted. */

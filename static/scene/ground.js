@@ -3,7 +3,7 @@
 
 import { palette } from "./palette.js";
 
-const MOST = 64; // the maximum number of shadows
+const MAX_SHADOWS = 64; // the maximum number of shadows
 const LIFT = 0.004; // their height above the ground [m]
 const RISE = 0.6; // the height over which the sky changes its colour above the horizon, as a part of the picture's
 const FADE = 0.12; // the same below the horizon
@@ -44,9 +44,9 @@ export class Ground {
     const Geometry = Object.getPrototypeOf(plane.constructor);
     const Attribute = Object.getPrototypeOf(plane.attributes.position.constructor);
     const geometry = new Geometry();
-    for (const [name, size] of [["position", 3], ["local", 2], ["form", 4]]) geometry.setAttribute(name, new Attribute(new Float32Array(4 * MOST * size), size));
+    for (const [name, size] of [["position", 3], ["local", 2], ["form", 4]]) geometry.setAttribute(name, new Attribute(new Float32Array(4 * MAX_SHADOWS * size), size));
     const corners = [];
-    for (let n = 0; n < MOST; n++) corners.push(...[0, 1, 2, 2, 1, 3].map((corner) => 4 * n + corner));
+    for (let n = 0; n < MAX_SHADOWS; n++) corners.push(...[0, 1, 2, 2, 1, 3].map((corner) => 4 * n + corner));
     geometry.setIndex(corners);
     const material = new Material({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { strength: { value: 0 } }, transparent: true, depthWrite: false });
     const mesh = new Mesh(geometry, material);
@@ -59,7 +59,7 @@ export class Ground {
   shade(shades, ground) {
     const { geometry } = this.shades;
     const { position, local, form } = geometry.attributes;
-    const count = Math.min(MOST, shades.length);
+    const count = Math.min(MAX_SHADOWS, shades.length);
     for (let n = 0; n < count; n++) {
       const [x, y, c, s, a, b, soft, dark] = shades[n];
       for (let corner = 0; corner < 4; corner++) {

@@ -4,19 +4,19 @@ import { html, useSignal } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { chosen, names, plot, plotUsual, titleOf } from "./curves.js";
 
-const MOST = 40; // the maximum number of curves shown of one list: the others are found by their names
+const MAX_LISTED = 40; // the maximum number of curves shown of one list: the others are found by their names
 
 function Group({ title, curves, all }) {
   const units = [...new Set(curves.map(({ unit }) => unit))].filter(Boolean).join(", ");
   return html`<fieldset>
     <legend>${title} ${units ? html`<span class="quiet">[${units}]</span>` : null}</legend>
-    ${curves.slice(0, all ? curves.length : MOST).map(
+    ${curves.slice(0, all ? curves.length : MAX_LISTED).map(
       ({ name }) => html`<label key=${name} title=${name}>
         <input type="checkbox" checked=${chosen.value.includes(name)} onChange=${(event) => plot(name, event.currentTarget.checked)} />
         <span>${name}</span>
       </label>`,
     )}
-    ${!all && curves.length > MOST ? html`<p class="quiet">${counted(curves.length - MOST, "other")}: filter by name</p>` : null}
+    ${!all && curves.length > MAX_LISTED ? html`<p class="quiet">${counted(curves.length - MAX_LISTED, "other")}: filter by name</p>` : null}
   </fieldset>`;
 }
 

@@ -4,7 +4,7 @@
 import { partName } from "../inspector/part_names.js";
 import { firstFrom } from "../parts/curve.js";
 
-const MOST = 5000; // the maximum number of curves
+const MAX_CURVES = 5000; // the maximum number of curves
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
 /** Returns a value as a number, also if it is written as text; null if it is none. */
@@ -54,7 +54,7 @@ export class Numbers {
   /** Returns a curve, and creates it if it is new; null if there are too many. `of` is the list it belongs to. */
   curve(name, unit, group, of = group) {
     let curve = this.curves.get(name);
-    if (!curve && this.curves.size < MOST) this.curves.set(name, (curve = new NumberCurve(name, unit, group, of)));
+    if (!curve && this.curves.size < MAX_CURVES) this.curves.set(name, (curve = new NumberCurve(name, unit, group, of)));
     return curve ?? null;
   }
 

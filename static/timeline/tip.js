@@ -7,7 +7,7 @@ import { bandText } from "./lanes.js";
 
 const NEAR = 4; // the maximum distance of a mark from the pointer [px]
 const AWAY = 14; // from the pointer [px]
-const MOST = 1200; // the maximum number of characters
+const MAX_CHARACTERS = 1200; // the maximum number of characters
 
 /** Returns what is at a position: {row, time, band}. */
 export function found(row, time, secondsPerPixel) {
@@ -23,8 +23,8 @@ function Times({ band }) {
 
 function OfBand({ row, band }) {
   return html`<p><b>${row.lane.label}</b></p>
-    ${bandText(band) ? html`<p class="mono">${bandText(band).slice(0, MOST)}</p>` : null}
-    ${band.more ? html`<p class="quiet">${String(band.more).slice(0, MOST)}</p>` : null}
+    ${bandText(band) ? html`<p class="mono">${bandText(band).slice(0, MAX_CHARACTERS)}</p>` : null}
+    ${band.more ? html`<p class="quiet">${String(band.more).slice(0, MAX_CHARACTERS)}</p>` : null}
     <${Times} band=${band} />`;
 }
 

@@ -4,7 +4,7 @@ import { session } from "../store.js";
 import { effect, signal } from "../vendor/preact.js";
 
 const LADDER = [1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.3, 8, 10];
-const LEAST = 0.02; // the shortest visible stretch [s]
+const MIN_SPAN = 0.02; // the shortest visible stretch [s]
 const AHEAD = 0.1; // the part of the width that stays free after the newest moment
 
 /** The first and last visible time [s]. */
@@ -14,7 +14,7 @@ export const mode = signal("fit");
 
 /** Returns the length of an axis for a whole run [s]: it grows in steps, so that its contents do not move all the time;
  * one second for a run at its start. */
-export function fitEnd(furthest, least = LEAST) {
+export function fitEnd(furthest, least = MIN_SPAN) {
   const wanted = furthest > 0 ? Math.max(least, furthest * 1.01) : 1;
   const power = 10 ** Math.floor(Math.log10(wanted));
   return power * LADDER.find((step) => step * power >= wanted);
@@ -27,7 +27,7 @@ function show(from, to) {
 /** Moves the view to the run's time; while the run is active, before the present reaches the edge. */
 export function settle(present, furthest, running) {
   const { from, to } = span.peek();
-  if (mode.value === "fit") show(0, fitEnd(furthest, running ? 1 : LEAST)); // otherwise a starting run would move it at once
+  if (mode.value === "fit") show(0, fitEnd(furthest, running ? 1 : MIN_SPAN)); // otherwise a starting run would move it at once
   else if (mode.value === "follow") {
     const width = to - from;
     if (present > to - (running ? AHEAD * width : 0)) show(present - (1 - AHEAD) * width, present + AHEAD * width);
@@ -46,7 +46,7 @@ effect(() => {
 
 function choose(from, to, present, furthest) {
   const end = fitEnd(furthest);
-  const width = Math.min(Math.max(to - from, LEAST), end);
+  const width = Math.min(Math.max(to - from, MIN_SPAN), end);
   const begin = Math.min(Math.max(0, from), end - width);
   show(begin, begin + width);
   if (width >= end) mode.value = "fit";
@@ -56,7 +56,7 @@ function choose(from, to, present, furthest) {
 /** Shows a stretch `factor` times as long, in which a given moment keeps its position. */
 export function zoom(factor, about, present, furthest) {
   const { from, to } = span.peek();
-  const width = Math.min(Math.max((to - from) * factor, LEAST), fitEnd(furthest));
+  const width = Math.min(Math.max((to - from) * factor, MIN_SPAN), fitEnd(furthest));
   const share = (about - from) / (to - from);
   choose(about - share * width, about + (1 - share) * width, present, furthest);
 }

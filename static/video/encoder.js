@@ -4,16 +4,16 @@ import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Output, WebMOutp
 
 const CODECS = { vp9: "vp09.00.50.08", vp8: "vp8" }; // of WebM, the better one first
 const BITS = 0.15; // of the file, per pixel and picture
-const MOST_BITS = 8e6; // of the file, per second: ten minutes fit into memory
+const MAX_BITS = 8e6; // of the file, per second: ten minutes fit into memory
 const BETWEEN_KEYS = 60; // pictures from one that players can jump to, to the next
-const MOST_QUEUED = 4; // pictures that wait to be compressed
+const MAX_QUEUED = 4; // pictures that wait to be compressed
 
 /** Returns the settings of an encoder for a size [pixels] and a number of pictures a second, as [codec, settings]; null if this browser
  * has none. */
 export async function encoderFor({ width, height }, rate) {
   if (typeof VideoEncoder === "undefined") return null;
   for (const [name, codec] of Object.entries(CODECS)) {
-    const settings = { codec, width, height, framerate: rate, bitrate: Math.round(Math.min(MOST_BITS, BITS * width * height * rate)) };
+    const settings = { codec, width, height, framerate: rate, bitrate: Math.round(Math.min(MAX_BITS, BITS * width * height * rate)) };
     if ((await VideoEncoder.isConfigSupported(settings)).supported) return [name, settings];
   }
   return null;
@@ -42,7 +42,7 @@ export class VideoFile {
 
   /** Adds the picture with a number, counted from 0; waits while too many are being compressed. */
   async add(canvas, number) {
-    while (this.encoder.encodeQueueSize >= MOST_QUEUED) {
+    while (this.encoder.encodeQueueSize >= MAX_QUEUED) {
       await Promise.race([new Promise((done) => this.encoder.addEventListener("dequeue", done, { once: true })), this.failed]);
     }
     if (this.failure) throw this.failure;

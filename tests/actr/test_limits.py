@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from actr3d.actr import Model
-from actr3d.actr.kernel.run_limits import MOST_REFUSALS, EndOfRun, RunLimits
+from actr3d.actr.kernel.run_limits import MAX_REFUSALS, EndOfRun, RunLimits
 from actr3d.actr.loading import run_text
 from actr3d.runner.run import run_model
 from actr3d.simulation import Simulation
@@ -86,7 +86,7 @@ def test_a_model_that_swallows_every_end_is_stopped_by_the_last_resort() -> None
     with RunLimits(until=1, last_resort=lambda: called.append(1)):
         model: Any = Clock()
         model.run()
-        for _ in range(MOST_REFUSALS + 1):
+        for _ in range(MAX_REFUSALS + 1):
             assert called == []
             with pytest.raises(EndOfRun):
                 model.run()

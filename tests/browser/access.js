@@ -1,6 +1,6 @@
 // What of a page cannot be read, named or reached by keyboard: a list of texts. Frames are not looked into.
 () => {
-  const LEAST = 4.5; // contrast of text, WCAG 2.2 AA
+  const MIN_CONTRAST = 4.5; // contrast of text, WCAG 2.2 AA
   const LARGE = 3; // and of large text, 24 px, or 18.66 px and bold
   const INTERACTIVE = "button, a[href], input, select, textarea, summary, [role=tab], [role=slider], [role=separator][tabindex], [role=checkbox], [role=button]";
   const found = [];
@@ -50,7 +50,7 @@
     const back = behind(element);
     const [r, g, b, a] = rgba(colour);
     const ratio = contrast(over([r, g, b, a * opacity], back), back);
-    if (ratio < (large ? LARGE : LEAST) - 0.005) found.push(`contrast ${ratio.toFixed(2)} of ${what}: ${say(element)}`);
+    if (ratio < (large ? LARGE : MIN_CONTRAST) - 0.005) found.push(`contrast ${ratio.toFixed(2)} of ${what}: ${say(element)}`);
   }
 
   for (const element of document.body.querySelectorAll("*")) {

@@ -285,7 +285,7 @@ def test_a_recording_of_another_format_is_refused(tmp_path: Path) -> None:
 def test_the_run_waits_for_a_slow_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from actr3d.recording import recording as module
 
-    monkeypatch.setattr(module, "MOST_WAITING", 50)
+    monkeypatch.setattr(module, "MAX_WAITING", 50)
     simulation = driving()
     with simulation.record(tmp_path / "run") as recording:
         most = 0

@@ -142,7 +142,7 @@ def test_on_a_full_disk_nothing_is_changed_and_the_known_part_of_the_run_can_sti
 
 def test_branches_of_one_run_are_not_without_number(tmp_path: Path) -> None:
     origin = tmp_path / "doorway-20260101-101010-abcd.sqlite"
-    made = [retention.new_branch(origin, 0.01 * n) for n in range(retention.MOST_BRANCHES + 3)]
+    made = [retention.new_branch(origin, 0.01 * n) for n in range(retention.MAX_BRANCHES + 3)]
     for path in (
         *made,
         origin,

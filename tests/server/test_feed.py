@@ -70,7 +70,7 @@ def test_the_log_keeps_events_by_number() -> None:
 
 
 def test_the_log_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(event_log, "MOST_EVENTS", 10)
+    monkeypatch.setattr(event_log, "MAX_EVENTS", 10)
     log = EventLog()
     for number in range(25):
         log.add(number, numbered(number))
@@ -126,7 +126,7 @@ def test_a_run_that_goes_another_way_takes_events_back() -> None:
 
 
 def test_a_slow_browser_learns_of_its_gap(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(event_log, "MOST_EVENTS", 4)
+    monkeypatch.setattr(event_log, "MAX_EVENTS", 4)
     shown = Shown()
     shown.add(0)
     feed = Feed(shown, "page 1")

@@ -163,15 +163,15 @@ def test_nothing_is_loaded_and_nothing_a_model_says_is_run(desk: Desk, tmp_path:
 
 
 def test_long_runs_and_large_scenes_have_bounds(walked: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(make, "MOST_FRAMES", 10)
-    monkeypatch.setattr(make, "MOST_EVENTS", 5)
+    monkeypatch.setattr(make, "MAX_FRAMES", 10)
+    monkeypatch.setattr(make, "MAX_EVENTS", 5)
     write_replay(walked, tmp_path / "replay.html")
     told = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))
     assert len(numbers(told["scene"]["times"])) <= 10
     assert numbers(told["scene"]["times"])[-1] == 1
     assert len(told["events"]["rows"]) == 5
     assert told["events"]["more"] > 50
-    monkeypatch.setattr(shapes, "MOST_CORNERS", 100)
+    monkeypatch.setattr(shapes, "MAX_CORNERS", 100)
     with pytest.raises(RecordingError, match="too many triangles"):
         write_replay(walked, tmp_path / "replay.html")
 

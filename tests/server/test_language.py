@@ -23,7 +23,7 @@ from workbench.app import make_app
 from workbench.language import language_server
 from workbench.language.answers import LanguageError
 from workbench.language.explicit_names import ExplicitText
-from workbench.language.language_server import LONGEST_TEXT, MOST_WAITING, LanguageServer, TooManyQuestionsError
+from workbench.language.language_server import LONGEST_TEXT, MAX_WAITING, LanguageServer, TooManyQuestionsError
 from workbench.language.language_worker import safe_path
 from workbench.language.model_text import ModelText
 from workbench.language.python_answers import Python
@@ -417,12 +417,12 @@ def test_a_process_that_has_ended_is_replaced(alone: Asked, desk: Desk) -> None:
 
 def test_questions_at_once_are_answered_in_turn_and_too_many_refused(alone: Asked, desk: Desk) -> None:
     async def asked() -> list[Any]:
-        questions = (alone.server.ask(question("complete", f"name_{number} = 1\nname_{number}|")) for number in range(MOST_WAITING + 5))
+        questions = (alone.server.ask(question("complete", f"name_{number} = 1\nname_{number}|")) for number in range(MAX_WAITING + 5))
         return await asyncio.gather(*questions, return_exceptions=True)
 
     answers = desk.do(asked())
-    assert [json.loads(answer)["items"][0]["label"] for answer in answers[:MOST_WAITING]] == [f"name_{n}" for n in range(MOST_WAITING)]
-    assert [type(answer) for answer in answers[MOST_WAITING:]] == [TooManyQuestionsError] * 5
+    assert [json.loads(answer)["items"][0]["label"] for answer in answers[:MAX_WAITING]] == [f"name_{n}" for n in range(MAX_WAITING)]
+    assert [type(answer) for answer in answers[MAX_WAITING:]] == [TooManyQuestionsError] * 5
 
 
 @pytest.mark.daily(4)

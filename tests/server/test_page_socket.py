@@ -15,7 +15,7 @@ from tests.helpers.workbench_server import Served, served
 from tests.server.test_live import attached, heard, opened
 from workbench.page_commands import COMMANDS
 from workbench.page_commands.session import Restart, Stop
-from workbench.sockets import LONGEST, MOST_PAGES
+from workbench.sockets import LONGEST, MAX_PAGES
 
 
 @pytest.fixture(scope="module")
@@ -135,7 +135,7 @@ def test_who_asks_without_end_and_reads_nothing_is_sent_away(server: Served, ses
 
 def test_there_is_a_bound_to_pages(server: Served, session: str) -> None:
     async def talk() -> None:
-        sockets = [await attached(server, session) for _ in range(MOST_PAGES)]
+        sockets = [await attached(server, session) for _ in range(MAX_PAGES)]
         with pytest.raises((websockets.ConnectionClosed, websockets.InvalidStatus)):
             await (await attached(server, session)).recv()
         for socket in sockets:

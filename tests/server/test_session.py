@@ -401,7 +401,7 @@ def test_two_sessions_at_once(desk: Desk, tmp_path: Path) -> None:
 
 
 def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
-    from workbench.sessions import MOST, SessionError
+    from workbench.sessions import MAX_SESSIONS, SessionError
 
     sessions = desk.sessions(tmp_path)
     (tmp_path / "model.py").write_text("x = 1\n", encoding="utf-8")
@@ -411,7 +411,7 @@ def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
         session.join("somebody")
         return session
 
-    opened = [desk.do(open_watched()) for _ in range(MOST)]
+    opened = [desk.do(open_watched()) for _ in range(MAX_SESSIONS)]
     for session in opened:
         Talk(desk, session, sessions).until("paused")
     with pytest.raises(SessionError, match="each is shown on a page or still running"):
@@ -419,11 +419,11 @@ def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
     # One that nobody watches any more makes room.
     opened[3].part(opened[3].feeds[0])
     desk.do(open_watched())
-    assert [session.name for session in sessions.all()] == ["s1", "s2", "s3", "s5", "s6", "s7", "s8", f"s{MOST + 1}"]
+    assert [session.name for session in sessions.all()] == ["s1", "s2", "s3", "s5", "s6", "s7", "s8", f"s{MAX_SESSIONS + 1}"]
 
 
 def test_there_is_a_bound_to_sessions_that_are_opened_at_once(desk: Desk, tmp_path: Path) -> None:
-    from workbench.sessions import MOST
+    from workbench.sessions import MAX_SESSIONS
 
     sessions = desk.sessions(tmp_path)
     (tmp_path / "model.py").write_text("x = 1\n", encoding="utf-8")
@@ -435,10 +435,10 @@ def test_there_is_a_bound_to_sessions_that_are_opened_at_once(desk: Desk, tmp_pa
 
         return desk.do(open_all())
 
-    for session in opening(MOST):
+    for session in opening(MAX_SESSIONS):
         Talk(desk, session, sessions).until("paused")
-    opening(MOST)
-    assert len(sessions.all()) == MOST
+    opening(MAX_SESSIONS)
+    assert len(sessions.all()) == MAX_SESSIONS
 
 
 @pytest.mark.parametrize("where", ["launch", "recording"])

@@ -85,7 +85,7 @@ def test_a_run_whose_agents_use_what_going_back_cannot_undo_says_so_and_does_not
 @pytest.mark.slow
 @pytest.mark.parametrize("answers", [10_000, 7, 0], ids=["all answers", "first answers", "no answers"])
 def test_any_past_time_comes_back_exactly_and_goes_on_exactly(answers: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(timeline, "MOST_ANSWERS", answers)
+    monkeypatch.setattr(timeline, "MAX_ANSWERS", answers)
     monkeypatch.setattr(timeline, "SPACING", 10)
     simulation, digests = first_run()
     choose = random.Random(1)
@@ -113,7 +113,7 @@ def test_known_answers_are_not_asked_for_again(monkeypatch: pytest.MonkeyPatch) 
 
 def test_many_states_are_thinned_out_and_still_lead_anywhere(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(timeline, "SPACING", 2)
-    monkeypatch.setattr(timeline, "MOST_STATES", 5)
+    monkeypatch.setattr(timeline, "MAX_STATES", 5)
     simulation, digests = first_run()
     assert len(simulation.timeline._history._states) <= 6
     for tick in (7, 163, 50, 199):

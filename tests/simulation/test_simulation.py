@@ -523,8 +523,8 @@ def test_a_body_without_requests_is_asked_nothing(asked: Counter[str]) -> None:
 
 @pytest.mark.slow
 def test_many_ticks_neither_drift_nor_grow(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(timeline, "MOST_STATES", 8)
-    monkeypatch.setattr(timeline, "MOST_ANSWERS", 100)
+    monkeypatch.setattr(timeline, "MAX_STATES", 8)
+    monkeypatch.setattr(timeline, "MAX_ANSWERS", 100)
     simulation = driving()
     simulation.run(2)
     tracemalloc.start()

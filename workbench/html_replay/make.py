@@ -24,12 +24,12 @@ from workbench.scene_framing import SceneFraming
 
 RATE = 30
 """About this many frames per second of simulated time are stored; the page interpolates between them."""
-MOST_FRAMES = 20_000
-MOST_NUMBERS = 7_000_000
+MAX_FRAMES = 20_000
+MAX_NUMBERS = 7_000_000
 """Maximum number of pose values, 4 bytes each; long runs, or those with many bodies, get fewer frames."""
-MOST_EVENTS = 50_000
+MAX_EVENTS = 50_000
 """Maximum number of events; only the first are included."""
-MOST_STAGED = 2_000
+MAX_STAGED = 2_000
 """If the stage has more corners, those of its bounding box are used instead."""
 LONGEST = 400
 """Maximum length of an event's text [characters]."""
@@ -82,7 +82,7 @@ def _events(recorded: Recorded) -> dict[str, Any]:
     rows: list[tuple[float, str, str, str]] = []
     result: dict[str, Any] | None = None
     for event in recorded.events():
-        if len(rows) < MOST_EVENTS:
+        if len(rows) < MAX_EVENTS:
             rows.append((event.time, event.source, event.kind, _text(event)))
         if event.kind == "result":
             result = dict(event.data)
@@ -137,7 +137,7 @@ def _scene(recorded: Recorded, agents: Sequence[str]) -> dict[str, Any] | None:
     shapes = Shapes(model)
     bodies = shapes.bodies
     ticks = recorded.ticks
-    most = max(2, min(MOST_FRAMES, MOST_NUMBERS // (7 * max(1, len(bodies)))))
+    most = max(2, min(MAX_FRAMES, MAX_NUMBERS // (7 * max(1, len(bodies)))))
     every = max(1, round(MICROSECONDS / RATE / period), stride(ticks + 1, most - 1))
     times: list[float] = []
 
@@ -161,7 +161,7 @@ def _scene(recorded: Recorded, agents: Sequence[str]) -> dict[str, Any] | None:
 def _stage(stage: SceneFraming, bodies: list[int]) -> dict[str, Any]:
     """Returns the part of the scene that is shown first, and the shape that the view follows: the body, or the next one after it."""
     low, high = stage.corners.min(axis=0), stage.corners.max(axis=0)
-    corners = stage.corners if len(stage.corners) <= MOST_STAGED else np.array(list(itertools.product(*zip(low, high, strict=True))))
+    corners = stage.corners if len(stage.corners) <= MAX_STAGED else np.array(list(itertools.product(*zip(low, high, strict=True))))
     follow = next((number for number, body in enumerate(bodies) if body >= stage.body), 0)
     return {
         "corners": corners.round(3).tolist(),

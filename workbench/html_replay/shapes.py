@@ -13,7 +13,7 @@ from mujoco import MjData, MjModel, mjtGeom
 from actr3d.errors import RecordingError
 from workbench.curves import INTEGRATION
 
-MOST_CORNERS = 1_500_000
+MAX_CORNERS = 1_500_000
 """Maximum total number of corners and triangles in a scene; each has three 4-byte numbers."""
 CORNERS = {"box": 20, "sphere": 1_500, "ellipsoid": 1_500, "capsule": 1_600, "cylinder": 260}
 """Number of corners and triangles that the page creates for each kind of primitive shape."""
@@ -88,7 +88,7 @@ class Shapes:
 
     def _count(self, corners: int) -> None:
         self._corners += corners
-        if self._corners > MOST_CORNERS:
+        if self._corners > MAX_CORNERS:
             raise RecordingError("the scene has too many triangles for a replay in one file")
 
 

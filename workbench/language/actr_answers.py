@@ -31,7 +31,7 @@ OWN, KNOWN, OTHER = 3, 2, 0
 """The ranks of completions: used with the same part, given by the library, used with other parts."""
 _SLOT = re.compile(r"(\??[\w.]+):(.*)", re.DOTALL)
 _SIGN = re.compile(r"(!?\??)[<>=]*([\w.-]*)$")
-MOST_NAMED = 8
+MAX_NAMED = 8
 """How many names are listed in a documentation."""
 
 
@@ -288,8 +288,8 @@ def _of_production(model: ModelText, method: Method) -> str:
 def _listed(what: str, names: Iterable[str]) -> str:
     """Returns names without repetitions as a line of text; an empty text without names."""
     distinct = list(dict.fromkeys(name for name in names if name))
-    more = f" and {len(distinct) - MOST_NAMED} more" if len(distinct) > MOST_NAMED else ""
-    return f"{what} {', '.join(distinct[:MOST_NAMED])}{more}" if distinct else ""
+    more = f" and {len(distinct) - MAX_NAMED} more" if len(distinct) > MAX_NAMED else ""
+    return f"{what} {', '.join(distinct[:MAX_NAMED])}{more}" if distinct else ""
 
 
 # -- definition and renaming

@@ -17,7 +17,7 @@ START_TIME = 30.0
 """Maximum time for the first answer of a process, which loads what it needs [s]."""
 MEMORY = 1_500
 """Maximum memory of the process [MB], if that of a model is not less."""
-MOST_WAITING = 20
+MAX_WAITING = 20
 """Maximum number of questions that wait for their turn."""
 LONGEST_TEXT = 200_000
 """Maximum length of a text that is read [characters]."""
@@ -57,7 +57,7 @@ class LanguageServer(Receiver):
             LanguageError: If there is no answer, or not in time.
             OSError: If no process can be started.
         """
-        if self._waiting >= MOST_WAITING:
+        if self._waiting >= MAX_WAITING:
             raise TooManyQuestionsError("too many questions about texts wait already")
         self._waiting += 1
         try:

@@ -30,7 +30,7 @@ KINDS = {
     "statement": "variable",
 }
 """The kinds of the page's completions, by jedi's."""
-MOST_ITEMS = 400
+MAX_ITEMS = 400
 LONGEST_DOCUMENTATION = 4_000
 """How much of a documentation is shown [characters]."""
 
@@ -75,7 +75,7 @@ class Python:
         start = column - len(found[0].name_with_symbols) + len(found[0].complete or "") if found else column
         if start == column or _before(explicit, line, start + 1) != "_":
             found = [one for one in found if not one.name.startswith("_")]
-        found = found[:MOST_ITEMS]
+        found = found[:MAX_ITEMS]
         owners = (
             [f"{one.full_name}." for one in script.infer(line, start - 2)] if start > 1 and _before(explicit, line, start) == "." else []
         )

@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     from actr3d.vision import Feature, Opening, Sighting
     from actr3d.world.body import Body
 
-MOST_LABELS = 24
+MAX_LABELS = 24
 """Maximum number of labels."""
-MOST = 24
+MAX_DRAWN = 24
 """Maximum number of features of one search that are drawn."""
 DIAMOND = 0.08
 """Half the height of the mark of a feature without a size [m]."""
 OLD = 1.0
 """Age from which a label says when its feature was seen [s]: the agent may have moved on since, and the world have changed."""
-LEAST = 0.01
+MIN_HEIGHT = 0.01
 """Minimum height at which an obstacle without a height is drawn [m]."""
 
 
@@ -58,7 +58,7 @@ class Features(Overlay):
             parts = [line for feature in found if feature["chosen"] is chosen for line in feature["lines"]]
             lines.set(np.array(parts, dtype=np.float32).reshape(-1, 2, 3))
         # If there are too many, features that received attention come first.
-        first = sorted(found, key=lambda feature: not feature["chosen"])[:MOST_LABELS]
+        first = sorted(found, key=lambda feature: not feature["chosen"])[:MAX_LABELS]
         labels = [{"text": one["text"], "place": [float(x) for x in one["place"]], "chosen": one["chosen"]} for one in first]
         self.labels = [label for label in labels if np.isfinite(label["place"]).all()]
 
@@ -74,7 +74,7 @@ def drawn_features(agent: Model, body: Body) -> list[dict[str, Any]]:
 
     drawn: list[dict[str, Any]] = []
     for _, search in groupby(sightings(agent, body), key=lambda one: (one.module, one.bottom_up)):
-        found = list(islice(search, MOST))
+        found = list(islice(search, MAX_DRAWN))
         points = points_of(found[0].view)
         for sighting in found:
             lines = _outline(sighting, points)
@@ -110,7 +110,7 @@ def _outline(sighting: Sighting, points: Places) -> Places:
     upper_left, upper_right, lower_right, lower_left = np.array(sighting.corners)
     if isinstance(sighting.feature, Obstacle):
         lower, upper = (lower_left + lower_right) / 2, (upper_left + upper_right) / 2
-        upper[2] = max(upper[2], lower[2] + LEAST)
+        upper[2] = max(upper[2], lower[2] + MIN_HEIGHT)
         return np.array([[lower, upper]])
     if not isinstance(sighting.feature, Opening):
         return _frame(sighting)

@@ -13,7 +13,7 @@ from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
 
 SCALE = 0.6
 """Length of the drawn pyramid [m]."""
-LEAST_HEAD = 0.05
+MIN_HEAD = 0.05
 """Minimum radius of a head [m]; what is smaller is an eyeball or the like."""
 COLOUR = (91, 127, 166)
 
@@ -93,7 +93,7 @@ def _head(model: MjModel, site: int) -> int | None:
     mujoco.mj_kinematics(model, data)
     body = int(model.site_bodyid[site]) if site >= 0 else 0
     while body > 0:
-        own = np.flatnonzero((model.geom_bodyid == body) & (model.geom_rgba[:, 3] > 0) & (model.geom_rbound >= LEAST_HEAD))
+        own = np.flatnonzero((model.geom_bodyid == body) & (model.geom_rgba[:, 3] > 0) & (model.geom_rbound >= MIN_HEAD))
         if own.size:
             return int(own[np.argmin(np.linalg.norm(data.geom_xpos[own] - data.site_xpos[site], axis=1))])
         body = int(model.body_parentid[body])

@@ -45,7 +45,7 @@ from workbench.worker.messages import (
 
 WIRE_LOST = 88
 """The exit code of a worker whose model has closed the connection to the server, or has replaced it."""
-MOST_MESSAGES = 1_000
+MAX_MESSAGES = 1_000
 """The maximum number of messages that wait to be sent; beyond it warnings are left out."""
 
 
@@ -158,7 +158,7 @@ class Channel:
         if isinstance(message, Notice) and self.events is not None:
             message = msgspec.structs.replace(message, events=self.events())
         with self._something:
-            if isinstance(message, Notice) and len(self._messages) >= MOST_MESSAGES and message.level != "error":
+            if isinstance(message, Notice) and len(self._messages) >= MAX_MESSAGES and message.level != "error":
                 return
             if isinstance(message, (Reply, At, Facts)) and self._state is not None:
                 self._flush_events()

@@ -14,7 +14,7 @@ from actr3d.trace import TraceEvent
 from workbench.worker.messages import Notice, notice
 from workbench.worker.truncation import event_json
 
-MOST_EVENTS = 50_000
+MAX_EVENTS = 50_000
 """Maximum number of events that are shown before the run reaches them; the server keeps as many in memory."""
 
 
@@ -63,8 +63,8 @@ class KnownRun:
         text = event_json(event)
         self._digests.append(hash(text))
         self.events.append(text)
-        if len(self.events) > 2 * MOST_EVENTS:
-            del self.events[:-MOST_EVENTS]
+        if len(self.events) > 2 * MAX_EVENTS:
+            del self.events[:-MAX_EVENTS]
 
     def difference(self, number: int, events: Sequence[TraceEvent]) -> int | None:
         """Returns the number of the first event that differs from the recorded one; None if all agree.

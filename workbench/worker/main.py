@@ -24,7 +24,7 @@ from workbench.loader import listing_of
 from workbench.worker.channel import Channel
 from workbench.worker.error_report import notice_of
 from workbench.worker.memory import watch_memory
-from workbench.worker.messages import MOST_PRINTED, Over, Reply, notice
+from workbench.worker.messages import MAX_PRINTED, Over, Reply, notice
 from workbench.worker.orphans import adopt
 from workbench.worker.run_controller import RunController
 
@@ -76,9 +76,9 @@ def _errors(channel: Channel, controller: RunController) -> ModelOutput:
                 os.write(2, f"{line}\n".encode(errors="replace"))
         elif line.strip() and not controller.catches_up:
             count += 1
-            if count <= MOST_PRINTED:
+            if count <= MAX_PRINTED:
                 channel.post(notice("info", line.rstrip()))
-            elif count == MOST_PRINTED + 1:
+            elif count == MAX_PRINTED + 1:
                 channel.post(notice("warning", "the model writes much more to its standard error; that is left out"))
 
     return ModelOutput(take, 2)

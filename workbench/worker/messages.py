@@ -183,7 +183,7 @@ class Share(Message, frozen=True, kw_only=True):
     done: float
 
 
-MOST_PRINTED = 200
+MAX_PRINTED = 200
 """How many lines that a worker prints other than by its model's `print` are shown; the rest is dropped."""
 
 

@@ -18,7 +18,7 @@ from actr3d.errors import Actr3dError, did_you_mean
 from workbench.loader import ModelListing
 from workbench.worker.messages import Notice, notice
 
-MOST_NAMES = 12
+MAX_NAMES = 12
 """Maximum number of known names in an error message about an unknown one."""
 
 
@@ -79,7 +79,7 @@ class Names:
         """
         found = [name] if name in self.buffers else sorted(path for path in self.buffers if path.endswith(f".{name}"))
         if len(found) > 1:
-            raise Actr3dError(f"there are several buffers '{name}': {', '.join(found[:MOST_NAMES])}; name one of these")
+            raise Actr3dError(f"there are several buffers '{name}': {', '.join(found[:MAX_NAMES])}; name one of these")
         if not found:
             self.check("buffer", name)
         return found[0] if found else name
@@ -136,8 +136,8 @@ def _numbered(name: str, known: frozenset[str]) -> bool:
 def there_are(known: Iterable[str]) -> str:
     """Returns the end of an error message about an unknown name: the first of the known ones, and how many more there are."""
     names = sorted(known)
-    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    return f"; there are: {', '.join(names[:MOST_NAMES]) or 'none'}{more}"
+    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    return f"; there are: {', '.join(names[:MAX_NAMES]) or 'none'}{more}"
 
 
 def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:

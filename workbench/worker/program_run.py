@@ -41,9 +41,9 @@ from workbench.worker.shown import Kept, Shown
 
 PERIOD = 10_000
 """The length of a step [us]: that of a tick of a simulation."""
-MOST_RUNS = 8
+MAX_RUNS = 8
 """How many of the models that a program makes are shown: the latest ones."""
-MOST_SIMULATIONS = 4
+MAX_SIMULATIONS = 4
 """How many of its simulations keep their past."""
 
 
@@ -140,7 +140,7 @@ class ProgramRun(ControlledRun):
         """The number of simulations that have begun."""
         self._simulations: dict[int, tuple[Shown, int]] = {}
         """The latest of them by number, and when each began [us]. After going back, those that have not begun again are included."""
-        self._held: deque[tuple[int, Run, Any]] = deque(maxlen=MOST_RUNS)
+        self._held: deque[tuple[int, Run, Any]] = deque(maxlen=MAX_RUNS)
         """The numbers of the latest runs, these, and their models."""
         self._runs = 0
         """How many runs there have been."""
@@ -405,10 +405,10 @@ class ProgramRun(ControlledRun):
             self._begun += 1
             self._shown = shown = Shown(simulation, self._kept.get(self._begun))
             self._kept[self._begun] = shown.kept
-            if len(self._kept) > MOST_SIMULATIONS:
+            if len(self._kept) > MAX_SIMULATIONS:
                 self._kept.pop(next(number for number in self._kept if number != self._begun))
             self._simulations[self._begun] = shown, self._clock
-            if len(self._simulations) > MOST_SIMULATIONS:
+            if len(self._simulations) > MAX_SIMULATIONS:
                 del self._simulations[max(self._simulations, key=lambda number: abs(number - self._begun))]
 
     # -- calls from the controller; `ControlledRun` describes them

@@ -19,9 +19,9 @@ from workbench.worker.messages import Reply, Share, shortened
 
 STEP = 0.001
 """Progress is reported in steps of this share."""
-MOST_TEXT = 20_000
+MAX_TEXT = 20_000
 """Maximum length of the text about the differences [characters]."""
-LEAST_ROOM = 1_000_000_000
+MIN_ROOM = 1_000_000_000
 """Minimum limit for the size of a file made from recordings [bytes]."""
 ROOM = 10
 """The limit is also this multiple of the recordings' size: text tables are larger than numbers and compressed text."""
@@ -41,9 +41,9 @@ def replay_again(channel: Channel) -> None:
     try:
         with Recorded(path) as recorded:
             comparison = replay(recorded, trust=True, progress=progress, within=Path(channel.start.to))  # the server has checked the trust
-        found: dict[str, Any] = {"agrees": comparison.difference is None, "text": shortened(str(comparison), MOST_TEXT)}
+        found: dict[str, Any] = {"agrees": comparison.difference is None, "text": shortened(str(comparison), MAX_TEXT)}
     except Actr3dError as error:
-        found = {"agrees": None, "text": without_path(shortened(str(error), MOST_TEXT), path)}
+        found = {"agrees": None, "text": without_path(shortened(str(error), MAX_TEXT), path)}
     channel.post(Reply(id=0, result=to_json(found).encode()))
 
 
@@ -53,7 +53,7 @@ def make(channel: Channel) -> None:
     paths, to = [Path(path) for path in start.recordings], Path(start.to)
 
     def made() -> bytes:
-        room = max(LEAST_ROOM, ROOM * sum(path.stat().st_size for path in paths))
+        room = max(MIN_ROOM, ROOM * sum(path.stat().st_size for path in paths))
         soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
         resource.setrlimit(resource.RLIMIT_FSIZE, (room if soft == resource.RLIM_INFINITY else min(room, soft), hard))
         EXPORTS[start.export](*paths, to, **start.settings)

@@ -39,7 +39,7 @@ from workbench.worker.shown import Shown
 
 BLOCK = 0.008
 """How long the run continues before it checks for commands of users [s], approximately."""
-MOST_TICKS = 64
+MAX_TICKS = 64
 """The maximum number of ticks before it checks."""
 ENDINGS = {"stop": "the model called stop()", "done": "no agent has anything left to do"}
 
@@ -166,7 +166,7 @@ class SimulationRun(ControlledRun):
         controller = self._controller
         if controller.watch.fine:
             return 1
-        most = min(MOST_TICKS, int(BLOCK / self._tick_time)) if self._tick_time > 0 else 1
+        most = min(MAX_TICKS, int(BLOCK / self._tick_time)) if self._tick_time > 0 else 1
         if controller.pacer.factor is not None:
             most = min(most, int(controller.pacer.factor * BLOCK * MICROSECONDS / self.period))
         if controller.watch.goal is not None:

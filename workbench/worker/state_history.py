@@ -13,11 +13,11 @@ from mujoco import MjData
 from actr3d.world import World
 from workbench.curves import INTEGRATION, stride
 
-MOST_BYTES = 48_000_000
+MAX_BYTES = 48_000_000
 """Above this size every second state is dropped, so that memory use stays bounded for long runs; a walker's state takes 1.8 kB."""
 STEP = 50_000
 """Interval between two points of a path [us]."""
-MOST_POINTS = 1_000
+MAX_POINTS = 1_000
 """Maximum number of points that are drawn; if there are more, every second one is left out, repeatedly."""
 
 
@@ -65,7 +65,7 @@ class Past:
         if tick % self._every:
             return
         self._states.append(state)
-        if len(self._states) * len(state) > MOST_BYTES:
+        if len(self._states) * len(state) > MAX_BYTES:
             del self._states[1::2]
             self._every *= 2
 
@@ -130,7 +130,7 @@ class Walked:
         """Returns the paths up to the current tick, by body: positions (x, y) [m]."""
         count = tick // self._every + 1
         stride = 1
-        while count > MOST_POINTS * stride:
+        while count > MAX_POINTS * stride:
             stride *= 2
         here = {} if tick % (self._every * stride) == 0 else self._places(world)
         return {name: [*_pairs(points, count, stride), *([here[name]] if here else [])] for name, points in self._points.items()}

@@ -11,7 +11,7 @@ from actr3d.values import plain_to_json, to_json
 LARGEST = 200_000
 """Maximum length of an event, or of all parts together, as JSON [characters]; longer values are cut for display but recorded completely."""
 LONGEST_TEXT = 2_000
-MOST_ENTRIES = 200
+MAX_ENTRIES = 200
 
 
 def bounded_json(value: Any, most: int = LARGEST, *, whole: Callable[[Any], str] = to_json) -> bytes:
@@ -42,12 +42,12 @@ def cut(value: Any) -> Any:
         return value if left <= 0 else f"{value[:LONGEST_TEXT]} … ({left:,} more characters)"
     if isinstance(value, dict):
         entries: list[tuple[Any, Any]] = list(value.items())  # pyright: ignore[reportUnknownArgumentType,reportUnknownVariableType]
-        kept = {key if len(str(key)) <= LONGEST_TEXT else str(key)[:LONGEST_TEXT]: cut(entry) for key, entry in entries[:MOST_ENTRIES]}
-        return kept if len(entries) <= MOST_ENTRIES else {**kept, "…": f"{len(entries) - MOST_ENTRIES:,} more"}
+        kept = {key if len(str(key)) <= LONGEST_TEXT else str(key)[:LONGEST_TEXT]: cut(entry) for key, entry in entries[:MAX_ENTRIES]}
+        return kept if len(entries) <= MAX_ENTRIES else {**kept, "…": f"{len(entries) - MAX_ENTRIES:,} more"}
     if isinstance(value, (list, tuple)):
         items: list[Any] = list(value)  # pyright: ignore[reportUnknownArgumentType]
-        some = [cut(entry) for entry in items[:MOST_ENTRIES]]
-        return some if len(items) <= MOST_ENTRIES else [*some, f"… ({len(items) - MOST_ENTRIES:,} more)"]
+        some = [cut(entry) for entry in items[:MAX_ENTRIES]]
+        return some if len(items) <= MAX_ENTRIES else [*some, f"… ({len(items) - MAX_ENTRIES:,} more)"]
     return value
 
 

@@ -12,7 +12,7 @@ from actr3d.actr.kernel.tracing import traceable
 from actr3d.actr.kernel.tree import path_of, subtree
 from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
 
-MOST_PARTS = 400
+MAX_PARTS = 400
 """The maximum number of parts in a snapshot."""
 
 
@@ -22,7 +22,7 @@ def snapshot_of(top: Model) -> dict[str, dict[str, Any]]:
     A buffer has its `chunk` or None, a production system its `productions` and the `chosen` one, and every part but a buffer its
     `state`: its plain attributes.
     """
-    return {path_of(part): _part(part) for part in islice(subtree(top), MOST_PARTS)}
+    return {path_of(part): _part(part) for part in islice(subtree(top), MAX_PARTS)}
 
 
 def _part(part: Any) -> dict[str, Any]:

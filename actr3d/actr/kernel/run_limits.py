@@ -23,7 +23,7 @@ class EndOfRun(BaseException):
     """
 
 
-MOST_REFUSALS = 100
+MAX_REFUSALS = 100
 """The number of refused requests for time after which a program counts as one that catches every error and never ends by itself."""
 
 
@@ -129,7 +129,7 @@ class RunLimits:
 
     def _refuse(self) -> NoReturn:
         self._refused += 1
-        if self._refused > MOST_REFUSALS and self.last_resort is not None:
+        if self._refused > MAX_REFUSALS and self.last_resort is not None:
             self.last_resort()
         raise EndOfRun
 

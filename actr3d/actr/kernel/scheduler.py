@@ -28,7 +28,7 @@ FAR = 1e12
 """Delays up to this one [s] need no further check."""
 NO_PART = 1e-9
 """A smaller fraction of a microsecond is a floating-point rounding error: 0.07 s are 70000.00000000001 us."""
-MOST_LEFT = 32
+MAX_LEFT = 32
 """The maximum number of different delays whose rounding errors an event carries one by one; beyond it, the oldest error is included
 in the current delay, so that no error is lost. A single sum of all rounding errors would be simpler, but would shift the times of
 random delays by a microsecond: printed with few digits, some would then differ from python_actr's."""
@@ -174,7 +174,7 @@ class Scheduler:
         else:
             kept = {known: of for known, of in left.items() if known != delay} if len(left) > 1 or delay not in left else {}
             part += left.get(delay, 0.0)
-            if len(kept) >= MOST_LEFT:
+            if len(kept) >= MAX_LEFT:
                 part += kept.pop(next(iter(kept)))
             more = max(round(part), -later)
             time = self.now_us + later + more

@@ -11,12 +11,12 @@ from typing import Any, Protocol
 from actr3d.actr.chunks.pattern import Bindings, conditions
 from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.kernel.source_code import assigned_globals, function_node, has_file, place
-from actr3d.actr.procedural.production_body import MOST_CODES, Body, Scope, compile_body
+from actr3d.actr.procedural.production_body import MAX_CODES, Body, Scope, compile_body
 from actr3d.actr.procedural.rebinding import stored_names
 from actr3d.errors import PatternException, ProductionException, hint_for
 
 
-@lru_cache(maxsize=MOST_CODES)
+@lru_cache(maxsize=MAX_CODES)
 def _assigned_in(statements: tuple[ast.stmt, ...]) -> frozenset[str]:
     return frozenset(stored_names(statements))
 

@@ -114,11 +114,11 @@ def compile_body(
 
 
 _CODES: dict[Any, tuple[CodeType, Sequence[str]]] = {}
-MOST_CODES = 10_000
+MAX_CODES = 10_000
 """The number of bodies whose code is kept."""
 
 
-@lru_cache(maxsize=MOST_CODES)
+@lru_cache(maxsize=MAX_CODES)
 def _names_of(statements: tuple[ast.stmt, ...]) -> set[str]:
     return used_names(statements)
 
@@ -134,7 +134,7 @@ def _code_of(
     made = _CODES.get(key)
     if made is None:
         _refuse_waiting(statements, name, filename)
-        if len(_CODES) >= MOST_CODES:
+        if len(_CODES) >= MAX_CODES:
             _CODES.clear()
         made = _CODES[key] = _compile(statements, func, name, bound, seen, more_bound)
     code, given = made

@@ -15,7 +15,7 @@ from actr3d.camera.kernel.pieces import nearness, sort_by_start, sort_values
 from actr3d.camera.kernel.screen import zero
 from actr3d.jit import compiled
 
-MOST_CUTS = 400
+MAX_CUTS = 400
 """The capacity of the stack of stretches; two pieces cross at most four times, so only rounding errors could come near it."""
 
 
@@ -56,7 +56,7 @@ def room_for(pieces: int, places: Array, reaches: Array) -> Row:
         active=np.zeros(pieces, NUMBER),
         rivals=np.zeros(pieces, NUMBER),
         cuts=np.zeros(64),
-        stack=np.zeros((MOST_CUTS, 2)),
+        stack=np.zeros((MAX_CUTS, 2)),
         work=np.zeros((6, 5)),
         edges=np.zeros((3, EDGES_AT_ONCE)),
         stretches=np.zeros(1, STRETCHES),
@@ -191,13 +191,13 @@ def _trace_stretch(
     """Appends the extents of a stretch in which no rival begins or ends; splits it where the nearest piece may change."""
     row.stack[0, 0], row.stack[0, 1] = low, high
     waiting = 1
-    divisions = MOST_CUTS if rivals > 2 else 1  # with two rivals, the first cuts are all
+    divisions = MAX_CUTS if rivals > 2 else 1  # with two rivals, the first cuts are all
     while waiting > 0:
         waiting -= 1
         low, high = row.stack[waiting, 0], row.stack[waiting, 1]
         winner = _winner(0.5 * (low + high), row, rivals)
         number = zero()
-        if divisions > 0 and waiting + len(row.cuts) < MOST_CUTS:
+        if divisions > 0 and waiting + len(row.cuts) < MAX_CUTS:
             number = _cuts(winner, low, high, row, rivals)
         if number > 0:
             divisions -= number

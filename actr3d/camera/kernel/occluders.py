@@ -7,7 +7,7 @@ import math
 from actr3d.camera.kernel.dtypes import Array, Record, Records
 from actr3d.jit import compiled
 
-MOST_OCCLUDERS = 8
+MAX_OCCLUDERS = 8
 LARGE = 0.02
 """The minimum size of a face used as an occluder [part of the screen]."""
 
@@ -15,7 +15,7 @@ LARGE = 0.02
 @compiled
 def offer(face: Array, corners: Array, optics: Record, occluders: Records, count: int) -> int:
     """Adds a face with four corners to the occluders if it is large and completely in front of the eye; returns their new number."""
-    if count == MOST_OCCLUDERS:
+    if count == MAX_OCCLUDERS:
         return count
     twice = 0.0
     for i in range(4):

@@ -20,7 +20,7 @@ from actr3d.camera.kernel.scene import EyeScene, Geoms, Topology, set_scene
 from actr3d.camera.kernel.screen import row_tangent, zero
 from actr3d.jit import compiled, kept
 
-MOST_PIECES_OF_A_PATCH = 10
+MAX_PIECES_OF_A_PATCH = 10
 """Eight cuts leave at most five pieces on each side."""
 
 Scan: TypeAlias = Callable[[Array, Array, Array, Array, Geoms, Topology, EyeScene, Row, Array, Array], int]

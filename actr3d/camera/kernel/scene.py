@@ -10,7 +10,7 @@ import numpy as np
 from actr3d.camera.kernel.active_rows import ActiveRows, enter, room_for_active_rows, send_away
 from actr3d.camera.kernel.dtypes import BOX, HFIELD, MESH, NUMBER, OCCLUDER, PATCH, PLANE, UNSEEN, Array, Record, Records
 from actr3d.camera.kernel.faces import face_rows
-from actr3d.camera.kernel.occluders import LARGE, MOST_OCCLUDERS, hidden, offer
+from actr3d.camera.kernel.occluders import LARGE, MAX_OCCLUDERS, hidden, offer
 from actr3d.camera.kernel.polyhedra import box_distance, hfield_reach, place_corners, set_box, set_hfield
 from actr3d.camera.kernel.screen import in_view, zero
 from actr3d.camera.kernel.solids import add_patches, reach_of
@@ -84,7 +84,7 @@ def room_for_scene(topology: Topology, rows: int) -> EyeScene:
         places=np.zeros((geoms + 1, 3)),
         reaches=np.full(geoms + 1, np.inf),
         turn=np.zeros((3, 3)),
-        occluders=np.zeros(MOST_OCCLUDERS, OCCLUDER),
+        occluders=np.zeros(MAX_OCCLUDERS, OCCLUDER),
         patches=np.zeros(patches, PATCH),
         local=np.zeros((max(8, corners), 3)),
         corners=np.zeros((corners, 3)),

@@ -17,11 +17,11 @@ from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results, plain_text
 from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, participant_means, run_tests
 
-MOST_PANES = 6
+MAX_PANES = 6
 """A factor with more levels than this makes no panes of a figure."""
-MOST_TICKS = 12
+MAX_TICKS = 12
 """An axis has a tick for each level if all are whole numbers and there are at most this many."""
-MOST_KINDS = 20
+MAX_KINDS = 20
 """A measure with more different texts than this is not counted."""
 TAIL = 700
 """The characters of a failure's message that the page shows: its end."""
@@ -151,7 +151,7 @@ def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
     for name in results.outcomes:
         by = [key for key in ("group",) if len(results.groups) > 1]
         rows = results.rows[[*by, name]].fillna({name: "none"})
-        if rows[name].nunique() <= MOST_KINDS:
+        if rows[name].nunique() <= MAX_KINDS:
             counts = rows.groupby([*by, name], observed=True).size().rename("trials").reset_index()
             found.append(Table(name=f"counts_{name}", title=f"Trials by {name.replace('_', ' ')}", frame=counts))
     return found
@@ -228,7 +228,7 @@ def layout_of(results: Results) -> Layout | None:
         return Layout(x="group", curves=None, panes=(), averaged=()) if grouped else None
     curves = "group" if grouped else left.pop(0) if left else None
     panes: list[str] = []
-    while left and np.prod([len(factors[name]) for name in [*panes, left[0]]]) <= MOST_PANES:
+    while left and np.prod([len(factors[name]) for name in [*panes, left[0]]]) <= MAX_PANES:
         panes.append(left.pop(0))
     return Layout(x=order[0], curves=curves, panes=panes, averaged=left)
 
@@ -251,7 +251,7 @@ def figure_of(results: Results, measure: str, others: Sequence[Beside]) -> tuple
         title = ", ".join(f"{name.replace('_', ' ')} {plain_text(level)}{_unit(results, name)}" for name, level in here.items())
         panes.append(Pane(title=title, curves=curves))
     ticks = [(place, str(level)) for level, place in places.items()]
-    if all(isinstance(level, float) and level.is_integer() for level in levels[layout.x]) and len(levels[layout.x]) <= MOST_TICKS:
+    if all(isinstance(level, float) and level.is_integer() for level in levels[layout.x]) and len(levels[layout.x]) <= MAX_TICKS:
         ticks = [(float(level), f"{level:g}") for level in levels[layout.x]]
     figure = curves_figure(panes, results.name_with_unit(layout.x), results.name_with_unit(measure), ticks=ticks)
     note = "Means of participants with 95 % bootstrap intervals."

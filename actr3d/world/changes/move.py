@@ -13,7 +13,7 @@ from actr3d.world.world import World
 
 FARTHEST = 10_000.0
 """Greatest coordinate [m]: there, the numbers of 32 bits with which scenes are drawn still distinguish millimetres."""
-MOST_TURN = 1_000.0
+MAX_TURN = 1_000.0
 """Greatest heading [rad]: more than a body ever turns. Chosen here."""
 
 
@@ -33,7 +33,7 @@ class MoveObject(WorldChange):
     """[m]"""
     y: Annotated[float, Ge(-FARTHEST), Le(FARTHEST)]
     """[m]"""
-    heading: Annotated[float, Ge(-MOST_TURN), Le(MOST_TURN)] | None = None
+    heading: Annotated[float, Ge(-MAX_TURN), Le(MAX_TURN)] | None = None
     """[rad]; None for its present heading."""
 
     def carry_out(self, on: World) -> None:

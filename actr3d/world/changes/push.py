@@ -11,7 +11,7 @@ from actr3d.change import change
 from actr3d.world.changes.world_change import WorldChange
 from actr3d.world.world import World
 
-MOST = 1e5
+MAX_FORCE = 1e5
 """Greatest force along an axis [N]."""
 
 
@@ -27,9 +27,9 @@ class PushObject(WorldChange):
 
     object: str
     """The name of the body or object in the scene."""
-    x: Annotated[float, Ge(-MOST), Le(MOST)]
+    x: Annotated[float, Ge(-MAX_FORCE), Le(MAX_FORCE)]
     """Force along the world's x axis [N]."""
-    y: Annotated[float, Ge(-MOST), Le(MOST)] = 0.0
+    y: Annotated[float, Ge(-MAX_FORCE), Le(MAX_FORCE)] = 0.0
     """Force along the world's y axis [N]."""
     time: Annotated[float, Gt(0), Le(60)] = 0.1
     """Duration [s]."""

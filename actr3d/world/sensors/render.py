@@ -16,7 +16,7 @@ from actr3d.world.body import Body, sensor
 from actr3d.world.command_registry import whole
 from actr3d.world.physics import Physics
 
-MOST = 4096
+MAX_PIXELS = 4096
 """Greatest number of rows or columns of a picture."""
 
 
@@ -76,7 +76,7 @@ def depth(body: Body, width: int = 320, height: int = 240) -> Picture:
 
 
 def _picture(body: Body, kind: Literal["image", "depth"], width: int, height: int) -> Picture:
-    width, height = (whole(n, f"{kind}: {what}", 1, MOST) for n, what in ((width, "width"), (height, "height")))
+    width, height = (whole(n, f"{kind}: {what}", 1, MAX_PIXELS) for n, what in ((width, "width"), (height, "height")))
     body.physics.refresh()
     pixels = _renderer(body.physics).draw(body.eye, kind, width, height)
     return Picture(kind=kind, width=width, height=height, pixels=pixels.tobytes())
@@ -107,7 +107,7 @@ class _Renderer:
         except (ImportError, AttributeError, OSError) as error:
             raise WorldError(f"pictures need EGL, which is not installed here or cannot be used: {error}") from error
         try:
-            self._context = egl.GLContext(MOST, MOST)
+            self._context = egl.GLContext(MAX_PIXELS, MAX_PIXELS)
             self._context.make_current()
         except (self._gl_error, ImportError, RuntimeError, AttributeError, OSError) as error:
             raise WorldError(f"pictures need EGL, which has no device here that could draw: {error}") from error
