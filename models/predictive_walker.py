@@ -1,9 +1,9 @@
 """A person walks through a doorway, and decides from experience how far to turn the shoulders.
 
-No ratio, margin or judgement is put in. The walker has passed doorways before: it remembers, for hundreds of passages, how much wider
-than its body the doorway looked, how fast it walked, and what came of it: nothing, a brush, or a hit, and how hard. For each turn of
-its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by blending its memories what the
-passage will cost. It chooses the turn whose effort and expected impact are cheapest together.
+No ratio, margin or judgement is put in. The walker has passed doorways before, with empty hands or with a bar as now. It remembers of
+150 passages how much wider than its body the doorway looked, how fast it walked, and what came of it: nothing, a brush, or a hit, and
+how hard. For each turn of its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by
+blending its memories what the passage will cost. It chooses the turn whose effort and expected impact are cheapest together.
 
 The body walks with a gait (`actr3d.world.Gait`): it sways, and its steps vary. So it needs more room than its width, and the less room
 it has the more often it touches the wall. The eyes see the doorway with noise, less when it is near; and the felt width has noise.
@@ -58,7 +58,7 @@ CONTACT_COST = 6.77
 PERCEPTUAL_NOISE, MEMORY_NOISE = 1.0, 0.1
 """The factor of the noise of what it sees and feels, and the noise of the activation of memories. Source: chosen for this model, before
 any result was seen."""
-DAMPING, ATTRACTION, NEARNESS, LEAST = 3.25, 7.50, 0.40, 0.40
+DAMPING, ATTRACTION, NEARNESS, MIN_ATTRACTION = 3.25, 7.50, 0.40, 0.40
 """The walker turns towards its goal with the acceleration -b φ' - k (φ - ψ) (exp(-c1 d) + c2); b [1/s], k [1/s²], c1 [1/m], c2.
 Source: Fajen & Warren (2003), J Exp Psychol Hum Percept Perform 29 (docs/human-data.md)."""
 REPULSION, NARROWNESS, REACH = 198.0, 6.5, 0.8
@@ -82,7 +82,7 @@ STEPS = 2.0
 TURNING = 1.0
 """In how many steps they turn. With the time that it takes to see and to decide, they are turned about half a step before the doorway.
 Source: chosen for this model."""
-LEAST_TURN = 30.0
+MIN_TURN = 30.0
 """The shoulders turn as fast as if they turned by this angle, or faster [degrees]. Source: chosen for this model."""
 TURNS = tuple(range(0, 81, 10))
 """The turns that it imagines [degrees]. Source: chosen for this model."""
@@ -339,7 +339,7 @@ class Person(ACTR):
         activation_noise.noise = memory_noise
         vision.distance_noise, vision.edge_noise = noise * DISTANCE_NOISE, noise * EDGE_NOISE
         motor.size_noise = noise * WIDTH_NOISE
-        known = experiences(walks=walks) if always is None else ()
+        known = experiences(walks=walks, hands=hands) if always is None else ()
         for passage in self.random.sample(known, min(memories, len(known))):
             experience.add("event:passage " + " ".join(f"{slot}:{value}" for slot, value in passage.items()))
         self.side = self.random.choice([1, -1])
@@ -360,7 +360,7 @@ class Person(ACTR):
 
     def turn_shoulders(self, angle, seconds):
         """Turns the shoulders to an angle [degrees], in a time [s]; head and eyes keep their direction."""
-        rate = max(abs(angle - self.turned), LEAST_TURN) / seconds
+        rate = max(abs(angle - self.turned), MIN_TURN) / seconds
         for part, share in SHARES.items():
             self.motor.rotate(part, "yaw", self.side * share * angle, abs(share) * rate)
         self.turned = angle
@@ -438,7 +438,7 @@ class Person(ACTR):
             self.head(0.0)
             return
         aside = atan2(far * sin(radians(left)) - self.middle, far * cos(radians(left)))
-        pull = ATTRACTION * aside * (exp(-NEARNESS * far) + LEAST)
+        pull = ATTRACTION * aside * (exp(-NEARNESS * far) + MIN_ATTRACTION)
         if obstructed:
             distance, direction, _ = self.obstacle
             pull -= REPULSION * direction * exp(-NARROWNESS * abs(direction)) * exp(-REACH * distance)
@@ -514,8 +514,10 @@ def person(parameters: Parameters, name: str = "walker") -> Person:
     frequency = Gait().steps_per_second(p.speed)
     given = {field: getattr(p, field) for field in ("speed", "contact_cost", "memory_noise", "memories", "impact")}
     timing = {"step": p.speed / frequency, "turning_time": TURNING / frequency}
-    task = {"always": p.turn, "only_judges": p.task == "judge", "noise": p.perceptual_noise, "walks": p.gait}
-    return Person(judged=None, chosen=None, committed=None, who="" if p.scene != "two people" else f"{name} ", **given, **timing, **task)
+    task = {"always": p.turn, "only_judges": p.task == "judge", "noise": p.perceptual_noise}
+    remembered = {"walks": p.gait, "hands": "empty" if p.bar is None else "bar"}
+    who = "" if p.scene != "two people" else f"{name} "
+    return Person(judged=None, chosen=None, committed=None, who=who, **given, **timing, **task, **remembered)
 
 
 def build(parameters: Parameters) -> Simulation:

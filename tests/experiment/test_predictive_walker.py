@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 from math import radians
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -144,6 +144,15 @@ def test_it_turns_more_if_it_fears_contacts_and_not_if_they_cost_nothing(model: 
 @pytest.mark.slow
 def test_a_larger_body_turns_more(model: Any) -> None:
     assert chosen(model, aperture=0.5, shoulder_width=0.484) > chosen(model, aperture=0.5, shoulder_width=0.404) + 8
+
+
+def test_with_a_bar_its_memories_are_of_passages_with_bars(model: Any) -> None:
+    rooms = {hands: {one["room"] for one in experiences(hands=hands)} for hands in ("empty", "bar")}
+    for bar, hands in ((None, "empty"), (0.9, "bar")):
+        _, walker = walked(model, task="judge", aperture=1.5, bar=bar)
+        remembered = walker.experience.find_matching_chunks("event:passage")
+        assert len(remembered) > 100
+        assert {float(chunk["room"]) for chunk in remembered} <= rooms[hands]
 
 
 def test_a_bar_is_part_of_the_body_that_it_feels(model: Any) -> None:
@@ -301,16 +310,25 @@ def test_experiences_are_of_all_rooms_and_the_less_room_the_more_contacts() -> N
     assert sum(fast) / len(fast) > 1.5 * sum(slow) / len(slow)
 
 
+def test_it_remembers_that_the_same_room_is_free_less_often_with_a_bar() -> None:
+    free = {}
+    for hands in ("empty", "bar"):
+        outcomes = [one["free"] for one in experiences(hands=hands) if 0.05 <= one["room"] < 0.2]
+        free[hands] = sum(outcomes) / len(outcomes)
+    assert free["bar"] < free["empty"] - 0.1
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("walks", [True, False])
-def test_the_shipped_experiences_are_those_of_their_design(walks: bool) -> None:
-    specification = specify("doorway_practice", values={"gait": walks}).specification
+@pytest.mark.parametrize(("practice", "hands"), [("doorway_practice", "empty"), ("bar_practice", "bar")])
+def test_the_shipped_experiences_are_those_of_their_designs(practice: str, hands: Literal["empty", "bar"], walks: bool) -> None:
+    specification = specify(practice, values={"gait": walks}).specification
     with specification.sealed() as helpers:
         experiment = Experiment(specification, helpers)
         rows = [run_trial(experiment, experiment.design.trial(number), helpers) for number in range(4)]
     assert all(row["error"] is None for row in rows)
     made = [{slot: row[slot] for slot in ("room", "energy", "free", "passed")} for row in rows]
-    assert made == [{slot: one[slot] for slot in made[0]} for one in experiences(walks=walks)[:4]]
+    assert made == [{slot: one[slot] for slot in made[0]} for one in experiences(walks=walks, hands=hands)[:4]]
 
 
 def test_the_energy_of_an_impact_is_at_most_that_of_the_walk() -> None:

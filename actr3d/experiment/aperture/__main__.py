@@ -1,4 +1,4 @@
-"""Makes the file of experiences that is shipped: `python -m actr3d.experiment.aperture FOLDER ...`, from runs of `doorway_practice`."""
+"""Makes the file of experiences that is shipped: `python -m actr3d.experiment.aperture FOLDER ...`, from runs of its designs."""
 
 from __future__ import annotations
 
@@ -17,8 +17,11 @@ def write(folders: list[str]) -> None:
         rows.writeheader()
         for folder in folders:
             with Store(Path(folder)) as store:
-                gait = {"gait": store.specification.values.get("gait", True)}
-                rows.writerows({**gait, **row, "speed": round(row["speed"], 3)} for row in store.rows() if row["error"] is None)
+                gait = store.specification.values.get("gait", True)
+                for row in store.rows():
+                    if row["error"] is None:
+                        hands = "bar" if row.get("bar") else "empty"
+                        rows.writerow({**row, "gait": gait, "hands": hands, "speed": round(row["speed"], 3)})
 
 
 if __name__ == "__main__":

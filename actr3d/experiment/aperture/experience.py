@@ -6,12 +6,13 @@ import csv
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from typing import Literal
 
 from actr3d.experiment.aperture.passage import PassageResult
 
 FILE = Path(__file__).with_name("experience.csv")
 SLOTS = ("room", "speed", "energy", "free", "passed")
-COLUMNS = ("gait", *SLOTS)
+COLUMNS = ("gait", "hands", *SLOTS)
 MASS = 75.0
 """Of the walker [kg]. Source: the mannequin's."""
 
@@ -34,12 +35,13 @@ def passage_remembered(committed: Mapping[str, float] | None, result: PassageRes
 
 
 @cache
-def experiences(*, walks: bool = True) -> tuple[dict[str, float], ...]:
-    """Returns the memories of simulated passages, of a body that walks or of one that glides.
+def experiences(*, walks: bool = True, hands: Literal["empty", "bar"] = "empty") -> tuple[dict[str, float], ...]:
+    """Returns the memories of simulated passages, of a body that walks or of one that glides, with empty hands or with a bar.
 
     By slot: `room` [m], `speed` [m/s], `energy` [J], `free` (nothing was touched) and `passed`, 1 or 0.
 
-    Source: the rows of the design `doorway_practice`; see `experience.csv`.
+    Source: the rows of the designs `doorway_practice` and `bar_practice`; see `experience.csv`.
     """
     with FILE.open(encoding="utf-8") as file:
-        return tuple({slot: float(row[slot]) for slot in SLOTS} for row in csv.DictReader(file) if row["gait"] == str(walks))
+        rows = [row for row in csv.DictReader(file) if (row["gait"], row["hands"]) == (str(walks), hands)]
+    return tuple({slot: float(row[slot]) for slot in SLOTS} for row in rows)

@@ -1,36 +1,50 @@
-"""Passages by which a walker gathers experience."""
+"""Passages by which a walker gathers experience, with empty hands and with a bar."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from actr3d.experiment.aperture.experience import passage_remembered
 from actr3d.experiment.design import Design, Group, Measured, Uniform, design
 
+BODIES = {"shoulder_width": Uniform(low=0.36, high=0.52), "speed": Uniform(low=0.8, high=2.0)}
+
 
 @design
 def doorway_practice() -> Design:
-    """Walking through doorways with turns that are not chosen: what the `predictive` walker remembers of passages.
+    """Walking through doorways with turns that are not chosen: what the `predictive` walker remembers of passages with empty hands.
 
     Bodies, speeds and doorways are random. `python -m actr3d.experiment.aperture FOLDER ...` makes the file of
-    experiences that is shipped, from this design and from the same with `--set gait=False`.
+    experiences that is shipped, from this design, from `bar_practice`, and from both with `--set gait=False`.
     """
-    drawn = {
-        "shoulder_width": Uniform(low=0.36, high=0.52),
-        "speed": Uniform(low=0.8, high=2.0),
-        "aperture": Uniform(low=0.25, high=0.75),
-    }
     return Design(
         model="predictive_walker.py",
         factors={"turn": tuple(float(turn) for turn in range(0, 81, 10))},
         settings={"gait": True},
-        groups={"all": Group(participants=160, parameters=drawn)},
+        groups={"all": Group(participants=160, parameters={**BODIES, "aperture": Uniform(low=0.25, high=0.75)})},
         results=remembered,
         measures=[
-            Measured(name="room", unit="m", meaning="Seen width of the doorway minus felt width of the turned body."),
+            Measured(name="room", unit="m", meaning="Seen width of the doorway minus felt width of the turned body, with what it holds."),
             Measured(name="energy", unit="J", meaning="Energy of all impacts together."),
             Measured(name="free", meaning="Whether it passed and touched nothing."),
             Measured(name="passed", meaning="Whether it passed."),
         ],
     )
+
+
+@design
+def bar_practice() -> Design:
+    """The same with bars in the hands: what the `predictive` walker remembers of passages with a bar.
+
+    Bars are as random as bodies; doorways are from 0.6 to 1.5 times as wide as the wider of the two.
+    """
+    drawn = {**BODIES, "bar": Uniform(low=0.3, high=1.2), "ratio": Uniform(low=0.6, high=1.5)}
+    return replace(doorway_practice(), groups={"all": Group(participants=160, parameters=drawn)}, derive=aperture)
+
+
+def aperture(values: Mapping[str, Any]) -> dict[str, float]:
+    """Returns the aperture [m]: a ratio of the widest of body and bar."""
+    return {"aperture": values["ratio"] * max(values["shoulder_width"], values["bar"])}
 
 
 def remembered(simulation: Any) -> dict[str, Any]:
