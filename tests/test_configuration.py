@@ -24,7 +24,7 @@ class Lamp(Configuration):
     lit: bool = False
 
 
-def test_right_values_are_taken_and_brought_to_their_types() -> None:
+def test_valid_values_are_accepted_and_converted_to_their_types() -> None:
     lamp = Lamp(power=40, position=[1, 2], hours=[3], limit=5)  # pyright: ignore[reportArgumentType]
     assert lamp == Lamp(power=40.0, position=(1.0, 2.0), hours=(3.0,), limit=5.0)
     assert type(lamp.power) is float

@@ -202,7 +202,7 @@ def test_tracing_changes_nothing_in_the_run() -> None:
     assert len(set(ends)) == 1
 
 
-def test_every_module_tells_what_it_is_asked_for() -> None:
+def test_every_module_traces_its_requests() -> None:
     module: Any = load_text(
         """
 from actr3d.actr import *

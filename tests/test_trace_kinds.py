@@ -190,7 +190,7 @@ def test_chunks_removed_or_added_by_hand_are_traced() -> None:
     ]
 
 
-def test_a_memory_of_a_class_tells_too() -> None:
+def test_a_memory_with_its_own_chunk_list_is_traced_too() -> None:
     module: Any = load_text(EVERYTHING, "everything.py")
     agent = module.Agent()
     trace = agent.traced()

@@ -85,7 +85,7 @@ def test_a_model_can_be_traced_without_keeping() -> None:
         agent.explain(0.1)
 
 
-def test_a_listener_that_comes_late_hears_first_what_everything_is_like() -> None:
+def test_a_listener_added_late_receives_the_present_state_first() -> None:
     agent, other = agent_of(), agent_of()
     trace = agent.traced("all", keep=False)
     agent.run(0.33)

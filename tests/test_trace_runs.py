@@ -163,7 +163,7 @@ def test_a_late_trace_explains_its_first_moment_as_the_present_was(seed: int, ti
         assert agent.explain(then.time) == then
 
 
-def test_a_late_trace_tells_what_is_under_way() -> None:
+def test_a_trace_that_begins_late_includes_what_is_under_way() -> None:
     agent = agent_of(1)
     agent.run(0.055)
     trace = agent.traced()
@@ -238,7 +238,7 @@ class Agent(ACTR):
     assert module.calls == []
 
 
-def test_the_past_tells_of_objects_what_matching_told() -> None:
+def test_explanations_of_the_past_show_objects_as_matching_did() -> None:
     source = """
 from actr3d.actr import *
 class Thing:

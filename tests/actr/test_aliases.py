@@ -93,7 +93,7 @@ def test_every_part_can_be_imported(root: str, part: str) -> None:
 
 @pytest.mark.parametrize("root", ROOTS)
 @pytest.mark.parametrize("name", TABLE)
-def test_import_star_brings_every_name_of_the_table(root: str, name: str) -> None:
+def test_import_star_imports_every_name_of_the_table(root: str, name: str) -> None:
     space: dict[str, object] = {}
     with aliases():
         exec(f"from {root} import *", space)

@@ -50,7 +50,7 @@ def test_a_limit_gives_a_finite_number(limit: int) -> None:
         assert math.isfinite(agent.memory.get_activation("b"))
 
 
-def test_act_r_7_lets_time_pass_for_links() -> None:
+def test_links_decay_with_time_in_the_act_r_7_profile() -> None:
     agent = associating("act-r-7")
     agent.memory.add("b")
     agent.focus.set("a")

@@ -267,7 +267,7 @@ def test_what_cannot_be_explained_is_an_error() -> None:
     assert agent.explain(0.15).time == 0.15
 
 
-def test_a_trace_of_a_lower_level_cannot_tell_the_past() -> None:
+def test_a_trace_of_a_lower_level_cannot_explain_the_past() -> None:
     agent = agent_of(NOISY)
     agent.traced("buffer")
     agent.run(0.1)

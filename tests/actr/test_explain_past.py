@@ -196,7 +196,7 @@ class Agent(ACTR):
     return made.__class__
 
 
-def test_before_an_agent_came_there_is_nothing_to_tell() -> None:
+def test_nothing_is_explained_from_before_an_agent_was_added() -> None:
     world: Any = Model()
     world.agent = agent_class()()
     world.traced()
@@ -243,7 +243,7 @@ class Agent(ACTR):
     assert agent.explain().production("go").selected
 
 
-def test_a_parallel_system_tells_of_the_memory_it_sees() -> None:
+def test_a_parallel_system_explains_the_memory_that_it_sees() -> None:
     agent = agent_of("""
 class Eye(ProductionSystem):
     def look(retrieval='a ?x'): pass

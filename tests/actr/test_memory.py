@@ -100,7 +100,7 @@ def test_recall_has_the_logistic_chance() -> None:
 
 
 @pytest.mark.parametrize("seed", range(30))
-def test_a_request_brings_the_best_of_all_that_match(seed: int) -> None:
+def test_a_request_retrieves_the_best_of_all_that_match(seed: int) -> None:
     numbers = random.Random(seed)
     agent = remembering(threshold=0.2, maximum_time=60)
     for _ in range(30):

@@ -120,7 +120,7 @@ def test_deep_trees_have_one_clock_and_dotted_names() -> None:
     assert part.now() == 2
 
 
-def test_what_waits_for_changes_hears_of_parts_where_they_are_now() -> None:
+def test_a_wait_for_changes_includes_parts_that_have_moved() -> None:
     world: Any = Model()
     world.left, world.right = Model(), Model()
     ball = world.left.ball = Ball()
@@ -245,7 +245,7 @@ def test_a_tree_that_came_to_life_joins_with_its_events() -> None:
     assert part.inner.random is world.random
 
 
-def test_a_joining_tree_brings_those_who_wait_for_a_name() -> None:
+def test_a_part_that_waits_for_a_name_still_waits_after_its_tree_has_joined_another() -> None:
     seen: list[float] = []
 
     class Part(Model):

@@ -174,7 +174,7 @@ def test_a_press_without_an_environment_says_what_is_missing() -> None:
 # -- SOS vision
 
 
-def test_sos_vision_brings_what_matches() -> None:
+def test_sos_vision_returns_what_matches() -> None:
     world = world_of(ball=Model(color="red", salience=1.0), box=Model(color="blue", salience=1.0), air=Model(color="red"))
     world.agent.sos.request("color:red")
     world.run(0.05)

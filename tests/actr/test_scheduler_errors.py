@@ -68,7 +68,7 @@ def test_a_livelock_is_an_error_that_names_the_culprit() -> None:
 
 
 @pytest.mark.parametrize("traced", [False, True])
-def test_run_inside_run_lets_time_pass_and_says_so(traced: bool) -> None:
+def test_run_inside_run_advances_time_and_warns(traced: bool) -> None:
     class World(Part):
         def start(self) -> Iterator[Any]:
             self.sch.add(lambda: self.note("other"), 0.6)

@@ -131,7 +131,7 @@ def test_equal_chunks_that_are_created_by_hand_count_each() -> None:
 
 
 @pytest.mark.parametrize("kind", [DMFixed, DMInhibition])
-def test_other_modules_may_be_told_again_too(kind: Any) -> None:
+def test_other_memory_modules_accept_the_same_chunk_twice_too(kind: Any) -> None:
     memory = Memory(Buffer())
     agent = living(memory=memory, module=kind(memory))
     agent.memory.add("a")

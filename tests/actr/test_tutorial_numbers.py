@@ -149,7 +149,7 @@ def test_the_agent_reacts_to_an_alarm_in_its_next_cycle(smoke_time: float, capsy
     assert said.count("stirs") == round(when["off"] / 0.05) - 1
 
 
-def test_a_stir_of_higher_utility_lets_the_alarm_wait(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_stir_with_a_higher_utility_fires_before_the_alarm(capsys: pytest.CaptureFixture[str]) -> None:
     run("parallel_system", until=2, change=('def stir(goal="task:stir")', 'def stir(goal="task:stir", utility=2)'))
     said = capsys.readouterr().out
     assert said.count("stirs") == 40

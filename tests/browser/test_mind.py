@@ -456,7 +456,7 @@ def build() -> Simulation:
 
 
 @pytest.mark.slow
-def test_the_trace_tells_where_something_is_touched(pages: Pages, workbench: Served) -> None:
+def test_the_trace_shows_where_something_is_touched(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "bumps.py", BUMPS)
     open_tab(page, "Productions")
     page.click("#run")

@@ -143,7 +143,7 @@ def test_what_happens_at_the_start_is_seen_whole(page: Page) -> None:
 
 
 @pytest.mark.slow
-def test_lanes_and_plots_tell_what_was_when(ended: Page) -> None:
+def test_lanes_and_plots_show_what_happened_at_a_time(ended: Page) -> None:
     page = ended
     everything = "\n---\n".join(told(page, 5.0 / 8))
     assert re.search(r"^walker\n\w+", everything, re.MULTILINE)  # a production

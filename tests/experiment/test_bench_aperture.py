@@ -147,7 +147,7 @@ BAD: dict[str, tuple[list[int], Callable[[WalkerTrial], PassageResult]]] = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_other_models_are_told_by_what_they_do_wrong(what: str) -> None:
+def test_each_wrong_model_fails_the_constraints_that_it_should_fail(what: str) -> None:
     expected, of = BAD[what]
     assert set(unmet(of)) >= set(expected)
     assert unmet(of) != unmet(good)

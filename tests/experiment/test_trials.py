@@ -87,7 +87,7 @@ def test_what_a_model_prints_does_not_mix_with_the_rows(tmp_path: Path) -> None:
     assert [row["end"] for row in rows] == ["end"] * 4
 
 
-def test_a_process_that_somebody_ends_is_started_again(tmp_path: Path) -> None:
+def test_a_trial_process_that_is_killed_is_started_again(tmp_path: Path) -> None:
     experiment = specify(str(write_experiment(tmp_path)))
     process, text = TrialProcess(), experiment.specification.to_json()
     try:

@@ -79,7 +79,7 @@ def test_a_movement_without_an_angle_ends_at_the_limit_and_says_so(command: str,
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
-def test_extending_brings_a_shoulder_forward_and_compressing_backward(side: str) -> None:
+def test_extending_moves_a_shoulder_forward_and_compressing_backward(side: str) -> None:
     simulation, motor = moving()
     body = simulation.world.bodies["walker"]
     ahead: dict[str, float] = {}
@@ -191,7 +191,7 @@ def test_it_turns_until_the_command_to_stop() -> None:
     assert math.degrees(simulation.world.bodies["walker"].base.place[2]) == near(-50, abs=0.5)
 
 
-def test_lowering_the_arms_brings_both_to_where_they_hang() -> None:
+def test_lowering_the_arms_moves_both_to_where_they_hang() -> None:
     simulation, motor = moving()
     motor.rotate("left_upper_arm", "pitch", angle=-50)
     motor.rotate("right_upper_arm", "roll", angle=-40)
@@ -439,7 +439,7 @@ BODIES = {
 
 
 @pytest.mark.parametrize("kind", BODIES)
-def test_every_body_tells_what_it_is_in_the_order_in_which_it_feels(kind: str) -> None:
+def test_anatomy_and_proprioception_have_the_same_order_of_joints(kind: str) -> None:
     simulation, motor = moving(body=BODIES[kind])
     body = simulation.world.bodies["walker"]
     plan, felt = body.get("anatomy"), body.get("proprioception")

@@ -93,7 +93,7 @@ def test_a_run_is_the_same_with_a_recording_or_without(tmp_path: Path) -> None:
     assert plain.world.state_bytes() == recorded.world.state_bytes()
 
 
-def test_odd_values_are_recorded_as_the_trace_tells_them(tmp_path: Path) -> None:
+def test_unusual_values_are_recorded_as_in_the_trace(tmp_path: Path) -> None:
     odd: dict[Any, Any] = {"inf": float("inf"), 1: "number", "object": object(), "word": "größe \ud800"}
     events = [TraceEvent(5, "top", "state", odd), TraceEvent(6, "top", "state", {"a": [1, (2, 3)]})]
     with Recording(tmp_path / "run", {"kind": "simulation"}) as recording:

@@ -58,7 +58,7 @@ def test_a_recording_is_known_to_the_installation_that_made_it(tmp_path: Path, d
         "DELETE FROM seal",
     ],
 )
-def test_what_somebody_has_changed_is_damaged_and_with_new_checksums_foreign(changed: Change, tmp_path: Path) -> None:
+def test_a_changed_recording_is_damaged_and_with_new_checksums_foreign(changed: Change, tmp_path: Path) -> None:
     path = recorded(tmp_path / "run")
     change(path, changed)
     with pytest.raises(RecordingError, match="is damaged: "):

@@ -143,7 +143,7 @@ def file(tmp_path: Path) -> Path:
     return path
 
 
-def test_help_tells_of_the_models_options(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_help_lists_the_options_of_the_model(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(file), "--help"]) == 0
     told = capsys.readouterr()
     assert "--seed N" in told.out

@@ -97,7 +97,7 @@ def test_a_shipped_model_says_what_to_expect_and_what_to_try(name: str) -> None:
         assert any("settings" in one for one in elements(told["nodes"])), "there is something to try with one click"
 
 
-def test_a_session_tells_of_the_text_that_its_run_was_made_of(desk: Desk, tmp_path: Path) -> None:
+def test_a_session_describes_the_text_from_which_its_run_was_built(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, '"""Before."""\nx = 1\n')
     (tmp_path / "model.py").write_text('"""After."""\nx = 1\n', encoding="utf-8")
     assert talk.session.source is not None
@@ -128,7 +128,7 @@ def test_a_model_with_a_body_begins_at_real_time_where_that_is_wished_until_a_sp
     assert desk.begin(tmp_path, BODY, name="body.py").state["wanted"] is None
 
 
-def test_what_is_told_of_a_run_says_after_how_many_events_it_came(desk: Desk, tmp_path: Path) -> None:
+def test_notices_of_a_run_have_the_number_of_events_before_them(desk: Desk, tmp_path: Path) -> None:
     source = "import warnings\nprint('one')\nprint('two')\nwarnings.warn('beware')\nprint('  three  ')\nraise ValueError('no')\n"
     talk = desk.begin(tmp_path, source, run=True, wait="failed")
     printed = [event[3]["text"] for event in talk.events if event[2] == "output"]

@@ -91,7 +91,7 @@ def test_no_route_and_no_websocket_without_the_token(app: Any, headers: tuple[He
     assert tried > 25
 
 
-def test_a_route_that_somebody_adds_is_guarded_too(app: Any) -> None:
+def test_a_route_that_is_added_later_is_guarded_too(app: Any) -> None:
     added = make_app(Path("/tmp"), GATE)
     added.add_api_route("/later", lambda: {"open": True})
     assert ask(added, "/later", HOST).status == 401
@@ -329,7 +329,7 @@ def test_the_token_counts_in_the_address_of_the_first_page_only() -> None:
     assert ask(guarded, "/", HOST, ORIGIN, JSON, OURS, query=f"token={TOKEN}", method="POST").status == 401
 
 
-def test_a_program_may_bring_the_token_in_a_header() -> None:
+def test_a_program_can_send_the_token_in_a_header() -> None:
     bearer = ("authorization", f"Bearer {TOKEN}")
     assert ask(guarded, "/x", HOST, bearer, JSON, OURS, method="POST").status == 200
     assert connect(guarded, "/ws", HOST, bearer).accepted

@@ -104,7 +104,7 @@ def test_only_requested_curves_are_returned_from_a_time_on_evenly_spaced(desk: D
     assert talk.say("curves", names=[], most=7)["times"] == []
 
 
-def test_what_lies_ahead_is_told_until_the_run_goes_another_way(desk: Desk, tmp_path: Path) -> None:
+def test_events_ahead_are_known_until_the_run_is_changed(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, PUSHED)
     talk.say("step", ticks=40)
     talk.until("paused", tick=40)

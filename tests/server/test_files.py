@@ -222,7 +222,7 @@ def test_a_file_keeps_its_encoding_and_its_line_ends(folder: ModelFolder) -> Non
         folder.save("new.py", "# coding: klingon\n", None)
 
 
-def test_what_a_list_tells_of_a_file_is_read_when_it_has_changed_and_not_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_description_of_a_file_in_a_list_is_read_again_only_after_a_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     read: list[Path] = []
 
     def reading(path: Path) -> str:

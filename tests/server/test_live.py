@@ -433,7 +433,7 @@ def test_viser_is_behind_the_login_and_nowhere_else(server: Served) -> None:
     assert server.get(f"/viser/{name}/").status_code == 404
 
 
-def test_nobody_can_ask_viser_for_a_way_out() -> None:
+def test_viser_does_not_accept_requests_to_share_its_address() -> None:
     from viser import _messages
 
     from workbench.viser_server import start_viser

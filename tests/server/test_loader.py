@@ -179,7 +179,7 @@ def test_good_values_pass() -> None:
         "x: int = 1\n    '\\ud800'",
     ],
 )
-def test_what_is_being_written_can_be_told_whatever_it_is(field: str) -> None:
+def test_an_unfinished_text_is_always_described(field: str) -> None:
     text = f"'\\ud800'\nLIMIT = 1e999\nclass P:\n    {field}\ndef build(p: P) -> Simulation: ...\n"
     for source in (text, text.partition("class")[0]):
         told = listing_of(source)
@@ -189,7 +189,7 @@ def test_what_is_being_written_can_be_told_whatever_it_is(field: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["doorway.py", "aperture_passage.py"])
-def test_a_text_tells_of_parameters_what_the_loaded_model_does(name: str) -> None:
+def test_parameters_read_from_a_text_are_those_of_the_loaded_model(name: str) -> None:
     source = (MODELS / name).read_text(encoding="utf-8")
     with RunLimits(seed=1):
         fields = Blueprint(source, name, MODELS).fields

@@ -217,7 +217,7 @@ def test_who_looks_changes_nothing(desk: Desk, tmp_path: Path) -> None:
     assert agrees(recording(desk, talk))
 
 
-def test_a_new_run_tells_of_what_is_looked_at_already(desk: Desk, tmp_path: Path) -> None:
+def test_a_new_run_sends_the_overlays_that_are_already_shown(desk: Desk, tmp_path: Path) -> None:
     talk = after(desk, tmp_path, 5)
     drawn(talk, 5, ("path",))
     talk.say("restart")

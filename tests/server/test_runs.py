@@ -36,7 +36,7 @@ def firing(count: int, last: str = "go", data: object = None) -> list[TraceEvent
     return [TraceEvent(50_000 * n, "agent", "fire", {"production": name, "bound": data}) for n, name in enumerate(names)]
 
 
-def test_a_list_tells_the_result_and_what_is_not_the_default(desk: Desk, tmp_path: Path) -> None:
+def test_a_list_shows_the_result_and_values_that_differ_from_the_defaults(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.2}, run=True, wait="ended")
     name = talk.facts["recording"]
     assert talk.sessions.writing() == {name: talk.session.name}
@@ -69,7 +69,7 @@ def build() -> Simulation:
 
 
 @pytest.mark.parametrize("source", [FAILING, "print('begun')\nraise ValueError('too far')\n"], ids=["built", "program"])
-def test_a_list_tells_what_a_model_raised(desk: Desk, tmp_path: Path, source: str) -> None:
+def test_a_list_shows_the_exception_of_a_model(desk: Desk, tmp_path: Path, source: str) -> None:
     talk = desk.begin(tmp_path, source, record=True, run=True, wait="failed")
     desk.do(talk.session.stop())
     summary = desk.listed(tmp_path)[1][0]
@@ -86,7 +86,7 @@ def test_a_run_that_goes_another_way_before_it_failed_has_not_failed(desk: Desk,
     assert desk.listed(tmp_path)[1][0].failed is None
 
 
-def test_a_list_has_the_newest_first_and_tells_what_cannot_be_read(desk: Desk, tmp_path: Path) -> None:
+def test_a_list_has_the_newest_first_and_names_what_cannot_be_read(desk: Desk, tmp_path: Path) -> None:
     written(tmp_path, "m-20260102-000000-aaaa", firing(3))
     written(tmp_path, "m-20260103-000000-aaaa", firing(2))
     old = written(tmp_path, "m-20260101-000000-aaaa", [], form="actr3d recording 1")

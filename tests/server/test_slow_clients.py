@@ -104,7 +104,7 @@ async def talk(listening: socket.socket) -> list[bytes]:
 
 
 @pytest.mark.slow
-def test_who_does_not_say_what_is_wanted_is_sent_away_and_nobody_else(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_connections_without_a_request_are_closed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workbench_server, "REQUEST_TIME", SHORT)
     monkeypatch.setattr(auth, "BODY_TIME", SHORT)
     with socket.create_server(("127.0.0.1", 0)) as listening:

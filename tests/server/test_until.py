@@ -60,7 +60,7 @@ def test_a_condition_that_was_not_met_is_reported_at_the_end(desk: Desk, tmp_pat
     assert talk.until("ended")["reason"] == "the model called stop()"
 
 
-def test_a_program_that_has_not_begun_knows_what_its_text_tells(desk: Desk, tmp_path: Path) -> None:
+def test_names_are_read_from_the_text_of_a_program_that_has_not_begun(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, COUNTING)
     with pytest.raises(RefusedError, match="no production 'count_no'; did you mean 'count_on'"):
         talk.say("until", production="count_no")

@@ -95,7 +95,7 @@ def test_an_endless_loop_is_found_and_stopped(desk: Desk, tmp_path: Path, does: 
 
 
 @pytest.mark.slow
-def test_code_that_lets_nothing_else_happen_is_said_to_be_busy(desk: Desk, tmp_path: Path) -> None:
+def test_code_that_blocks_all_threads_is_shown_as_busy(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, of("sum(range(10**12))"), run=True, wait="running")
     talk.wait(lambda: talk.facts["stuck"] == {"file": None, "line": None, "function": ""})
     talk.say("stop")

@@ -181,7 +181,7 @@ def test_a_trace_that_begins_later_says_what_is_going_on() -> None:
     assert tells[3:] == [("method", "ended", "tea/boil/work"), ("unit_task", "ended", "tea/boil"), ("unit_task", "begun", "tea/steep")]
 
 
-def test_explain_tells_of_the_productions_of_plans() -> None:
+def test_explain_includes_the_productions_of_plans() -> None:
     module = cooking(TIDY)
     text = str(module.agent.explain(at=0.07))
     assert "+ sgoms_tidy_wash: matches" in text

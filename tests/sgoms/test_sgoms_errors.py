@@ -38,7 +38,7 @@ def test_a_situation_that_is_no_pattern() -> None:
         Situated(until="x:1", wash="dishes:")
 
 
-def test_unit_tasks_may_come_again_where_the_cues_tell_them_apart() -> None:
+def test_unit_tasks_may_be_repeated_if_cues_distinguish_them() -> None:
     assert Ordered("a", "b", "a", "c").links()[2] == ("a", "b", "a")
 
 
@@ -123,7 +123,7 @@ def test_parts_that_do_not_fit(line: str, message: str) -> None:
         cooking(f"class Agent(Base):\n    {line}\n")
 
 
-def test_what_memory_cannot_be_told_of_a_chain() -> None:
+def test_keywords_of_a_planning_unit_that_the_memory_does_not_know_are_warned_of() -> None:
     own = "class Agent(Base):\n    DM = Memory(SGOMS.b_DM)\n    level = DMBaseLevel(DM)\n"
     with pytest.warns(ModelWarning, match="no keyword 'basleevel' .* did you mean 'baselevel'"):
         cooking(f"{own}    tea = Ordered('boil', 'steep', 'pour', basleevel=2)")

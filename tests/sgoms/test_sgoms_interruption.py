@@ -24,7 +24,7 @@ def moments(module: Any, name: str) -> list[float]:
     return [moment for moment, production in fired(module) if production == name]
 
 
-def test_an_interruption_at_the_end_lets_the_unit_task_end() -> None:
+def test_a_unit_task_ends_before_an_interruption_at_its_end() -> None:
     module = cooking(AGENT, 0.22, END)
     assert tasks(module) == ["boil", *PHONE, "steep", "pour"]
     assert told(module, "planning_unit", "unit_task")[:6] == [
@@ -88,7 +88,7 @@ def test_a_unit_task_may_go_on_where_it_was_cut() -> None:
     assert between == near([at + 0.05])
 
 
-def test_a_situated_planning_unit_looks_anew_where_it_was_cut() -> None:
+def test_a_situated_planning_unit_chooses_again_after_an_interruption() -> None:
     body = """
 class Agent(Base):
     tidy = Situated(until="dishes:clean", wash="dishes:dirty", wipe="dishes:wet")

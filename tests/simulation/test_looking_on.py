@@ -125,7 +125,7 @@ def test_a_memory_is_a_table() -> None:
     assert [row.chunk for row in memory_rows(model.memory, most=1)] == ["animal dog"]
 
 
-def test_what_is_drawn_or_a_modeller_s_own_is_not_told() -> None:
+def test_noise_and_a_modellers_own_terms_are_not_computed_for_the_table() -> None:
     model: Any = Knowing()
     model.run(0)
     DMNoise(model.memory, noise=1)

@@ -181,7 +181,7 @@ def test_an_agent_may_print_elsewhere(capsys: pytest.CaptureFixture[str]) -> Non
     assert all("aside" not in text for _, text in said(simulation.trace))
 
 
-def test_output_goes_where_the_program_lets_it_go(capsys: pytest.CaptureFixture[str]) -> None:
+def test_output_goes_where_the_program_redirects_it(capsys: pytest.CaptureFixture[str]) -> None:
     simulation, out = talking(), io.TextIOWrapper(io.BytesIO(), write_through=True)
     simulation.step()
     with redirect_stdout(out):

@@ -40,7 +40,7 @@ def seen_of(width: float, later: float, options: str, seed: int = 1) -> Simulati
     return simulation
 
 
-def test_what_is_no_longer_as_was_asked_for_is_not_brought_by_the_sos_rule() -> None:
+def test_the_sos_rule_does_not_return_what_no_longer_matches() -> None:
     simulation = seen_of(0.9, 0.3, ", rule='sos'")
     mind = simulation.agents["walker"]
     assert (mind.visual.chunk, mind.vision.error) == (None, True)

@@ -78,7 +78,7 @@ def test_names_are_nothing_to_a_detector(every: Detector) -> None:
     assert told(every(seen(SCENE)[1])) == told(every(seen(renamed)[1]))
 
 
-def test_labels_are_only_told(every: Detector) -> None:
+def test_labels_change_nothing_but_themselves(every: Detector) -> None:
     """With other labels, features have those, and all else is the same."""
     _, view = seen(SCENE)
     others = np.array([0, 9, 4, 7, 11, 8, 5])
@@ -174,7 +174,7 @@ def test_an_eye_that_looks_back_over_the_shoulder_knows_where_ahead_is() -> None
     assert obstacle(view, bearing=math.radians(80)) == ()
 
 
-def test_a_speed_tells_the_time_to_contact() -> None:
+def test_the_time_to_contact_follows_from_the_speed() -> None:
     one = nearest(found_with(1.5))
     assert one.time_to_contact == near(2.0)
     assert nearest(found_with(None)).time_to_contact is None
@@ -223,7 +223,7 @@ def registry() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("registry")
-def test_a_model_brings_its_own_detector() -> None:
+def test_a_model_can_define_a_detector() -> None:
     stick = Loose(name="stick", shape="cylinder", size=(0.015, 1.9), position=(3.0, 0.0, 0.95), mass=None)
     world = World(Scene(parts=(Floor(), Aperture(), stick, Mannequin(name="walker"))))
     kind = agent(OWN)
