@@ -24,6 +24,7 @@ _ELEMENTS = {
     "blockquote": "blockquote",
     "em": "em",
     "strong": "strong",
+    **{name: name for name in ("table", "thead", "tbody", "tr", "th", "td")},
 }
 _HEADINGS = {"h1": "h2", "h2": "h3", "h3": "h4"}
 """The page has its own heading above these; all smaller headings become `h4`."""
@@ -57,7 +58,7 @@ def about_of(source: str, filename: str) -> dict[str, Any]:
 
 
 def _tree(text: str) -> SyntaxTreeNode:
-    markdown = MarkdownIt("commonmark", {"html": False, "maxNesting": 12}).disable(["reference", "autolink", "entity"])
+    markdown = MarkdownIt("commonmark", {"html": False, "maxNesting": 12}).enable("table").disable(["reference", "autolink", "entity"])
     return SyntaxTreeNode(markdown.parse(text))
 
 

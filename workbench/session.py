@@ -442,9 +442,7 @@ class Session(Broadcast, Receiver):
         facts_of_session: dict[str, Any] = {
             **self.summary(),
             "stuck": self._stuck,
-            "branched": None
-            if self.branched is None
-            else {"recording": self.branched.recording, "at": self.branched.at, "until": self.branched.until},
+            "branched": self._branched_json(),
             "listings": self.listings,
             **self.look.as_dict(),
             "breakpoints": self.breakpoints,
@@ -464,6 +462,16 @@ class Session(Broadcast, Receiver):
             facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters)}
             facts_of_session |= {"world": Raw(facts.world), "changes": Raw(facts.changes)}
         return msgspec.json.encode(facts_of_session)
+
+    def _branched_json(self) -> dict[str, Any] | None:
+        """Returns what was kept when a user last changed the past, and whether its recording is still there; None if nothing was kept."""
+        branched, start = self.branched, self.start
+        written = None if start is None else start.record or start.recorded
+        if branched is None or written is None:
+            return None
+        path = Path(written).with_name(f"{branched.recording}.sqlite")
+        there = {"made": begun(path), "kept": path.is_file()}
+        return {"recording": branched.recording, "at": branched.at, "until": branched.until, **there}
 
     @property
     def _recording(self) -> str | None:

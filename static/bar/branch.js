@@ -6,7 +6,6 @@ import { remembered } from "../local_storage.js";
 import { isLeft, say } from "../server.js";
 import { complain, session } from "../store.js";
 import { openRun } from "../runs/actions.js";
-import { deleted } from "../runs/list.js";
 import { furthest, inThePast, present } from "../timeline/seek.js";
 
 const seconds = (time) => `${time.toFixed(2)} s`;
@@ -50,15 +49,15 @@ function Notice({ which, title, children }) {
 export function Branch() {
   const { id, born, branched, model, recorded } = session.value ?? {};
   if (!branched) return null;
-  const { recording, at, until } = branched;
+  const { recording, at, until, made, kept } = branched;
   const which = `${id} ${born} ${recording}`;
-  if (closed.value.includes(which) || deleted.value.has(recording)) return null;
+  if (!kept || closed.value.includes(which)) return null;
   const where = `the recording ${recording}, which is listed in Runs`;
   if (recording === recorded) {
     const title = `Changed at ${seconds(at)}; the original continuation is still in ${where}. What follows is recorded as a branch of it.`;
     return html`<${Notice} key=${which} which=${which} title=${title}>The recording is unchanged: it still has the run up to ${seconds(until)}<//>`;
   }
-  const open = () => openRun({ id: recording, model, made: Date.now() / 1000 });
+  const open = () => openRun({ id: recording, model, made });
   return html`<${Notice} key=${which} which=${which} title="Changed at ${seconds(at)}; the original continuation is kept as ${where}">
     The run up to ${seconds(until)} is kept as <button class="link" onClick=${open}>a branch</button>
   <//>`;

@@ -9,7 +9,8 @@ import { runStatus } from "../run_status.js";
 import { session } from "../store.js";
 
 /** The elements allowed in a description; the server sends no others. */
-const ELEMENTS = new Set(["p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a"]);
+const ELEMENTS = new Set(["p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a", "table", "thead", "tbody", "tr", "th", "td"]);
+
 /** Runs the model from its start with these parameter values. */
 function attempt(settings) {
   order({ type: "restart", settings, run: true });

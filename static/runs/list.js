@@ -61,12 +61,8 @@ function awaitEnd(mine) {
   if (tries > 0 && tries <= MAX_TRIES) setTimeout(() => mine === asked && listRuns(), LATER);
 }
 
-/** The recordings that this page has deleted. */
-export const deleted = signal(new Set());
-
 /** Removes a deleted recording from the list. */
 export function forgetRun(id) {
-  deleted.value = new Set([...deleted.value, id]);
   runs.value = runs.value.filter((run) => run.id !== id);
   total.value -= 1;
 }

@@ -23,18 +23,31 @@ const open = remembered("branches open", true);
 /** The recording of the shown run: its own, or that which it repeats. */
 const shown = computed(() => present.value ?? session.value?.recorded ?? null);
 
+/** Returns a function from a run of the list to the run from which it branches; undefined for one that is no branch.
+ *
+ * If the other run was changed again later, at an earlier time, the branch that kept its former way is the one that has this moment. */
+function parents(list) {
+  const known = new Map(list.map((run) => [run.id, run]));
+  const of = Map.groupBy(list.filter(({ origin, id }) => origin !== null && origin !== id), (run) => run.origin);
+  return (run) => {
+    const later = (of.get(run.origin) ?? []).filter((other) => other !== run && other.made >= run.made && other.branched < run.branched);
+    return later.toSorted((one, other) => one.made - other.made)[0] ?? (run.origin === run.id ? undefined : known.get(run.origin));
+  };
+}
+
+/** Returns a run and all from which it branches, one after the other. */
+function lineOf(run, parentOf) {
+  const line = [];
+  for (let one = run; one && !line.includes(one); one = parentOf(one)) line.push(one);
+  return line;
+}
+
 /** Returns the tree that a recording is in, as rows with their depth: a branch follows that from which it comes. */
 export function treeOf(list, id) {
-  const known = new Map(list.map((run) => [run.id, run]));
-  const parentOf = (run) => (run.origin !== null && run.origin !== run.id ? known.get(run.origin) : undefined);
-  let root = known.get(id);
+  const parentOf = parents(list);
+  const root = lineOf(list.find((run) => run.id === id), parentOf).at(-1);
   if (!root) return [];
-  const seen = new Set([root.id]);
-  for (let above = parentOf(root); above && !seen.has(above.id); above = parentOf(above)) {
-    seen.add(above.id);
-    root = above;
-  }
-  const below = Map.groupBy(list.filter((run) => parentOf(run)), (run) => run.origin);
+  const below = Map.groupBy(list.filter((run) => parentOf(run)), (run) => parentOf(run).id);
   const rows = [];
   const done = new Set();
   const add = (run, depth) => {
@@ -47,13 +60,24 @@ export function treeOf(list, id) {
   return rows;
 }
 
+/** Returns until when two runs of a tree are the same [s]; null if they are not in one. */
+export function sameUntil(list, one, other) {
+  const parentOf = parents(list);
+  const lines = [one, other].map((id) => lineOf(list.find((run) => run.id === id), parentOf));
+  const shared = lines[0].find((run) => lines[1].includes(run));
+  if (!shared) return null;
+  const moments = lines.flatMap((line) => line.slice(0, line.indexOf(shared))).map(({ branched }) => branched ?? 0);
+  return moments.length > 0 ? Math.min(...moments) : null;
+}
+
 const tree = computed(() => treeOf(runs.value ?? [], shown.value));
 
 /** Shows another branch: the open session that writes it, or its recording. */
 async function show(run) {
   if (!run.session) {
+    const moment = sameUntil(runs.value ?? [], run.id, shown.value);
     await openRun(run);
-    return beginAt(run);
+    return beginAt(run, moment);
   }
   try {
     const { session: found } = await call("GET", `/api/sessions/${run.session}`);
@@ -64,16 +88,16 @@ async function show(run) {
   }
 }
 
-/** Goes to the moment from which an opened branch differs, once its run is known. */
-function beginAt({ id, branched }) {
-  if (branched === null) return;
+/** Goes to the moment from which an opened branch differs from the run that was shown, once its run is known. */
+function beginAt({ id }, moment) {
+  if (moment === null) return;
   const end = effect(() => {
     const here = session.value?.recorded === id;
     if (session.value !== null && !here) queueMicrotask(() => end()); // another run is shown by now
-    if (!here || !alive.value || furthest.value < branched - 1e-6) return;
+    if (!here || !alive.value || furthest.value < moment - 1e-6) return;
     queueMicrotask(() => {
       end();
-      seek(branched);
+      seek(moment);
     });
   });
 }

@@ -37,7 +37,16 @@ export function titleOf(group) {
 
 const USUAL = ["speed", "clearance", "learned utility"]; // the groups that are plotted until the user chooses
 
-const kept = remembered("timeline curves", { names: null });
+const MAX_MODELS = 50; // of which choices are remembered
+const chosenOf = remembered("timeline curves of models", []);
+const model = computed(() => session.value?.model ?? null);
+
+/** The names that the user has chosen for this model; null as long as that is none. */
+const kept = computed(() => chosenOf.value.find((one) => one.model === model.value)?.names ?? null);
+
+function keep(names) {
+  chosenOf.value = [...chosenOf.peek().filter((one) => one.model !== model.peek()), ...(names === null ? [] : [{ model: model.peek(), names }])].slice(-MAX_MODELS);
+}
 
 function usual(all) {
   const joints = all.filter(({ group }) => group === "joint");
@@ -49,19 +58,19 @@ function usual(all) {
 /** The names of the plotted curves. */
 export const chosen = computed(() => {
   const there = new Set(names.value.map(({ name }) => name));
-  const wanted = kept.value.names?.filter((name) => there.has(name));
-  return wanted && (wanted.length > 0 || kept.value.names.length === 0) ? wanted : usual(names.value);
+  const wanted = kept.value?.filter((name) => there.has(name));
+  return wanted && (wanted.length > 0 || kept.value.length === 0) ? wanted : usual(names.value);
 });
 
 /** Plots a curve, or no longer. */
 export function plot(name, on) {
-  const others = (kept.value.names ?? chosen.value).filter((other) => other !== name);
-  kept.value = { names: on ? [...others, name] : others };
+  const others = (kept.value ?? chosen.value).filter((other) => other !== name);
+  keep(on ? [...others, name] : others);
 }
 
 /** Plots the usual curves. */
 export function plotUsual() {
-  kept.value = { names: null };
+  keep(null);
 }
 
 /** The heading of a plot, with its unit if it has one. */

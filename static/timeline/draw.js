@@ -1,7 +1,7 @@
 // Draws the timeline on a surface: the axis, the lanes with their bands, the plots.
 
 import { drawCurves, drawTimes, seriesColour } from "../parts/curve.js";
-import { cut, cutBefore } from "../parts/surface.js";
+import { cut, cutBefore, widthOf } from "../parts/surface.js";
 import { session } from "../store.js";
 import { headingOf } from "./curves.js";
 import { bandText } from "./lanes.js";
@@ -11,6 +11,7 @@ import { AXIS, MARGIN } from "./rows.js";
 const SCALE = 44; // the width of a plot's scale in the column of names [px]
 const THIN = 3; // the width up to which a band is only a stroke [px]
 const ROOM = 34; // the minimum width for a text [px]
+const LETTER = 7; // the width of a letter of a mark's text, rounded up [px]
 
 /**
  * @typedef Scene
@@ -92,6 +93,7 @@ function drawBands(surface, bands, y, height, scene) {
   let last = column - 10; // the end of the last drawn band: of several in one pixel, one is enough
   const endOf = (band) => Math.min(width + 4, placeOf(band.to ?? Math.max(end, band.from), scene));
   const isSeen = (band) => endOf(band) >= last + 0.7;
+  let written = column; // the end of the last text of a mark
   let thin = null; // thin bands of one tone that touch are drawn as one: {from, to, tone}
   const drawThin = () => {
     if (thin) surface.fill(thin.from, y + 1.5, thin.to - thin.from, height - 3, thin.tone, 0.75);
@@ -110,7 +112,7 @@ function drawBands(surface, bands, y, height, scene) {
     drawThin();
     if (band.mark) {
       const next = bands[n + 1] ? placeOf(bands[n + 1].from, scene) : width;
-      drawMark(surface, band, from, next, y, height);
+      written = drawMark(surface, band, from, { next, written, last: n === bands.length - 1 }, y, height);
     } else drawBand(surface, band, from, to, y, height);
   }
   drawThin();
@@ -125,13 +127,19 @@ function drawBand(surface, band, from, to, y, height) {
   if (text) surface.text(text, from + 5, y + height / 2, "text", { mono: true });
 }
 
-function drawMark(surface, band, x, next, y, height) {
+/** Draws a mark with its text up to the next one; the text of the last one is on its left if there is more room. Returns where it ends. */
+function drawMark(surface, band, x, { next, written, last }, y, height) {
   const middle = y + height / 2;
   if (band.tick) surface.fill(x - 1, y + 1.5, 2, height - 3, band.tone);
   else surface.polygon([x, middle - 4, x + 4, middle, x, middle + 4, x - 4, middle], band.tone === "text" ? "quiet" : band.tone);
-  if (next - x < ROOM + 6) return;
-  const text = cut(bandText(band), next - x - 14, { mono: true });
-  if (text) surface.text(text, x + 7, middle, "text", { mono: true });
+  const style = { mono: true };
+  const [right, left] = [next - x - 14, last ? x - written - 18 : 0];
+  const isLeft = left > right && right < widthOf(bandText(band), style);
+  const room = isLeft ? left : right;
+  if (room < ROOM - 8) return x;
+  const text = cut(bandText(band), room, style);
+  if (text) surface.text(text, isLeft ? x - 7 : x + 7, middle, "text", isLeft ? { ...style, anchor: "end" } : style);
+  return isLeft ? x : x + 7 + LETTER * text.length;
 }
 
 function drawPlotRow(surface, plot, y, height, scene) {

@@ -107,14 +107,16 @@ function output(lanes, time, _source, { text }) {
   lanes.lane("said", "marks", "printed").mark(time, { text: String(text), tone: "text" });
 }
 
-/** Of several changes of one value at the same moment, only the last has an effect: they are merged. */
+/** All changes of one moment are one mark; of several changes of one value, only the last has an effect. */
 function command(lanes, time, _source, _data, event) {
   lanes.former.take(event);
   const lane = lanes.lane("commands", "marks", "commands");
-  const last = lane.bands.at(-1);
-  const first = last?.from === time && setTheSame(event, last.first) ? last.first : event;
-  if (first !== event) lane.bands.pop();
-  lane.mark(time, { text: commandText(event, first).join(" "), tone: "accent", first });
+  const changes = lane.bands.at(-1)?.from === time ? lane.bands.pop().changes : [];
+  const same = changes.find(({ last }) => setTheSame(event, last));
+  if (same) same.last = event;
+  else changes.push({ first: event, last: event });
+  const text = changes.map(({ first, last }) => commandText(last, first).join(" ")).join("; ");
+  lane.mark(time, { text, tone: "accent", changes });
 }
 
 function reward(lanes, time, source, { value }) {

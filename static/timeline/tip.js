@@ -4,6 +4,7 @@ import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { seriesColour, valueAt } from "../parts/curve.js";
 import { numberText, timeText } from "../parts/ticks.js";
 import { bandText } from "./lanes.js";
+import { furthest } from "./seek.js";
 
 const NEAR = 4; // the maximum distance of a mark from the pointer [px]
 const AWAY = 14; // from the pointer [px]
@@ -36,7 +37,7 @@ function OfRow({ at }) {
 function OfPlot({ plot, time }) {
   return html`<p><b>${plot.title}</b> <span class="number quiet">at ${timeText(time)}</span></p>
     ${plot.series.map(({ name, unit, times, values }, n) => {
-      const value = numberText(valueAt(times, values, time));
+      const value = numberText(time > furthest.value ? null : valueAt(times, values, time));
       return html`<p key=${name} class="number"><span class="swatch" style=${{ background: `var(--${seriesColour(n)})` }}></span>${name} ${value} ${unit}</p>`;
     })}`;
 }

@@ -39,6 +39,7 @@ def test_a_branch_is_deleted_by_its_name_and_its_notice_goes_with_it(page: Page)
     dialog.get_by_role("button", name="Delete").click()
     expect(page.locator(".branched")).to_have_count(0)
     expect(page.locator(".branches")).to_have_count(0)
+    assert page.evaluate("async () => (await part('store.js')).session.value.branched.kept") is False  # on other pages, too
     until(page, lambda: page.evaluate("document.activeElement !== document.body"))
 
 
@@ -59,8 +60,17 @@ def test_a_branch_of_a_paused_run_is_not_listed_as_ended_and_its_notice_is_shown
     say(page, type="seek", time=0.2)
     say(page, type="aperture", width=0.8)
     shows(page, ".branched", r"The run up to 0\.60 s is kept as a branch")  # it is another one
+    # The first branch leaves the second one: the run has another past since then.
+    names = page.locator(".branches .branch-name")
+    expect(names).to_have_text([re.compile(r"\d+:\d+:\d+"), "└ at 0.20 s", "└ at 0.50 s"])
+    assert names.evaluate_all("all => all.map((one) => one.style.paddingLeft)") == ["8px", "18px", "28px"]
     page.get_by_role("button", name="Dismiss").click()
     expect(page.locator(".branched")).to_have_count(0)
+    # All changes of one moment are in one mark; of one value, the last.
+    say(page, type="command", word="move", named={"object": "walker", "x": 1.0, "y": 0.5})
+    say(page, type="aperture", width=0.7)
+    marks = "async () => (await part('timeline/record.js')).lanes.lane('commands').bands.map(({ text }) => text)"
+    until(page, lambda: page.evaluate(marks) == ["aperture 50 -> 70 cm; move walker to (1, 0.5) m"])
 
 
 @pytest.mark.slow

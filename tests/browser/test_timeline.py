@@ -505,6 +505,6 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
     assert rows[0] == ["time [s]", "goal.at"]
     assert [float(value) for _, value in rows[1:]] == [0, 1, 2, 3, 4]
     assert 0 < found["busy"] < found["end"]
-    tips = list(told(page, 0.99))
+    tips = list(told(page, 0.95))
     assert any("goal.at 4" in text for text in tips), tips
     assert any("memory latency" in text and " s" in text for text in tips), tips

@@ -13,7 +13,14 @@ from tests.helpers.workbench_server import MODELS
 from workbench.about import LONGEST, about_of
 from workbench.loader import listing_of
 
-SHOWN = {"p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a"}
+SHOWN = {"p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a"} | {
+    "table",
+    "thead",
+    "tbody",
+    "tr",
+    "th",
+    "td",
+}
 ALL_MODELS = sorted(path.relative_to(MODELS).as_posix() for path in MODELS.rglob("*.py"))
 
 
@@ -38,6 +45,11 @@ def test_a_docstring_is_shown_with_its_headings_lists_and_values_to_try() -> Non
     assert texts(told["title"]) == "A title."
     assert [one["tag"] for one in elements(told["nodes"])] == ["p", "h3", "ul", "li", "code", "li", "code"]
     assert [one.get("settings") for one in elements(told["nodes"]) if one["tag"] == "code"] == [{"width": 0.5, "speed": 2}, None]
+
+
+def test_a_table_is_a_table() -> None:
+    told = about("Title.\n\n| a | b |\n|---|--:|\n| 1 | `2` |\n")
+    assert [one["tag"] for one in elements(told["nodes"])] == ["table", "thead", "tr", "th", "th", "tbody", "tr", "td", "td", "code"]
 
 
 @pytest.mark.parametrize(

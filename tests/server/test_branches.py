@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import resource
 from pathlib import Path
 
@@ -61,11 +62,14 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
     told = talk.session.branched
     assert told is not None
     assert (told.recording, told.at, told.until) == (branch.stem, 0.1, 0.4)
+    shown = json.loads(talk.session.facts_json())["branched"]
+    assert (shown["recording"], shown["kept"]) == (branch.stem, True)
     with Recorded(branch) as recorded:
         recorded.check()
         assert recorded.ticks == 40
         assert list(recorded.commands()) == []
     renamed = branch.rename(branch.with_name("tidy.sqlite"))
+    assert json.loads(talk.session.facts_json())["branched"]["kept"] is False
     assert b'"branched":0.1' in summary_json(renamed)
     renamed.rename(branch)
     assert b'"branched":null' in summary_json(branch.with_name(f"{origin}.sqlite"))
