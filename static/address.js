@@ -1,6 +1,6 @@
 // The address of the page: which model, or which recorded run and time; in a window of its own, which panel.
 
-/** Returns a part of the address: "model", "run", "t", "panel", "page", "session" or "theme"; null for none. */
+/** Returns a part of the address: "model", "run", "t", "copied", "panel", "page", "session" or "theme"; null for none. */
 export function addressed(name) {
   return new URLSearchParams(location.search).get(name);
 }
@@ -25,11 +25,12 @@ export function goToAddress(kind, name) {
 /** Takes the moment out of the address: who loads the page again is not taken back to it. */
 export function leaveMoment() {
   const wanted = new URLSearchParams(location.search);
-  wanted.delete("t");
+  for (const name of ["t", "copied"]) wanted.delete(name);
   history.replaceState(null, "", `?${wanted}`);
 }
 
-/** Returns the whole address of a moment of a recorded run. */
+/** Returns the whole address of a moment of a recorded run, as the run is now: it may be changed before that moment later. */
 export function addressOf(run, time) {
-  return `${location.origin}/?${new URLSearchParams({ run, t: String(Number(time.toFixed(6))) })}`;
+  const now = Math.floor(Date.now() / 1000);
+  return `${location.origin}/?${new URLSearchParams({ run, t: String(Number(time.toFixed(6))), copied: String(now) })}`;
 }

@@ -18,7 +18,7 @@ from actr3d.recording import Recorded
 from actr3d.runner.facts import REACHED
 from actr3d.values import to_json
 from workbench.loader import listing_of
-from workbench.retention import begun, size_of
+from workbench.retention import begun, branched_at, size_of, written
 
 _WRONG = (ValueError, KeyError, TypeError, AttributeError, IndexError, RecursionError)
 UNREADABLE = (RecordingError, OSError, sqlite3.Error, msgspec.MsgspecError, *_WRONG)
@@ -46,6 +46,8 @@ class Summary:
     """For a branch: the time at which the past of its run was changed [s]."""
     origin: str | None = None
     """For a branch: the recording that has the other way of its run."""
+    kept: float | None = None
+    """For a copy of what lay ahead of a run when its past was changed: when that was [s since 1970]."""
     ended: str | None = None
     """How the run ended; None if it was interrupted, or is still running."""
     failed: str | None = None
@@ -118,6 +120,7 @@ def _read(recorded: Recorded, size: int) -> Summary:
         different=_different(parameters, facts.get("sources", {}).get(file, "")),
         branched=facts.get("branched"),
         origin=facts.get("origin"),
+        kept=None if branched_at(path) is None else written(path),
         ended=None if ended is None else str(ended["by"]),
         failed=None if facts.get("failed") is None else str(facts["failed"]),
         result=_result(last),

@@ -5,7 +5,7 @@ import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.j
 import { commandsOf } from "../commands.js";
 import { call, say, showModel, showRecording, sinceNow } from "../server.js";
 import { withTrust } from "../runs/trust.js";
-import { alive, complain, connected, running, session } from "../store.js";
+import { alive, complain, connected, me, running, session } from "../store.js";
 import { travel } from "../timeline/seek.js";
 
 /** The model files of the folder: {path, title, kind}. */
@@ -52,9 +52,20 @@ export async function chooseRecording(id) {
   return true;
 }
 
+/** Returns the recording that has the moment [s] of a run to which a link leads: if the run was changed before that moment since the link
+ * was copied, the first branch that was kept then. */
+async function holderOf(id, time) {
+  const copied = addressed("copied");
+  if (copied === null) return id;
+  const { recordings } = await call("GET", "/api/recordings?first=0&most=250");
+  const since = recordings.filter(({ origin, kept, branched }) => origin === id && kept !== null && kept >= Number(copied) && branched < time);
+  return since.toSorted((one, other) => one.kept - other.kept)[0]?.id ?? id;
+}
+
 /** Shows a moment [s] of a recorded run, as a link asks for it: the run itself if it is still open, or else its recording. Returns whether it
  * is shown. */
-async function chooseMoment(id, time) {
+async function chooseMoment(run, time) {
+  const id = await holderOf(run, time);
   const { sessions } = await call("GET", "/api/sessions");
   const open = sessions.find(({ recording, alive: lives }) => recording === id && lives);
   if (open) await choose(open.model);
@@ -62,12 +73,13 @@ async function chooseMoment(id, time) {
   leaveMoment();
   const wanted = sinceNow();
   const end = effect(() => {
-    const { recording, recorded } = session.value ?? {};
+    const { recording, recorded, watching = [] } = session.value ?? {};
     if (!alive.value || (open ? recording : recorded) !== id) return;
     queueMicrotask(() => {
       end();
       if (!wanted()) return;
-      if (running.peek()) complain(`The link leads to ${time} s of this run. It goes on now: pause it, and go there on the timeline.`, "info");
+      const why = running.peek() ? "It goes on now: pause it, and go there" : watching.some((name) => name !== me.peek()) ? "Another page shows it, too: go there" : null;
+      if (why) complain(`The link leads to ${time} s of this run. ${why} on the timeline.`);
       else travel(time);
     });
   });
@@ -75,9 +87,13 @@ async function chooseMoment(id, time) {
 }
 
 /** Shows the run that the address names, at its moment, if it has one. Returns whether it is shown. */
-function chooseAddressed(id) {
+async function chooseAddressed(id) {
   const time = addressedTime();
-  return time === null ? chooseRecording(id) : chooseMoment(id, time);
+  if (time !== null) return chooseMoment(id, time);
+  const text = addressed("t");
+  const isShown = await chooseRecording(id);
+  if (text !== null) complain(`The link has no time that can be read: t=${text}; it must be a number of seconds, such as t=1.5.`);
+  return isShown;
 }
 
 /** Shows a recording, after asking if its code comes from elsewhere; returns null if the user declines. */

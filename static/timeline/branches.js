@@ -25,14 +25,14 @@ const shown = computed(() => present.value ?? session.value?.recorded ?? null);
 
 /** Returns a function from a run of the list to the run from which it branches; undefined for one that is no branch.
  *
- * If the other run was changed again later, at an earlier time, the branch that kept its former way is the one that has this moment. */
+ * What lay ahead of a run is kept when its past is changed. If that happens again later, at an earlier time, the former copy follows the new
+ * one, which has the run's way until then. */
 function parents(list) {
   const known = new Map(list.map((run) => [run.id, run]));
-  const of = Map.groupBy(list.filter(({ origin, id }) => origin !== null && origin !== id), (run) => run.origin);
-  return (run) => {
-    const later = (of.get(run.origin) ?? []).filter((other) => other !== run && other.made >= run.made && other.branched < run.branched);
-    return later.toSorted((one, other) => one.made - other.made)[0] ?? (run.origin === run.id ? undefined : known.get(run.origin));
-  };
+  const copies = Map.groupBy(list.filter(({ kept }) => kept !== null), (run) => run.origin);
+  const later = (run) => (copies.get(run.origin) ?? []).filter((other) => other.kept > run.kept && other.branched < run.branched);
+  const first = (list) => list.toSorted((one, other) => one.kept - other.kept)[0];
+  return (run) => (run.kept === null ? undefined : first(later(run))) ?? (run.origin === run.id ? undefined : known.get(run.origin));
 }
 
 /** Returns a run and all from which it branches, one after the other. */
