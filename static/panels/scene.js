@@ -52,7 +52,7 @@ function ViewBar() {
         ${Object.entries(VIEWS).map(([id, title]) => html`<option key=${id} value=${id}>${title}</option>`)}
       </select>
       <button aria-label="Reset view" title=${buttonTitle(reset)} onClick=${resetView}><${Icon} name="restart" /></button>
-      ${canMove() ? html`<button title="Move or push a body or an object of the scene" onClick=${moveOrPush}>Move, push …</button>` : null}
+      ${canMove() || isOfProgram() ? html`<button disabled=${!canMove()} title=${canMove() ? MOVES : OF_PROGRAM} onClick=${moveOrPush}>Move, push …</button>` : null}
       <button aria-expanded=${open.value} title="What is drawn over the scene" onClick=${() => (open.value = !open.value)} onKeyDown=${hideByEscape}>Overlays</button>
       <button aria-label="Save the 3D view as a picture" title=${buttonTitle(keep)} onClick=${keepPicture}><${Icon} name="download" /></button>
       <button aria-label="Make a video of the 3D view" title=${buttonTitle(film)} onClick=${makeVideo}><${Icon} name="film" /></button>
@@ -67,6 +67,14 @@ function ViewBar() {
         </label>`,
       )}
     </div>`}</div>`;
+}
+
+const MOVES = "Move or push a body or an object of the scene";
+const OF_PROGRAM = "Only the program itself moves the things of its own Simulation, with simulation.command; in a model with a function build, they can be moved here";
+
+/** Whether the scene is that of a program. */
+function isOfProgram() {
+  return alive.value && session.value.kind === "program";
 }
 
 function canMove() {
