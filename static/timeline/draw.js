@@ -11,6 +11,7 @@ import { AXIS, MARGIN } from "./rows.js";
 const SCALE = 44; // the width of a plot's scale in the column of names [px]
 const THIN = 3; // the width up to which a band is only a stroke [px]
 const ROOM = 34; // the minimum width for a text [px]
+const SMALL = { size: 10 };
 const LETTER = 7; // the width of a letter of a mark's text, rounded up [px]
 
 /**
@@ -148,13 +149,26 @@ function drawPlotRow(surface, plot, y, height, scene) {
   surface.text(cut(headingOf(plot), room), 8, y + 10, "text", { bold: true });
   const lines = Math.floor((height - 18) / 13);
   const shown = plot.series.length > lines ? lines - 1 : lines;
-  plot.series.slice(0, shown).forEach(({ name }, n) => {
+  labelsOf(plot, room - 12).slice(0, shown).forEach((label, n) => {
     const at = y + 25 + 13 * n;
     surface.line([8, at, 16, at], seriesColour(n), { width: 2 });
-    surface.text(cutBefore(shortName(name, plot), room - 12, { size: 10 }), 20, at, "quiet", { size: 10 });
+    surface.text(label, 20, at, "quiet", SMALL);
   });
   if (plot.series.length > lines) surface.text(`and ${plot.series.length - shown} more`, 20, y + 25 + 13 * shown, "quiet", { size: 10 });
   drawCurves(surface, { x: column, y: y + 5, width: width - column, height: height - 9 }, { ...plot, span: wholeSpan(scene), until: scene.end });
+}
+
+/** Returns the labels of a plot's curves, at most so wide: if one is too long, without the words that all begin or end with. */
+function labelsOf(plot, room) {
+  const names = plot.series.map(({ name }) => shortName(name, plot));
+  if (names.every((name) => widthOf(name, SMALL) <= room)) return names;
+  const words = names.map((name) => name.split(" "));
+  const most = names.length > 1 ? Math.min(...words.map(({ length }) => length)) - 1 : 0;
+  const isShared = (n) => words.every((list) => list.at(n) === words[0].at(n));
+  let [first, last] = [0, 0];
+  while (first < most && isShared(first)) first += 1;
+  while (last < most - first && isShared(-1 - last)) last += 1;
+  return words.map((list) => cutBefore(list.slice(first, list.length - last).join(" "), room, SMALL));
 }
 
 /** Returns the name of a curve without redundant parts: the only body's name, and the plot's title. */
