@@ -458,7 +458,7 @@ class Session(Broadcast, Receiver):
             "cuts": list(self._cuts),
             "born": self.born,
             "made": None if self.recorded is None else begun(self.recorded),
-            "recording": self._recording,
+            "recording": self.recording,
         }
         if facts is not None:
             facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters)}
@@ -466,7 +466,7 @@ class Session(Broadcast, Receiver):
         return msgspec.json.encode(facts_of_session)
 
     @property
-    def _recording(self) -> str | None:
+    def recording(self) -> str | None:
         """The name of the recording of the run on screen, as lists show it; None if it is not recorded or not listed."""
         start = self.start
         return None if start is None or start.record is None or self.spare_recording is not None else Path(start.record).stem
@@ -475,7 +475,7 @@ class Session(Broadcast, Receiver):
         """Returns the entry of this session in the list of sessions."""
         return {
             "recorded": None if self.recorded is None else self.recorded.stem,
-            "recording": self._recording,
+            "recording": self.recording,
             "id": self.name,
             "model": self.model,
             "run": self.run,
