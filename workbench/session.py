@@ -483,7 +483,7 @@ class Session(Broadcast, Receiver):
             "loading": self.is_loading,
             "ending": self._ending,
             "status": None if self.state is None else self.state.status,
-            "watching": [feed.name for feed in self.feeds],
+            "watching": list(dict.fromkeys(feed.name for feed in self.feeds)),
             "controlled_by": self._controlled_by,
         }
 
@@ -512,7 +512,7 @@ class Session(Broadcast, Receiver):
     def part(self, feed: Feed) -> None:
         """Removes a browser that has left."""
         self.feeds.remove(feed)
-        if feed.name == self._controlled_by:
+        if feed.name == self._controlled_by and all(other.name != feed.name for other in self.feeds):
             self._controlled_by = ""
         self.changed(facts=True)
 
