@@ -194,7 +194,11 @@ def test_huge_and_hostile_chunks_are_only_text(text: str) -> None:
 
 
 def test_a_chunk_is_not_strengthened_where_that_has_no_effect() -> None:
-    for module, problem in (("", "has no base level"), ("fixed = DMFixed(memory)", "has no base level"), ("recent = DMInhibition(memory)", None)):
+    for module, problem in (
+        ("", "has no base level"),
+        ("fixed = DMFixed(memory)", "has no base level"),
+        ("recent = DMInhibition(memory)", None),
+    ):
         agent: Any = load_text(counter_text("PMNew(alpha=0.2)").replace("strength = DMBaseLevel(memory)", module), "counter.py").Counter
         simulation = Simulation(SCENE, bodiless={"mind": agent}, seed=7)
         simulation.run(0.1)

@@ -55,7 +55,12 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
       const { match } = await part("palette/fuzzy.js");
       return texts.map(([search, text]) => match(search, text) !== null);
     }"""
-    texts = [("push", "Run or pause, and go on from here"), ("compare", "goal a curve of 15 more parts"), ("gtl", "Go to a line"), ("stp", "Step")]
+    texts = [
+        ("push", "Run or pause, and go on from here"),
+        ("compare", "goal a curve of 15 more parts"),
+        ("gtl", "Go to a line"),
+        ("stp", "Step"),
+    ]
     assert page.evaluate(matches, texts) == [False, False, True, True]
     search(page, "xyzzyq")
     expect(page.get_by_role("dialog")).to_contain_text("Nothing has this in its name")

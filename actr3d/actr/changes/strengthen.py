@@ -11,7 +11,6 @@ from actr3d.actr.kernel.tracing import chunk_text
 from actr3d.change import change
 from actr3d.errors import ChunkError
 
-
 WITHOUT_EFFECT = (MemorySubModule.merge, DMFixed.merge)
 """The activation of a module with one of these methods does not change when a chunk is added again without an amount."""
 
