@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, Literal, Self, TypeVar
 
 from actr3d.configuration import Configuration
-from actr3d.errors import SimulationError
+from actr3d.errors import ConfigurationError, SimulationError
 from actr3d.registry import Registry
 
 Target = Literal["buffer", "memory", "chunk", "production", "object", "aperture", "parameter"]
@@ -55,7 +55,10 @@ class Change(Configuration):
         except TypeError as error:
             takes = ", ".join(str(one.replace(annotation=one.empty)) for one in signature.parameters.values())
             raise SimulationError(f"command '{cls.word}': {error}; it takes ({takes})") from error
-        return cls(*values, **named)
+        try:
+            return cls(*values, **named)
+        except ConfigurationError as error:  # users know the command, not its class
+            raise ConfigurationError(str(error).replace(f"{cls.__name__}.", f"{cls.word}.", 1)) from error
 
 
 CHANGES: Registry[type[Change]] = Registry("change")

@@ -5,6 +5,16 @@ export function addressed(name) {
   return new URLSearchParams(location.search).get(name);
 }
 
+/** Identifies the page that this window belongs to: itself, unless it was opened by one. */
+export const page = addressed("page") ?? ownName();
+
+function ownName() {
+  const known = sessionStorage.getItem("page");
+  const name = known ?? String(Math.random()).slice(2);
+  sessionStorage.setItem("page", name);
+  return name;
+}
+
 /** Returns the moment of the address [s]; null for none. */
 export function addressedTime() {
   const text = addressed("t");

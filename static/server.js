@@ -1,5 +1,6 @@
 // Communicates with the server: REST for files, sessions and recordings; one websocket for a session's state and commands.
 
+import { page } from "./address.js";
 import { frameBudget } from "./frame_budget.js";
 import { complain, connected, events, forget, hurried, known, opening, session, take } from "./store.js";
 
@@ -141,7 +142,7 @@ export async function showRecording(id, trust = false) {
 
 function attach() {
   const { first, list } = events.value;
-  socket.send(JSON.stringify({ type: "attach", session: shown, run: known.run, epoch: known.epoch, events: first + list.length }));
+  socket.send(JSON.stringify({ type: "attach", session: shown, run: known.run, epoch: known.epoch, events: first + list.length, page }));
 }
 
 function connect() {

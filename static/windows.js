@@ -1,6 +1,6 @@
 // Windows of their own for panels, the 3D view and the timeline: each is a page that shows what the page shows that has opened it.
 
-import { addressed } from "./address.js";
+import { addressed, page } from "./address.js";
 import { show } from "./server.js";
 import { complain, session } from "./store.js";
 import { effect } from "./vendor/preact.js";
@@ -15,16 +15,7 @@ export const alone = addressed("panel");
 /** The id of the session that this page shows in a notebook, without what belongs to a models folder; null for the workbench itself. */
 export const embedded = addressed("session");
 
-/** Identifies the page that this window belongs to: itself, unless it was opened by one. */
-const page = addressed("page") ?? ownName();
 const channel = new BroadcastChannel("actr3d pages");
-
-function ownName() {
-  const known = sessionStorage.getItem("page");
-  const name = known ?? String(Math.random()).slice(2);
-  sessionStorage.setItem("page", name);
-  return name;
-}
 
 /** Opens a panel or a part of the page in a window of its own. */
 export function openWindow(id) {

@@ -28,6 +28,8 @@ class Attach(PageMessage):
     epoch: int = Field(default=0, ge=0)
     events: int = Field(default=0, ge=0)
     """The number of events that it knows."""
+    page: str = Field(default="", max_length=40)
+    """Identifies the page: a panel in a window of its own belongs to the page that has opened it."""
 
 
 class Request(PageMessage):

@@ -456,7 +456,7 @@ class Session(Broadcast, Receiver):
             "cuts": list(self._cuts),
             "born": self.born,
             "made": None if self.recorded is None else begun(self.recorded),
-            "recording": self._recording,
+            "recording": self.recording,
         }
         if facts is not None:
             facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters)}
@@ -474,7 +474,7 @@ class Session(Broadcast, Receiver):
         return {"recording": branched.recording, "at": branched.at, "until": branched.until, **there}
 
     @property
-    def _recording(self) -> str | None:
+    def recording(self) -> str | None:
         """The name of the recording of the run on screen, as lists show it; None if it is not recorded or not listed."""
         start = self.start
         return None if start is None or start.record is None or self.spare_recording is not None else Path(start.record).stem
@@ -483,7 +483,7 @@ class Session(Broadcast, Receiver):
         """Returns the entry of this session in the list of sessions."""
         return {
             "recorded": None if self.recorded is None else self.recorded.stem,
-            "recording": self._recording,
+            "recording": self.recording,
             "id": self.name,
             "model": self.model,
             "run": self.run,
@@ -491,7 +491,7 @@ class Session(Broadcast, Receiver):
             "loading": self.is_loading,
             "ending": self._ending,
             "status": None if self.state is None else self.state.status,
-            "watching": [feed.name for feed in self.feeds],
+            "watching": list(dict.fromkeys(feed.name for feed in self.feeds)),
             "controlled_by": self._controlled_by,
         }
 
@@ -520,7 +520,7 @@ class Session(Broadcast, Receiver):
     def part(self, feed: Feed) -> None:
         """Removes a browser that has left."""
         self.feeds.remove(feed)
-        if feed.name == self._controlled_by:
+        if feed.name == self._controlled_by and all(other.name != feed.name for other in self.feeds):
             self._controlled_by = ""
         self.changed(facts=True)
 

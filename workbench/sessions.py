@@ -16,7 +16,7 @@ from workbench.recordings import Recordings
 from workbench.run_request import RunOptions
 from workbench.scene_view import SceneView
 from workbench.session import Session
-from workbench.worker.messages import Start
+from workbench.worker.messages import Notice, Start
 from workbench.worker.workers import Worker, Workers
 
 MAX_SESSIONS = 8
@@ -202,19 +202,30 @@ class Sessions:
         return session
 
     async def _new(self, path: Path, model: str) -> Session:
+        ended: Session | None = None
         if len(self._sessions) >= MAX_SESSIONS:
             # Users who try many models leave sessions behind: their runs are recorded and can be opened again.
             idle = [one for one in self.all() if one.state is not None and not one.feeds and not one.going_on]
             if not idle:
                 busy = "each is shown on a page or still running: close a page, or stop a run"
                 raise SessionError(f"there are {MAX_SESSIONS} sessions already, and {busy}")
-            await self.close(next((one for one in idle if one.recorded is not None), idle[0]).name)
+            ended = next((one for one in idle if one.recorded is not None), idle[0])
+            await self.close(ended.name)
         self._count += 1
         name = f"s{self._count}"
         session = Session(name, path, self.workers, self.recordings.new, model, self.listings_changed)
         self._sessions[name] = session
         self._views[name] = SceneView(session)
+        if ended is not None:
+            self._report_ended(ended)
         return session
+
+    def _report_ended(self, ended: Session) -> None:
+        """Informs all browsers that a session was ended to make room for another one."""
+        where = "its recording is under Runs" if ended.recording or ended.recorded else "it was not recorded"
+        text = f"At most {MAX_SESSIONS} models can be open: the run of {ended.model}, which no page showed, was ended; {where}."
+        for session in self.all():
+            session.add_notice(Notice(level="warning", text=text))
 
     async def close(self, name: str) -> None:
         """Ends a session.

@@ -127,6 +127,7 @@ class _Page:
                     except Actr3dError as error:
                         await self._refuse(str(error))
                         continue
+                    self._name = attach.page or self._name
                     joined: Feed = session.join(self._name)
                     joined.resume(attach.run, attach.epoch, attach.events)
                     feed, sending = joined, asyncio.create_task(self._send(joined))

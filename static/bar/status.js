@@ -13,14 +13,10 @@ import { connected, me, session, state } from "../store.js";
 const LOST = embedded === null ? "connection lost; trying again …" : "the kernel does not answer any more: run the cell again";
 const BAD = ["busy", "halted", "failed", "lost", "unloadable"];
 
-/** Returns the number of pages that show the run, which of them this one is, and who sent the last command. */
+/** Returns the number of pages that show the run, and who sent the last command. */
 function pagesText(watching, control) {
-  const who = control === me.value ? "you control" : control ? `${control} controls` : "nobody has control";
-  return `${watching.length} pages: you are ${me.value}, ${who}`;
-}
-
-function pagesInFull(watching) {
-  return `${watching.map((name) => (name === me.value ? `${name} (this one)` : name)).join(", ")}\nAll can control the run; the last to do something is named.`;
+  const who = control === me.value ? ", you are in control" : control ? ", another one is in control" : "";
+  return `${watching.length} pages show this run${who}`;
 }
 
 export function StatusLine() {
@@ -34,7 +30,7 @@ export function StatusLine() {
     ${recording ? html`<span class="fact" title="Kept as this recording">rec ${recording}</span>` : null}
     ${seed !== null && seed !== undefined ? html`<span class="fact" title="The seed of the run">seed ${String(seed)}</span>` : null}
     <span class="fact">${counted(state.value?.events ?? 0, "event")}</span>
-    ${watching.length > 1 ? html`<span id="browsers" title=${pagesInFull(watching)}>${pagesText(watching, control)}</span>` : null}
+    ${watching.length > 1 ? html`<span id="browsers" title="All can control the run; the last to do something is in control">${pagesText(watching, control)}</span>` : null}
     <span id="connection" class=${connected.value === false ? "bad" : ""}>
       ${connected.value === false ? LOST : connected.value ? "connected" : "connecting …"}
     </span>

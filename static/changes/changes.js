@@ -1,10 +1,12 @@
 // Changes by hand: what a user can change in the run, from the library's registry (`actr3d.change`), and the forms and menus for it.
 
 import { change } from "../bar/branch.js";
+import { commandsOf } from "../commands.js";
+import { systemsOf } from "../inspector/agents.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { Problem } from "../parts/problem.js";
-import { alive, session } from "../store.js";
+import { alive, session, state } from "../store.js";
 import { computed, html, signal, useId, useRef, useState } from "../vendor/preact.js";
 
 /** All changes that this run accepts: {word, of, title, help, text, fields: [{name, takes, required, default, unit, help}]}. */
@@ -21,7 +23,7 @@ async function make(word, named) {
     await change({ type: "command", word, named });
     return null;
   } catch (error) {
-    return error.message;
+    return error.message.replace(`${word}.`, ""); // the form names the field alone
   }
 }
 
@@ -50,34 +52,50 @@ function valueOf(field, text) {
   return text;
 }
 
+const pathsOf = (kind) => Object.entries(state.value?.parts ?? {}).flatMap(([path, { is }]) => (is === kind ? [path] : []));
+
+/** The values among which a field is chosen, by its name. */
+const CHOICES = {
+  object: () => session.value?.world?.objects ?? [],
+  buffer: () => pathsOf("buffer"),
+  memory: () => pathsOf("memory"),
+  system: () => systemsOf(state.value?.parts),
+  production: () => [...new Set(systemsOf(state.value?.parts).flatMap((system) => state.value.parts[system].productions))],
+};
+
+const choicesOf = ({ name }) => CHOICES[name]?.() ?? [];
+
 /** Returns the text with which the form of a field begins. */
-function firstOf(field, objects) {
-  if (field.name === "object") return objects[0];
+function firstOf(field) {
+  const [first] = choicesOf(field);
+  if (first !== undefined) return first;
   return typeof field.default === "number" ? field.default * unitOf(field)[1] : (field.default ?? "");
 }
 
-function Fields({ fields, values, objects }) {
+function Fields({ fields, values, choices }) {
   return fields.map((field) => {
     const { name, required } = field;
     const [unit] = unitOf(field);
     const help = field.help.replace(`[${field.unit}]`, `[${unit}]`);
     const put = (event) => (values[name] = event.currentTarget.value);
-    return html`<label key=${name} class="field" title=${help}>
-      ${name}${unit ? html` <span class="quiet">[${unit}]</span>` : null}
-      ${name === "object" && objects.length
-        ? html`<select onChange=${put}>${objects.map((one) => html`<option key=${one} value=${one} selected=${one === values[name]}>${one}</option>`)}</select>`
-        : html`<input inputmode=${field.takes.includes("number") ? "decimal" : "text"} required=${required} value=${values[name] ?? ""} onInput=${put} />`}
-    </label>`;
+    return html`<div key=${name} class="change-field"><label class="field">
+      <span>${name}${unit ? html` <span class="quiet">[${unit}]</span>` : null}</span>
+      ${choices[name].length
+        ? html`<select aria-describedby="help-${name}" onChange=${put}>${choices[name].map((one) => html`<option key=${one} value=${one} selected=${one === values[name]}>${one}</option>`)}</select>`
+        : html`<input aria-describedby="help-${name}" inputmode=${field.takes.includes("number") ? "decimal" : "text"} required=${required} value=${values[name] ?? ""} onInput=${put} />`}
+      </label>
+      <small class="quiet" id="help-${name}">${help}</small>
+    </div>`;
   });
 }
 
 /** Asks for the fields of a change that are not given, and makes it; an error is shown in the dialog, which stays open then. */
 export function askAndMake(one, given = {}) {
-  const objects = session.value?.world?.objects ?? [];
   const fields = one.fields.filter(({ name }) => !(name in given));
-  const values = Object.fromEntries(fields.map((field) => [field.name, firstOf(field, objects)]));
+  const values = Object.fromEntries(fields.map((field) => [field.name, firstOf(field)]));
+  const choices = Object.fromEntries(fields.map((field) => [field.name, choicesOf(field)]));
   const problem = signal(null);
-  const Body = () => html`<p class="quiet">${one.help}</p><${Fields} fields=${fields} values=${values} objects=${objects} /><${Problem} text=${problem.value} />`;
+  const Body = () => html`<p class="quiet">${one.help}</p><${Fields} fields=${fields} values=${values} choices=${choices} /><${Problem} text=${problem.value} />`;
   const check = async () => {
     const named = { ...given };
     for (const field of fields) {
@@ -94,6 +112,8 @@ export function askAndMake(one, given = {}) {
   };
   return dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: "Cancel", value: null }, { text: one.title, value: true, kind: "primary" }], check });
 }
+
+commandsOf(() => (alive.value ? changes.value.map((one) => ({ text: `${one.title} …`, group: `Change by hand: ${one.of}`, work: () => askAndMake(one) })) : []));
 
 /** Returns whether a change needs more than is given. */
 const needsMore = (one, given) => one.fields.some(({ name, required }) => required && !(name in given));

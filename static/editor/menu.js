@@ -21,6 +21,9 @@ export const ACTIONS = [
   { text: "Go to a line …", key: "Mod+Alt+G", work: () => withView(gotoLine) },
 ];
 
+/** What inserts a piece at the cursor: {text, work}. */
+export const INSERTIONS = SNIPPETS.map((piece) => ({ text: piece.detail, work: () => withView((view) => insertAtCursor(view, piece)) }));
+
 /** @param disabled Whether there is no text. */
 export function Menu({ disabled }) {
   const id = useId();
@@ -42,6 +45,6 @@ export function Menu({ disabled }) {
     <div ref=${menu} id=${id} popover="auto" class="editor-menu" role="group" aria-label="More" onBeforeToggle=${place}>
       ${ACTIONS.map(({ text, key, work }) => html`<button key=${text} class="bare" onClick=${() => choose(work)}><span>${text}</span><kbd>${keyText(key)}</kbd></button>`)}
       <p>Insert</p>
-      ${SNIPPETS.map((piece) => html`<button key=${piece.label} class="bare" onClick=${() => choose(() => withView((view) => insertAtCursor(view, piece)))}><span>${piece.detail}</span></button>`)}
+      ${INSERTIONS.map(({ text, work }) => html`<button key=${text} class="bare" onClick=${() => choose(work)}><span>${text}</span></button>`)}
     </div>`;
 }

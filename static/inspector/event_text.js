@@ -1,6 +1,6 @@
 // Events as text: groups of kinds, and each event as a line.
 
-import { chunkText, valueText } from "../parts/chunk.js";
+import { chunkText, requestText, valueText } from "../parts/chunk.js";
 import { commandText } from "../timeline/commands.js";
 import { GROUPS as REGISTERED, TEXTS } from "../trace_kinds.js";
 
@@ -27,7 +27,7 @@ const OWN_TEXTS = {
   buffer: (data) => ["holds", data.chunk ? chunkText(data.chunk) : "nothing"],
   retrieval: (data) => (data.failed ? ["fails", "nothing is retrieved"] : ["retrieved", data.chunk]),
   add: (data) => [data.merged ? "merges" : "adds", chunkText(data.chunk)],
-  request: (data) => ["request", data.asked ?? pairs(data)],
+  request: (data) => ["request", data.asked === undefined ? pairs(data) : requestText(data.asked)],
   search: (data) => [data.bottom_up ? "notices" : "searches", `${data.asked}: ${data.noticed.length} noticed${data.why ? `, ${data.why}` : ""}`],
   sight: (data) => (data.failed ? ["sees", "nothing of that kind"] : ["sees", chunkText(data.chunk)]),
 };

@@ -1,7 +1,7 @@
 // The modules of an agent: whether they are busy or in error, what they wait for, and all their plain attributes.
 
 import { html } from "../vendor/preact.js";
-import { valueText } from "../parts/chunk.js";
+import { requestText, valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { chosenText } from "../run_status.js";
 import { state } from "../store.js";
@@ -21,10 +21,10 @@ export function useRequests(paths) {
   return found;
 }
 
-function requestText([time, , , data]) {
+function waitingText([time, , , data]) {
   const { call, asked, ...rest } = data;
   const given = Object.fromEntries(Object.entries(rest).filter(([, value]) => value !== null && typeof value !== "object"));
-  return `${asked !== undefined ? `'${asked}'` : `${call ?? "request"} ${pairs(given)}`}, asked at ${timeText(time)} s`;
+  return `${asked !== undefined ? `'${requestText(asked)}'` : `${call ?? "request"} ${pairs(given)}`}, asked at ${timeText(time)} s`;
 }
 
 /** Returns the status of a part: what it waits for, which production is about to fire, how many chunks it has. */
@@ -33,7 +33,7 @@ export function doing(part, request) {
   if (part.state?.busy === true) {
     const groups = Object.keys(part.state).filter((name) => name.endsWith("_busy") && part.state[name] === true);
     if (groups.length) return `moves ${groups.map((name) => name.slice(0, -5).replaceAll("_", " ")).join(", ")}`;
-    return request ? `waits for ${requestText(request)}` : "waits for an answer";
+    return request ? `waits for ${waitingText(request)}` : "waits for an answer";
   }
   if (part.state?.watching === true) return "watches";
   if (part.is === "memory") return counted(part.state.size ?? 0, "chunk");

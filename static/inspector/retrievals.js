@@ -1,7 +1,7 @@
 // Explains a retrieval: which chunks competed, the components of their activations, and the result.
 
 import { html } from "../vendor/preact.js";
-import { valueText } from "../parts/chunk.js";
+import { requestText, valueText } from "../parts/chunk.js";
 import { fixed, Part, partName } from "./part_names.js";
 
 const MAX_CANDIDATES = 200; // the maximum number of candidates listed
@@ -51,7 +51,7 @@ function Retrieval({ reason }) {
   return html`<section aria-label="Retrieval from ${memory}">
     <h3 class=${outcome === "failed" ? "failed" : ""}><span class="mono">${memory}</span>: ${outcomeText(reason)}</h3>
     <p>
-      <span class="quiet">Asked for</span> <span class="mono">${asked}</span>${asked === request ? null : html` <span class="quiet mono">(${request})</span>`}
+      <span class="quiet">Asked for</span> <span class="mono">${requestText(asked)}</span>${requestText(asked) === requestText(request) ? null : html` <span class="quiet mono">(${requestText(request)})</span>`}
       <span class="quiet"> at ${time.toFixed(3)} s, ${threshold === null ? "no threshold" : `threshold ${valueText(threshold)}`}${fresh ? ", only what was not retrieved recently" : ""}</span>
     </p>
     ${candidates.length ? html`<${Candidates} reason=${reason} />` : null}

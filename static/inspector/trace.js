@@ -10,7 +10,7 @@ import { useEventFilter } from "./event_filter.js";
 import { askWhy } from "./asked.js";
 import { Mixed, touchEvents } from "./touches.js";
 import { seek } from "../timeline/seek.js";
-import { nothingYet } from "../run_status.js";
+import { nothingYet, runStatus } from "../run_status.js";
 import { events, session, state } from "../store.js";
 import { remembered } from "../local_storage.js";
 
@@ -105,7 +105,7 @@ export function FiringTrace() {
     return html`<${Row} key=${number} number=${number} event=${event} ahead=${number < 0 ? event[0] > time : number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} />`;
   };
   const open = (n) => (mixed.numberAt(n) < 0 ? seek(mixed.at(mixed.numberAt(n))[0] / 1e6) : goTo(mixed.numberAt(n)));
-  const nothing = list.length === 0 ? nothingYet() : "All events are filtered out.";
+  const nothing = list.length === 0 || (runStatus.value.is === "ready" && wantedWords.value === "") ? nothingYet() : "All events are filtered out.";
   return html`<section class="trace">
     <div class="tools">
       <input type="search" aria-label="Filter the trace" placeholder="Filter" value=${wantedWords.value} onInput=${(event) => (wantedWords.value = event.currentTarget.value)} />

@@ -1,4 +1,5 @@
-// Fuzzy search in short texts: the letters of each word of the search occur in order; better the nearer together and to starts of words.
+// Fuzzy search in short texts: each word of the search is in the text, or its letters are in order in one word of it, or at the starts of
+// several; better the nearer together and to starts of words.
 
 const START = 8; // for a letter at the start of a word
 const NEXT = 5; // for a letter right after the one found before
@@ -15,28 +16,42 @@ function wordIn(word, text) {
     const score = word.length * (START + NEXT) + (isStart(text, starts) ? START : 0) + (starts === 0 ? EARLY : 0);
     return { score, places: Array.from(word, (_, n) => starts + n) };
   }
-  let best = null;
-  for (let from = text.indexOf(word[0]); from >= 0; from = text.indexOf(word[0], from + 1)) {
-    const places = [from];
-    let score = isStart(text, from) ? START : 0;
-    for (const letter of word.slice(1)) {
-      const after = places.at(-1) + 1;
-      let at = text.indexOf(letter, after);
-      // Rather the start of a later word than the middle of this one.
-      for (let later = at; later >= 0 && at !== after; later = text.indexOf(letter, later + 1)) {
-        if (isStart(text, later)) {
-          at = later;
-          break;
-        }
-      }
-      if (at < 0) return best;
-      score += at === after ? NEXT : isStart(text, at) ? START : -Math.min(MAX_GAP, at - after);
-      places.push(at);
-    }
-    if (best === null || score > best.score) best = { score, places };
+  const found = [];
+  for (let from = 0; from < text.length; from += 1) {
+    if (text[from] === word[0] && isStart(text, from)) found.push(inOneWord(word, text, from), inSeveralWords(word, text, from));
   }
+  const [best = null] = found.filter(Boolean).toSorted((one, other) => other.score - one.score);
   // Letters here and there are chance.
   return best !== null && best.score >= (word.length - 1) * 2 ? best : null;
+}
+
+/** Finds letters in order in the one word of the text that starts at a place. */
+function inOneWord(word, text, from) {
+  const places = [from];
+  let score = START;
+  for (const letter of word.slice(1)) {
+    const after = places.at(-1) + 1;
+    const at = text.indexOf(letter, after);
+    if (at < 0 || /[^\p{L}\p{N}]/u.test(text.slice(after, at))) return null;
+    score += at === after ? NEXT : -Math.min(MAX_GAP, at - after);
+    places.push(at);
+  }
+  return { score, places };
+}
+
+/** Finds letters in order where each follows the one before at once, or starts a later word. */
+function inSeveralWords(word, text, from) {
+  const places = [from];
+  let score = START;
+  for (const letter of word.slice(1)) {
+    let at = places.at(-1) + 1;
+    const isNext = text[at] === letter;
+    while (at < text.length && !isNext && !(text[at] === letter && isStart(text, at))) at += 1;
+    if (at === text.length) return null;
+    score += isNext ? NEXT : START;
+    places.push(at);
+  }
+  return { score, places };
 }
 
 function startsOf(word, text) {

@@ -1,14 +1,16 @@
 // The model's output, line by line, with the warnings and errors of the run between its lines; goes back with the run.
 
 import { html, useEffect, useMemo } from "../vendor/preact.js";
+import { command } from "../commands.js";
 import { clear, fillGaps, printed, printedVersion } from "../inspector/printed.js";
-import { CopyButton } from "../parts/copy.js";
+import { CopyButton, copyText } from "../parts/copy.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Lines } from "../parts/lines.js";
 import { saveFile } from "../parts/picture.js";
 import { Place } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
+import { openTab } from "../open_tab.js";
 import { nothingYet } from "../run_status.js";
 import { alive, moment, notices, session, state } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
@@ -75,7 +77,8 @@ function textOf([line, notice]) {
   return `${level === "info" ? "" : `${level}: `}${file ? `${file}:${number}: ` : ""}${text}`;
 }
 
-function useListed() {
+/** Returns what is listed, and what is not. `memo` is `useMemo` where a component calls it. */
+function listing(memo = (make) => make()) {
   const now = state.value?.events ?? 0;
   const version = printedVersion.value;
   const wanted = words.value.toLowerCase();
@@ -84,7 +87,7 @@ function useListed() {
   const present = firstWhere(lines, ({ number }) => number >= now);
   const first = Math.min(present, firstWhere(lines, ({ number }) => number >= cleared.events));
   const messages = noticesOf(cleared.notice, now);
-  const shown = useMemo(() => {
+  const shown = memo(() => {
     const past = first === 0 && present === lines.length ? lines : lines.slice(first, present);
     return wanted ? past.filter(({ text }) => has(text)) : past;
   }, [version, first, present, wanted]);
@@ -109,15 +112,35 @@ function Notes({ gaps, dropped, cleared, ahead }) {
   `;
 }
 
+function save() {
+  const name = `${(session.value?.model ?? "model").split("/").at(-1).replace(/\.py$/, "")}_seed_${session.value?.seed ?? ""}_console.txt`;
+  saveFile(name, new Blob([listing().listed.text], { type: "text/plain;charset=utf-8" }));
+}
+
+function clearAll() {
+  clear(state.peek()?.events ?? 0, Math.max(-1, ...notices.peek().map(({ number }) => number)));
+}
+
+const registered = (text, work) =>
+  command({
+    text,
+    group: "Console",
+    work: () => {
+      openTab.value = "console"; // so that what is copied, saved or cleared is seen
+      work();
+    },
+    ready: () => Boolean(session.value) && listing().listed.count > 0,
+  });
+registered("Copy the lines of the console", () => copyText(listing().listed.text));
+registered("Save the lines of the console as a text file", save);
+registered("Clear the console", clearAll);
+
 function Console() {
-  const { listed, ahead, all, gaps, dropped, cleared, of } = useListed();
+  const { listed, ahead, all, gaps, dropped, cleared, of } = listing(useMemo);
   useEffect(() => {
     const timer = setTimeout(fillGaps, 0);
     return () => clearTimeout(timer);
   }, [printedVersion.value, alive.value, moment.value]);
-  const name = `${(session.value?.model ?? "model").split("/").at(-1).replace(/\.py$/, "")}_seed_${session.value?.seed ?? ""}_console.txt`;
-  const save = () => saveFile(name, new Blob([listed.text], { type: "text/plain;charset=utf-8" }));
-  const clearAll = () => clear(state.peek()?.events ?? 0, Math.max(-1, ...notices.peek().map(({ number }) => number)));
   const none = all > 0 ? "No line has that text." : ahead > 0 ? "Nothing was printed before this moment." : nothingYet("Nothing was printed in this run.").replace("Nothing has happened yet", "Nothing has been printed yet");
   return html`<div class="console">
     <div class="tools" role="toolbar" aria-label="Console">

@@ -8,7 +8,7 @@ import { focusText, goTo, keys, leaveText, showText } from "../editor/code.js";
 import { Conflict } from "../editor/conflict.js";
 import { documents, look, open, save, shown, shownDocument, take, unsaved, wanted } from "../editor/documents.js";
 import { duplicate, makeNew, remove, rename } from "../editor/files.js";
-import { ACTIONS, Menu } from "../editor/menu.js";
+import { ACTIONS, INSERTIONS, Menu } from "../editor/menu.js";
 import { Problems } from "../editor/problems.js";
 import { saveAndRun } from "../editor/stale_run.js";
 import { Strip } from "../editor/banner.js";
@@ -47,12 +47,19 @@ const onShown = (work) => () => shownDocument() && work(shownDocument());
 Object.assign(keys, { define: onShown(define), rename: onShown(renameName), format: onShown(format) });
 for (const { key, text } of ACTIONS) noteKey(key, text.replace(" …", ""), "Editor");
 commandsOf(() =>
-  ACTIONS.map(({ key, text, work }) => {
+  [
+    ...ACTIONS,
+    ...INSERTIONS.map(({ text, work }) => ({ text: `Insert a snippet: ${text}`, work })),
+    { text: "New model …", work: makeNew, ready: () => true },
+    { text: "Duplicate the file …", work: () => duplicate(shown.value.path) },
+    { text: "Rename the file …", work: () => rename(shown.value.path) },
+    { text: "Delete the file …", work: () => remove(shown.value.path, shownDocument().dirty.value) },
+  ].map(({ key = null, text, work, ready = hasText }) => {
     const inText = () => {
       openTab.value = "editor";
       requestAnimationFrame(work); // once the text is visible
     };
-    return { text, key, group: "Editor", work: inText, ready: hasText };
+    return { text, key, group: "Editor", work: inText, ready };
   }),
 );
 noteKey("Mod+Click", "Go to the definition", "Editor");

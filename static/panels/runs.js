@@ -1,13 +1,17 @@
 // The recordings, with their settings and results; to open, run again, compare, delete, download.
 
 import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
+import { command } from "../commands.js";
 import { Comparison } from "../compare/compare.js";
 import { Icon } from "../parts/icon.js";
 import { Chosen } from "../runs/chosen.js";
+import { openTab } from "../open_tab.js";
 import { deleteRuns, openRun } from "../runs/actions.js";
 import { follow, listRuns, loading, problem, runs as list, total, warning } from "../runs/list.js";
 import { chosen, sorted, Table } from "../runs/table.js";
 import { textOf } from "../runs/wording.js";
+
+command({ text: "Compare, rename or delete recordings: open their list", group: "Panels", work: () => (openTab.value = "runs") });
 
 /** Returns the recordings that contain every word of a search. */
 function found(all, search) {

@@ -22,6 +22,12 @@ export function chunkText(chunk) {
     .join(" ");
 }
 
+/** Returns the text of a request as a model writes it: `0:count 1:?n` becomes `count ?n`. */
+export function requestText(asked) {
+  let next = 0;
+  return asked.replace(/(?<=^|\s)(\d+):/g, (whole, slot) => (Number(slot) === next ? (next++, "") : whole));
+}
+
 /** Returns a chunk as a model writes it, with full numbers: a positional slot is the word at its place. */
 export function writtenChunk(chunk) {
   const exact = (value) => (typeof value === "number" ? String(value) : valueText(value));

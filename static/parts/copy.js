@@ -6,6 +6,17 @@ import { Icon } from "./icon.js";
 
 const SHOWN = 2000; // how long the confirmation is shown [ms]
 
+/** Copies text, or that of a promise; returns whether it is copied, and complains otherwise. */
+export async function copyText(text) {
+  try {
+    await navigator.clipboard.writeText(await text);
+    return true;
+  } catch (error) {
+    complain(`Nothing was copied: ${error.name === "NotAllowedError" ? "the browser does not let the page write to the clipboard" : error.message}.`);
+    return false;
+  }
+}
+
 /** @param text The button's text. @param copied Returns the text to copy, or a promise of it. @param title The tooltip. */
 export function CopyButton({ text, copied, disabled = false, title = undefined }) {
   const [count, setCount] = useState(0);
@@ -18,13 +29,8 @@ export function CopyButton({ text, copied, disabled = false, title = undefined }
   }, [count]);
 
   async function copy() {
-    try {
-      await navigator.clipboard.writeText(await copied());
-      setCount((before) => before + 1);
-    } catch (error) {
-      setDone(false);
-      complain(`Nothing was copied: ${error.name === "NotAllowedError" ? "the browser does not let the page write to the clipboard" : error.message}.`);
-    }
+    if (await copyText(copied())) setCount((before) => before + 1);
+    else setDone(false);
   }
 
   // As wide as the longer text, so that nothing moves.

@@ -1,10 +1,11 @@
-// One plot of curves over time, with its scale, its axis and the values at the pointer; can be saved as PNG or SVG.
+// One plot of curves over time, with its scale, its axis and the values at the pointer; can be saved as PNG or SVG, and its values as CSV.
 
 import { html, useEffect, useMemo, useRef, useSignal } from "../vendor/preact.js";
 import { dark } from "../theme.js";
 import { drawCurves, drawLegend, drawTimes, rangeOf, seriesColour, valueAt } from "./curve.js";
+import { csvText } from "./csv.js";
 import { Icon } from "./icon.js";
-import { savePicture } from "./picture.js";
+import { saveFile, savePicture } from "./picture.js";
 import { CanvasSurface, scaled } from "./surface.js";
 import { numberText, timeText } from "./ticks.js";
 
@@ -71,6 +72,11 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
   }
 
   function save(kind) {
+    const name = [title, source].filter(Boolean).join(" ");
+    if (kind === "csv") {
+      const curves = series.map((one) => ({ ...one, name: `${title} ${one.name}`, times: one.times ?? times }));
+      return saveFile(`${name}.csv`, new Blob([csvText(curves)], { type: "text/csv" }));
+    }
     const wide = Math.max(640, width.value);
     const draw = (surface) => {
       drawLegend(surface, LEFT, 8, wide - LEFT, series);
@@ -78,8 +84,7 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
       drawTimes(surface, below, shown, { y: below.y + below.height, height: AXIS });
       drawCurves(surface, below, { series, times, span: shown, range });
     };
-    const name = [title, source].filter(Boolean).join(" ");
-    savePicture({ name, title: `${title}${unit ? ` [${unit}]` : ""}${source ? `, ${source}` : ""}`, width: wide, height: height + 24, draw }, kind);
+    return savePicture({ name, title: `${title}${unit ? ` [${unit}]` : ""}${source ? `, ${source}` : ""}`, width: wide, height: height + 24, draw }, kind);
   }
 
   return html`<figure class="plot" aria-label=${title}>
@@ -97,6 +102,7 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
       <span class="plot-time number quiet">${at === null ? "" : timeText(at, 0.01)}</span>
       <button class="bare" title="Keep the plot as a PNG" onClick=${() => save("png")}><${Icon} name="download" />PNG</button>
       <button class="bare" title="Keep the plot as an SVG" onClick=${() => save("svg")}><${Icon} name="download" />SVG</button>
+      <button class="bare" title="Keep the values as CSV" onClick=${() => save("csv")}><${Icon} name="download" />CSV</button>
     </figcaption>
     <div class="plot-area" style=${{ height: `${height}px` }}>
       <canvas

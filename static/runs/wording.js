@@ -1,6 +1,7 @@
 // Recordings as text: date, parameters, results.
 
 import { valueText } from "../parts/chunk.js";
+import { unitOf } from "../parts/units.js";
 
 const ENDED = {
   stop: "the model called stop()",
@@ -95,18 +96,16 @@ export function endedText(run) {
   return run.session ? "goes on, or waits" : "left before its end";
 }
 
-const UNIT_ENDS = [["_deg", "°"], ["_m_s", " m/s"], ["_m", " m"], ["_n", " N"], ["_s", " s"]];
-
 /** Returns a name of the model without its unit: `peak_angle_deg` becomes `peak angle`. */
 export function labelOf(name) {
-  const unit = UNIT_ENDS.find(([end]) => name.endsWith(end));
-  return (unit ? name.slice(0, -unit[0].length) : name).replaceAll("_", " ");
+  return unitOf(name).label;
 }
 
 /** Returns a measured value with the unit in its name's ending. */
 export function measureText(name, value) {
   if (typeof value !== "number") return value === null || value === undefined ? "–" : valueText(value);
-  return `${valueText(value)}${UNIT_ENDS.find(([end]) => name.endsWith(end))?.[1] ?? ""}`;
+  const { unit, factor } = unitOf(name);
+  return `${valueText(value * factor)}${unit && unit !== "°" ? " " : ""}${unit}`;
 }
 
 /** Returns all text that a search includes. */

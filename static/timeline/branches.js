@@ -1,6 +1,7 @@
 // The branches of the run as a small tree on the axis of time: each begins where its run was changed. They are opened, compared, named
 // and deleted here; there is nothing to see as long as there is only one way.
 
+import { commandsOf } from "../commands.js";
 import { compareRuns } from "../compare/compare.js";
 import { remembered } from "../local_storage.js";
 import { openTab } from "../open_tab.js";
@@ -107,13 +108,30 @@ function compare(run) {
   compareRuns(run.id, shown.value);
 }
 
+function branchName(run) {
+  return run.label?.name || (run.branched === null ? whenText(run.made) : `at ${run.branched.toFixed(2)} s`);
+}
+
+commandsOf(() =>
+  (tree.value.length > 1 ? tree.value : []).flatMap(({ run }) => {
+    const mine = run.id === shown.value;
+    const of = (text, work, ready) => ({ text: `${text}: ${branchName(run)}`, group: `Branch ${run.id}`, work, ready: () => ready });
+    return [
+      of("Show the branch", () => show(run), !mine && !run.problem),
+      of("Compare the shown run with the branch", () => compare(run), !mine),
+      of("Rename the branch (name, note, tags)", () => labelRun(run), true),
+      of("Delete the branch", () => deleteRuns([run]), !mine && !run.session),
+    ];
+  }),
+);
+
 function Row({ run, depth, width }) {
   const mine = run.id === shown.value;
   const view = { column: column.value, width, span: span.value };
   const inside = (x) => Math.min(Math.max(x, view.column), width);
   const end = mine && run.session === session.value?.id ? Math.max(furthest.value, state.value?.time ?? 0) : run.time;
   const [from, to] = [inside(placeOf(run.branched ?? 0, view)), inside(placeOf(end, view))];
-  const name = run.label?.name || (run.branched === null ? whenText(run.made) : `at ${run.branched.toFixed(2)} s`);
+  const name = branchName(run);
   const title = `${name}: ${outcomeText(run)}, ${end.toFixed(2)} s${run.label?.note ? `\n${run.label.note}` : ""}`;
   const remove = async () => {
     await deleteRuns([run]);

@@ -1,6 +1,6 @@
 // The effect of each kind of event (`actr3d/trace_kinds.py`) on the lanes.
 
-import { valueText } from "../parts/chunk.js";
+import { requestText, valueText } from "../parts/chunk.js";
 import { commandText, setTheSame } from "./commands.js";
 
 const LEVELS = { planning_unit: "planning unit", unit_task: "unit task", method: "method", operator: "operator" };
@@ -58,7 +58,7 @@ function buffer(lanes, time, source, { chunk }) {
 
 /** Returns the latest request to a module in a few words. */
 function request(lanes, time, source, data) {
-  const text = valueText(data.asked ?? data.movement ?? data.word ?? data.pattern ?? data.call ?? "");
+  const text = requestText(valueText(data.asked ?? data.movement ?? data.word ?? data.pattern ?? data.call ?? ""));
   lanes.asked.set(source, { time, text });
   const open = lanes.lanes.get(`module ${source}`)?.open;
   if (open && open.from === time && !open.bad) open.text = text;

@@ -1,7 +1,8 @@
 // Saves the timeline, or one of its plots, as PNG or SVG, and the values of curves as CSV.
 
 import { html, signal } from "../vendor/preact.js";
-import { drawCurves, drawLegend, drawTimes, valueAt } from "../parts/curve.js";
+import { csvText } from "../parts/csv.js";
+import { drawCurves, drawLegend, drawTimes } from "../parts/curve.js";
 import { dialog } from "../parts/dialog.js";
 import { pictureName, saveFile, savePicture } from "../parts/picture.js";
 import { session } from "../store.js";
@@ -32,15 +33,6 @@ function ofPlot(plot) {
     drawCurves(surface, box, { ...plot, span, until: end });
   };
   return { width: WIDE, height: HIGH, title: `${headingOf(plot)}: ${runText()}`, draw };
-}
-
-/** Returns curves as the text of a CSV file: a column of times, and one for each curve, with units. */
-export function csvText(curves) {
-  const quoted = (text) => `"${text.replaceAll('"', '""')}"`;
-  const times = [...new Set(curves.flatMap((curve) => curve.times))].sort((one, other) => one - other);
-  const heads = ["time [s]", ...curves.map(({ name, unit }) => headingOf({ title: name, unit }))];
-  const rows = times.map((time) => [time, ...curves.map((curve) => valueAt(curve.times, curve.values, time) ?? "")].join(","));
-  return `${[heads.map(quoted).join(","), ...rows].join("\n")}\n`;
 }
 
 /** Asks what to save, and saves it. */

@@ -145,7 +145,7 @@ def test_a_production_fires_next_in_place_of_the_chosen_one_whatever_its_utility
         (("set_buffer", "mind.memory", "a"), r"no buffer 'mind.memory'.*[Tt]here are: mind.goal, mind.retrieval"),
         (("set_buffer", "mind.goal", "  "), r"'mind.goal': a chunk has at least one slot, such as 'count 3' or 'item:cup' \(got '  '\)"),
         (("set_buffer", "mind.goal", "a ?x"), r"'mind.goal': chunk 'a \?x': '\?x' is not bound .*; write a value"),
-        (("set_buffer", "mind.goal", 3), r"SetBuffer.chunk: must be text \(got 3\)"),
+        (("set_buffer", "mind.goal", 3), r"set_buffer.chunk: must be text \(got 3\)"),
         (("set_buffer", "mind.goal"), r"command 'set_buffer': missing a required argument: 'chunk'; it takes \(buffer, chunk\)"),
         (("clear_buffer", "mind.goal", "b"), r"command 'clear_buffer': too many positional arguments; it takes \(buffer\)"),
         (("add_chunk", "mind", "a"), r"no memory 'mind'.*there are: mind.memory"),
@@ -191,6 +191,22 @@ def test_huge_and_hostile_chunks_are_only_text(text: str) -> None:
     simulation.seek(0.05)
     simulation.run(0.05)
     assert run() == first
+
+
+def test_a_chunk_is_not_strengthened_where_that_has_no_effect() -> None:
+    for module, problem in (
+        ("", "has no base level"),
+        ("fixed = DMFixed(memory)", "has no base level"),
+        ("recent = DMInhibition(memory)", None),
+    ):
+        agent: Any = load_text(counter_text("PMNew(alpha=0.2)").replace("strength = DMBaseLevel(memory)", module), "counter.py").Counter
+        simulation = Simulation(SCENE, bodiless={"mind": agent}, seed=7)
+        simulation.run(0.1)
+        if problem is None:
+            simulation.command("strengthen", "mind.memory", "next 0 1")
+        else:
+            with pytest.raises(Actr3dError, match=problem):
+                simulation.command("strengthen", "mind.memory", "next 0 1")
 
 
 def test_an_acted_change_waits_for_no_other_agent() -> None:

@@ -133,7 +133,7 @@ def test_buffers_and_modules_are_shown_and_what_changed_lights_up(pages: Pages, 
     page = opened(pages, workbench, "counting.py")
     page.click("#cycle")
     expect(buffer(page, "goal")).to_have_text("taskcountnumber2last5")
-    expect(module(page, "memory").locator("summary")).to_contain_text("waits for '0:count 1:2 2:?next', asked at 0.050 s")
+    expect(module(page, "memory").locator("summary")).to_contain_text("waits for 'count 2 ?next', asked at 0.050 s")
     expect(module(page, "memory").get_by_label("busy", exact=True)).to_be_visible()
     place = module(page, "memory").bounding_box()
     lit = buffer(page, "goal").evaluate_handle(NOTE_CHANGES)

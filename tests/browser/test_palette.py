@@ -51,6 +51,17 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
     page.keyboard.press("ArrowDown")
     page.keyboard.press("Enter")
     shows(page, "#time", "0.02 s")
+    matches = """async (texts) => {
+      const { match } = await part("palette/fuzzy.js");
+      return texts.map(([search, text]) => match(search, text) !== null);
+    }"""
+    texts = [
+        ("push", "Run or pause, and go on from here"),
+        ("compare", "goal a curve of 15 more parts"),
+        ("gtl", "Go to a line"),
+        ("stp", "Step"),
+    ]
+    assert page.evaluate(matches, texts) == [False, False, True, True]
     search(page, "xyzzyq")
     expect(page.get_by_role("dialog")).to_contain_text("Nothing has this in its name")
     page.keyboard.press("Escape")
@@ -79,6 +90,10 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
         "Page: Theme: light, dark, or as the system has it",
         "Editor: Save the text",
         "Editor: Format",
+        "Editor: Insert a snippet: a production",
+        "Console: Clear the console",
+        "Change by hand: production: Forbid once …",
+        "Change by hand: buffer: Set …",
         "Model: doorway.py",
         "Recording: doorway",
     ):

@@ -262,6 +262,13 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     picture = Path(taken.value.path()).read_text()
     assert picture.count("<path") + picture.count("<polyline") >= 2
     assert "doorway.py" in picture
+    with page.expect_download() as taken:
+        plot.get_by_role("button", name="CSV").click()
+    head, values = Path(taken.value.path()).read_text().splitlines()[:2]
+    assert re.fullmatch(r'"time \[s\]","walker_torso_yaw speed first: .*","walker_torso_yaw speed second: .*"', head)
+    assert values.startswith("0,")
+    written = "async () => (await part('runs/wording.js')).measureText('x_n_s', 0)"
+    assert page.evaluate(written) == "0 N s"
     page.keyboard.press("Escape")
     expect(dialog).to_have_count(0)
 

@@ -418,7 +418,9 @@ def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
         desk.do(open_watched())
     # One that nobody watches any more makes room.
     opened[3].part(opened[3].feeds[0])
-    desk.do(open_watched())
+    newest = desk.do(open_watched())
+    ended = "the run of model.py, which no page showed, was ended; it was not recorded"
+    assert all(any(ended in notice.decode() for _, notice in session.notices) for session in (newest, opened[0]))
     assert [session.name for session in sessions.all()] == ["s1", "s2", "s3", "s5", "s6", "s7", "s8", f"s{MAX_SESSIONS + 1}"]
 
 

@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from actr3d.actr.changes.agent_change import AgentChange, Parts
+from actr3d.actr.declarative.activation import DMFixed, MemorySubModule
 from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.kernel.tracing import chunk_text
 from actr3d.change import change
 from actr3d.errors import ChunkError
+
+WITHOUT_EFFECT = (MemorySubModule.merge, DMFixed.merge)
+"""The activation of a module with one of these methods does not change when a chunk is added again without an amount."""
 
 
 @change
@@ -31,4 +35,6 @@ class Strengthen(AgentChange):
         known = {chunk_text(chunk): chunk for chunk in memory.dm}
         if self.chunk not in known:
             raise ChunkError(f"no chunk '{self.chunk}' in '{self.memory}'; `add_chunk` adds it")
+        if all(type(module).merge in WITHOUT_EFFECT for module in memory.adaptors):
+            raise ChunkError(f"'{self.memory}' has no base level (DMBaseLevel), so a chunk that is added again is not stronger")
         memory.add(known[self.chunk])

@@ -30,11 +30,11 @@ class MoveObject(WorldChange):
     object: str
     """The name of the body or object in the scene."""
     x: Annotated[float, Ge(-FARTHEST), Le(FARTHEST)]
-    """[m]"""
+    """The place along the x axis of the world [m]; at a heading of 0, a body faces along this axis."""
     y: Annotated[float, Ge(-FARTHEST), Le(FARTHEST)]
-    """[m]"""
+    """The place along the y axis of the world [m]: to the left of the x axis, seen from above."""
     heading: Annotated[float, Ge(-MAX_TURN), Le(MAX_TURN)] | None = None
-    """[rad]; None for its present heading."""
+    """The angle from the x axis of the world to the left [rad]; None for its present heading."""
 
     def carry_out(self, on: World) -> None:
         on.move(self.object, self.x, self.y, self.heading)

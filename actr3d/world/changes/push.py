@@ -8,6 +8,7 @@ from typing import Annotated
 from annotated_types import Ge, Gt, Le
 
 from actr3d.change import change
+from actr3d.errors import ConfigurationError
 from actr3d.world.changes.world_change import WorldChange
 from actr3d.world.world import World
 
@@ -28,11 +29,16 @@ class PushObject(WorldChange):
     object: str
     """The name of the body or object in the scene."""
     x: Annotated[float, Ge(-MAX_FORCE), Le(MAX_FORCE)]
-    """Force along the world's x axis [N]."""
+    """Force along the x axis of the world [N]; at a heading of 0, a body faces along this axis."""
     y: Annotated[float, Ge(-MAX_FORCE), Le(MAX_FORCE)] = 0.0
-    """Force along the world's y axis [N]."""
+    """Force along the y axis of the world [N]: to the left of the x axis, seen from above."""
     time: Annotated[float, Gt(0), Le(60)] = 0.1
     """Duration [s]."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.x == 0 and self.y == 0:
+            raise ConfigurationError("PushObject.x: must not be 0 if y is 0 too: that is no push")
 
     def carry_out(self, on: World) -> None:
         on.push(self.object, self.x, self.y, self.time)
