@@ -13,8 +13,8 @@ from tests.helpers.workbench_server import MODELS
 from workbench.about import LONGEST, about_of
 from workbench.loader import listing_of
 
-SHOWN = {"p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a"}
-SHOWN |= {"table", "thead", "tbody", "tr", "th", "td"}
+TEXTS = {"p", "h2", "h3", "h4", "ul", "ol", "li", "blockquote", "em", "strong", "code", "pre", "br", "hr", "a"}
+SHOWN = {*TEXTS, "table", "thead", "tbody", "tr", "th", "td"}
 ALL_MODELS = sorted(path.relative_to(MODELS).as_posix() for path in MODELS.rglob("*.py"))
 
 
