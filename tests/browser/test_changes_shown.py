@@ -19,10 +19,10 @@ def say(page: Page, **command: Any) -> None:
 
 
 def commands(page: Page) -> list[str]:
-    """Returns the users' commands as the timeline shows them."""
+    """Returns the users' commands as the timeline shows them; those of one moment are in one mark."""
     return page.evaluate("""async () => {
       const { lanes } = await part("timeline/record.js");
-      return (lanes.lanes.get("commands")?.bands ?? []).map(({ text }) => text);
+      return (lanes.lanes.get("commands")?.bands ?? []).flatMap(({ text }) => text.split("; "));
     }""")
 
 
@@ -182,7 +182,7 @@ def test_things_in_the_scene_are_moved_and_pushed_by_numbers(pages: Callable[...
     # a wrong push, from the palette: the field is named as the form names it
     page.keyboard.press("Control+k")
     page.keyboard.insert_text("push")
-    expect(page.get_by_role("dialog").get_by_role("option")).to_have_text(["Push …Change by hand: object"])
+    expect(page.get_by_role("dialog").get_by_role("option").first).to_have_text("Push …Change by hand: object")
     page.keyboard.press("Enter")
     for x, time, problem in (("0", "1", "x: must not be 0 if y is 0 too"), ("9", "-1", "time: must be > 0 (got -1.0)")):
         dialog.get_by_label("x", exact=False).first.fill(x)
