@@ -138,7 +138,7 @@ function request(numbers, time, source, { candidates, modules, latency }) {
   if (!candidates) return;
   for (const [chunk, parts, , activation] of candidates) {
     numbers.point(time, activation, `${chunk} activation`, "", "activation");
-    if (modules.length !== parts.length || parts.length < 2) continue;
+    if (modules.length !== parts.length) continue;
     parts.forEach((part, n) => numbers.point(time, part, `${chunk} ${partName(modules[n])}`, "", partName(modules[n])));
   }
   numbers.point(time, latency, `${source} latency`, "s", "retrieval latency");
