@@ -18,6 +18,7 @@ from actr3d.parameter_schema import Parameter, default_of, parameters_in
 from actr3d.runner.build_check import build_of, has_build, problem_of_build
 from actr3d.values import escape_surrogates
 from workbench.files import LARGEST, MAX_FILES, file_stamp
+from workbench.undefined_names import undefined_names
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,6 +137,8 @@ def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
     found = problem_of_build(source)
     if found is not None:
         yield Problem(level="error", message=escape_surrogates(found[1]), line=found[0])
+    for line, message in undefined_names(syntax_tree(source)):
+        yield Problem(level="warning", message=escape_surrogates(message), line=line)
     for warning in caught:
         yield Problem(level="warning", message=escape_surrogates(str(warning.message)), line=warning.lineno)
 

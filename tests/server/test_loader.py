@@ -12,7 +12,7 @@ from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.errors import ConfigurationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.runner.model_factory import Blueprint
-from workbench.loader import listing_of
+from workbench.loader import listing_of, problems_of
 
 MODELS = Path(__file__).parents[2] / "models"
 MODEL = '''"""Walks.
@@ -196,3 +196,25 @@ def test_parameters_read_from_a_text_are_those_of_the_loaded_model(name: str) ->
     told = listing_of(source, name).parameters
     assert [replace(one, line=0) for one in told] == list(fields)
     assert [one.name for one in told if one.live == LiveCommand(word="aperture")] == [told[0].name if name == "doorway.py" else "aperture"]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("from actr3d.actr import *\nclass A(ACTR):\n    memory = Mem\n", [(3, "nothing defines 'Mem'; did you mean 'Memory'?")]),
+        (
+            "class A:\n    x = 1\n    y: 'Later' = x\n    def f(self, z=x): return whatever\nprint([n for n in range(A.y)])\n",
+            [],
+        ),
+        ("@qqq\ndef f(a=zzz): pass\nf(lambda: nothing)\n", [(1, "nothing defines 'qqq'"), (2, "nothing defines 'zzz'")]),
+        ("from elsewhere import *\nAgent().run()\n", []),
+        ("exec('x = 1')\nprint(x)\n", []),
+        ("class A:\n", None),
+    ],
+)
+def test_names_that_nothing_defines_are_found_where_a_text_is_executed_first(text: str, found: list[tuple[int, str]] | None) -> None:
+    problems = [(problem.line, problem.message) for problem in problems_of(text)]
+    if found is None:
+        assert not any("nothing defines" in message for _, message in problems)
+    else:
+        assert problems == found

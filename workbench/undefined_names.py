@@ -1,0 +1,74 @@
+"""Finds names that nothing defines, where a text is executed first: at the top level and in the bodies of classes.
+
+Bodies of functions are left out: a production sees buffers, modules and bound variables by name.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from collections.abc import Iterator
+from importlib import import_module
+
+from actr3d.errors import did_you_mean
+
+LIBRARY = ("actr3d.actr", "actr3d.world", "actr3d.motor", "actr3d.vision", "actr3d.simulation", "actr3d.sgoms", "actr3d.experiment")
+"""The modules whose names are known if a text imports all of them with `*`."""
+DYNAMIC = {"exec", "globals", "vars", "locals", "setattr"}
+"""A text that uses one of these may define names that are not written in it."""
+
+
+def undefined_names(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Yields the line and a message for each name that is read there, and that nothing in the text defines or imports."""
+    known = set(dir(builtins)) | {"__file__", "__name__", "__doc__"}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.names[0].name == "*":
+            if node.module not in LIBRARY:
+                return
+            module = import_module(node.module)
+            known |= set(getattr(module, "__all__", dir(module)))
+        known |= set(_defined_by(node))
+    if any(isinstance(node, ast.Name) and node.id in DYNAMIC for node in ast.walk(tree)):
+        return
+    for name in sorted(_read_first(tree.body), key=lambda name: (name.lineno, name.col_offset)):
+        if name.id not in known:
+            yield name.lineno, f"nothing defines '{name.id}'{did_you_mean(name.id, known)}"
+
+
+def _defined_by(node: ast.AST) -> Iterator[str]:
+    """Yields the names that a node defines, in whatever scope."""
+    match node:
+        case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name) | ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
+            yield name
+        case ast.ClassDef(name=name):
+            yield name
+        case (
+            ast.ExceptHandler(name=str(name))
+            | ast.MatchAs(name=str(name))
+            | ast.MatchStar(name=str(name))
+            | ast.MatchMapping(rest=str(name))
+        ):
+            yield name
+        case ast.Import() | ast.ImportFrom():
+            for alias in node.names:
+                yield alias.asname or alias.name.partition(".")[0]
+        case ast.Global():
+            yield from node.names
+        case _:
+            pass
+
+
+def _read_first(body: list[ast.stmt]) -> Iterator[ast.Name]:
+    """Yields the names that are read when some statements are executed, without the bodies of functions."""
+    waiting: list[ast.AST] = list(body)
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
+            yield node
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            arguments = node.args
+            waiting += [*node.decorator_list, *arguments.defaults, *(one for one in arguments.kw_defaults if one is not None)]
+        elif isinstance(node, ast.AnnAssign):
+            waiting += [] if node.value is None else [node.value]
+        elif not isinstance(node, ast.Lambda):
+            waiting += ast.iter_child_nodes(node)
