@@ -137,10 +137,14 @@ def problems_of(source: str, filename: str = "model.py") -> Iterator[Problem]:
     found = problem_of_build(source)
     if found is not None:
         yield Problem(level="error", message=escape_surrogates(found[1]), line=found[0])
-    for line, message in undefined_names(syntax_tree(source)):
-        yield Problem(level="warning", message=escape_surrogates(message), line=line)
     for warning in caught:
         yield Problem(level="warning", message=escape_surrogates(str(warning.message)), line=warning.lineno)
+
+
+def undefined_in(source: str) -> Iterator[Problem]:
+    """Yields a warning for each name that nothing defines; apart from `problems_of`, as only who checks a text wants them."""
+    for line, message in undefined_names(syntax_tree(source)):
+        yield Problem(level="warning", message=escape_surrogates(message), line=line)
 
 
 def _of_first_lines(source: str) -> Iterator[Parameter]:

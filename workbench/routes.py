@@ -15,7 +15,7 @@ from pydantic import Field
 from actr3d.values import escape_surrogates
 from workbench.about import about_of
 from workbench.files import ModelFile
-from workbench.loader import listing_of, outline_of
+from workbench.loader import listing_of, outline_of, undefined_in
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions
@@ -156,6 +156,7 @@ async def check(request: Request, body: Check) -> dict[str, Any]:
     problems = [asdict(problem) for problem in listing.problems]
     if body.load and not any(problem["level"] == "error" for problem in problems):
         problems = await sessions.check(path, body.text)
+    problems += [asdict(problem) for problem in await asyncio.to_thread(lambda: list(undefined_in(body.text)))]
     return {"problems": problems, "listing": asdict(listing)}
 
 

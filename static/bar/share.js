@@ -4,8 +4,9 @@ import { html, signal } from "../vendor/preact.js";
 import { addressOf } from "../address.js";
 import { command, run } from "../commands.js";
 import { buttonTitle } from "../keys.js";
+import { copyText } from "../parts/copy.js";
 import { Icon } from "../parts/icon.js";
-import { complain, session } from "../store.js";
+import { session } from "../store.js";
 import { present } from "../timeline/seek.js";
 
 const SHOWN = 2000; // how long the confirmation is shown [ms]
@@ -18,12 +19,8 @@ function recordingOf(facts) {
 }
 
 async function copyLink() {
-  try {
-    await navigator.clipboard.writeText(addressOf(recordingOf(session.peek()), present.peek()));
-  } catch (error) {
-    complain(`The link was not copied: ${error.name === "NotAllowedError" ? "the browser does not let the page write to the clipboard" : error.message}.`);
-    return;
-  }
+  const link = addressOf(recordingOf(session.peek()), present.peek());
+  if (!(await copyText(link, "The link was not copied"))) return;
   copied.value += 1;
   setTimeout(() => (copied.value -= 1), SHOWN);
 }

@@ -7,12 +7,12 @@ import { Icon } from "./icon.js";
 const SHOWN = 2000; // how long the confirmation is shown [ms]
 
 /** Copies text, or that of a promise; returns whether it is copied, and complains otherwise. */
-export async function copyText(text) {
+export async function copyText(text, otherwise = "Nothing was copied") {
   try {
     await navigator.clipboard.writeText(await text);
     return true;
   } catch (error) {
-    complain(`Nothing was copied: ${error.name === "NotAllowedError" ? "the browser does not let the page write to the clipboard" : error.message}.`);
+    complain(`${otherwise}: ${error.name === "NotAllowedError" ? "the browser does not let the page write to the clipboard" : error.message}.`);
     return false;
   }
 }

@@ -225,6 +225,13 @@ def test_no_input_gives_an_error_of_the_server(operation: str, server: Served) -
     answers()
 
 
+@pytest.mark.parametrize("load", [False, True])
+def test_a_check_names_what_nothing_defines_whether_it_loads_the_text_or_not(load: bool, server: Served) -> None:
+    text = "from actr3d.actr import *\nclass Agent(ACTR):\n    memory = Mem\n"
+    problems = server.post("/api/check", {"path": "checked.py", "text": text, "load": load}).json()["problems"]
+    assert {"level": "warning", "message": "nothing defines 'Mem'; did you mean 'Memory'?", "line": 3} in problems
+
+
 HOSTILE = [
     "../../etc/passwd",
     "..%2f..%2fetc%2fpasswd",

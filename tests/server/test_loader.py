@@ -12,7 +12,7 @@ from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.errors import ConfigurationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.runner.model_factory import Blueprint
-from workbench.loader import listing_of, problems_of
+from workbench.loader import listing_of, problems_of, undefined_in
 
 MODELS = Path(__file__).parents[2] / "models"
 MODEL = '''"""Walks.
@@ -102,8 +102,9 @@ def test_the_parameters_of_a_program_are_its_first_lines() -> None:
 
 def test_every_model_is_listed_without_complaint() -> None:
     for path in sorted(MODELS.rglob("*.py")):
-        listing = listing_of(path.read_text(encoding="utf-8"), path.name)
-        assert listing.problems == ()
+        text = path.read_text(encoding="utf-8")
+        listing = listing_of(text, path.name)
+        assert (listing.problems, list(undefined_in(text))) == ((), [])
         assert listing.title
 
 
@@ -213,7 +214,7 @@ def test_parameters_read_from_a_text_are_those_of_the_loaded_model(name: str) ->
     ],
 )
 def test_names_that_nothing_defines_are_found_where_a_text_is_executed_first(text: str, found: list[tuple[int, str]] | None) -> None:
-    problems = [(problem.line, problem.message) for problem in problems_of(text)]
+    problems = [(problem.line, problem.message) for problem in (*problems_of(text), *undefined_in(text))]
     if found is None:
         assert not any("nothing defines" in message for _, message in problems)
     else:
