@@ -15,8 +15,8 @@ from mujoco import MjData, MjModel
 
 from actr3d.world.compiled import loaded
 from workbench.backdrop import Outlines, Shades, lay_grounds, light
-from workbench.clothes import dress
 from workbench.curves import INTEGRATION
+from workbench.geom_colours import dress
 from workbench.overlays import OVERLAYS, Drawn, Overlay, ViewSettings
 from workbench.overlays.frustum import Frustum
 from workbench.scene_framing import SceneFraming

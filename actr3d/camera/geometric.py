@@ -113,6 +113,15 @@ class GeometricCamera:
         object = int(self._objects[names.index(geom)])
         return int(self._labels[object]) or None if object > 0 else None
 
+    def geoms_by_label(self) -> dict[int, list[int]]:
+        """Returns the geoms of all objects that were seen so far, by label, as MuJoCo numbers geoms; for observers, as `label_of`."""
+        geoms: dict[int, list[int]] = {}
+        for geom, object in enumerate(self._objects.tolist()):
+            label = int(self._labels[object]) if object > 0 else 0
+            if label:
+                geoms.setdefault(label, []).append(geom)
+        return geoms
+
     def state(self) -> tuple[int, ...]:
         """Returns the labels that were given, to be passed to `restore`: all that a camera keeps from one look to the next."""
         return tuple(self._labels.tolist())

@@ -81,6 +81,10 @@ class Sight:
         """Returns the pose of the eye when it saw a view, for observers; None if this eye did not compute the view."""
         return self._stands.get(view)
 
+    def geoms_by_label(self) -> dict[int, list[int]]:
+        """Returns the geoms of all objects that were seen so far, by label; for observers."""
+        return self._camera.geoms_by_label()
+
     def state(self) -> tuple[int, ...]:
         """Returns the labels that were given."""
         return self._camera.state()
@@ -127,6 +131,19 @@ def glance(body: Body, parameters: CameraParameters | None = None) -> View:
     Raises:
         CameraError: If the body has no eye, or the poses are not finite.
     """
+    return glance_with_geoms(body, parameters)[0]
+
+
+def glance_with_geoms(body: Body, parameters: CameraParameters | None = None) -> tuple[View, dict[int, list[int]]]:
+    """Returns what is visible now, as `glance` does, and the geoms of what was seen so far, by label.
+
+    Args:
+        body: The body whose eye is used.
+        parameters: How it sees, as in `glance`.
+
+    Raises:
+        CameraError: If the body has no eye, or the poses are not finite.
+    """
     if body.eye is None:
         raise CameraError(f"body '{body.name}' has no eye")
     if parameters is None:
@@ -134,7 +151,7 @@ def glance(body: Body, parameters: CameraParameters | None = None) -> View:
     eye = body.unused_sense(Sight, parameters)
     labels = eye.state()
     try:
-        return eye.look()
+        return eye.look(), eye.geoms_by_label()
     finally:
         if eye.state() != labels:
             eye.restore(labels)

@@ -34,8 +34,8 @@ function objectsOf({ extents }) {
   return [...found.values()].sort((one, other) => one.nearest - other.nearest);
 }
 
-function Swatch({ label, distance }) {
-  return html`<span class="swatch" style=${{ background: shadeOf(label, distance, dark.value) }}></span>`;
+function Swatch({ colour, distance }) {
+  return html`<span class="swatch" style=${{ background: shadeOf(colour, distance, dark.value) }}></span>`;
 }
 
 function Objects({ view }) {
@@ -44,7 +44,7 @@ function Objects({ view }) {
     <tbody>
       ${objectsOf(view).map(
         (one) => html`<tr key=${one.label}>
-          <td><${Swatch} label=${one.label} distance=${one.nearest} />${one.label}</td>
+          <td><${Swatch} colour=${view.colours[one.label]} distance=${one.nearest} />${one.label}</td>
           <td class="number">${one.nearest.toFixed(2)}</td>
           <td class="number">${one.left.toFixed(3)}</td>
           <td class="number">${one.right.toFixed(3)}</td>

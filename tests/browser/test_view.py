@@ -164,14 +164,13 @@ def test_labels_never_cover_each_other_or_a_head_or_leave_the_picture(blank: Pag
     assert found > 200
 
 
-def test_the_retina_has_the_colours_of_the_edges_in_the_scene(blank: Page) -> None:
-    from workbench.palette import label_colours
-
-    colours = """async () => {
-        const { channels, labelColour } = await part("scene/palette.js");
-        return [1, 2, 3, 9, 20].map((label) => channels(labelColour(label)));
+def test_the_retina_pales_colours_with_distance(blank: Page) -> None:
+    shades = """async () => {
+        const { shadeOf } = await part("eye/drawing.js");
+        return [[0, false], [12, false], [99, false], [0, true], [12, true]].map(([distance, dark]) => shadeOf("#64c832", distance, dark));
     }"""
-    assert blank.evaluate(colours) == label_colours([1, 2, 3, 9, 20]).tolist()
+    pale, dark = "rgb(193 233 173)", "rgb(54 94 34)"
+    assert blank.evaluate(shades) == ["rgb(100 200 50)", pale, pale, "rgb(100 200 50)", dark]
 
 
 # -- the picture itself

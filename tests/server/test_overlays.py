@@ -20,7 +20,6 @@ from tests.server.test_reopened import reopened
 from workbench.overlays import OVERLAYS, Drawn, Observed, Overlay, ViewSettings
 from workbench.overlays.frustum import Frustum
 from workbench.overlays.overlay import overlay
-from workbench.palette import channels, label_colours, palette
 from workbench.protocol import COMMAND
 
 LOOKING = """from actr3d.actr import *
@@ -97,9 +96,8 @@ def test_the_field_of_view_is_that_of_the_camera_from_the_start_on(desk: Desk, t
 def test_edges_lie_on_what_is_seen(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, LOOKING)
     told = drawn(talk, 0, ("edges",))["edges"]["walker"]
-    lines = np.frombuffer(told["lines"], dtype=np.float32).reshape(-1, 2, 3)
-    labels = np.frombuffer(told["labels"], dtype=np.int64)
-    assert len(lines) == len(labels) > 100
+    lines = np.frombuffer(told, dtype=np.float32).reshape(-1, 2, 3)
+    assert len(lines) > 100
     along = (lines[..., :2] - MIDDLE) @ ACROSS
     before = (lines[..., :2] - MIDDLE) @ np.array((math.cos(0.3), math.sin(0.3)))
     assert np.abs(before).max() < 0.05 + 0.005 * 6  # the wall is 10 cm thick, and they are drawn a little before it
@@ -107,16 +105,7 @@ def test_edges_lie_on_what_is_seen(desk: Desk, tmp_path: Path) -> None:
     assert at_gap.mean() > 0.3  # the sides of the gap; what else there is are the ends of the wall, its top and its bottom
     assert not (np.abs(along) < 0.27).any()
     assert lines[..., 2].max() < 2.5
-    sides = {int(label): {bool(side) for side in (along[labels == label] > 0).flat} for label in set(labels.tolist())}
-    assert sorted(map(sorted, sides.values())) == [[False], [True]]  # each wall has a label, and so a colour, of its own
-
-
-def test_edges_have_the_colours_of_the_retina() -> None:
-    colours = label_colours([1, 2, 1, 1 + len(palette()["labels"])])
-    assert colours[0].tolist() == list(channels(palette()["labels"][0]))
-    assert (colours[0] == colours[2]).all()
-    assert (colours[0] == colours[3]).all()
-    assert (colours[0] != colours[1]).any()
+    assert {bool(side) for side in (along > 0).flat} == {False, True}
 
 
 def test_openings_are_shown_where_they_are_with_their_width(desk: Desk, tmp_path: Path) -> None:

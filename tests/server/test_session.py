@@ -244,6 +244,7 @@ def test_why_and_what_is_seen(desk: Desk, tmp_path: Path) -> None:
     assert all(field["title"] and field["about"] for field in view["fields"])
     assert all(len(extent) == len(view["fields"]) for extent in view["extents"])
     assert len(view["extents"]) > 10
+    assert view["colours"] == dict.fromkeys(("1", "2"), "#bfb5a8")  # both walls have the colour that they have in the scene
     parts = talk.state["parts"]
     assert parts["walker.goal"] == {"is": "buffer", "class": "Buffer", "chunk": {"0": "pass"}}
     assert parts["walker.eye"]["state"]["busy"] in (True, False)

@@ -16,8 +16,8 @@ from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent
 from actr3d.values import to_json
 from actr3d.world.compiled import from_text, loaded
-from workbench.clothes import dress
 from workbench.curves import stride
+from workbench.geom_colours import dress
 from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
 from workbench.palette import palette
 from workbench.scene_framing import SceneFraming

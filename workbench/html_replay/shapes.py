@@ -12,6 +12,7 @@ from mujoco import MjData, MjModel, mjtGeom
 
 from actr3d.errors import RecordingError
 from workbench.curves import INTEGRATION
+from workbench.geom_colours import colour_of
 
 MAX_CORNERS = 1_500_000
 """Maximum total number of corners and triangles in a scene; each has three 4-byte numbers."""
@@ -26,7 +27,6 @@ KINDS = {
 }
 """Names of MuJoCo's primitive shapes, with the number of size values [m]: radius, half length; half axes; half edges."""
 MESHES = (int(mjtGeom.mjGEOM_MESH), int(mjtGeom.mjGEOM_SDF))
-_COLOURS = int(mujoco.mjtTextureRole.mjTEXROLE_RGB)
 
 
 def packed(numbers: Any, kind: str) -> str:
@@ -74,7 +74,7 @@ class Shapes:
         else:
             return None
         place, turn = _rounded(model.geom_pos[geom]), _rounded(model.geom_quat[geom])
-        return {**shape, "place": place, "turn": turn, "colour": _colour(model, geom)}
+        return {**shape, "place": place, "turn": turn, "colour": colour_of(model, geom)}
 
     def _mesh(self, kind: int, number: int) -> int:
         """Returns the index of a mesh or height field in `meshes`; adds it if necessary."""
@@ -113,18 +113,6 @@ def _height_field(model: MjModel, field: int) -> tuple[Any, Any]:
     corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
     right, above, across = corner + 1, corner + columns, corner + columns + 1
     return places, np.concatenate((np.column_stack((corner, right, across)), np.column_stack((corner, across, above))))
-
-
-def _colour(model: MjModel, geom: int) -> list[int]:
-    """Returns the colour of a geom, 0 to 255; for a texture, its mean colour."""
-    material = int(model.geom_matid[geom])
-    colour = np.array(model.geom_rgba[geom] if material < 0 else model.mat_rgba[material])
-    texture = -1 if material < 0 else int(model.mat_texid[material, _COLOURS])
-    if texture >= 0 and model.tex_nchannel[texture] >= 3:
-        channels, first = int(model.tex_nchannel[texture]), int(model.tex_adr[texture])
-        count = int(model.tex_width[texture]) * int(model.tex_height[texture]) * channels
-        colour[:3] *= model.tex_data[first : first + count].reshape(-1, channels)[:, :3].mean(axis=0) / 255
-    return (np.clip(colour, 0, 1) * 255).astype(int).tolist()
 
 
 def grounds_of(model: MjModel) -> list[float]:

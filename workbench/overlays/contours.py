@@ -25,17 +25,16 @@ def points_of(view: View) -> Places:
     return deep[..., None] * (u[..., None] * right + v[..., None] * up + forward)
 
 
-def contours_of(view: View) -> tuple[Places, list[int]]:
-    """Returns the lines along the edges of objects, including where objects begin and end, and the label of each line.
+def contours_of(view: View) -> Places:
+    """Returns the lines along the edges of objects, including where objects begin and end, `(n, 2, 3)`.
 
-    The lines `(n, 2, 3)` are in the upright frame of the view, with the eye as origin [m].
+    They are in the upright frame of the view, with the eye as origin [m].
     """
     points = points_of(view)
     by_row: dict[int, dict[int, list[int]]] = {}
     for number, (row, label) in enumerate(zip(view.extents["row"].tolist(), view.extents["label"].tolist(), strict=True)):
         by_row.setdefault(row, {}).setdefault(label, []).append(number)
     lines: list[Places] = []
-    labels: list[int] = []
     empty: dict[int, list[int]] = {}
     for row in range(-1, view.rows):
         above, below = by_row.get(row, empty), by_row.get(row + 1, empty)
@@ -45,8 +44,7 @@ def contours_of(view: View) -> tuple[Places, list[int]]:
                 lines += [points[[one, other], side] for one, other in zip(upper, lower, strict=True) for side in (0, 1)]
             else:  # where an object begins, ends or splits, it is unknown which edge continues which
                 lines += [points[number] for number in (*upper, *lower)]
-            labels += [label] * (len(lines) - len(labels))
-    return np.array(lines).reshape(-1, 2, 3), labels
+    return np.array(lines).reshape(-1, 2, 3)
 
 
 def into_world(points: Places, stand: Stand) -> Places:

@@ -144,30 +144,21 @@ class Lines:
         self._last = b""
         self._visible = True
 
-    def set(self, points: Any, colours: Any = None) -> None:
-        """Replaces the lines.
-
-        Args:
-            points: The ends of the lines `(n, 2, 3)`, an array or nested lists [m].
-            colours: The colours of the ends `(n, 2, 3)`, an array or nested lists, 0 to 255; None for the same colour for all.
-        """
+    def set(self, points: Any) -> None:
+        """Replaces the lines by those with these ends `(n, 2, 3)`, an array or nested lists [m]."""
         points = np.asarray(points, dtype=np.float32)
-        colours = None if colours is None else np.asarray(colours, dtype=np.uint8)
-        data = points.tobytes() + (b"" if colours is None else colours.tobytes())
+        data = points.tobytes()
         if data == self._last:
             return
         self._last = data
         if self._handle is None and len(points):
-            colors = self._colour if colours is None else colours
             self._handle = self._server.scene.add_line_segments(
-                self._name, points=points, colors=colors, line_width=self._width, visible=self._visible
+                self._name, points=points, colors=self._colour, line_width=self._width, visible=self._visible
             )
         elif self._handle is not None:
             self._handle.visible = self._visible and len(points) > 0
             if len(points):
                 self._handle.points = points
-                if colours is not None:
-                    self._handle.colors = colours
 
     def show(self, visible: bool) -> None:
         """Shows or hides the lines."""

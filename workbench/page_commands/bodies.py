@@ -30,18 +30,24 @@ def _found(run: ControlledRun, name: str | None) -> tuple[Shown, Body]:
 
 @page_command
 class View(Question):
-    """Returns what a body's eye sees now, row by row."""
+    """Returns what a body's eye sees now, row by row, and the colours of the objects in the scene, by label."""
 
     type: Literal["view"] = "view"
     body: Name | None = None
 
     def answer(self, run: ControlledRun) -> dict[str, Any]:
-        from actr3d.camera import EXTENT_FIELDS, glance
+        from actr3d.camera import EXTENT_FIELDS, glance_with_geoms
 
         shown, body = _found(run, self.body)
-        view = glance(body, shown.eyesight(body.name))
+        view, geoms = glance_with_geoms(body, shown.eyesight(body.name))
         fields = [{"name": field.name, "title": field.title, "unit": field.unit, "about": field.about} for field in EXTENT_FIELDS]
-        return {"body": body.name, "rows": view.rows, "fields": fields, "extents": view.as_array().tolist()}
+        return {
+            "body": body.name,
+            "rows": view.rows,
+            "fields": fields,
+            "extents": view.as_array().tolist(),
+            "colours": shown.colours(geoms),
+        }
 
 
 @page_command

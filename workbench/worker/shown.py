@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from functools import cached_property
 from typing import Any
+
+from mujoco import MjModel
 
 from actr3d.camera import CameraParameters, Sight
 from actr3d.clock import microseconds, seconds
@@ -20,6 +22,7 @@ from actr3d.world import Aperture, Floor
 from actr3d.world.compiled import loaded, saved
 from actr3d.world.sensors.touch import present
 from workbench.curves import CurveReader, stretch
+from workbench.geom_colours import colour_of_object, dress
 from workbench.overlays import OVERLAYS, Observed
 from workbench.worker.state_history import Kept
 from workbench.worker.stop_conditions import Touches
@@ -107,6 +110,21 @@ class Shown:
     def _curves(self) -> CurveReader:
         """Computes curves from the past, on a copy of the scene; created at the first request."""
         return CurveReader(loaded(self.mj_model), self.surroundings)
+
+    def colours(self, geoms: Mapping[int, Sequence[int]]) -> dict[int, str]:
+        """Returns the colours with which objects are drawn in the scene, by label.
+
+        Args:
+            geoms: The geoms of each object, by label.
+        """
+        return {label: colour_of_object(self._drawn_model, own) for label, own in geoms.items()}
+
+    @cached_property
+    def _drawn_model(self) -> MjModel:
+        """The compiled scene at the start, with the colours in which it is drawn; created at the first request."""
+        model = loaded(self.mj_model)
+        dress(model, [self.surroundings["bodies"][name]["root"] for name in self.simulation.embodied])
+        return model
 
     def eyesight(self, name: str) -> CameraParameters:
         """Returns how an agent sees with its body's eye: as its vision module does, or else as in the body's first view."""

@@ -1,4 +1,4 @@
-"""Agents of one scene have clothes of different colours in what is drawn, unless the model chooses them."""
+"""The colours of what is drawn: clothes of agents, and one colour for each object on the retina."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from actr3d.world import Car, Floor, Load, Mannequin, Scene
+from actr3d.world import Car, Floor, Load, Mannequin, Scene, Wall
 from actr3d.world.compiled import loaded, saved
 from actr3d.world.world import World
-from workbench.clothes import dress
+from workbench.geom_colours import colour_of_object, dress
 from workbench.palette import channels, palette
 
 
@@ -39,3 +39,24 @@ def test_each_agent_after_the_first_has_its_own_colour_in_shades_and_the_rest_st
     assert {name.partition("_")[0] for name in changed} == {"second", "third"}
     assert not any(name.endswith(("head", "neck", "hand", "load")) for name in changed)
     assert drawn.geom_rgba[:, 3] == pytest.approx(before.geom_rgba[:, 3])
+
+
+def test_an_object_has_the_colour_of_its_largest_visible_part() -> None:
+    parts = (
+        Floor(),
+        Mannequin(name="walker", load=Load()),
+        Car(name="car", position=(6.0, 0.0)),
+        Wall(name="wall", start=(9.0, -1.0), end=(9.0, 1.0)),
+    )
+    world = World(Scene(parts=parts))
+    model: Any = world.mj_model
+
+    def colour(part: str) -> Any:
+        geoms = [geom for geom in range(model.ngeom) if model.geom(geom).name.startswith(part)]
+        return channels(colour_of_object(model, geoms))
+
+    for name, usual in (("walker", Mannequin.colour), ("car", Car.colour), ("wall", Wall.colour)):
+        assert colour(name) == pytest.approx([255 * part for part in usual[:3]], abs=1), name
+    model.geom("walker_torso").rgba[3] = 0
+    assert colour("walker_torso") == pytest.approx([255 * part for part in Mannequin.colour[:3]], abs=1)  # there is nothing else
+    assert colour("walker") != colour("walker_torso")
