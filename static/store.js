@@ -10,7 +10,7 @@ const MAX_NOTICES = 500;
 export const session = signal(null);
 /** The name of this browser among the viewers; empty if not known yet. */
 export const me = signal("");
-/** The newest state: status, time, speed, apertures, parts (`Session.state_json`); null before the first. */
+/** The newest state: status, time, speed, apertures, parameters, parts (`Session.state_json`); null before the first. */
 export const state = signal(null);
 /** The events of the run in order, each [time in us, source, kind, data]; also those after the current moment of a run that went
  * back. `first` is the number of the first, `missing` how many were dropped before it. The list grows in place. */

@@ -13,6 +13,7 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent
+from workbench.live_parameters import parameter_set_by
 from workbench.loader import listing_of
 from workbench.recording_index import UNREADABLE
 
@@ -68,22 +69,17 @@ def _settings_of(facts: dict[str, Any]) -> dict[str, Any]:
 
 def _changed(recorded: Recorded) -> dict[str, list[list[Any]]]:
     """Returns the parameters and apertures that users changed during the run, as pairs of time [s] and new value."""
-    live = {parameter.name: parameter.live for parameter in listing_of(_source(recorded.facts)).parameters if parameter.live is not None}
+    from actr3d.simulation import Command  # takes long to import; the server needs only the names in this module
+
+    parameters = listing_of(_source(recorded.facts)).parameters
     period = recorded.facts.get("period_us", 0)
     found: dict[str, list[list[Any]]] = {}
-    for command in recorded.commands():
-        word, said = command.data["command"], command.data["data"]
-        values, named = said["values"], said["named"]
-        aperture = named.get("name", word) if word == "aperture" else None
-        for name, change in live.items():
-            before = list(change.before)
-            meant = (change.word, change.body, before) == (word, said["body"], values[: len(before)]) and aperture in (None, "aperture")
-            if meant and len(values) > len(before):
-                found.setdefault(name, []).append([seconds(command.tick * period), values[len(before)]])
-                break
-        else:
-            if aperture is not None and values:
-                found.setdefault(str(aperture), []).append([seconds(command.tick * period), values[0]])
+    for one in (Command.from_data(command.tick, command.data) for command in recorded.commands()):
+        set_by = parameter_set_by(parameters, one.word, one.values, one.named, one.body)
+        if set_by is not None:
+            found.setdefault(set_by[0].name, []).append([seconds(one.tick * period), set_by[1]])
+        elif one.word == "aperture" and one.values:
+            found.setdefault(str(one.named.get("name", one.word)), []).append([seconds(one.tick * period), one.values[0]])
     return found
 
 

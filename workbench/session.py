@@ -460,7 +460,7 @@ class Session(Broadcast, Receiver):
         }
         if facts is not None:
             facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters)}
-            facts_of_session |= {"world": Raw(facts.world), "changes": Raw(facts.changes)}
+            facts_of_session |= {"world": Raw(facts.world), "changes": Raw(facts.changes), "live": Raw(facts.live)}
         return msgspec.json.encode(facts_of_session)
 
     def _branched_json(self) -> dict[str, Any] | None:
@@ -500,7 +500,15 @@ class Session(Broadcast, Receiver):
         if state is None:
             return b"null"
         values = {name: getattr(state, name) for name in ("status", "reason", "tick", "time", "furthest", "wanted", "measured", "events")}
-        return msgspec.json.encode({**values, "apertures": state.apertures, "result": Raw(state.result), "parts": Raw(state.parts)})
+        return msgspec.json.encode(
+            {
+                **values,
+                "apertures": state.apertures,
+                "parameters": Raw(state.parameters),
+                "result": Raw(state.result),
+                "parts": Raw(state.parts),
+            }
+        )
 
     @property
     def source(self) -> str | None:

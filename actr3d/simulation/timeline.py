@@ -129,6 +129,11 @@ class Timeline:
         """Length of the run in ticks, also after it went back."""
         return self._history.ticks
 
+    @property
+    def commands(self) -> Sequence[Command]:
+        """The commands of users that were carried out up to the present."""
+        return [] if self._lockstep is None else self._history.commands[: self._lockstep.commands]
+
     # -- forward
 
     def tick(self) -> None:

@@ -10,7 +10,6 @@ import { complain, session, state } from "../store.js";
 
 const listing = signal(null); // the declarations in the model's text
 const drafts = signal({}); // entered values that are not yet in effect, by name
-const liveValues = signal({}); // values that live parameters were set to in this run, by name
 const seed = signal("");
 let of = {};
 
@@ -21,7 +20,6 @@ async function follow({ id, model, run, stale }) {
   const other = of.id !== id;
   const asked = { id, run, stale };
   of = asked;
-  liveValues.value = {};
   if (other) {
     listing.value = null;
     drafts.value = {};
@@ -44,7 +42,7 @@ function inForce({ name, live, default: otherwise }) {
   const begun = session.value?.parameters?.[name];
   const widths = Object.values(state.value?.apertures ?? {});
   if (begun !== undefined && live?.word === "aperture" && widths.length === 1) return Number(widths[0].toFixed(4));
-  const value = liveValues.value[name] ?? begun;
+  const value = state.value?.parameters[name] ?? begun;
   return value === undefined ? otherwise : value;
 }
 
@@ -81,8 +79,7 @@ async function write(parameter, text, whole) {
   if (!parameter.live || problem || !whole || holds || !session.value?.alive) return;
   const run = of;
   try {
-    const sent = await change({ type: "set", name, value });
-    if (run === of && sent) liveValues.value = { ...liveValues.value, [name]: value };
+    await change({ type: "set", name, value });
     if (run === of && drafts.value[name] === text) drop(name); // otherwise more was typed meanwhile
   } catch (error) {
     if (!isLeft(error)) complain(error.message);
@@ -122,7 +119,9 @@ function Control({ parameter, id, text, problem }) {
       ${choices.map((choice) => html`<option key=${choice} value=${String(choice)}>${String(choice)}</option>`)}
     </select>`;
   }
-  return html`<input ...${shared} value=${text} placeholder=${optional ? "as the model says" : ""} inputmode=${takes === "text" ? "text" : "decimal"} spellcheck=${false} autocomplete="off" onInput=${(event) => write(parameter, event.currentTarget.value, false)} onChange=${change} />`;
+  // Enter sends the form, which restarts the run; the value of a live parameter takes effect without that.
+  const enter = (event) => parameter.live && session.value?.alive && event.key === "Enter" && (event.preventDefault(), change(event));
+  return html`<input ...${shared} onKeyDown=${enter} value=${text} placeholder=${optional ? "as the model says" : ""} inputmode=${takes === "text" ? "text" : "decimal"} spellcheck=${false} autocomplete="off" onInput=${(event) => write(parameter, event.currentTarget.value, false)} onChange=${change} />`;
 }
 
 /** A slider beside the field of a number that has both bounds. */

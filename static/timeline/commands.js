@@ -1,4 +1,4 @@
-// Users' changes as text: `aperture 50 -> 40 cm`, `set goal count 2 -> count 3`.
+// Users' changes as text: `aperture 50 -> 40 cm`, `speed 1.2 -> 1.5 m/s`, `set goal count 2 -> count 3`.
 
 import { changes } from "../changes/changes.js";
 import { chunkText, valueText } from "../parts/chunk.js";
@@ -18,9 +18,10 @@ export class Former {
 
   /** Stores the effect of a command; called in order. */
   take(event) {
-    const { of, key, text } = settingOf(event[3]) ?? {};
-    if (key === undefined || of === "place") return; // a thing may have moved since it was put somewhere
-    const known = of === "buffer" ? this.#buffers.get(named(event[3]).buffer)?.[1] || "empty" : (this.#values.get(key) ?? startOf(of, event[3]));
+    const setting = settingOf(event[3]);
+    if (setting === null || setting.of === "place") return; // a thing may have moved since it was put somewhere
+    const { of, key, text } = setting;
+    const known = of === "buffer" ? this.#buffers.get(named(event[3]).buffer)?.[1] || "empty" : (this.#values.get(key) ?? startOf(setting, event[3]));
     if (known !== undefined) before.set(event, known);
     this.#values.set(key, text);
   }
@@ -28,10 +29,12 @@ export class Former {
 
 const cm = (width) => String(Number((100 * width).toFixed(1)));
 
-/** Returns the width of an aperture at the start of the run as text; undefined for other values. */
-function startOf(of, { data }) {
-  const width = of === "aperture" ? session.peek()?.world?.openings?.[data?.named?.name ?? "aperture"] : undefined;
-  return width === undefined ? undefined : cm(width);
+/** Returns the width of an aperture or the value of a model's parameter at the start of the run as text; undefined for other values. */
+function startOf({ of, parameter }, { data }) {
+  const { world, parameters } = session.peek() ?? {};
+  const width = of === "aperture" ? world?.openings?.[data?.named?.name ?? "aperture"] : undefined;
+  if (width !== undefined) return cm(width);
+  return parameter && parameter.name in (parameters ?? {}) ? valueText(parameters[parameter.name]) : undefined;
 }
 
 function changeOf({ command, data }) {
@@ -45,8 +48,21 @@ function named({ command, data }) {
   return { ...Object.fromEntries(fields.filter(({ default: first }) => first !== null).map(({ name, default: first }) => [name, first])), ...given, ...data?.named };
 }
 
-/** Returns what a command sets, and to which value: {of, key, text}; null for a command that sets no value. */
+/** Returns the model's parameter that a command changes, and its value: {name, unit, value}; undefined if it changes none. */
+function parameterOf(command) {
+  const { fields } = changeOf(command) ?? {};
+  const values = named(command);
+  const given = fields ? fields.map(({ name }) => values[name]) : (command.data?.values ?? []);
+  const live = session.peek()?.live?.find(
+    ({ word, body, before: first }) => word === command.command && [null, command.data?.body].includes(body) && first.every((one, n) => one === given[n]),
+  );
+  return live && { ...live, value: given[live.before.length] };
+}
+
+/** Returns what a command sets, and to which value: {of, key, text, parameter}; null for a command that sets no value. */
 function settingOf(command) {
+  const parameter = command.command === "aperture" ? undefined : parameterOf(command);
+  if (parameter) return { of: "parameter", key: `parameter ${parameter.name}`, text: valueText(parameter.value), parameter };
   const change = changeOf(command);
   if (!change) return null; // the names of its values are not known
   const { of } = change;
@@ -71,6 +87,7 @@ function dataText(event, first) {
   if (setting) {
     const was = before.has(first) ? `${before.get(first)} -> ` : "";
     if (setting.of === "aperture") return `${values.name === "aperture" ? "" : `${values.name} `}${was}${setting.text} cm`;
+    if (setting.parameter) return `${was}${setting.text}${setting.parameter.unit ? ` ${setting.parameter.unit}` : ""}`;
     if (setting.of === "place") return `${values.object} to ${setting.text}`;
     return `${values.buffer ?? values.path} ${was}${setting.text}`;
   }
@@ -84,6 +101,8 @@ function dataText(event, first) {
 /** Returns [name, arguments] of a command. */
 export function commandText(event, first = event) {
   const { command } = event[3];
+  const { parameter } = settingOf(event[3]) ?? {};
+  if (parameter) return [parameter.name, dataText(event, first)];
   return [changeOf(event[3]) && command !== "aperture" ? command.replaceAll("_", " ") : command, dataText(event, first)];
 }
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.page import open_tab, shows
+from tests.helpers.page import open_tab, shows, until
 from tests.helpers.workbench_server import Served
 
 
@@ -24,6 +24,36 @@ def commands(page: Page) -> list[str]:
       const { lanes } = await part("timeline/record.js");
       return (lanes.lanes.get("commands")?.bands ?? []).flatMap(({ text }) => text.split("; "));
     }""")
+
+
+def test_the_value_of_a_live_parameter_is_that_of_the_moment_for_all_who_look(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.5)
+    shows(page, "#time", r"0\.50")
+    open_tab(page, "Parameters")
+    field = page.get_by_label("speed", exact=True)
+    expect(field).to_have_value("1.2")
+    field.fill("1.5")
+    field.press("Enter")
+    expect(field).to_have_value("1.5")
+    expect(page.get_by_text("not in force yet")).to_have_count(0)
+    until(page, lambda: commands(page) == ["speed 1.2 -> 1.5 m/s"])
+    say(page, type="step", ticks=10)
+    shows(page, "#time", r"0\.60")
+    other = pages("doorway.py")
+    open_tab(other, "Parameters")
+    seen = [field, other.get_by_label("speed", exact=True)]
+    for time, value in ((0.6, "1.5"), (0.3, "1.2"), (0.6, "1.5"), (0.0, "1.2")):
+        say(page, type="seek", time=time)
+        for one in seen:
+            expect(one).to_have_value(value)
+    page.reload()
+    expect(seen[0]).to_have_value("1.2")
+    say(page, type="seek", time=0.55)
+    for one in seen:
+        expect(one).to_have_value("1.5")
+    until(page, lambda: commands(page) == ["speed 1.2 -> 1.5 m/s"])
 
 
 @pytest.mark.slow

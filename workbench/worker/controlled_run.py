@@ -54,6 +54,10 @@ class ControlledRun(ABC):
             EndOfRun: To leave a program, which is then run again.
         """
 
+    def changed_parameters(self) -> dict[str, Any]:
+        """Returns the values of the model's parameters that users have changed during the run, up to the present, by name."""
+        return {}
+
     @abstractmethod
     def live_parameter(self, name: str, value: Any) -> LiveCommand:
         """Returns how a parameter is changed during the run, after checking its new value.

@@ -110,6 +110,8 @@ class Facts(Message, frozen=True, kw_only=True):
     """JSON: bodies, apertures and objects; null without a world."""
     changes: bytes = b"[]"
     """JSON: the changes that a user can make by hand; see `worker.change_menu`."""
+    live: bytes = b"[]"
+    """JSON: the parameters that can be changed during the run: name, unit, and the command that changes it (`LiveCommand`)."""
     mj_model: bytes | None
     """The compiled scene in MuJoCo's binary format; None without a world."""
 
@@ -138,6 +140,8 @@ class State(Message, frozen=True, kw_only=True):
     """JSON: the measured result of a run that has ended; null if there is none, or the run has not ended."""
     physics: bytes | None
     """MuJoCo's `mjSTATE_INTEGRATION`; None without a world."""
+    parameters: bytes = b"{}"
+    """JSON: the values of parameters that users have changed during the run, up to this moment, by name."""
     drawn: dict[str, Any] = {}
     """The data of overlays by kind, as requested by a `Draw`."""
 

@@ -308,6 +308,7 @@ class RunController:
             events=count,
             parts=bounded_json(run.parts()),
             apertures=apertures,
+            parameters=bounded_json(run.changed_parameters()),
             result=bounded_json(run.result() if self.status == "ended" else None),
             physics=physics,
             drawn=run.drawn(self._drawn) if self._drawn else {},

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -14,7 +14,6 @@ from typing import Any
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
-from actr3d.change import CHANGES
 from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
@@ -25,6 +24,7 @@ from actr3d.runner.traceback_report import failure
 from actr3d.simulation import Command, Simulation
 from actr3d.trace import Trace
 from actr3d.values import to_json
+from workbench.live_parameters import parameter_set_by
 from workbench.loader import ModelListing
 from workbench.worker.change_menu import change_menu
 from workbench.worker.controlled_run import ControlledRun
@@ -55,6 +55,10 @@ class SimulationRun(ControlledRun):
     def __init__(self, controller: RunController, listing: ModelListing) -> None:
         self._controller = controller
         self._listing = listing
+        self._live = [parameter for parameter in listing.parameters if parameter.live is not None]
+        self._changed: dict[str, Any] = {}
+        self._counted = 0
+        """The number of commands of users from which `_changed` was made."""
         self._start = controller.channel.start
         self._tick_time = 0.0
         self._end: tuple[int, str] | None = None
@@ -120,6 +124,7 @@ class SimulationRun(ControlledRun):
             world=to_json(self._shown.world(self._listing.parameters)).encode(),
             mj_model=self._shown.mj_model,
             changes=change_menu(agents_only=False),
+            live=to_json([{"name": one.name, "unit": one.unit, **asdict(one.live)} for one in self._live if one.live is not None]).encode(),
         )
 
     def _go_on(self) -> None:
@@ -220,7 +225,10 @@ class SimulationRun(ControlledRun):
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
         if self._controller.status == "ended":
             raise SimulationError("the run is over: go back to an earlier time, or restart it")
-        self._check_parameters(word, values, named)
+        set_by = parameter_set_by(self._live, word, values, named, body)
+        if set_by is not None:
+            parameter, value = set_by
+            parameter.check(value)
         trace = self._simulation.trace
         before = 0 if trace is None else len(trace)
         branch = KeptBranch(self._controller, self._recording, self.clock, self.furthest, drop=drop)
@@ -236,25 +244,13 @@ class SimulationRun(ControlledRun):
             self._record(ended=None, whole=None)
         branch.announce(before)
 
-    def _check_parameters(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any]) -> None:
-        """Checks the value that a change gives a parameter of the model.
-
-        Raises:
-            ConfigurationError: If the parameter cannot have it.
-        """
-        if word not in CHANGES:
-            return
-        with suppress(TypeError):  # the simulation explains what is wrong with the arguments
-            signature = inspect.signature(CHANGES[word])
-            known, given = signature.parameters, signature.bind(*values, **named).arguments
-            for parameter in self._listing.parameters:
-                if parameter.live is not None and parameter.live.word == word:
-                    same = signature.bind_partial(*parameter.live.before).arguments
-                    name = next((name for name in known if name not in same), "")
-                    if name in given and all(
-                        value == same.get(field, known[field].default) for field, value in given.items() if field != name
-                    ):
-                        parameter.check(given[name])
+    def changed_parameters(self) -> dict[str, Any]:
+        commands = self._simulation.timeline.commands
+        if len(commands) != self._counted:
+            found = (parameter_set_by(self._live, one.word, one.values, one.named, one.body) for one in commands)
+            self._changed = {one[0].name: one[1] for one in found if one is not None}
+            self._counted = len(commands)
+        return self._changed
 
     def _record_failure(self, text: str | None) -> None:
         """Records the exception of the model; None if the run continues differently now."""
