@@ -31,9 +31,10 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
     """Compares two recordings and returns their differences.
 
     The result has these keys. `parameters`: settings that differ, each with both values. `changed`: for each recording, what users
-    changed during the run, by parameter name, as pairs of time [s] and value. `text`: a diff of the model texts, if both recordings are of
-    the same model file. `same_events`: how many events agree. `whole`: False if the comparison stopped at the maximum number of events.
-    `difference`: the first event that differs, with some events before and after it; None if no compared event differs.
+    changed during the run, by parameter name, as pairs of time [s] and value. `units`: the units of these, by name. `text`: a diff of the
+    model texts, if both recordings are of the same model file. `same_events`: how many events agree. `whole`: False if the comparison
+    stopped at the maximum number of events. `difference`: the first event that differs, with some events before and after it; None if no
+    compared event differs.
 
     Args:
         first: A recording; its run may still be going on.
@@ -51,6 +52,7 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
             return {
                 "parameters": different,
                 "changed": [_changed(one), _changed(other)],
+                "units": {**_units(other), **_units(one)},
                 "text": _changes(_source(one.facts), _source(other.facts)) if left["model"] == right["model"] else [],
                 "same_events": agreeing,
                 "whole": whole,
@@ -65,6 +67,13 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
 def _settings_of(facts: dict[str, Any]) -> dict[str, Any]:
     """Returns the settings, the seed and the model name that the user chose for a run."""
     return {**facts.get("parameters", {}), "seed": facts.get("program_seed", facts.get("seed")), "model": Path(facts.get("file", "")).name}
+
+
+def _units(recorded: Recorded) -> dict[str, str]:
+    """Returns the units of the model's parameters that have one, and of the widths of apertures, by name."""
+    world: dict[str, Any] = recorded.facts.get("world") or {}
+    units: dict[str, str] = dict.fromkeys(world.get("apertures", ()), "m")
+    return units | {one.name: one.unit for one in listing_of(_source(recorded.facts)).parameters if one.unit is not None}
 
 
 def _changed(recorded: Recorded) -> dict[str, list[list[Any]]]:

@@ -259,7 +259,7 @@ class Sessions:
                 session.renamed(path, model)
 
     async def check(self, path: Path, text: str) -> list[dict[str, Any]]:
-        """Loads a model in a worker and builds what it describes, without running it; returns the problems found.
+        """Loads a model in a worker and builds what it describes, and runs no more than one tick; returns the problems found.
 
         Raises:
             OSError: If no worker can be started.

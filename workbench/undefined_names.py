@@ -1,6 +1,6 @@
 """Finds names that nothing defines, where a text is executed first: at the top level and in the bodies of classes.
 
-Bodies of functions are left out: a production sees buffers, modules and bound variables by name.
+Bodies of functions are left out: a production sees buffers, modules and bound variables by name; it is checked when its agent begins.
 """
 
 from __future__ import annotations
@@ -10,12 +10,11 @@ import builtins
 from collections.abc import Iterator
 from importlib import import_module
 
+from actr3d.actr.kernel.source_code import defines_by_code, names_defined_by
 from actr3d.errors import did_you_mean
 
 LIBRARY = ("actr3d.actr", "actr3d.world", "actr3d.motor", "actr3d.vision", "actr3d.simulation", "actr3d.sgoms", "actr3d.experiment")
 """The modules whose names are known if a text imports all of them with `*`."""
-DYNAMIC = {"exec", "globals", "vars", "locals", "setattr"}
-"""A text that uses one of these may define names that are not written in it."""
 
 
 def undefined_names(tree: ast.Module) -> Iterator[tuple[int, str]]:
@@ -27,35 +26,12 @@ def undefined_names(tree: ast.Module) -> Iterator[tuple[int, str]]:
                 return
             module = import_module(node.module)
             known |= set(getattr(module, "__all__", dir(module)))
-        known |= set(_defined_by(node))
-    if any(isinstance(node, ast.Name) and node.id in DYNAMIC for node in ast.walk(tree)):
+        known |= set(names_defined_by(node))
+    if defines_by_code(tree):
         return
     for name in sorted(_read_first(tree.body), key=lambda name: (name.lineno, name.col_offset)):
         if name.id not in known:
             yield name.lineno, f"nothing defines '{name.id}'{did_you_mean(name.id, known)}"
-
-
-def _defined_by(node: ast.AST) -> Iterator[str]:
-    """Yields the names that a node defines, in whatever scope."""
-    match node:
-        case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name) | ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
-            yield name
-        case ast.ClassDef(name=name):
-            yield name
-        case (
-            ast.ExceptHandler(name=str(name))
-            | ast.MatchAs(name=str(name))
-            | ast.MatchStar(name=str(name))
-            | ast.MatchMapping(rest=str(name))
-        ):
-            yield name
-        case ast.Import() | ast.ImportFrom():
-            for alias in node.names:
-                yield alias.asname or alias.name.partition(".")[0]
-        case ast.Global():
-            yield from node.names
-        case _:
-            pass
 
 
 def _read_first(body: list[ast.stmt]) -> Iterator[ast.Name]:

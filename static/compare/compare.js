@@ -50,7 +50,7 @@ function Contents({ answer, waiting, error, kinds }) {
   return html`<div class="compare-parts" aria-busy=${waiting}>
     <div class="compare-facts">
       ${one.model === other.model ? null : html`<p class="note">These are two different models: what they have in common is compared, and their traces differ from the start.</p>`}
-      <${SideBySide} runs=${answer.runs} changed=${answer.changed} />
+      <${SideBySide} runs=${answer.runs} changed=${answer.changed} units=${answer.units} />
       <${Changes} lines=${answer.text} />
     </div>
     <div class="compare-course">

@@ -45,17 +45,18 @@ function courseText(value, changes) {
 }
 
 /** Returns the rows of the parameters, and of other values that were changed. */
-function parameterRows(runs, changed) {
+function parameterRows(runs, changed, units) {
   const names = [...new Set([...namesOf(runs, "parameters"), ...changed.flatMap(Object.keys)])];
   return names.map((name) => {
     const [one, other] = runs.map((run, n) => courseText(run.parameters?.[name], changed[n][name]));
-    return [name, one, other, one !== other];
+    return [units[name] ? `${name} [${units[name]}]` : name, one, other, one !== other];
   });
 }
 
 /** @param runs Both runs, as the server describes them.
- * @param changed The users' changes during each run: [time, value], by name. */
-export function SideBySide({ runs, changed }) {
+ * @param changed The users' changes during each run: [time, value], by name.
+ * @param units The units of parameters and of other values that were changed, by name. */
+export function SideBySide({ runs, changed, units }) {
   const [one, other] = runs;
   const line = (name, of) => [name, of(one), of(other), of(one) !== of(other)];
   const own = [
@@ -74,7 +75,7 @@ export function SideBySide({ runs, changed }) {
       <th scope="col"><label><input type="checkbox" checked=${onlyOthers.value} onChange=${(event) => (onlyOthers.value = event.currentTarget.checked)} /> differences only</label></th>
       <th scope="col" class="number"><span class="dot first"></span>first</th><th scope="col" class="number"><span class="dot second"></span>second</th>
     </tr></thead>
-    <${Part} title="Parameters" rows=${parameterRows(runs, changed)} none="neither has parameters" />
+    <${Part} title="Parameters" rows=${parameterRows(runs, changed, units)} none="neither has parameters" />
     <${Part} title="Results" rows=${rowsOf(runs, "result", measureText, labelOf)} none="nothing was measured of either" />
     <${Part} title="Runs" rows=${own} />
   </table>`;

@@ -106,7 +106,7 @@ function Files({ path, document }) {
     </select>
     ${tool("file", "New model", makeNew, false)}${tool("copy", "Duplicate", () => duplicate(path))}
     ${tool("pen", "Rename", () => rename(path))}${tool("trash", "Delete", () => remove(path, document.dirty.value))}
-    ${tool("check", "Load it without running it, and list what is wrong (this executes its top level)", () => checkByLoading(document))}
+    ${tool("check", "Load it, begin its run, and list what is wrong (this executes its top level and, of a function build, the first 10 ms)", () => checkByLoading(document))}
     <${Menu} disabled=${!document} />
   </div>`;
 }

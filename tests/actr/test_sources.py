@@ -13,7 +13,7 @@ import pytest
 
 from actr3d.actr import ACTR
 from actr3d.actr.loading import load_text, run_file
-from actr3d.errors import ProductionException
+from actr3d.errors import ModelWarning, ProductionException
 
 HEAD = "from actr3d.actr import *\nout = []\n"
 
@@ -206,7 +206,7 @@ class Agent(ACTR):
 
 def test_a_misspelt_name_in_a_body_is_recognized() -> None:
     body = "class Agent(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('a')\n    def p(goal='a'):\n        gaol.clear()\n"
-    with pytest.raises(NameError) as caught:
+    with pytest.raises(NameError) as caught, pytest.warns(ModelWarning, match="nothing defines 'gaol'; did you mean 'goal'"):
         ran(body)
     assert "did you mean 'goal'?" in caught.value.__notes__[0]
 

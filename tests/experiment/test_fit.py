@@ -81,7 +81,7 @@ def test_held_out_designs_are_run_with_the_values_of_each_fit(tmp_path: Path, cl
     assert [row["x"] for row in one.rows] == [1, 2, 3]
     assert [row["x"] for row in other.rows] == [10, 20, 30]
     again = fit_of(tmp_path, client, "slope=0..3")
-    better = again.run(12, hold_out=held_out)
+    better = again.run(8, hold_out=held_out)
     assert better.parameters[0].value != fit.run(2).parameters[0].value
     assert [found.rmse for found in better.held_out.values()] != [one.rmse, other.rmse]
 
@@ -97,7 +97,7 @@ def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anythin
 def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client)
     held_out = {f"{tmp_path / 'line.py'}:steeper": means((10, 20, 30))}
-    result = fit.run(24, hold_out=held_out, ablate=["slope=0"], recover=3)
+    result = fit.run(18, hold_out=held_out, ablate=["slope=0"], recover=2)
     slope, offset = result.parameters
     assert slope.value == pytest.approx(1.4, abs=0.15)
     assert offset.value == pytest.approx(1.0, abs=0.4)
@@ -117,12 +117,12 @@ def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) 
 
 def test_a_fit_that_was_stopped_continues_to_the_same_result(tmp_path: Path, client: Any) -> None:
     (tmp_path / "a").mkdir()
-    whole = fit_of(tmp_path / "a", client).run(13)
+    whole = fit_of(tmp_path / "a", client).run(8)
     first = fit_of(tmp_path / "a", client)
-    again = first.run(13)
+    again = first.run(8)
     assert again == whole
     folders = [path.name for path in (tmp_path / "a" / "fit").iterdir()]
-    assert len(folders) == 13
+    assert len(folders) == 8
     assert all(name.startswith("candidate ") for name in folders)
 
 

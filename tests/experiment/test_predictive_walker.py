@@ -44,9 +44,8 @@ def walked(model: Any, seed: int = 1, until: float = 60, **given: Any) -> tuple[
 @pytest.mark.daily(2)
 @pytest.mark.parametrize("heading", [-20.0, 0.0, 20.0])
 @pytest.mark.parametrize("aside", [-1.0, -0.5, 0.0, 0.5, 1.0])
-@pytest.mark.parametrize("seed", [1, 2])
-def test_it_steers_through_a_doorway_from_any_start_and_touches_nothing(model: Any, aside: float, heading: float, seed: int) -> None:
-    result, walker = walked(model, seed, aperture=0.8, start_aside=aside, start_heading=heading)
+def test_it_steers_through_a_doorway_from_any_start_and_touches_nothing(model: Any, aside: float, heading: float) -> None:
+    result, walker = walked(model, aperture=0.8, start_aside=aside, start_heading=heading)
     assert result.outcome == "passed"
     assert result.contacts == 0
     assert walker.chosen == 0

@@ -143,8 +143,9 @@ def test_a_scheduler_that_does_not_answer_leaves_no_folder(tmp_path: Path, monke
 # -- processes that are ended
 
 
-@pytest.mark.parametrize("kills", [1, pytest.param(3, marks=pytest.mark.slow)])
-def test_no_row_changes_if_the_command_is_killed_at_any_moment(tmp_path: Path, kills: int) -> None:
+@pytest.mark.slow
+def test_no_row_changes_if_the_command_is_killed_at_any_moment(tmp_path: Path) -> None:
+    kills = 3
     path = write_experiment(tmp_path, participants=2, trials=12 * kills, model=SLOW_MODEL)
     expected = reference(path, tmp_path / "whole")
     dice = random.Random(kills)
@@ -169,7 +170,7 @@ def test_no_row_changes_if_the_command_is_killed_at_any_moment(tmp_path: Path, k
 
 @pytest.mark.slow
 def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path) -> None:
-    kills = 5
+    kills = 3
     path = write_experiment(tmp_path, participants=2, trials=20 * kills, model=SLOW_MODEL)
     dice = random.Random(kills)
     killed: list[int] = []
@@ -231,7 +232,7 @@ def a_cluster(port: int) -> Generator[Any]:
 
 @pytest.mark.slow
 def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, unused_port: int) -> None:
-    kills = 2
+    kills = 1
     path = write_experiment(tmp_path, participants=2, trials=10 + 10 * kills, model=SLOW_MODEL)
     dice = random.Random(kills)
     command = [*COMMAND, str(path), "--out", str(tmp_path / "out"), "--resume", "--scheduler", f"tcp://127.0.0.1:{unused_port}"]

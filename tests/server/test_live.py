@@ -188,6 +188,7 @@ def test_two_recordings_are_compared(server: Served) -> None:
     assert first[0] == second[0] == round(told["difference"]["time"] * 1e6)
     assert told["difference"]["number"] == told["same_events"] > 5
     assert told["changed"] == [{}, {}]
+    assert told["units"]["width"] == "m"
     same = server.post("/api/compare", {"first": names[0], "second": names[0]}).json()
     assert (same["difference"], same["parameters"]) == (None, {})
     for name in names:
@@ -216,13 +217,24 @@ def test_no_input_gives_an_error_of_the_server(operation: str, server: Served) -
     asked = schema[path][method]
 
     @given(one_of([asked.as_strategy(generation_mode=mode) for mode in schemathesis.GenerationMode]))
-    @settings(max_examples=24, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
+    @settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
     def answers(case: Any) -> None:
         answer = case.call(base_url=server.url, headers=server.headers, timeout=60)
         assert answer.status_code < 500, answer.text
         assert answer.status_code != 401
 
     answers()
+
+
+def test_a_check_that_loads_a_text_checks_the_productions_of_its_agents(server: Served) -> None:
+    doorway = (Path(__file__).parents[2] / "models" / "doorway.py").read_text(encoding="utf-8")
+    first, mark, rest = doorway.rpartition("goal.set(")
+    text = f"{first}{mark.replace('goal', 'gaol')}{rest}"
+    problems = server.post("/api/check", {"path": "checked.py", "text": text, "load": True}).json()["problems"]
+    (problem,) = problems
+    assert problem["level"] == "warning"
+    assert "nothing defines 'gaol'; did you mean 'goal'?" in problem["message"]
+    assert "gaol" in text.split("\n")[problem["line"] - 1]
 
 
 @pytest.mark.parametrize("load", [False, True])

@@ -183,7 +183,7 @@ class Storm:
 
 @pytest.mark.slow
 def test_every_answer_is_whole_or_a_clear_error(server: Served, whole: Path, experiment: Path) -> None:
-    clients, rounds = 6, 1
+    clients, rounds = 4, 1
     storms = [Storm(server, whole, experiment, seed) for seed in range(clients)]
     with ThreadPoolExecutor(clients) as pool:
         list(pool.map(Storm.blow, storms, [rounds] * clients))

@@ -38,8 +38,8 @@ class Start(Message, frozen=True, kw_only=True):
     """Starts a job; the first message to a worker."""
 
     job: Literal["run", "check", "replay", "make", "list", "language"] = "run"
-    """`check` loads the model and builds what it describes without running it; `replay` runs a recording again and compares; `make`
-    makes a file from recordings; `list` reads summaries of recordings; `language` answers questions about texts.
+    """`check` loads the model and builds what it describes, and runs no more than one tick; `replay` runs a recording again and
+    compares; `make` makes a file from recordings; `list` reads summaries of recordings; `language` answers questions about texts.
     """
     path: str = ""
     """The model file, or the recording to replay."""

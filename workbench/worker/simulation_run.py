@@ -277,8 +277,12 @@ class SimulationRun(ControlledRun):
 
 
 def check(source: str, filename: str, folder: Path) -> dict[str, Any]:
-    """Loads a model and builds what it describes with its defaults; runs nothing. Returns the values of its parameters."""
+    """Loads a model, builds what it describes with its defaults, and runs one tick, at whose beginning productions are checked.
+
+    Returns the values of the model's parameters.
+    """
     limits = RunLimits(seed=0)
     with limits, BuiltOutput():
-        _, parameters = build(source, filename, {}, folder)
+        simulation, parameters = build(source, filename, {}, folder)
+        simulation.advance(1)
     return json.loads(to_json(parameters))

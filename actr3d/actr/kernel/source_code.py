@@ -7,7 +7,7 @@ import dis
 import linecache
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 from threading import Lock
@@ -154,3 +154,35 @@ def written_for_python_actr(kind: type) -> bool:
     """Returns whether a class is part of such a program."""
     files = [sys.modules.get(klass.__module__) for klass in kind.__mro__]
     return LOG.announce or any(for_python_actr(vars(file)) for file in files if file is not None)
+
+
+DYNAMIC = {"exec", "globals", "vars", "locals", "setattr"}
+"""A text that uses one of these may define names that are not written in it."""
+
+
+def defines_by_code(tree: ast.AST) -> bool:
+    """Returns whether a text may define names that are not written in it."""
+    return any(isinstance(node, ast.Name) and node.id in DYNAMIC for node in ast.walk(tree))
+
+
+def names_defined_by(node: ast.AST) -> Iterator[str]:
+    """Yields the names that a node defines, in whatever scope."""
+    match node:
+        case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name) | ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
+            yield name
+        case ast.ClassDef(name=name):
+            yield name
+        case (
+            ast.ExceptHandler(name=str(name))
+            | ast.MatchAs(name=str(name))
+            | ast.MatchStar(name=str(name))
+            | ast.MatchMapping(rest=str(name))
+        ):
+            yield name
+        case ast.Import() | ast.ImportFrom():
+            for alias in node.names:
+                yield alias.asname or alias.name.partition(".")[0]
+        case ast.Global():
+            yield from node.names
+        case _:
+            pass

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import inspect
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -15,7 +16,7 @@ from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.declarative.partial_matching import Partial
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import MethodWrapper, Model
-from actr3d.actr.kernel.source_code import function_node, source_of
+from actr3d.actr.kernel.source_code import defines_by_code, function_node, names_defined_by, source_of, syntax_tree
 from actr3d.actr.lint.slot_inference import slots_held
 from actr3d.actr.lint.slot_names import GIVERS, READERS, SURE, slip_of, slots_in, text_of, vocabulary
 from actr3d.actr.modules.imaginal import ImaginalModule
@@ -35,6 +36,8 @@ def check_actions(production: Production, productions: Sequence[Production]) -> 
     where = f"production '{production.name}': "
     _check_brackets(node, func, context)
     known = {*production.variables, *production.assigned}
+    if not production.more_bound:
+        _check_names(production, known, where)
     for call, owner, method in _calls(node, context):
         _check_slots(call, owner, method, func, where, context)
         if method == "modify":
@@ -43,6 +46,29 @@ def check_actions(production: Production, productions: Sequence[Production]) -> 
             check = _check_variables if method in GIVERS else _check_wildcards if method in READERS else None
             if check is not None:
                 check(call, func, where, known)
+
+
+def _check_names(production: Production, known: set[str], where: str) -> None:
+    """Finds names in a body that nothing defines, neither now nor anywhere in the text."""
+    func = production.original_func
+    defined = _defined_in(source_of(func))
+    if defined is None:
+        return
+    inside = {*dir(builtins), *func.__globals__, *func.__code__.co_freevars, *production.context, *known, *defined}
+    for part in (part for statement in production.node.body for part in ast.walk(statement)):
+        if isinstance(part, ast.Name) and part.id not in inside:
+            inside.add(part.id)
+            warn_at(f"{where}nothing defines '{part.id}'{did_you_mean(part.id, {*known, *production.context})}", func, part.lineno)
+
+
+@lru_cache(maxsize=16)
+def _defined_in(text: str) -> set[str] | None:
+    """Returns all names and attributes that a text defines anywhere; None if code may define others."""
+    tree = syntax_tree(text)
+    if defines_by_code(tree):
+        return None
+    attributes = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)}
+    return attributes.union(*map(names_defined_by, ast.walk(tree)))
 
 
 def check_modeller_method(func: Callable[..., Any], part: Model) -> None:
