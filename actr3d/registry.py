@@ -33,15 +33,19 @@ class Registry(dict[str, T], Generic[T]):
         self[name] = thing
 
 
-def import_modules(package: str, path: Collection[str]) -> None:
+def import_modules(package: str, path: Collection[str], *, inner: bool = False, named: str | None = None) -> None:
     """Imports all modules of a package, in the order of their names, so that they register what they define.
 
     Args:
         package: Its `__name__`.
         path: Its `__path__`.
+        inner: Whether to import the modules of the packages within it too.
+        named: Only modules of this name are imported; None for all but `__main__`.
     """
-    for module in pkgutil.iter_modules(path):
-        import_module(f"{package}.{module.name}")
+    for module in (pkgutil.walk_packages if inner else pkgutil.iter_modules)(path, f"{package}."):
+        name = module.name.rpartition(".")[2]
+        if name == named or (named is None and name != "__main__"):
+            import_module(module.name)
 
 
 def _origin(thing: Any) -> tuple[str, str]:

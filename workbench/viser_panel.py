@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from workbench.overlays import OVERLAYS, ViewSettings
-from workbench.page_commands.changes import Aperture
+from workbench.page_commands.changes import SimulationCommand
 from workbench.page_commands.running import Back, Pause, Run, Step
 from workbench.page_commands.session import ShowOverlay
 from workbench.worker.messages import State
@@ -71,7 +71,7 @@ class Panel:
 
     def _slid(self, name: str, slider: Any, event: Any) -> None:
         if event.client_id is not None:  # otherwise the panel itself was updated to the current state
-            self._said(Aperture(width=slider.value / 100, name=name))
+            self._said(SimulationCommand(word="aperture", values=(slider.value / 100,), named={"name": name}))
 
     def _switched(self, name: str, box: Any, event: Any) -> None:
         if event.client_id is not None:

@@ -179,7 +179,10 @@ class _Run:
         self._client.cancel(list(self._waiting))
 
     def _workers(self) -> int:
-        return len(self._client.scheduler_info(n_workers=-1)["workers"])
+        workers = self._client.scheduler_info(n_workers=-1).get("workers")
+        if workers is None:  # the client has just been closed
+            self._lost()
+        return len(workers)
 
     def _replace_workers(self) -> None:
         """Starts the workers again that the cluster of this computer has given up, because they took long to come back when they had

@@ -11,7 +11,7 @@ const name = computed(() => Object.keys(state.value?.apertures ?? {})[0]);
 /** The free width [cm]. */
 const width = optimistic(
   () => 100 * (state.value?.apertures[name.value] ?? 0),
-  (cm) => ({ type: "aperture", width: cm / 100, name: name.peek() }),
+  (cm) => ({ type: "command", word: "aperture", values: [cm / 100], named: { name: name.peek() } }),
   orderChange,
 );
 /** The value of the slider while it is held [cm]; null otherwise. */

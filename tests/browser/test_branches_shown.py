@@ -24,7 +24,7 @@ def change_the_past(page: Page) -> None:
     shows(page, "#status", r"at 1\.0 s")
     say(page, type="seek", time=0.5)
     shows(page, "#time", r"0\.50 s")
-    say(page, type="aperture", width=0.9)
+    say(page, type="command", word="aperture", values=[0.9])
     shows(page, "#status", r"changed at 0\.50 s")
 
 
@@ -58,7 +58,7 @@ def test_a_branch_of_a_paused_run_is_not_listed_as_ended_and_its_notice_is_shown
     say(page, type="step", ticks=10)
     shows(page, "#time", r"0\.60 s")
     say(page, type="seek", time=0.2)
-    say(page, type="aperture", width=0.8)
+    say(page, type="command", word="aperture", values=[0.8])
     shows(page, ".branched", r"The run up to 0\.60 s is kept as a branch")  # it is another one
     # The first branch leaves the second one: the run has another past since then.
     names = page.locator(".branches .branch-name")
@@ -68,7 +68,7 @@ def test_a_branch_of_a_paused_run_is_not_listed_as_ended_and_its_notice_is_shown
     expect(page.locator(".branched")).to_have_count(0)
     # All changes of one moment are in one mark; of one value, the last.
     say(page, type="command", word="move", named={"object": "walker", "x": 1.0, "y": 0.5})
-    say(page, type="aperture", width=0.7)
+    say(page, type="command", word="aperture", values=[0.7])
     marks = "async () => (await part('timeline/record.js')).lanes.lane('commands').bands.map(({ text }) => text)"
     until(page, lambda: page.evaluate(marks) == ["aperture 50 -> 70 cm; move walker to (1, 0.5) m"])
 
@@ -82,7 +82,7 @@ def test_a_run_that_goes_another_way_after_its_end_is_listed_as_such_at_once(pag
     expect(present).to_contain_text("the model called stop()")
     say(page, type="seek", time=2.0)
     shows(page, "#time", r"2\.00 s")
-    say(page, type="aperture", width=0.9)
+    say(page, type="command", word="aperture", values=[0.9])
     expect(present).to_contain_text("not over")
     expect(present).to_contain_text("2.00 s")
     expect(page.locator("tr[data-run]", has_text="branch at 2.00 s")).to_contain_text("the model called stop()")

@@ -224,5 +224,5 @@ def test_things_in_the_scene_are_moved_and_pushed_by_numbers(pages: Callable[...
     say(page, type="step")
     shows(page, "#time", r"0\.01 s")
     say(page, type="command", word="move", values=["walker", 2.0, 1.0, 0.5])
-    say(page, type="aperture", width=0.4)
+    say(page, type="command", word="aperture", values=[0.4])
     assert commands(page) == ["move walker to (1, 1.5) m, 90°", "move walker to (2, 1) m, 29°", "aperture 50 -> 40 cm"]

@@ -263,7 +263,7 @@ def test_a_recording_chosen_while_another_is_deleted_stays_chosen(pages: Callabl
     with holding(page, "**/api/recordings/*/delete", lambda _: True):
         page.get_by_role("toolbar", name="The chosen run").get_by_role("button", name="Delete").click()
         page.get_by_role("dialog").get_by_role("button", name="Delete").click()
-        second.click()
+        second.dispatch_event("click")  # not at a place: the row moves up when the other one goes
         expect(second).to_have_attribute("aria-selected", "true")
     expect(first).to_have_count(0)
     drawn(page)

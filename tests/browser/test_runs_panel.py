@@ -237,7 +237,7 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     page.get_by_role("button", name="Compare", exact=True).click()
     dialog = page.get_by_role("dialog", name="Two runs")
     sides = dialog.get_by_role("table", name="Side by side")
-    expect(sides.locator("tr.other").first).to_have_text(re.compile("≠width0.[59]0.[59]"))
+    expect(sides.locator("tr.other").first).to_have_text(re.compile(r"≠width \[m\]0.[59]0.[59]"))
     expect(sides).to_contain_text("seed11")
     page.set_viewport_size({"width": 853, "height": 533})  # 1280 x 800 at 150 %
     facts = dialog.locator(".compare-facts")
@@ -286,7 +286,7 @@ def test_changes_during_a_run_are_shown_beside_its_initial_values(page: Page, tw
     row(page, two[0]).click()
     page.get_by_role("button", name="Compare with the present run").click()
     sides = page.get_by_role("dialog", name="Two runs").get_by_role("table", name="Side by side")
-    expect(sides.get_by_role("row", name=re.compile("width"))).to_have_text(re.compile(r"≠width0\.5.* → 0\.9 at 0\.01 s$"))
+    expect(sides.get_by_role("row", name=re.compile("width"))).to_have_text(re.compile(r"≠width \[m\]0\.5.* → 0\.9 at 0\.01 s$"))
 
 
 @pytest.mark.slow

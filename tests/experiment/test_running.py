@@ -254,6 +254,23 @@ def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, unused_port: 
     assert table(tmp_path / "out") == reference(path, tmp_path / "whole")
 
 
+@pytest.mark.parametrize("reports", [1, 2])
+def test_a_client_that_is_closed_at_any_moment_has_lost_the_scheduler(tmp_path: Path, reports: int) -> None:
+    path = write_experiment(tmp_path, participants=2, trials=4)
+    heard: list[Progress] = []
+    with local_cluster(1) as here:
+        client: Any = here
+
+        def close(progress: Progress) -> None:
+            heard.append(progress)
+            if len(heard) == reports:
+                client.close()
+
+        with pytest.raises(ExperimentError, match=r"the scheduler is gone; \d+ of \d+ trials are kept; continue with --resume"):
+            run_here(client, path, tmp_path / "out", show=close)
+    assert len(heard) == reports
+
+
 def _rows(folder: Path) -> int:
     if not (folder / "experiment.json").exists():
         return 0

@@ -53,8 +53,8 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
         talk.say("command", word="wlak", values=[1.0])
     assert found(talk) == []  # nothing was changed
     assert talk.say("curves", names=["walker x"]) == before
-    talk.say("aperture", width=0.3)
-    talk.say("aperture", width=0.35)  # there is nothing ahead any more
+    talk.say("command", word="aperture", values=[0.3])
+    talk.say("command", word="aperture", values=[0.35])  # there is nothing ahead any more
     assert talk.state["reason"] == "changed at 0.10 s; a branch was kept"
     (branch,) = found(talk)
     origin = Path(talk.session.start.record).stem  # type: ignore[union-attr]
@@ -79,7 +79,7 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
     with Recorded(branch) as recorded:
         assert recorded.ticks == 40
     talk.say("seek", time=0.2)
-    talk.say("aperture", width=0.4)
+    talk.say("command", word="aperture", values=[0.4])
     assert len(found(talk)) == 2
 
 
@@ -87,14 +87,14 @@ def test_a_branch_is_over_only_where_its_run_was_over(desk: Desk, tmp_path: Path
     talk = desk.begin(tmp_path, STOPPED, record=True)
     there(talk, 10)
     talk.say("seek", time=0.05)
-    talk.say("aperture", width=0.3)  # the first branch: of a run that was paused
+    talk.say("command", word="aperture", values=[0.3])  # the first branch: of a run that was paused
     talk.say("run")
     talk.until("ended")
     talk.say("seek", time=0.05)
-    talk.say("aperture", width=0.4)  # the second: of a run that was over
+    talk.say("command", word="aperture", values=[0.4])  # the second: of a run that was over
     there(talk, 12)
     talk.say("seek", time=0.05)
-    talk.say("aperture", width=0.5)  # the third: it was over once, but then went another way, and was paused
+    talk.say("command", word="aperture", values=[0.5])  # the third: it was over once, but then went another way, and was paused
     ends = {round(summary.time, 2): summary.ended for summary in (talk.summary(path.stem) for path in found(talk))}
     assert ends == {0.1: "left", 0.15: "stop", 0.12: "left"}
 
@@ -104,9 +104,9 @@ def test_what_is_not_recorded_is_lost_only_where_that_is_allowed(desk: Desk, tmp
     there(talk, 40)
     talk.say("seek", time=0.1)
     with pytest.raises(RefusedError, match=r"is not recorded: what lies ahead, from 0.1 to 0.4 s, would be lost"):
-        talk.say("aperture", width=0.3)
+        talk.say("command", word="aperture", values=[0.3])
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.4
-    talk.say("aperture", width=0.3, drop=True)
+    talk.say("command", word="aperture", values=[0.3], drop=True)
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.1
     assert talk.session.branched is None
     assert talk.state["reason"] == "changed at 0.10 s; the rest was lost"
@@ -119,10 +119,10 @@ def test_what_cannot_be_kept_is_not_lost(desk: Desk, tmp_path: Path) -> None:
     where = folder(talk)
     aside = where.rename(where.with_name("aside"))  # no file can be made there
     with pytest.raises(RefusedError, match=r"nothing was changed, because what lies ahead, from 0.1 to 0.4 s, cannot be kept"):
-        talk.say("aperture", width=0.3)
+        talk.say("command", word="aperture", values=[0.3])
     aside.rename(where)
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.4
-    talk.say("aperture", width=0.3)
+    talk.say("command", word="aperture", values=[0.3])
     assert len(found(talk)) == 1
 
 
@@ -135,12 +135,12 @@ def test_on_a_full_disk_nothing_is_changed_and_the_known_part_of_the_run_can_sti
     limits = resource.prlimit(worker.pid, resource.RLIMIT_FSIZE)
     resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, (1, limits[1]))  # no file can grow, as on a full disk
     with pytest.raises(RefusedError, match=r"nothing was changed, because what lies ahead, from 0.1 to 0.4 s, cannot be kept"):
-        talk.say("aperture", width=0.3)
+        talk.say("command", word="aperture", values=[0.3])
     talk.say("until", time=0.4)
     assert talk.until("paused", time=0.4)["furthest"] == 0.4
     resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, limits)
     talk.say("seek", time=0.1)
-    talk.say("aperture", width=0.3)
+    talk.say("command", word="aperture", values=[0.3])
     assert len(found(talk)) == 1
 
 

@@ -138,10 +138,10 @@ def test_a_run_goes_another_way_also_where_no_event_was_ahead(desk: Desk, tmp_pa
     talk.say("seek", time=0.43)
     assert talk.until("paused", tick=43)["events"] == events
     before = talk.session.epoch
-    talk.say("aperture", width=0.3, drop=True)
+    talk.say("command", word="aperture", values=[0.3], drop=True)
     assert talk.session.epoch == before + 1
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.43
-    talk.say("aperture", width=0.4)  # now there is nothing ahead that could be lost
+    talk.say("command", word="aperture", values=[0.4])  # now there is nothing ahead that could be lost
     assert talk.session.epoch == before + 1
 
 

@@ -73,7 +73,7 @@ def test_errors_are_reported(server: Served, session: str, text: str | bytes) ->
 NONSENSE: list[Any] = [None, True, -1, 0.5, 10**30, "\ud800", "x" * 20_000, "<img src=x>", [], [[]], [None] * 300, {}, {"x": {}}]
 LEFT_OUT = (Restart, Stop)
 """What ends the run that is spoken to."""
-USUAL = {"name": "width", "memory": "memory", "value": 1, "word": "teleport", "time": 0.01, "width": 0.5, "view": "free", "shown": True}
+USUAL = {"name": "width", "memory": "memory", "value": 1, "word": "teleport", "time": 0.01, "view": "free", "shown": True}
 
 
 def test_nonsense_in_any_field_of_any_command_is_reported_to_its_sender(server: Served, session: str) -> None:

@@ -159,7 +159,7 @@ def test_of_several_simulations_the_latest_is_shown_and_the_scene_changes_with_t
 def test_a_command_to_a_program_is_refused_in_words(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, ONE)
     with pytest.raises(RefusedError, match="of a program, only agents without a body can be changed"):
-        talk.say("aperture", width=0.5)
+        talk.say("command", word="aperture", values=[0.5])
 
 
 def test_a_program_that_makes_a_simulation_and_fails_before_that_says_so(desk: Desk, tmp_path: Path) -> None:

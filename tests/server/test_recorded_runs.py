@@ -81,7 +81,7 @@ def test_a_run_that_has_ended_is_over_there_whenever_one_comes_back(desk: Desk, 
     ended(talk)
     end, result, events = talk.state["time"], talk.state["result"], talk.events
     with pytest.raises(RefusedError, match="the run is over"):
-        talk.say("aperture", width=0.9)
+        talk.say("command", word="aperture", values=[0.9])
     talk.say("seek", time=0.1)
     talk.until("paused", time=0.1)
     assert talk.state["result"] is None
@@ -97,7 +97,7 @@ def test_a_run_that_goes_another_way_after_its_end_has_not_ended(desk: Desk, tmp
     end = talk.state["time"]
     talk.say("seek", time=0.1)
     talk.until("paused", time=0.1)
-    talk.say("aperture", width=0.9)
+    talk.say("command", word="aperture", values=[0.9])
     talk.say("step", ticks=20)
     talk.until("paused", tick=30)
     path = recording(desk, talk)

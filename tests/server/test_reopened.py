@@ -59,7 +59,7 @@ def test_a_recording_shows_all_its_time_at_its_start_and_does_again_what_it_did(
     if source == BUILT:
         talk.say("until", time=0.3)
         talk.until("paused", time=0.3)
-        talk.say("aperture", width=0.7)
+        talk.say("command", word="aperture", values=[0.7])
     talk.say("run")
     talk.until("ended")
     end, events = talk.state, talk.events
@@ -105,7 +105,7 @@ def test_another_way_than_the_recorded_one_leaves_what_was_recorded_ahead(desk: 
     again = reopened(talk)
     again.say("seek", time=0.2)
     again.until("paused", time=0.2)
-    again.say("aperture", width=0.5)
+    again.say("command", word="aperture", values=[0.5])
     again.until("paused", time=0.2, furthest=0.2)
     assert len(whole(again)) < len(events)
     assert again.facts["cuts"] != []

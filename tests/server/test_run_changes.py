@@ -335,7 +335,7 @@ def test_a_program_says_what_cannot_be_changed(desk: Desk, tmp_path: Path) -> No
         change(talk, "set_buffer", buffer="goal", chunk="a")
     there(talk, 0.1)
     with pytest.raises(RefusedError, match="no change 'aperture' for the agents of a program; there are: add_chunk, clear_buffer"):
-        talk.say("aperture", width=0.5)
+        talk.say("command", word="aperture", values=[0.5])
     with pytest.raises(RefusedError, match=r"no buffer 'goa'; did you mean 'goal'\? There are: goal, retrieval"):
         change(talk, "set_buffer", buffer="goa", chunk="a")
     there(talk, 0.5)  # the second agent of the program

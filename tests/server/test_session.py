@@ -174,14 +174,14 @@ def test_a_user_makes_the_run_go_another_way(desk: Desk, tmp_path: Path) -> None
     talk.say("seek", time=2.0)
     talk.until("paused", time=2.0)
     assert talk.session.log.next == len(first)  # what is known stays known
-    talk.say("aperture", width=0.9, drop=True)
+    talk.say("command", word="aperture", values=[0.9], drop=True)
     state = talk.wait(lambda: round(talk.state["apertures"]["aperture"], 9) == 0.9)
     assert state["furthest"] == 2.0
     ended(talk)
     assert talk.events[: state["events"] - 1] == first[: state["events"] - 1]
     assert talk.events[state["events"] - 1][2:] == [
         "command",
-        {"command": "aperture", "data": {"values": [0.9], "named": {"name": "aperture"}, "body": None}},
+        {"command": "aperture", "data": {"values": [0.9], "named": {}, "body": None}},
     ]
     assert "turn" in dict(map(reversed, fires(first)))  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
     assert "turn" not in dict(map(reversed, fires(talk.events)))  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
@@ -209,8 +209,8 @@ def test_any_word_can_be_said(desk: Desk, tmp_path: Path) -> None:
         for given in ({"values": ["walker.speed", value]}, {"named": {"path": "walker.speed", "value": value}}):
             with pytest.raises(RefusedError, match=rf"speed: must be {right} \(got {value}\)"):
                 talk.say("command", word="parameter", **given)
-    with pytest.raises(RefusedError, match=r"width: must be <= 3 \(got 4.0\)"):
-        talk.say("aperture", width=4)
+    with pytest.raises(RefusedError, match=r"width: must be <= 3 \(got 4\)"):
+        talk.say("command", word="aperture", values=[4])
     talk.say("command", word="parameter", values=["walker.speed", 2])
 
 
@@ -285,7 +285,7 @@ def test_a_program_goes_back_after_its_end_and_forth(desk: Desk, tmp_path: Path)
     with pytest.raises(RefusedError, match="has only reached"):
         talk.say("seek", time=99.0)
     with pytest.raises(RefusedError, match="no change 'aperture' for the agents of a program"):
-        talk.say("aperture", width=1)
+        talk.say("command", word="aperture", values=[1])
     ended(talk)
     assert len(talk.events) == count
 
@@ -353,7 +353,7 @@ def test_a_run_is_recorded_and_opened_again(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, DOORWAY, record=True)
     talk.say("step", ticks=50)
     talk.until("paused", tick=50)
-    talk.say("aperture", width=0.9)
+    talk.say("command", word="aperture", values=[0.9])
     time = ended(talk)["time"]
     events = talk.events
     name = talk.facts["recording"]

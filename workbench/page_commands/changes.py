@@ -24,18 +24,6 @@ class Change(PageCommand):
 
 
 @page_command
-class Aperture(Change):
-    """Sets the free width of an aperture [m]."""
-
-    type: Literal["aperture"] = "aperture"
-    width: float = Field(ge=0, le=100)
-    name: Name = "aperture"
-
-    def carry_out(self, controller: RunController) -> None:
-        controller.change("aperture", (self.width,), {"name": self.name}, drop=self.drop)
-
-
-@page_command
 class Set(Change):
     """Changes a live parameter of the model in the running simulation."""
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import pkgutil
 from collections.abc import Callable, Collection, Sequence
-from importlib import import_module
 from typing import Any, TypeVar
 
 import actr3d.experiment
 from actr3d.experiment.report.parts import Section
-from actr3d.registry import Registry
+from actr3d.registry import Registry, import_modules
 
 Sections = Callable[[Any, Sequence[Any]], Sequence[Section]]
 """Returns sections, from the `Results` of the experiment and the `Beside` means of people and other experiments."""
@@ -46,8 +44,5 @@ def find_analyses(columns: Collection[str]) -> list[Sections]:
     Args:
         columns: The columns of the trials that there are.
     """
-    home = actr3d.experiment
-    for package in pkgutil.iter_modules(home.__path__, f"{home.__name__}."):
-        if package.ispkg and any(inner.name == "analysis" for inner in pkgutil.iter_modules(import_module(package.name).__path__)):
-            import_module(f"{package.name}.analysis")
+    import_modules(actr3d.experiment.__name__, actr3d.experiment.__path__, inner=True, named="analysis")
     return [function for function in ANALYSES.values() if function.__dict__["needed_columns"] <= set(columns)]
