@@ -114,7 +114,7 @@ class GeometricCamera:
         return int(self._labels[object]) or None if object > 0 else None
 
     def geoms_by_label(self) -> dict[int, list[int]]:
-        """Returns the geoms of all objects that were seen so far, by label, as MuJoCo numbers geoms; for observers, as `label_of`."""
+        """Returns the geoms of all objects that have a label, by label, as MuJoCo numbers geoms; for observers, as `label_of`."""
         geoms: dict[int, list[int]] = {}
         for geom, object in enumerate(self._objects.tolist()):
             label = int(self._labels[object]) if object > 0 else 0

@@ -82,7 +82,7 @@ class Sight:
         return self._stands.get(view)
 
     def geoms_by_label(self) -> dict[int, list[int]]:
-        """Returns the geoms of all objects that were seen so far, by label; for observers."""
+        """Returns the geoms of all objects that have a label, by label; for observers."""
         return self._camera.geoms_by_label()
 
     def state(self) -> tuple[int, ...]:
@@ -135,7 +135,7 @@ def glance(body: Body, parameters: CameraParameters | None = None) -> View:
 
 
 def glance_with_geoms(body: Body, parameters: CameraParameters | None = None) -> tuple[View, dict[int, list[int]]]:
-    """Returns what is visible now, as `glance` does, and the geoms of what was seen so far, by label.
+    """Returns what is visible now, as `glance` does, and the geoms of all objects that have a label, by label.
 
     Args:
         body: The body whose eye is used.
