@@ -34,7 +34,7 @@ class MoveObject(WorldChange):
     y: Annotated[float, Ge(-FARTHEST), Le(FARTHEST)]
     """The place along the y axis of the world [m]: to the left of the x axis, seen from above."""
     heading: Annotated[float, Ge(-MAX_TURN), Le(MAX_TURN)] | None = None
-    """The angle from the x axis of the world to the left [rad]; None for its present heading."""
+    """The angle from the x axis of the world to the left [rad]; empty: it keeps its heading."""
 
     def carry_out(self, on: World) -> None:
         on.move(self.object, self.x, self.y, self.heading)
