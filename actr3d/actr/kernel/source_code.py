@@ -172,6 +172,8 @@ def names_defined_by(node: ast.AST) -> Iterator[str]:
             yield name
         case ast.ClassDef(name=name):
             yield name
+        case _ if type(node).__name__ in ("TypeVar", "ParamSpec", "TypeVarTuple"):  # Python 3.12 and later
+            yield vars(node)["name"]
         case (
             ast.ExceptHandler(name=str(name))
             | ast.MatchAs(name=str(name))
