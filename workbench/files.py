@@ -101,7 +101,8 @@ class ModelFolder:
             raise FileError("the path of a model file: must end in .py, without control characters and colons")
         where = self.root.joinpath(*parts)
         try:
-            inside = where.resolve().is_relative_to(self.root)
+            end = where.resolve()
+            inside = end.is_relative_to(self.root) and not end.is_symlink()  # since Python 3.13, a loop of links is returned
         except (OSError, RuntimeError):  # links that form a loop
             inside = False
         if not inside:

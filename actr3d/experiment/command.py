@@ -141,8 +141,7 @@ def run(
     with ExitStack() as opened:
         # Before the folder is made: a cluster may not answer.
         cluster = None if scheduler is None else opened.enter_context(existing_cluster(scheduler))
-        experiment, store = _opened(name, values, participants, trials, folder, resume=resume, any_version=any_version)
-        opened.enter_context(store)
+        experiment, store = _opened(opened, name, values, participants, trials, folder, resume=resume, any_version=any_version)
         total, begin, before = len(experiment.design), time.monotonic(), store.count
         facts = facts_of(experiment)
         store.write_facts({"event": "facts", **facts})
@@ -300,6 +299,7 @@ def is_folder(name: str) -> bool:
 
 
 def _opened(
+    opened: ExitStack,
     name: str,
     values: Mapping[str, Any],
     participants: int | None,
@@ -309,20 +309,20 @@ def _opened(
     resume: bool,
     any_version: bool,
 ) -> tuple[Experiment, Store]:
-    """Creates or opens the folder of an experiment."""
+    """Creates or opens the folder of an experiment, which `opened` closes."""
     if is_folder(name):
         if values or participants is not None or trials is not None or folder is not None:
             raise ExperimentError(f"'{name}' is an experiment, whose design is fixed; name a design to run it with other values")
         if not resume:
             raise ExperimentError(f"'{name}' is an experiment; continue it with --resume")
-        store = Store(name)
+        store = opened.enter_context(Store(name))
         _check_versions(store.specification, any_version=any_version)
         return Experiment(store.specification), store
     experiment = specify(name, participants=participants, trials=trials, values=values)
     folder = folder or experiment.specification.name
     if not (resume and is_folder(folder)):
-        return experiment, Store.create(folder, experiment.specification)
-    store = Store(folder)
+        return experiment, opened.enter_context(Store.create(folder, experiment.specification))
+    store = opened.enter_context(Store(folder))
     _check_versions(store.specification, any_version=any_version)
     there, wanted = store.specification, replace(experiment.specification, versions=store.specification.versions)
     if there.to_json() != wanted.to_json():

@@ -80,7 +80,11 @@ class Store:
         self.specification = Specification.from_json(text, str(path))
         try:
             self._database = sqlite3.connect(self.folder / TRIALS, timeout=30, isolation_level=None, check_same_thread=False)
-            self._database.executescript(f"PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; {_SCHEMA}")
+            try:
+                self._database.executescript(f"PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; {_SCHEMA}")
+            except BaseException:
+                self._database.close()
+                raise
         except sqlite3.Error as error:
             raise ExperimentError(f"{self.folder / TRIALS}: cannot be opened ({error})") from None
 

@@ -320,7 +320,7 @@ def test_a_folder_that_is_in_use_or_no_experiment_is_refused(tmp_path: Path) -> 
 def test_a_store_that_cannot_be_written_says_so_and_keeps_its_rows(tmp_path: Path) -> None:
     with store_of(tmp_path) as store:
         store.add(finished(0), "v")
-        with sqlite3.connect(store.folder / "trials.sqlite") as other:
+        with closing(sqlite3.connect(store.folder / "trials.sqlite")) as other, other:
             pages = other.execute("PRAGMA page_count").fetchone()[0]
         store._database.execute(f"PRAGMA max_page_count = {pages}")
         with pytest.raises(ExperimentError, match=r"cannot write \(database or disk is full\); the rows before are kept"):

@@ -335,7 +335,7 @@ def test_names_that_sqlite_has_a_meaning_for_are_names_of_files(tmp_path: Path, 
 
 
 def test_facts_without_a_value_are_damage(tmp_path: Path) -> None:
-    with sqlite3.connect(tmp_path / "run") as file:
+    with closing(sqlite3.connect(tmp_path / "run")) as file, file:
         file.executescript("CREATE TABLE facts (name TEXT, value TEXT); INSERT INTO facts VALUES ('form', NULL)")
     file.close()
     with pytest.raises(RecordingError, match="is not a recording"):

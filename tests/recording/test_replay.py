@@ -6,7 +6,7 @@ import re
 import sqlite3
 import subprocess
 import sys
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -235,7 +235,7 @@ def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[s
 def test_a_damaged_recording_is_distinguished_from_one_that_differs(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file)
     data = bytearray(path.read_bytes())
-    with sqlite3.connect(path) as connection:
+    with closing(sqlite3.connect(path)) as connection, connection:
         (page,) = connection.execute("SELECT rootpage FROM sqlite_schema WHERE name = 'events'").fetchone()
         (size,) = connection.execute("PRAGMA page_size").fetchone()
     connection.close()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sqlite3
 import time
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -89,7 +90,7 @@ def test_what_cannot_be_opened_is_listed_with_the_reason(desk: Desk, tmp_path: P
     folder = tmp_path / OWN / "recordings"
     (folder / "none.sqlite").write_bytes(b"no database at all, but some text that is long enough" * 100)
     (folder / "empty.sqlite").write_bytes(b"")
-    with sqlite3.connect(folder / "older.sqlite") as older:
+    with closing(sqlite3.connect(folder / "older.sqlite")) as older, older:
         older.execute("CREATE TABLE runs (x)")
     older.close()
     told = {summary.id: summary for summary in desk.listed(tmp_path)[1]}

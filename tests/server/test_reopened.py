@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -161,7 +162,7 @@ def test_a_damaged_recording_is_not_opened(desk: Desk, tmp_path: Path) -> None:
     name = talk.facts["recording"]
     path = talk.sessions.recordings.path(name)
     desk.do(talk.sessions.close(talk.session.name))
-    with sqlite3.connect(path) as file:
+    with closing(sqlite3.connect(path)) as file, file:
         file.execute('UPDATE events SET data = \'[["soon", "top", "start", {}]]\'')
     file.close()
     with pytest.raises(Actr3dError, match="is damaged"):
