@@ -196,6 +196,7 @@ def test_a_recording_from_elsewhere_shows_its_code_and_asks_before_it_is_run(
     page = pages(refusals=True)
     spare = recorded(workbench, "counting.py")
     far = recordings / "far.sqlite"
+    until(page, lambda: not (recordings / f"{spare}.sqlite-wal").exists())  # its writer has closed it
     (recordings / f"{spare}.sqlite").rename(far)
     forge(far, key=b"another key")
     open_tab(page, "Runs")
