@@ -6,6 +6,7 @@ import ast
 import importlib
 import inspect
 from collections.abc import Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 from types import ModuleType
@@ -17,6 +18,13 @@ import actr3d
 
 ROOT = Path(actr3d.__file__).parent.parent
 FILES = sorted((ROOT / "actr3d").rglob("*.py"))
+
+
+@cache
+def tree_of(path: Path) -> ast.Module:
+    """Returns the syntax tree of a file."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
 
 BASE = {"errors", "clock", "configuration", "warnings", "values", "registry", "forks", "weak_cache", "trace_kinds", "trace", "change"}
 BODILY = {"actr", "world", "camera"}
@@ -139,7 +147,7 @@ def test_no_module_needs_itself_to_be_imported() -> None:
     known = {module_name(path) for path in FILES}
     needs: dict[str, set[str]] = {name: set() for name in known}
     for path in FILES:
-        for node in at_import(ast.parse(path.read_text(encoding="utf-8")).body):
+        for node in at_import(tree_of(path).body):
             for name in imported_by(node, package_of(path)):
                 needs[module_name(path)] |= {name if name in known else name.rpartition(".")[0]} & known
     assert len(list(TopologicalSorter(needs).static_order())) == len(known)
@@ -152,7 +160,7 @@ def test_no_module_knows_itself_through_others_not_even_for_types(package: str) 
     known = {module_name(path) for path in paths}
     needs: dict[str, set[str]] = {name: set() for name in known}
     for path in paths:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree_of(path)):
             for name in imported_by(node, package_of(path)):
                 needs[module_name(path)] |= {name if name in known else name.rpartition(".")[0]} & known
     assert len(list(TopologicalSorter(needs).static_order())) == len(known) > 50
@@ -166,7 +174,7 @@ OF_PYTHON_ACTR = {"Body", "Motor", "Vision", "World"}
 def test_no_two_classes_have_one_name(package: str) -> None:
     found: dict[str, list[str]] = {}
     for path in sorted((ROOT / package).rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree_of(path)):
             if isinstance(node, ast.ClassDef):
                 found.setdefault(node.name, []).append(f"{path.relative_to(ROOT)}:{node.lineno}")
     assert {name: places for name, places in found.items() if len(places) > 1 and name not in OF_PYTHON_ACTR} == {}

@@ -232,7 +232,7 @@ def test_as_python_actr_does(pattern: str, contents: dict[Any, Any]) -> None:
     assert Pattern(pattern).match(Chunk(contents)) == PeerPattern(pattern).match(Chunk(contents))
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(st.lists(st.tuples(PATTERNS, PATTERNS), min_size=1, max_size=8), st.lists(st.tuples(CONTENTS, CONTENTS), min_size=1, max_size=4))
 def test_the_matcher_finds_what_single_patterns_find(rules: list[tuple[str, str]], states: list[tuple[Any, Any]]) -> None:
     agent: Any = ACTR()
