@@ -123,6 +123,11 @@ class Room(Source):
         return self._clearance.rooms() or (None, None)
 
 
+def contact_force(name: str) -> str:
+    """Returns the name of the curve of the contact force on a body."""
+    return f"{name} contact force"
+
+
 class Force(Source):
     """Computes the largest contact force on a body from anything but the ground, like `PassageResult` but only at the ends of ticks.
 
@@ -149,7 +154,7 @@ class Force(Source):
         owners: NDArray[Any],
         ground: Iterable[int],
     ) -> None:
-        self.curves = (Curve(f"{name} contact force", "N", "contact"),)
+        self.curves = (Curve(contact_force(name), "N", "contact"),)
         self._model, self._data, self._own, self._owners = model, data, own, owners
         # A geom without a name counts as part of its MuJoCo body.
         self._parts = {geom: geom if model.geom(geom).name else -1 - int(model.geom_bodyid[geom]) for geom in feels}

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from actr3d.actr.loading import load_text
 from actr3d.recording import Recorded
 from tests.helpers.sessions import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, ended, recording
@@ -36,9 +37,72 @@ def build() -> Simulation:
     return Simulation(Scene(parts=parts), {"walker": Walker}, seed=1)
 """
 
+STRUCK = """from actr3d.actr import *
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Floor, Mannequin, Scene, Wall
+
+class Walker(ACTR):
+    goal = Buffer()
+    felt = Buffer()
+    skin = BodyPort(felt)
+
+    def init():
+        goal.set("aside")
+        skin.set("waypoint", 3, 1.5, 1.2)
+
+    def ask(goal="aside", felt=None, skin="busy:False"):
+        skin.request("pose")
+
+    def look(goal="aside", felt="pose x:?x"):
+        felt.clear()
+        if float(x) > 2.8:
+            goal.set("on")
+            skin.set("waypoint", 6, 0, 1.2)
+
+    def go_on(goal="on"):
+        goal.set("on")
+
+def build() -> Simulation:
+    wall = Wall(name="block", start=(3.0, -1.2), end=(3.0, 1.2), height=1.2)
+    return Simulation(Scene(parts=(Floor(), wall, Mannequin(name="walker"))), {"walker": Walker}, seed=1)
+"""
+"""It grazes the end of a wall: each touch is over before its tick ends."""
+
 
 def least(values: list[float | None]) -> float:
     return min(value for value in values if value is not None)
+
+
+def test_a_touch_that_is_over_before_its_tick_ends_is_seen(desk: Desk, tmp_path: Path) -> None:
+    simulation = load_text(STRUCK).build()
+    skin = simulation.world.bodies["walker"]
+    skin.touched = ()  # from now on it feels
+    felt: dict[int, float] = {}
+    for tick in range(1, 401):
+        simulation.step()
+        if skin.touched:
+            felt[tick] = max(touch.force for touch in skin.touched)
+    assert len(felt) > 3
+    talk = desk.begin(tmp_path, STRUCK)
+    talk.say("until", contact="walker")
+    state = talk.until("paused", tick=min(felt))
+    assert state["reason"] == "right_upper_arm of walker touches block"
+    talk.say("until", time=4.0)
+    talk.until("paused", tick=400)
+
+    def forces(most: int) -> dict[int, float]:
+        told = talk.say("curves", names=["walker contact force"], most=most)
+        curve = told["curves"]["walker contact force"]
+        return {round(100 * time): force for time, force in zip(told["times"], curve, strict=True) if force}
+
+    for most in (5_000, 20):
+        assert forces(most) == pytest.approx(felt)
+    talk.say("seek", time=2.0)
+    talk.until("paused", tick=200)
+    assert forces(20) == pytest.approx(felt)
+    talk.say("command", word="teleport", body="walker", values=[0.0, 0.0, 0.0], drop=True)
+    talk.wait(lambda: talk.state["furthest"] == 2.0)
+    assert forces(20) == {}
 
 
 @pytest.mark.slow

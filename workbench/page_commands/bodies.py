@@ -82,8 +82,9 @@ class Curves(Question):
     The answer is `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`. `names` lists all curves, with
     angles in degrees; `curves` holds the requested ones, with one value for each time, or null if there is no value (for example the
     clearance of a body that is not in the doorway). Groups are `place`, `speed`, `clearance`, `contact`, `joint` and `joint speed`. All
-    values are those at the ends of ticks, including the contact force. After going back, a run still returns what lies ahead, until it
-    continues differently. `/api/recordings/{recording}/curves` returns the same for a recording.
+    values are those at the ends of ticks; the contact force is the greatest of the tick, and of an opened recording that at its end. After
+    going back, a run still returns what lies ahead, until it continues differently. `/api/recordings/{recording}/curves` returns the
+    same for a recording.
     """
 
     type: Literal["curves"] = "curves"
@@ -94,7 +95,8 @@ class Curves(Question):
     last: Seconds | None = None
     """End of the interval, included [s]; None for the furthest time of the run."""
     most: int = Field(default=1_000, ge=2, le=5_000)
-    """Maximum number of times, evenly spaced; the last moment of the interval is included. A shorter interval is returned completely."""
+    """Maximum number of times, evenly spaced; the last moment of the interval is included, and so are moments of contacts. A shorter
+    interval is returned completely."""
 
     def answer(self, run: ControlledRun) -> dict[str, Any]:
         return run.curves(self.names, self.first, self.last, self.most)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from functools import cached_property
+from itertools import islice
 from typing import Any
 
 from mujoco import MjModel
@@ -21,7 +23,7 @@ from actr3d.vision import visions
 from actr3d.world import Aperture, Floor
 from actr3d.world.compiled import loaded, saved
 from actr3d.world.sensors.touch import present
-from workbench.curves import CurveReader, stretch
+from workbench.curves import CurveReader, contact_force, stretch, stride
 from workbench.geom_colours import colour_of_object, dress
 from workbench.overlays import OVERLAYS, Observed
 from workbench.worker.state_history import Kept
@@ -46,6 +48,7 @@ class Shown:
         self.kept = kept or Kept(self.period)
         self.kept.keep(0, simulation.world)
         simulation.event_log.keeper = self.kept
+        self.kept.touched.watch(simulation.world)
         self.mj_model = saved(simulation.world.mj_model)
         """The compiled scene at the start, in MuJoCo's binary format."""
         self.surroundings = surroundings(simulation.world)
@@ -85,10 +88,10 @@ class Shown:
         return None if result is None else asdict(result)
 
     def touches(self) -> Touches:
-        """Returns the current contacts of bodies with anything but the ground."""
+        """Returns the contacts of bodies with anything but the ground, now and at any time of the last tick."""
         world = self.simulation.world
         ground = {part.name for part in world.scene.parts if isinstance(part, Floor)}
-        return frozenset(
+        return self.kept.touched.at(self.simulation.ticks).union(
             (name, touch.part, touch.other) for name, body in world.bodies.items() for touch in present(body) if touch.other not in ground
         )
 
@@ -103,8 +106,24 @@ class Shown:
             begin: The time at which the simulation began, as pages count it [us].
         """
         ticks = stretch(first, last, self.period, begin)
-        moments = ((seconds(begin + tick * self.period), state) for tick, state in self.kept.states.within(*ticks, most))
-        return self._curves.sampled(moments, names)
+        forces = self.kept.touched.forces(*ticks)
+        moments = dict(self.kept.states.within(*ticks, most))
+        for tick in islice(forces, 0, None, stride(len(forces), most)):
+            state = self.kept.states.state(tick)
+            if state is not None:
+                moments[tick] = state
+        sampled = self._curves.sampled(((seconds(begin + tick * self.period), moments[tick]) for tick in sorted(moments)), names)
+        self._with_forces(sampled["curves"], sorted(moments), forces)
+        return sampled
+
+    def _with_forces(self, curves: dict[str, list[float | None]], ticks: Sequence[int], forces: Mapping[int, Mapping[str, float]]) -> None:
+        """Adds the contact forces within ticks to curves, each at its tick, or at the next one that the curves have."""
+        for tick, of in forces.items():
+            number = bisect_left(ticks, tick)
+            for name, force in of.items() if number < len(ticks) else ():
+                values = curves.get(contact_force(name))
+                if values is not None:
+                    values[number] = max(force, values[number] or 0.0)
 
     @cached_property
     def _curves(self) -> CurveReader:

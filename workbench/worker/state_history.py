@@ -1,4 +1,5 @@
-"""Stores the past of a simulation: the physics states at the ends of ticks, from which curves are computed, and the paths of bodies."""
+"""Stores the past of a simulation: the physics states at the ends of ticks, from which curves are computed, the paths of bodies, and what
+touched them within ticks."""
 
 from __future__ import annotations
 
@@ -10,13 +11,17 @@ import mujoco
 import numpy as np
 from mujoco import MjData
 
-from actr3d.world import World
+from actr3d.world import Floor, World
 from workbench.curves import INTEGRATION, stride
 
 MAX_BYTES = 48_000_000
 """Above this size every second state is dropped, so that memory use stays bounded for long runs; a walker's state takes 1.8 kB."""
 STEP = 50_000
 """Interval between two points of a path [us]."""
+MAX_TOUCHED = 50_000
+"""Maximum number of ticks in which something touched that are stored; contacts that last are seen at the ends of ticks as well."""
+Contact = tuple[str, str, str]
+"""A body, its part, and the other object."""
 MAX_POINTS = 1_000
 """Maximum number of points that are drawn; if there are more, every second one is left out, repeatedly."""
 
@@ -31,16 +36,19 @@ class Kept:
     def __init__(self, period: int) -> None:
         self.states = Past()
         self.walked = Walked(period)
+        self.touched = Touched()
 
     def keep(self, tick: int, world: World) -> None:
         """Stores the end of a tick, or the start of the run (tick 0); known ticks are skipped."""
         self.states.keep(tick, world)
         self.walked.keep(tick, world)
+        self.touched.keep(tick)
 
     def cut(self, tick: int) -> None:
         """Removes what came after a tick, because the run continues differently."""
         self.states.cut(tick)
         self.walked.cut(tick)
+        self.touched.cut(tick)
 
 
 class Past:
@@ -75,6 +83,12 @@ class Past:
             del self._states[tick // self._every + 1 :]
             kept = len(self._states) - 1
             self._last = kept * self._every, self._states[kept]
+
+    def state(self, tick: int) -> bytes | None:
+        """Returns the state at the end of a tick; None if it is not stored."""
+        if tick == self._last[0]:
+            return self._last[1]
+        return None if tick % self._every or not 0 <= tick < self._last[0] else self._states[tick // self._every]
 
     def within(self, first: int, last: int | None, most: int) -> Iterator[tuple[int, bytes]]:
         """Yields the ticks of an interval with their states, evenly spaced, at most `most`, including the last one.
@@ -144,6 +158,67 @@ class Walked:
         mujoco.mj_kinematics(world.mj_model, self._data)
         places: Any = self._data.xpos
         return {name: places[body.root, :2].tolist() for name, body in world.bodies.items()}
+
+
+class Touched:
+    """Stores what touched bodies in any physics step of a tick, and how hard: many a touch is over at the end of its tick."""
+
+    def __init__(self) -> None:
+        self._ticks: dict[int, dict[Contact, float]] = {}
+        """By tick, in their order: the greatest force of each contact in it [N]."""
+        self._now: dict[Contact, float] = {}
+        self._last = 0
+
+    def watch(self, world: World) -> None:
+        """Looks at each physics step of a world from now on."""
+        ground = frozenset(part.name for part in world.scene.parts if isinstance(part, Floor))
+        model: Any = world.mj_model
+        grounds = [geom for geom in range(model.ngeom) if model.geom(geom).name in ground]
+        bodies = [(name, body, np.append(np.isin(np.arange(model.ngeom), body.geoms), False)) for name, body in world.bodies.items()]
+        others = np.append(~np.isin(np.arange(model.ngeom), grounds), True)  # the last entry is for soft objects, which have no geom
+        data = world.mj_data
+
+        def look() -> None:
+            if data.ncon == 0:
+                return
+            pairs = data.contact.geom
+            for name, body, own in bodies:
+                mine = own[pairs]
+                if not (body.contacts.held() or ((mine[:, 0] != mine[:, 1]) & others[pairs].all(axis=1)).any()):
+                    continue
+                for touch in body.contacts.touches():
+                    if touch.other not in ground:
+                        contact = name, touch.part, touch.other
+                        self._now[contact] = max(touch.force, self._now.get(contact, 0.0))
+
+        world.watchers.append(look)
+
+    def keep(self, tick: int) -> None:
+        """Stores what touched in the tick that has just ended; known ticks are skipped."""
+        if tick > self._last and self._now and len(self._ticks) < MAX_TOUCHED:
+            self._ticks[tick] = self._now
+        self._last = max(self._last, tick)
+        self._now = {}
+
+    def cut(self, tick: int) -> None:
+        """Removes what came after a tick, because the run continues differently."""
+        self._last, self._now = min(self._last, tick), {}
+        for later in [known for known in self._ticks if known > tick]:
+            del self._ticks[later]
+
+    def at(self, tick: int) -> frozenset[Contact]:
+        """Returns what touched in a tick: body, its part, and the other object."""
+        return frozenset(self._ticks.get(tick, ()))
+
+    def forces(self, first: int, last: int | None) -> dict[int, dict[str, float]]:
+        """Returns the greatest force of each body that was touched, by tick of an interval and by body [N]."""
+        found: dict[int, dict[str, float]] = {}
+        for tick, contacts in self._ticks.items():
+            if first <= tick and (last is None or tick <= last):
+                forces = found[tick] = dict[str, float]()
+                for (name, _, _), force in contacts.items():
+                    forces[name] = max(force, forces.get(name, 0.0))
+        return found
 
 
 def _pairs(points: array[float], count: int, stride: int) -> list[list[float]]:
