@@ -6,6 +6,7 @@ import asyncio
 import logging
 from collections.abc import AsyncGenerator, Callable, Mapping
 from contextlib import asynccontextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, PlainTextResponse
 from starlette.exceptions import HTTPException
 from starlette.staticfiles import StaticFiles
-from starlette.types import ASGIApp
+from starlette.types import Receive, Scope, Send
 
 from actr3d.errors import Actr3dError
 from actr3d.values import escape_surrogates
@@ -82,7 +83,7 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     app.include_router(language_routes.router)
     app.include_router(sockets.router)
     app.mount(ROUTE, app.state.files, name="static")
-    app.mount("/manual", _manual(), name="manual")
+    app.mount("/manual", _manual, name="manual")
     app.add_exception_handler(Actr3dError, _refused)
     app.add_exception_handler(OSError, _refused)
     app.add_exception_handler(RequestValidationError, _misunderstood)
@@ -92,11 +93,18 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     return app
 
 
-def _manual() -> ASGIApp:
-    """Returns the app that serves the manual; if the manual is not built, a response that explains how to build it."""
+async def _manual(scope: Scope, receive: Receive, send: Send) -> None:
+    """Serves the manual as it is now; if it is not built, explains how to build it."""
     folder = manual()
     if folder is None:
-        return PlainTextResponse("The manual has not been built. In a copy of the repository: uv run mkdocs build", status_code=404)
+        how = PlainTextResponse("The manual has not been built. In a copy of the repository: uv run mkdocs build", status_code=404)
+        await how(scope, receive, send)
+    else:
+        await _files_of(folder)(scope, receive, send)
+
+
+@cache
+def _files_of(folder: Path) -> StaticFiles:
     return StaticFiles(directory=folder, html=True)
 
 

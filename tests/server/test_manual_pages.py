@@ -39,3 +39,13 @@ def test_without_a_built_manual_the_answer_says_how_to_build_it(tmp_path: Path, 
     answer = ask(app.make_app(tmp_path, GATE), "/manual/", HOST, COOKIE)
     assert answer.status == 404
     assert b"uv run mkdocs build" in answer.body
+
+
+def test_a_manual_that_is_built_while_the_workbench_runs_is_served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    site = tmp_path / "site"
+    monkeypatch.setattr(app, "manual", lambda: site if site.is_dir() else None)
+    made = app.make_app(tmp_path / "models", GATE)
+    assert "uv run mkdocs build" in ask(made, "/manual/", HOST, COOKIE).body.decode()
+    site.mkdir()
+    (site / "index.html").write_text("<h1>Manual</h1>", encoding="utf-8")
+    assert ask(made, "/manual/", HOST, COOKIE).body == b"<h1>Manual</h1>"
