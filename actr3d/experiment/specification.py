@@ -290,7 +290,7 @@ def _model_of(of: Design, path: Path) -> Path:
     beside = path.parent / of.model
     if not beside.exists() and not shipped.exists():
         near = did_you_mean(of.model, [file.name for folder in (path.parent, library_models()) for file in folder.glob("*.py")])
-        raise ExperimentError(f"{path}: Design.model: there is no file '{of.model}' beside it or in {library_models()}{near}")
+        raise ExperimentError(f"{path}: Design.model: there is no file '{of.model}' beside it or among the library's models{near}")
     return beside if beside.exists() else shipped
 
 

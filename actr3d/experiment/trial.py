@@ -120,7 +120,9 @@ def _checked(measures: Any, experiment: Experiment, trial: Trial) -> Row:
     kept: Row = {}
     for measure in experiment.design.kept or [Measured(name=name) for name in given]:
         if measure.name not in given:
-            raise ExperimentError(f"Design.measures: the trial has no measure '{measure.name}'{did_you_mean(measure.name, given)}")
+            has = f"it has: {', '.join(given)}" if given else "it has none; Design.results computes them from the simulation"
+            hint = did_you_mean(measure.name, given) or f"; {has}"
+            raise ExperimentError(f"Design.measures: the trial has no measure '{measure.name}'{hint}")
         for name, value in measure.columns(given[measure.name]).items():
             if name in trial.columns or name in OWN_COLUMNS or name in kept:
                 raise ExperimentError(f"measure '{name}': is already a column of the trials; rename it")

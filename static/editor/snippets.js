@@ -1,6 +1,7 @@
 // Pieces of models to insert: offered among the completions at the start of a line, and in the menu of the editor.
 
 import { snippet } from "../vendor/codemirror.js";
+import { shown } from "./documents.js";
 import { AGENT, BODY } from "./templates.js";
 
 const ACTR = "from actr3d.actr import *";
@@ -53,7 +54,8 @@ def \${my_design}():
         factors={"\${width}": [\${0.5, 0.8}]},
         groups={"\${adults}": Group(participants=5, parameters={"\${speed}": Normal(mean=\${1.2}, sd=\${0.1}, low=\${0.5})})},
         trials=10,
-        measures=[Measured(name="\${time}", unit="\${s}")],
+        measures=[Measured(name="time", unit="s")],
+        results=lambda simulation: {"time": simulation.time},
     )
 `,
   },
@@ -72,11 +74,12 @@ export function completionsOf() {
 
 /** Inserts a piece between two positions of the text that is shown, and the imports that it needs. */
 function insertPiece(view, piece, from, to) {
+  const source = piece.source.replace("my_model.py", (shown.peek().path ?? "my_model.py").split("/").at(-1));
   const missing = piece.needs.filter((line) => !imports(view.state.doc).some(({ text }) => text === line));
-  if (missing.length === 0) return snippet(piece.source)(view, null, from, to);
+  if (missing.length === 0) return snippet(source)(view, null, from, to);
   const changes = view.state.changes(importing(view.state.doc, missing));
   view.dispatch({ changes, userEvent: "input" });
-  return snippet(piece.source)(view, null, changes.mapPos(from, 1), changes.mapPos(to, 1));
+  return snippet(source)(view, null, changes.mapPos(from, 1), changes.mapPos(to, 1));
 }
 
 /** Returns the lines of a text that are imports at its top level. */
@@ -98,6 +101,7 @@ export function insertAtCursor(view, piece) {
   const { doc, selection } = view.state;
   let line = doc.lineAt(selection.main.head);
   if (piece.whole) {
+    line = doc.line(Math.max(line.number, imports(doc).at(-1)?.number ?? 1)); // what it imports must come before it
     while (line.number < doc.lines && !/^\S/.test(doc.line(line.number + 1).text)) line = doc.line(line.number + 1);
     while (line.number > 1 && line.text.trim() === "") line = doc.line(line.number - 1);
   }

@@ -249,6 +249,7 @@ function near(points, x, y) {
 /** @param experiment The summary of the experiment. @param facts Its facts. @param columns Its columns. */
 export function Figure({ experiment, facts, columns: all }) {
   const columns = joined(facts, all);
+  const { done, failures } = experiment;
   const chosen = chosenFor(experiment.name, facts, columns);
   const other = (experiments.value ?? []).find(({ id, done }) => id === compared.value && id !== experiment.id && done > 0) ?? null;
   const own = useFresh(pathOf(experiment.id, chosen), experiment.done);
@@ -265,6 +266,9 @@ export function Figure({ experiment, facts, columns: all }) {
   }, [answer, second, other?.id]);
   const combined = answer ? combinationsOf([answer], answer.by, facts).length : 0;
   const error = own.error ?? (other ? others.error && `${other.name}: ${others.error}` : null);
+  if (done > 0 && failures === done) {
+    return html`<p class="empty" role="status">${done === 1 ? "The finished trial has failed" : `All ${done.toLocaleString("en")} finished trials have failed`}: there is nothing to draw. The table of trials has the errors.</p>`;
+  }
   return html`
     <${Menus} experiment=${experiment} facts=${facts} columns=${columns} chosen=${chosen} />
     <${Problem} text=${error} />

@@ -9,7 +9,7 @@ const STATES = { running: "running", stopping: "stopping …", stopped: "stopped
 export const stateText = ({ state }) => STATES[state] ?? state;
 
 /** Returns the name of a column without its unit. */
-export const columnText = (name) => (name === "wall_s" ? "duration" : labelOf(name));
+export const columnText = (name) => (name === "wall_s" ? "computing time" : labelOf(name));
 
 /** Returns the number of finished trials, of all. */
 export function doneText({ done, total }) {

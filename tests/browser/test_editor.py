@@ -10,6 +10,9 @@ from typing import Any
 import pytest
 from playwright.sync_api import Dialog, Page, expect
 
+from actr3d.actr.loading.helper_modules import HelperTexts
+from actr3d.experiment.specification import specify
+from actr3d.experiment.trial import run_trial
 from tests.helpers.page import choose, drawn, open_tab, shows, until
 from tests.helpers.workbench_server import Served, served
 
@@ -288,6 +291,29 @@ def test_a_new_model_runs(page: Page, workbench: Served, choice: str, seen: str)
     shows(page, "#status", f"ended: {seen}")
     shows(page, ".problems", "No problems")
     expect(page.get_by_label("Model", exact=True)).to_have_value(f"new {choice[-5:]}.py")
+
+
+@pytest.mark.slow
+def test_a_design_that_is_inserted_fits_the_new_model_and_can_be_run(page: Page, workbench: Served) -> None:
+    shows(page, "#status", "at its start")
+    open_tab(page, "Editor")
+    page.get_by_role("button", name="New model", exact=True).click()
+    page.get_by_label("Name of the file").fill("passing")
+    page.get_by_label("An agent with a body in a world").check()
+    page.get_by_role("button", name="Create").click()
+    expect(page.locator(CODE)).to_have_text(re.compile("Says in a line"))
+    page.evaluate("""async () => {
+        const { INSERTIONS } = await part("editor/menu.js");
+        INSERTIONS.find(({ text }) => text === "a design of an experiment").work();
+    }""")
+    expect(page.locator(CODE)).to_have_text(re.compile(r"model=\"passing\.py\""))
+    page.keyboard.press("Control+s")
+    file = workbench.folder / "passing.py"
+    until(page, lambda: "@design" in file.read_text(encoding="utf-8"))
+    experiment = specify(str(file), participants=1, trials=1)
+    row = run_trial(experiment, experiment.design.trial(0), HelperTexts())
+    assert row["error"] is None
+    assert 1 < row["time"] < 60
 
 
 @pytest.mark.slow

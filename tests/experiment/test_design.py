@@ -230,7 +230,7 @@ def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_run
         ("from actr3d.experiment import *\n@design\ndef a(): return 3\n", r"d\.py:3: a\(\) must return a Design \(returned 3\)"),
         (
             "from actr3d.experiment import *\n@design\ndef a():\n  return Design(model='counting.pi')\n",
-            r"Design\.model: there is no file 'counting\.pi' beside it or in .*did you mean 'counting\.py'",
+            r"Design\.model: there is no file 'counting\.pi' beside it or among the library's models.*did you mean 'counting\.py'",
         ),
         (
             "from actr3d.experiment import *\n@design\ndef a():\n  return Design(model='counting.py')\n",
