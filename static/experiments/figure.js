@@ -250,9 +250,10 @@ function near(points, x, y) {
 export function Figure({ experiment, facts, columns: all }) {
   const columns = joined(facts, all);
   const { done, failures } = experiment;
+  const failed = done > 0 && failures === done;
   const chosen = chosenFor(experiment.name, facts, columns);
   const other = (experiments.value ?? []).find(({ id, done }) => id === compared.value && id !== experiment.id && done > 0) ?? null;
-  const own = useFresh(pathOf(experiment.id, chosen), experiment.done);
+  const own = useFresh(failed ? null : pathOf(experiment.id, chosen), experiment.done);
   const others = useFresh(other && pathOf(other.id, chosen), other?.done);
   const answer = own.answer;
   const second = other ? others.answer : null;
@@ -266,7 +267,7 @@ export function Figure({ experiment, facts, columns: all }) {
   }, [answer, second, other?.id]);
   const combined = answer ? combinationsOf([answer], answer.by, facts).length : 0;
   const error = own.error ?? (other ? others.error && `${other.name}: ${others.error}` : null);
-  if (done > 0 && failures === done) {
+  if (failed) {
     return html`<p class="empty" role="status">${done === 1 ? "The finished trial has failed" : `All ${done.toLocaleString("en")} finished trials have failed`}: there is nothing to draw. The table of trials has the errors.</p>`;
   }
   return html`
