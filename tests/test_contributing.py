@@ -127,7 +127,7 @@ def test_every_file_of_the_page_is_checked() -> None:
     assert files().keys() == CHECKS.keys()
 
 
-@pytest.mark.daily(4)
+@pytest.mark.daily(3)
 @pytest.mark.parametrize("file", CHECKS)
 def test_a_new_thing_is_one_file(file: str, copy: Path) -> None:
     lines = CHECKS[file].strip("\n").splitlines()
