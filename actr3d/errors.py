@@ -5,10 +5,19 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from functools import lru_cache
+from typing import Self
 
 
 class Actr3dError(Exception):
     """The root of every error that this library raises on purpose."""
+
+    location: tuple[str, int] | None = None
+    """The file and line of the model that caused it, where another line is running when it is raised."""
+
+    def at(self, file: str, line: int) -> Self:
+        """Sets the location; returns the error."""
+        self.location = file, line
+        return self
 
 
 class PatternException(Actr3dError):

@@ -87,6 +87,11 @@ function addNotices(added) {
   notices.value = [...notices.value, ...added].slice(-MAX_NOTICES);
 }
 
+/** Whether a notice belongs to the newest run, or to the page itself, and not to an earlier run. */
+export function isPresent({ attempt }) {
+  return attempt === undefined || attempt === session.value?.attempt;
+}
+
 let ownNotices = 0;
 
 /** Shows the user a problem found by the page itself. */

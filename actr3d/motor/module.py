@@ -12,7 +12,7 @@ from actr3d.actr.declarative.memory import Memory, collect
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
-from actr3d.actr.modules.port import Port, Request, place_of_caller
+from actr3d.actr.modules.port import CallSite, Port, Request, note_request
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, ParameterError, SimulationError, WorldError
 from actr3d.motor.checks import check_patterns
@@ -28,9 +28,6 @@ HUGE = 1e9
 
 SIZES = ("width", "depth", "height", "middle")
 """What is felt of the size of the body."""
-
-FEELING = "the motor module's own feeling"
-"""Replaces the modeller's line in errors of the module's own requests."""
 
 _NOTHING = object()
 
@@ -99,7 +96,7 @@ class Motor(WithParameters, Port):
         self._memory = memory
         self._limbs: Limbs | None = None
         self._schema: BodySchema | None = None
-        self._waiting: list[tuple[Callable[[str], None], str]] = []
+        self._waiting: list[tuple[Callable[[CallSite | None], None], CallSite | None]] = []
         self._under_way: dict[str, Movement] = {}
         self._ended: list[tuple[Movement, str]] = []
         self._asked = False
@@ -199,24 +196,24 @@ class Motor(WithParameters, Port):
         """
         self._command(partial(self._stop, groups), "stop", groups=list(groups))
 
-    def _walk(self, speed: float, place: str) -> None:
+    def _walk(self, speed: float, site: CallSite | None) -> None:
         self._need("walk")
         self._known().possible("walk", speed, 0, 1.0)
         walk = self._under_way.get("walk")
         if speed == 0:
-            self._halt(["walk"] if walk else [], place)
+            self._halt(["walk"] if walk else [], site)
         else:
-            self._begin_or_change("walk", Walk(speed, place), change=walk is not None and walk.begun)
+            self._begin_or_change("walk", Walk(speed, site), change=walk is not None and walk.begun)
 
-    def _turn(self, angle: float | None, rate: float, place: str) -> None:
+    def _turn(self, angle: float | None, rate: float, site: CallSite | None) -> None:
         self._need("walk")
         self._known().possible("turn", rate, 1, radians(1))
         turn = self._under_way.get("turn")
         if rate == 0:
-            self._halt(["turn"] if turn else [], place)
+            self._halt(["turn"] if turn else [], site)
             return
         endless = isinstance(turn, Turn) and turn.begun and turn.rest is None and angle is None
-        self._begin_or_change("turn", Turn(angle, rate, place), change=endless)
+        self._begin_or_change("turn", Turn(angle, rate, site), change=endless)
 
     def _begin_or_change(self, key: str, movement: Movement, *, change: bool) -> None:
         """Begins a movement of the legs, or replaces the one in progress."""
@@ -226,13 +223,13 @@ class Motor(WithParameters, Port):
         else:
             self._begin({key: movement})
 
-    def _stop(self, groups: Sequence[Any], place: str) -> None:
+    def _stop(self, groups: Sequence[Any], site: CallSite | None) -> None:
         plan = self._known().plan
         for group in groups:
             known(group, self._known().groups, plan.name, "muscle group")
-        self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], place)
+        self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], site)
         if not groups and "stop" in plan.actuators:
-            self._send_command("stop", place=place)
+            self._send_command("stop", site=site)
 
     def _need(self, command: str) -> None:
         """Checks that the body has a command.
@@ -320,19 +317,19 @@ class Motor(WithParameters, Port):
             raise WorldError(f"feel: name: must be a name for the posture (got {name!r})")
         self._command(partial(self._want, name), "feel", name=name)
 
-    def _want(self, name: str, place: str) -> None:
+    def _want(self, name: str, site: CallSite | None) -> None:
         self._wanted.append(name)
         self._ask()
 
-    def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, usual: bool, place: str) -> None:
+    def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, usual: bool, site: CallSite | None) -> None:
         limbs = self._known()
         name = limbs.joint(joint, axis)
         if usual and limbs.joints[name].kind == "slide":
             raise WorldError(f"{limbs.plan.name}: joint '{name}' slides; give its speed [m/s]: rotate('{name}', speed=…)")
         target = limbs.limit(name, pace) if to is None else to * limbs.unit[name]
-        self._turn_joints(name, {name: copysign(INFINITE, pace) if target is None else target}, pace, to is None, place)
+        self._turn_joints(name, {name: copysign(INFINITE, pace) if target is None else target}, pace, to is None, site)
 
-    def _move(self, movement: Any, side: Any, to: float | None, pace: float, place: str) -> None:
+    def _move(self, movement: Any, side: Any, to: float | None, pace: float, site: CallSite | None) -> None:
         limbs = self._known()
         named = limbs.movement(movement, side)
         if named.to is not None and (to is not None or pace < 0):
@@ -343,16 +340,16 @@ class Motor(WithParameters, Port):
             end = copysign(INFINITE, way * pace) if limit is None else limit
             targets[joint] = way * named.to if named.to is not None else end if to is None else way * to * limbs.unit[joint]
         name = movement if named.side is None else f"{movement}_{named.side}"
-        self._turn_joints(name, targets, pace, to is None and named.to is None, place)
+        self._turn_joints(name, targets, pace, to is None and named.to is None, site)
 
-    def _assume(self, posture: Chunk, pace: float, place: str) -> None:
+    def _assume(self, posture: Chunk, pace: float, site: CallSite | None) -> None:
         limbs = self._known()
         ways = {joint: number(posture[joint], f"assume: {joint}") * limbs.unit[joint] for joint in limbs.order if joint in posture}
         if not ways:
             raise WorldError(f"assume: '{posture}' names no joint of {limbs.plan.name}; it has {', '.join(limbs.order) or 'none'}")
-        self._turn_joints("assume", ways, pace, False, place)
+        self._turn_joints("assume", ways, pace, False, site)
 
-    def _turn_joints(self, name: str, ways: Mapping[str, float], pace: float, to_limit: bool, place: str) -> None:
+    def _turn_joints(self, name: str, ways: Mapping[str, float], pace: float, to_limit: bool, site: CallSite | None) -> None:
         """Turns joints to positions [rad] or [m], together: one movement for each muscle group."""
         limbs = self._known()
         by_group: dict[str, dict[str, float]] = {}
@@ -367,7 +364,7 @@ class Motor(WithParameters, Port):
         movements: dict[str, Movement] = {}
         for group, targets in by_group.items():
             speed = abs(pace) * limbs.unit[next(iter(targets))]
-            movements[group] = JointMovement(name, group, speed, place, ways=targets, order=limbs.order, to_limit=to_limit)
+            movements[group] = JointMovement(name, group, speed, site, ways=targets, order=limbs.order, to_limit=to_limit)
         self._begin(movements)
 
     def _speed(self, call: str, speed: Any, bounded: bool) -> float:
@@ -389,7 +386,7 @@ class Motor(WithParameters, Port):
 
     def _ask_body(self) -> None:
         if self._find_embodiment() is not None:
-            self._inquire("anatomy", place=FEELING)
+            self._inquire("anatomy")
             self._wanted.append("start")
             self._ask()
 
@@ -407,24 +404,24 @@ class Motor(WithParameters, Port):
             self._become(f"{group}_busy", False)
             self._become(f"{group}_end", "none")
 
-    def _command(self, act: Callable[[str], None], call: str, **given: Any) -> None:
+    def _command(self, act: Callable[[CallSite | None], None], call: str, **given: Any) -> None:
         """Carries out a command, or delays it until the body is known."""
         self._joined(call)
         self._trace_request(call, **given)
         if self._schema is None:
-            self._waiting.append((act, place_of_caller()))
+            self._waiting.append((act, self._call_site()))
             self._become("busy", True)
         else:
-            act(place_of_caller())
+            act(self._call_site())
 
     def _catch_up(self) -> None:
         """Carries out the commands that waited until the body was known."""
         waiting, self._waiting = self._waiting, []
-        for act, place in waiting:
+        for act, site in waiting:
             try:
-                act(place)
+                act(site)
             except Actr3dError as error:
-                error.add_note(f"  asked for by '{self._path}' in {place}")
+                note_request(error, self, site)
                 raise
         self._show_busy()
 
@@ -453,7 +450,7 @@ class Motor(WithParameters, Port):
         if self._under_way.get(key) is not movement:
             return
         movement.begun = True
-        self._send(movement.begin() if isinstance(movement, JointMovement) else self._gait(), movement.place)
+        self._send(movement.begin() if isinstance(movement, JointMovement) else self._gait(), movement.site)
         self.emit("move", **movement.trace_data())
         self._ask()
 
@@ -463,14 +460,14 @@ class Motor(WithParameters, Port):
         self._become("refusal", why)
         self.emit("refused", movement=call, why=why)
 
-    def _halt(self, keys: Iterable[str], place: str, end: str = "stopped") -> None:
+    def _halt(self, keys: Iterable[str], site: CallSite | None, end: str = "stopped") -> None:
         """Ends movements before they are done."""
         halted = [self._under_way.pop(key) for key in keys]
         for movement in halted:
             if movement.begun and isinstance(movement, JointMovement):
-                self._send(movement.halt(), place)
+                self._send(movement.halt(), site)
         if any(movement.base and movement.begun for movement in halted):
-            self._send(self._gait(), place)
+            self._send(self._gait(), site)
         self._end([(movement, end) for movement in halted])
         self._ended += [(movement, end) for movement in halted if movement.begun and not movement.base]
 
@@ -487,9 +484,9 @@ class Motor(WithParameters, Port):
         assert turn is None or isinstance(turn, Turn)
         return gait(walk, turn)
 
-    def _send(self, orders: Iterable[Order], place: str) -> None:
+    def _send(self, orders: Iterable[Order], site: CallSite | None) -> None:
         for command, values, named in orders:
-            self._send_command(command, *values, named=named, place=place)
+            self._send_command(command, *values, named=named, site=site)
 
     # -- feeling
 
@@ -497,7 +494,7 @@ class Motor(WithParameters, Port):
         """Requests a reading of the posture at the end of this tick, once."""
         if not self._asked:
             self._asked = True
-            self._inquire("proprioception", place=FEELING)
+            self._inquire("proprioception")
 
     def _feel(self, reading: Proprioception) -> None:
         """Processes a reading: updates the felt body, ends movements that are over, and stores postures."""
@@ -522,7 +519,7 @@ class Motor(WithParameters, Port):
         if over:
             self._end(ended)
             for key in [key for key, _ in over if key in self._under_way]:
-                self._halt([key], self._under_way[key].place, dict(over)[key])
+                self._halt([key], self._under_way[key].site, dict(over)[key])
         self._remember(limbs, ended)
         if any(movement.begun for movement in self._under_way.values()):
             self._ask()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from actr3d.actr.modules.port import CallSite
 from actr3d.motor.limbs import BASE_GROUP
 from actr3d.world.sensors.motion import AT_LIMIT
 from actr3d.world.sensors.proprioception import Proprioception
@@ -40,17 +41,17 @@ class Movement:
         name: Its name in the command, with the side if there is one.
         group: The muscle group.
         pace: Its speed [rad/s] or [m/s].
-        place: `file:line` of the command.
+        site: Where the modeller gives the command.
     """
 
     base = False
     """Whether the legs carry it out."""
 
-    def __init__(self, name: str, group: str, pace: float, place: str) -> None:
+    def __init__(self, name: str, group: str, pace: float, site: CallSite | None) -> None:
         self.name = name
         self.group = group
         self.pace = pace
-        self.place = place
+        self.site = site
         self.begun = False
         """Whether the body has received the command."""
         self._felt = False
@@ -102,16 +103,16 @@ class JointMovement(Movement):
         name: Its name in the command.
         group: The muscle group.
         pace: Its speed [rad/s] or [m/s].
-        place: `file:line` of the command.
+        site: Where the modeller gives the command.
         ways: By joint, its target [rad] or [m]; infinite without an end.
         order: The joints of the body in its order.
         to_limit: Whether the target is its limit.
     """
 
     def __init__(
-        self, name: str, group: str, pace: float, place: str, *, ways: Mapping[str, float], order: Sequence[str], to_limit: bool
+        self, name: str, group: str, pace: float, site: CallSite | None, *, ways: Mapping[str, float], order: Sequence[str], to_limit: bool
     ) -> None:
-        super().__init__(name, group, pace, place)
+        super().__init__(name, group, pace, site)
         self.ways = ways
         self.to_limit = to_limit
         self._number = {joint: order.index(joint) for joint in ways}
@@ -156,8 +157,8 @@ class Walk(Movement):
 
     base = True
 
-    def __init__(self, speed: float, place: str) -> None:
-        super().__init__("walk", BASE_GROUP, abs(speed), place)
+    def __init__(self, speed: float, site: CallSite | None) -> None:
+        super().__init__("walk", BASE_GROUP, abs(speed), site)
         self.speed = speed
 
     def trace_data(self) -> dict[str, Any]:
@@ -176,8 +177,8 @@ class Turn(Movement):
 
     base = True
 
-    def __init__(self, angle: float | None, rate: float, place: str) -> None:
-        super().__init__("turn", BASE_GROUP, abs(rate), place)
+    def __init__(self, angle: float | None, rate: float, site: CallSite | None) -> None:
+        super().__init__("turn", BASE_GROUP, abs(rate), site)
         self.rate = rate
         self.rest = angle
         """Rest of the angle at the last reading [rad]; None without an end."""

@@ -21,11 +21,12 @@ class TracebackReport:
     """The report of an error to the model's author."""
 
     message: str
-    """The error message, without its place."""
+    """The error message with its notes, such as the production in which it occurred; without the place."""
     text: str
     """The whole report, with the modeller's lines that led there; ends with a line break."""
     file: str | None
-    """The file of the innermost of these lines that is not Python's own or a package's, or else of the innermost line; None if none."""
+    """The file of the line that caused the error, or else of the innermost of these lines that is not Python's own or a package's, or
+    else of the innermost line; None if none."""
     line: int | None
     """Its number in that file, from 1."""
 
@@ -45,14 +46,16 @@ def traceback_report(error: BaseException, hidden: str | None = None) -> Traceba
     if isinstance(error, Actr3dError):
         if not report.stack:
             text = text.removeprefix("Traceback (most recent call last):\n")
-        text = text.replace(f"{type(error).__module__}.{type(error).__qualname__}: ", "error: ")
+        text = text.replace(_name_of(error), "error: ")
     name = getattr(error, "name", None)
     if name in PYTHON_2_NAMES and isinstance(error, (NameError, ImportError, AttributeError)):
         text += f"'{name}' is a name of Python 2: this file is written for Python 2; convert it to Python 3\n"
-    file, line = _place(error, report)
+    file, line = _place(error, report, hidden)
     # The file name of a text in tracebacks may be a subclass of `str`.
     file = None if file is None else str(file)
-    message = str(error) if isinstance(error, Actr3dError) else "".join(report.format_exception_only()).strip()
+    message = "".join(report.format_exception_only()).strip()
+    if isinstance(error, Actr3dError):
+        message = message.removeprefix(_name_of(error))
     return TracebackReport(message=message, text=text, file=file, line=line)
 
 
@@ -65,12 +68,18 @@ def failure(error: BaseException) -> str:
     return f"{type(error).__name__}: {words}".encode("utf-8", "replace").decode()
 
 
-def _place(error: BaseException, report: traceback.TracebackException) -> tuple[str | None, int | None]:
+def _name_of(error: BaseException) -> str:
+    return f"{type(error).__module__}.{type(error).__qualname__}: "
+
+
+def _place(error: BaseException, report: traceback.TracebackException, hidden: str | None) -> tuple[str | None, int | None]:
     named = re.match(r"(.+?):(\d+): ", str(error)) if isinstance(error, ModelFileError) else None
     if named is not None:
         return named[1], int(named[2])
     if isinstance(error, SyntaxError) and error.filename is not None:
         return error.filename, error.lineno
+    if isinstance(error, Actr3dError) and error.location is not None and not _is_ours(error.location[0], hidden):
+        return error.location
     if report.stack:
         own = [frame for frame in report.stack if not frame.filename.startswith(PYTHON)] or report.stack
         return own[-1].filename, own[-1].lineno

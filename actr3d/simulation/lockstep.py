@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from actr3d.actr.kernel.tree import path_of
-from actr3d.actr.modules.port import Request
+from actr3d.actr.modules.port import Request, note_request
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, SimulationError
 from actr3d.simulation.agents import Agents, Factory
@@ -187,5 +186,5 @@ def _ask(request: Request, word: Callable[..., Any]) -> Any:
     try:
         return word(request.word, *request.values, **request.named)
     except Actr3dError as error:
-        error.add_note(f"  asked for by '{path_of(request.port)}' in {request.place}")
+        note_request(error, request.port, request.site)
         raise

@@ -9,7 +9,7 @@ from typing import Any
 from actr3d.actr.explain.module_reasons import outcome_of
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.modules.answers import plain_answer
-from actr3d.actr.modules.port import Request, Searching, place_of_caller
+from actr3d.actr.modules.port import Request, Searching
 from actr3d.camera import CameraParameters, View
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import ParameterError, VisionError
@@ -239,7 +239,7 @@ class Vision(WithParameters, Searching):
 
     def _ask_for_view(self, search: Search) -> None:
         embodiment = self._joined("view")
-        embodiment.outbox.append(Request(embodiment.body, "view", (), self._camera, place_of_caller(), self, search))
+        embodiment.outbox.append(Request(embodiment.body, "view", (), self._camera, self._call_site(), self, search))
 
     def _cancel(self, search: Search) -> None:
         """Cancels a search; generators that wait for it continue."""

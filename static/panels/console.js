@@ -1,6 +1,6 @@
 // The model's output, line by line, with the warnings and errors of the run between its lines; goes back with the run.
 
-import { html, useEffect, useMemo } from "../vendor/preact.js";
+import { html, signal, useEffect, useLayoutEffect, useMemo, useRef } from "../vendor/preact.js";
 import { command } from "../commands.js";
 import { clear, fillGaps, printed, printedVersion } from "../inspector/printed.js";
 import { CopyButton, copyText } from "../parts/copy.js";
@@ -15,8 +15,11 @@ import { nothingYet } from "../run_status.js";
 import { alive, moment, notices, session, state } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 
+const SIDES = 40; // the room for the margins of a row and for a scroll bar [px]
 const LONGEST = 2000; // the number of characters of a line that are drawn
 const words = remembered("console words", "");
+/** The number of characters that the panel has room for in a row. */
+const columns = signal(80);
 
 /** Control characters for terminals, and those that change the direction of text: shown as signs, without effect. */
 const CONTROL = /\u001b\[[0-?]*[ -/]*[@-~]|[\u0000-\u0008\u000a-\u001f\u007f-\u009f\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ufeff]/g;
@@ -49,32 +52,45 @@ function noticesOf(after, now) {
   return notices.value.filter((notice) => notice.attempt === attempt && notice.number > after && notice.events <= now && !isGone(notice)).toSorted((one, other) => one.events - other.events);
 }
 
-/** The contents of the console: lines and notices, in order. */
+/** Returns the rows of a notice, broken between words: {notice, text}; `head` is true for the first, which also has the level and place. */
+function rowsOf(notice) {
+  const { text } = notice;
+  const most = Math.max(20, columns.value);
+  const before = "x".repeat(Math.min(textOf(notice).length - text.length, most)).replace(/x$/, " "); // the room for level and place
+  const broken = new RegExp(`.{1,${most}}(?:\\s|$)|.{1,${most}}`, "gsu");
+  const more = text.length - LONGEST;
+  const shown = more > 0 ? `${text.slice(0, LONGEST)} … ${more.toLocaleString("en")} more characters; a copy has them` : text;
+  const rows = `${before}${shown}`.split("\n").flatMap((line) => line.match(broken) ?? []);
+  return rows.map((row, n) => ({ notice, head: n === 0, text: n === 0 ? row.slice(before.length) : row }));
+}
+
+/** The contents of the console: lines and notices, in order. Lines are one row each, notices as many as they need. */
 class Listed {
   constructor(lines, messages) {
     this.lines = lines;
-    this.messages = messages;
-    /** The position of each notice among all. */
-    this.places = messages.map(({ events }, n) => firstWhere(lines, ({ number }) => number >= events) + n);
+    this.rows = messages.flatMap(rowsOf);
+    /** The position of each row of a notice among all rows. */
+    this.places = this.rows.map(({ notice }, n) => firstWhere(lines, ({ number }) => number >= notice.events) + n);
+    /** The number of rows. */
+    this.length = lines.length + this.rows.length;
     this.count = lines.length + messages.length;
   }
 
-  /** Returns [line, null] or [null, notice]. */
+  /** Returns [line, null] or [null, row of a notice]. */
   at(place) {
     const before = firstWhere(this.places, (one) => one >= place);
-    return this.places[before] === place ? [null, this.messages[before]] : [this.lines[place - before], null];
+    return this.places[before] === place ? [null, this.rows[before]] : [this.lines[place - before], null];
   }
 
   /** Returns all contents as text. */
   get text() {
-    return Array.from({ length: this.count }, (_, n) => textOf(this.at(n))).map((line) => `${line}\n`).join("");
+    const entries = Array.from({ length: this.length }, (_, n) => this.at(n)).filter(([line, row]) => line || row.head);
+    return entries.map(([line, row]) => `${line ? line.text : textOf(row.notice)}\n`).join("");
   }
 }
 
-function textOf([line, notice]) {
-  if (line) return line.text;
-  const { level, file, line: number, text } = notice;
-  return `${level === "info" ? "" : `${level}: `}${file ? `${file}:${number}: ` : ""}${text}`;
+function textOf({ level, file, line, text }) {
+  return `${level === "info" ? "" : `${level}: `}${file ? `${file}:${line}: ` : ""}${text}`;
 }
 
 /** Returns what is listed, and what is not. `memo` is `useMemo` where a component calls it. */
@@ -91,14 +107,15 @@ function listing(memo = (make) => make()) {
     const past = first === 0 && present === lines.length ? lines : lines.slice(first, present);
     return wanted ? past.filter(({ text }) => has(text)) : past;
   }, [version, first, present, wanted]);
-  const listed = new Listed(shown, wanted ? messages.filter((notice) => has(textOf([null, notice]))) : messages);
+  const listed = new Listed(shown, wanted ? messages.filter((notice) => has(textOf(notice))) : messages);
   return { listed, ahead: lines.length - present, all: present - first + messages.length, gaps, dropped, cleared, of };
 }
 
-function Line({ entry: [line, notice] }) {
+function Line({ entry: [line, row] }) {
   if (line) return html`<div><${Written} text=${line.text} /></div>`;
-  const { level, file, line: number, text } = notice;
-  return html`<div class=${level}>${level === "info" ? null : html`<span class="level">${level}</span> `}${file ? html`<${Place} file=${file} line=${number} /> ` : null}<${Written} text=${text.replaceAll(/\s*\n\s*/g, " ")} /></div>`;
+  const { level, file, line: number } = row.notice;
+  const head = html`${level === "info" ? null : html`<span class="level">${level}</span> `}${file ? html`<${Place} file=${file} line=${number} /> ` : null}`;
+  return html`<div class=${level}>${row.head ? head : null}<${Written} text=${row.text} /></div>`;
 }
 
 function Notes({ gaps, dropped, cleared, ahead }) {
@@ -136,13 +153,22 @@ registered("Save the lines of the console as a text file", save);
 registered("Clear the console", clearAll);
 
 function Console() {
+  const box = useRef(null);
+  useLayoutEffect(() => {
+    const pen = document.createElement("canvas").getContext("2d");
+    pen.font = `12px ${getComputedStyle(box.current).getPropertyValue("--mono")}`;
+    const wide = pen.measureText("0").width;
+    const watcher = new ResizeObserver(() => (columns.value = Math.floor((box.current.clientWidth - SIDES) / wide)));
+    watcher.observe(box.current);
+    return () => watcher.disconnect();
+  }, []);
   const { listed, ahead, all, gaps, dropped, cleared, of } = listing(useMemo);
   useEffect(() => {
     const timer = setTimeout(fillGaps, 0);
     return () => clearTimeout(timer);
   }, [printedVersion.value, alive.value, moment.value]);
   const none = all > 0 ? "No line has that text." : ahead > 0 ? "Nothing was printed before this moment." : nothingYet("Nothing was printed in this run.").replace("Nothing has happened yet", "Nothing has been printed yet");
-  return html`<div class="console">
+  return html`<div class="console" ref=${box}>
     <div class="tools" role="toolbar" aria-label="Console">
       <input type="search" aria-label="Search the console" placeholder="Search" value=${words.value} onInput=${(event) => (words.value = event.currentTarget.value)} />
       <span class="quiet number">${words.value ? `${listed.count} of ${counted(all, "line")}` : counted(all, "line")}</span>
@@ -152,7 +178,7 @@ function Console() {
     </div>
     <${Notes} gaps=${gaps} dropped=${dropped} cleared=${cleared} ahead=${ahead} />
     ${listed.count === 0 ? html`<p class="empty">${none}</p>` : null}
-    <${Lines} label="What the model prints" count=${listed.count} of=${`${of} ${words.value}`} line=${(n) => html`<${Line} key=${n} entry=${listed.at(n)} />`} />
+    <${Lines} label="What the model prints" count=${listed.length} of=${`${of} ${words.value}`} line=${(n) => html`<${Line} key=${n} entry=${listed.at(n)} />`} />
   </div>`;
 }
 

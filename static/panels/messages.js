@@ -4,7 +4,7 @@ import { computed, html, useEffect } from "../vendor/preact.js";
 import { hasMore } from "../editor/marks.js";
 import { Place, Traceback } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
-import { isSettled, notices, settle } from "../store.js";
+import { isPresent, isSettled, notices, settle } from "../store.js";
 
 const LEVELS = { error: "Errors", warning: "Warnings", info: "Other" };
 const MAX_DRAWN = 300; // the maximum number drawn
@@ -13,9 +13,9 @@ const hidden = remembered("messages hidden", []);
 /** The messages that the user has not cleared. */
 const kept = computed(() => notices.value.filter((notice) => !isSettled(notice, "cleared")));
 
-/** The errors since the tab was last open. */
+/** The errors of the newest run since the tab was last open. */
 function unseen() {
-  return kept.value.filter((notice) => notice.level === "error" && !isSettled(notice, "seen")).length;
+  return kept.value.filter((notice) => notice.level === "error" && isPresent(notice) && !isSettled(notice, "seen")).length;
 }
 
 function clear() {
@@ -40,8 +40,9 @@ function Filter() {
   </div>`;
 }
 
-function Message({ notice: { level, text, file, line, detail } }) {
-  return html`<li class=${level}>
+function Message({ notice }) {
+  const { level, text, file, line, detail } = notice;
+  return html`<li class=${`${level} ${isPresent(notice) ? "" : "earlier"}`}>
     ${file ? html`<${Place} file=${file} line=${line} />` : null}
     <span class="text">${text}</span>
     ${hasMore({ message: text, detail }) ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
@@ -51,13 +52,17 @@ function Message({ notice: { level, text, file, line, detail } }) {
 function Messages() {
   useEffect(() => settle("seen"), [notices.value]);
   const all = kept.value;
-  const list = all.filter(({ level }) => !hidden.value.includes(level)).toReversed();
+  const chosen = all.filter(({ level }) => !hidden.value.includes(level)).toReversed();
+  const present = chosen.filter(isPresent);
+  const list = [...present, ...chosen.filter((notice) => !isPresent(notice))];
   const none = all.length === 0 ? "No messages. Errors and warnings of the model appear here, with their lines." : "All messages are filtered out.";
   return html`<div class="messages">
     <${Filter} />
     ${list.length === 0 ? html`<p class="empty">${none}</p>` : null}
     <ol id="log" class="log" aria-live="polite" hidden=${list.length === 0}>
-      ${list.slice(0, MAX_DRAWN).map((notice) => html`<${Message} key=${notice.number} notice=${notice} />`)}
+      ${list.slice(0, MAX_DRAWN).map(
+        (notice, n) => html`${n === present.length ? html`<li key="earlier" class="heading">Earlier runs</li>` : null}<${Message} key=${notice.number} notice=${notice} />`,
+      )}
     </ol>
     ${list.length > MAX_DRAWN ? html`<p class="empty">${list.length - MAX_DRAWN} older ones are not shown.</p>` : null}
   </div>`;

@@ -1,8 +1,9 @@
 // The latest problem, shown for a while over the page; all problems stay in the tab Messages.
 
 import { html, signal, useEffect } from "../vendor/preact.js";
-import { isSettled, notices, session, settle } from "../store.js";
+import { isPresent, isSettled, notices, settle } from "../store.js";
 import { openTab } from "../open_tab.js";
+import { Place } from "./place.js";
 
 const SHOWN = 8000; // [ms]
 const toast = signal(null);
@@ -11,13 +12,11 @@ export function Toasts() {
   const list = notices.value;
   useEffect(() => {
     if (list.length === 0) return;
-    // A newer attempt settles the notices of earlier ones.
-    const isOpen = ({ level, attempt }) => level === "error" && (attempt === undefined || attempt === session.peek()?.attempt);
-    const fresh = list.filter((notice) => isOpen(notice) && !isSettled(notice, "shown"));
+    const fresh = list.filter((notice) => notice.level === "error" && isPresent(notice) && !isSettled(notice, "shown"));
     settle("shown");
     if (fresh.length > 0 && openTab.peek() !== "messages") toast.value = fresh.at(-1);
   }, [list]);
-  const shown = toast.value; // a message of a previously shown run no longer matters
+  const shown = toast.value;
   useEffect(() => {
     if (!shown) return undefined;
     const timer = setTimeout(() => (toast.value = null), SHOWN);
@@ -30,9 +29,9 @@ export function Toasts() {
   }
 
   return html`<div class="toasts" aria-live="assertive">
-    ${list.includes(shown) && openTab.value !== "messages"
+    ${list.includes(shown) && isPresent(shown) && openTab.value !== "messages"
       ? html`<div class="toast">
-          <span>${shown.file ? `${shown.file}:${shown.line}: ` : ""}${shown.text}</span>
+          <span>${shown.file ? html`<${Place} file=${shown.file} line=${shown.line} /> ` : null}${shown.text}</span>
           <button class="bare" onClick=${read}>Show</button>
           <button class="bare" aria-label="Close" onClick=${() => (toast.value = null)}>✕</button>
         </div>`

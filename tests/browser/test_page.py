@@ -98,6 +98,52 @@ def test_an_error_is_shown_as_text_and_mended(page: Page, workbench: Served) -> 
     shows(page, "#events", "mended")
 
 
+WALKER = """from actr3d.actr import *
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+class Walker(ACTR):
+    goal = Buffer()
+    skin = BodyPort()
+    def init():
+        goal.set("go")
+    def go(goal="go"):
+        skin.set("walk_to", 3, 1.5)
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": Walker})
+"""
+
+
+def test_an_error_of_a_run_leads_to_its_line_and_is_marked_as_past_in_the_next_run(page: Page, workbench: Served) -> None:
+    file = workbench.folder / "wrong.py"
+    file.write_text(WALKER, encoding="utf-8")
+    page.reload()
+    choose(page, "wrong.py")
+    page.click("#run")
+    shows(page, "#status", r"failed: [\s\S]*in production 'go'")
+    shows(page, ".toast", r"wrong\.py:11 walker has no actuator 'walk_to'[\s\S]*in production 'go'")
+    badge = page.get_by_role("tab", name="Messages").locator(".badge")
+    expect(badge).to_have_text("1")
+    page.locator(".toast .link").click()
+    expect(page.locator(".cm-activeLine")).to_have_text('        skin.set("walk_to", 3, 1.5)')
+    shows(page, ".problems", "1 error.*line 11walker has no actuator")
+    open_tab(page, "Console")
+    rows = page.locator(".console .error")
+    expect(rows.first).to_contain_text("error wrong.py:11 walker has no actuator 'walk_to'")
+    expect(rows.last).to_contain_text("wrong.py:11)")
+    assert page.locator(".console .lines").evaluate("box => box.scrollWidth <= box.clientWidth")
+    shows(page, ".console .tools", "^1 line")
+    file.write_text(WALKER.replace('"walk_to", 3, 1.5', '"walk", 1'), encoding="utf-8")
+    page.click("#restart")
+    expect(page.locator(".toast")).to_have_count(0)
+    expect(badge).to_have_count(0)
+    shows(page, "#status", "at its start")
+    open_tab(page, "Messages")
+    expect(page.locator("#log li").first).to_have_text("Earlier runs")
+    expect(page.locator("#log li.earlier")).to_contain_text("walker has no actuator 'walk_to'")
+
+
 @pytest.mark.slow
 def test_an_endless_loop_is_stopped(page: Page, workbench: Served) -> None:
     (workbench.folder / "loop.py").write_text("x = 1\nwhile True:\n    x += 1\n", encoding="utf-8")

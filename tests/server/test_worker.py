@@ -33,6 +33,23 @@ agent = Agent()
 agent.run(10)
 """
 
+WALKER = """from actr3d.actr import *
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+class Walker(ACTR):
+    goal = Buffer()
+    skin = BodyPort()
+    def init():
+        goal.set("go")
+    def go(goal="go"):
+        goal.set("gone")
+        skin.set("walk_to", 3, 1.5)
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": Walker})
+"""
+
 
 WIRES = "import gc, workbench.worker.channel as l; links = [o for o in gc.get_objects() if type(o) is l.Channel];"
 """Finds what a model has no business with."""
@@ -213,6 +230,21 @@ def test_a_crash_names_where_it_was(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, of("import ctypes; ctypes.string_at(0)"), run=True, wait=None)
     assert talk.wait_for_notice("model.py")
     assert any("line 10" in notice["text"] for notice in talk.notices)
+
+
+def test_a_wrong_command_to_a_body_names_its_line_and_its_production(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, WALKER, run=True, wait="failed")
+    notice = talk.wait_for_notice("no actuator 'walk_to'")
+    assert (notice["file"], notice["line"]) == ("model.py", 12)
+    assert "in production 'go'" in notice["text"]
+    assert "in production 'go'" in talk.state["reason"]
+
+
+@pytest.mark.parametrize("head", ['goal="task:wait ink?ink:"', 'gaol="go"'])
+def test_an_error_in_the_head_of_a_production_names_its_line(desk: Desk, tmp_path: Path, head: str) -> None:
+    talk = desk.begin(tmp_path, of("pass").replace('goal="go"', head), run=True, wait="failed")
+    notice = talk.wait_for_notice("production 'go'")
+    assert (notice["file"], notice["line"]) == ("model.py", 9)
 
 
 def test_processes_that_a_model_has_left_end_with_it(desk: Desk, tmp_path: Path) -> None:

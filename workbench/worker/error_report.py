@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from actr3d.errors import Actr3dError
 from actr3d.runner.traceback_report import traceback_report
 from workbench.worker.memory import relieve
 from workbench.worker.messages import Notice, notice, shortened
@@ -22,8 +21,7 @@ def describe_error(error: BaseException) -> str:
     if isinstance(error, SystemExit):
         return f"the model ended its process (SystemExit: {error.code})"
     try:
-        text = str(error) if isinstance(error, Actr3dError) else traceback_report(error, _HERE).message
-        return shortened(text) or type(error).__name__
+        return shortened(traceback_report(error, _HERE).message) or type(error).__name__
     except MemoryError:
         return f"{type(error).__name__}, and not enough memory is left to say more"
 

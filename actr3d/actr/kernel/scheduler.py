@@ -434,6 +434,10 @@ def _profile_of(event: Call) -> Profile:
 # -- what a generator may wait for
 
 
+EVENT_LOOP = Scheduler._run_events.__code__  # pyright: ignore[reportPrivateUsage] # in the file of its class
+"""The code that makes all calls of a run; what stands below it on the stack did not cause them."""
+
+
 def wait(sch: Scheduler, event: Event, result: Any) -> None:
     """Schedules an event by the value its generator yielded: a delay, a trigger, another event, or a sequence (the first to happen).
 

@@ -125,9 +125,14 @@ def has_file(func: Callable[..., Any]) -> bool:
     return Path(func.__code__.co_filename).is_file()
 
 
+def location(func: Callable[..., Any]) -> tuple[str, int]:
+    """Returns the file and the line of a function's definition."""
+    return func.__code__.co_filename, func.__code__.co_firstlineno
+
+
 def place(func: Callable[..., Any]) -> str:
     """Returns `file:line` of a function's definition."""
-    return f"{func.__code__.co_filename}:{func.__code__.co_firstlineno}"
+    return "{}:{}".format(*location(func))
 
 
 def assigned_globals(func: Callable[..., Any]) -> set[str]:

@@ -5,17 +5,17 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from actr3d.actr.kernel.events import Event
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import named_parameters
+from actr3d.actr.kernel.scheduler import EVENT_LOOP
 from actr3d.actr.kernel.tree import lineage, path_of, subtree
 from actr3d.actr.modules.answers import answer_slots, plain_answer
-from actr3d.errors import SimulationError
+from actr3d.errors import Actr3dError, SimulationError
+from actr3d.warnings import is_library
 
-_LIBRARY = str(Path(__file__).parents[2])
 RAW_VISION = ("view",)
 """Sensors that only a vision module should ask a body for; any other part of an agent thereby bypasses vision."""
 
@@ -49,6 +49,20 @@ class Reading(Event):
         return f"reading of '{self.word}'"
 
 
+class CallSite(NamedTuple):
+    """The line of the modeller that makes a request, for errors that occur later."""
+
+    file: str
+    line: int
+    production: str | None
+    """The production whose body is running; None if there is none."""
+
+    def describe(self) -> str:
+        """Returns the place as text."""
+        place = f"{self.file}:{self.line}"
+        return place if self.production is None else f"production '{self.production}' ({place})"
+
+
 @dataclass(slots=True)
 class Request:
     """A command or question of an agent to its body, until the body's next tock."""
@@ -58,8 +72,8 @@ class Request:
     word: str
     values: tuple[Any, ...]
     named: Mapping[str, Any]
-    place: str
-    """`file:line` of the request in the modeller's code, for error messages."""
+    site: CallSite | None
+    """Where the modeller's code makes the request; None if a module makes it by itself."""
     port: Port
     reading: Reading | None = None
     """Receives the answer; None for a command, which has no answer."""
@@ -89,21 +103,29 @@ class Embodiment:
 class Port(Model):
     """A part of an agent that sends requests to the body and receives its answers."""
 
-    def _send_command(self, command: str, *values: Any, named: Mapping[str, Any] | None = None, place: str | None = None) -> None:
-        """Sends a command to the body, on behalf of the modeller's line at `place`, or of the one that is running."""
+    def _send_command(self, command: str, *values: Any, named: Mapping[str, Any] | None = None, site: CallSite | None = None) -> None:
+        """Sends a command to the body, on behalf of the modeller's line at `site`, or of the one that is running."""
         named = {} if named is None else named
         embodiment = self._joined(command)
         self._trace_request("set", word=command, **_given(values, named))
-        embodiment.outbox.append(Request(embodiment.body, command, values, named, place or place_of_caller(), self))
+        embodiment.outbox.append(Request(embodiment.body, command, values, named, site or self._call_site(), self))
 
-    def _inquire(
-        self, sensor: str, values: tuple[Any, ...] = (), options: Mapping[str, Any] | None = None, place: str | None = None, **how: bool
-    ) -> Reading:
+    def _inquire(self, sensor: str, values: tuple[Any, ...] = (), options: Mapping[str, Any] | None = None, **how: bool) -> Reading:
         """Asks the body for what it senses."""
         embodiment = self._joined(sensor)
         reading = Reading(sensor)
-        embodiment.outbox.append(Request(embodiment.body, sensor, values, options or {}, place or place_of_caller(), self, reading, **how))
+        embodiment.outbox.append(Request(embodiment.body, sensor, values, options or {}, self._call_site(), self, reading, **how))
         return reading
+
+    def _call_site(self) -> CallSite | None:
+        """Returns the innermost running line outside the library; None if an event of the library's own is running."""
+        frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage] # Python documents it
+        while is_library(frame.f_code.co_filename):
+            if frame.f_code is EVENT_LOOP or frame.f_back is None:
+                return None
+            frame = frame.f_back
+        firing = self.sch.firing
+        return CallSite(frame.f_code.co_filename, frame.f_lineno, None if firing is None else firing.name)
 
     def _kept_private(self, sensor: str) -> str | None:
         """Returns the option that permits other parts to read a sensor that this part keeps private; None if it is not private."""
@@ -251,9 +273,10 @@ def _given(values: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
     return {**({"values": values} if values else {}), **({"named": named} if named else {})}
 
 
-def place_of_caller() -> str:
-    """Returns `file:line` of the innermost running line outside the library."""
-    frame = sys._getframe(2)  # pyright: ignore[reportPrivateUsage] # Python documents it
-    while frame.f_back is not None and frame.f_code.co_filename.startswith(_LIBRARY):
-        frame = frame.f_back
-    return f"{frame.f_code.co_filename}:{frame.f_lineno}"
+def note_request(error: Actr3dError, port: Port, site: CallSite | None) -> None:
+    """Adds to an error which part of an agent made the request that caused it, and where."""
+    where = ""
+    if site is not None:
+        where = f" in {site.describe()}"
+        error.at(site.file, site.line)
+    error.add_note(f"  asked for by '{path_of(port)}'{where}")

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from actr3d.actr.chunks.pattern import Bindings, conditions
 from actr3d.actr.kernel.scheduler import Scheduler
-from actr3d.actr.kernel.source_code import assigned_globals, function_node, has_file, place
+from actr3d.actr.kernel.source_code import assigned_globals, function_node, has_file, location, place
 from actr3d.actr.procedural.production_body import MAX_CODES, Body, Scope, compile_body
 from actr3d.actr.procedural.rebinding import stored_names
 from actr3d.errors import PatternException, ProductionException, hint_for
@@ -58,7 +58,7 @@ class Production:
         try:
             self.conditions = conditions(patterns)
         except PatternException as error:
-            raise PatternException(f"production '{name}' ({self.place}): {error}") from None
+            raise PatternException(f"production '{name}' ({self.place}): {error}").at(*location(func)) from None
         self.bound: Bindings | None = None
         """The variables that the last match bound."""
         self.context: dict[str, Any] = {}
@@ -84,7 +84,7 @@ class Production:
                 reason = f"its source is not available ({self.place}): the file has changed since it was loaded; load it again"
             else:
                 reason = f"its source is not available ({self.place}); load the model from a file, or its text with loading.load_text"
-            raise ProductionException(f"production '{self.name}': {reason}")
+            raise ProductionException(f"production '{self.name}': {reason}").at(*location(self.original_func))
         return node
 
     @property

@@ -167,7 +167,8 @@ def _compile(
             warnings.simplefilter("ignore")  # the compiler has issued all warnings about the file
             return compile(module, filename, "exec", dont_inherit=True), given
     except SyntaxError as error:
-        raise ProductionException(f"{filename}:{error.lineno or first.lineno}: production '{name}': {error.msg}") from error
+        line = error.lineno or first.lineno
+        raise ProductionException(f"{filename}:{line}: production '{name}': {error.msg}").at(filename, line) from error
 
 
 def _refuse_waiting(statements: Iterable[ast.stmt], name: str, filename: str) -> None:
@@ -179,7 +180,7 @@ def _refuse_waiting(statements: Iterable[ast.stmt], name: str, filename: str) ->
                 raise ProductionException(
                     f"{filename}:{part.lineno}: production '{name}' {word}; a production acts at once: "
                     "let it call a generator method, which may wait"
-                )
+                ).at(filename, part.lineno)
 
 
 class _Mangler(ast.NodeTransformer):

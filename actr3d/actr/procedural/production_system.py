@@ -12,6 +12,7 @@ from actr3d.actr.kernel.model import MethodWrapper, Model
 from actr3d.actr.kernel.noise import pick
 from actr3d.actr.kernel.parameters import NotNegative, WithParameters
 from actr3d.actr.kernel.profile import find_profile
+from actr3d.actr.kernel.source_code import location
 from actr3d.actr.kernel.tracing import traceable
 from actr3d.actr.kernel.tree import lineage, path_of
 from actr3d.actr.procedural.conflict_set import ConflictSet
@@ -313,7 +314,7 @@ def _determine_context(system: ProductionSystem) -> None:
                 raise ProductionException(
                     f"production '{production.name}' ({production.place}) matches on '{name}', which neither the agent "
                     f"nor its ancestors have{did_you_mean(name, [*context, 'utility'])}"
-                )
+                ).at(*location(production.original_func))
 
 
 def add_production(system: ProductionSystem, production: Production) -> None:
