@@ -94,7 +94,7 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
 
 
 async def _manual(scope: Scope, receive: Receive, send: Send) -> None:
-    """Serves the manual as it is now; if it is not built, explains how to build it."""
+    """Serves the newest manual; if it is not built, explains how to build it."""
     folder = manual()
     if folder is None:
         how = PlainTextResponse("The manual has not been built. In a copy of the repository: uv run mkdocs build", status_code=404)

@@ -7,7 +7,8 @@ from collections import deque
 from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
 from heapq import heapify, heappop
 from numbers import Real
-from typing import Any, Literal, cast
+from types import CodeType
+from typing import Any, ClassVar, Literal, cast
 
 from actr3d.actr.kernel.events import AGAIN, NOTHING_LEFT, Call, Event, Trigger, makes_generator
 from actr3d.actr.kernel.log import LOG
@@ -342,6 +343,9 @@ class Scheduler:
             else:
                 event.call(*event.args)
 
+    EVENT_LOOP: ClassVar[CodeType] = _run_events.__code__
+    """The code that makes all calls of a run; what is below it on the stack did not cause them."""
+
     def _happen(self, event: Event) -> None:
         """Makes an event's call, or resumes its generator until it yields what it waits for next."""
         if event.group:
@@ -432,10 +436,6 @@ def _profile_of(event: Call) -> Profile:
 
 
 # -- what a generator may wait for
-
-
-EVENT_LOOP = Scheduler._run_events.__code__  # pyright: ignore[reportPrivateUsage] # in the file of its class
-"""The code that makes all calls of a run; what stands below it on the stack did not cause them."""
 
 
 def wait(sch: Scheduler, event: Event, result: Any) -> None:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from actr3d.actr.kernel.events import Event
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import named_parameters
-from actr3d.actr.kernel.scheduler import EVENT_LOOP
+from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.kernel.tree import lineage, path_of, subtree
 from actr3d.actr.modules.answers import answer_slots, plain_answer
 from actr3d.errors import Actr3dError, SimulationError
@@ -121,7 +121,7 @@ class Port(Model):
         """Returns the innermost running line outside the library; None if an event of the library's own is running."""
         frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage] # Python documents it
         while is_library(frame.f_code.co_filename):
-            if frame.f_code is EVENT_LOOP or frame.f_back is None:
+            if frame.f_code is Scheduler.EVENT_LOOP or frame.f_back is None:
                 return None
             frame = frame.f_back
         firing = self.sch.firing
