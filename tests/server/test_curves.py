@@ -75,7 +75,7 @@ def least(values: list[float | None]) -> float:
 
 def test_a_touch_that_is_over_before_its_tick_ends_is_seen(desk: Desk, tmp_path: Path) -> None:
     simulation = load_text(STRUCK).build()
-    skin = simulation.world.bodies["walker"]
+    skin: Any = simulation.world.bodies["walker"]
     skin.touched = ()  # from now on it feels
     felt: dict[int, float] = {}
     for tick in range(1, 401):

@@ -173,22 +173,24 @@ class Touched:
         """Looks at each physics step of a world from now on."""
         ground = frozenset(part.name for part in world.scene.parts if isinstance(part, Floor))
         model: Any = world.mj_model
-        grounds = [geom for geom in range(model.ngeom) if model.geom(geom).name in ground]
-        bodies = [(name, body, np.append(np.isin(np.arange(model.ngeom), body.geoms), False)) for name, body in world.bodies.items()]
-        others = np.append(~np.isin(np.arange(model.ngeom), grounds), True)  # the last entry is for soft objects, which have no geom
+        numbers = range(model.ngeom)
+        # The last entries are for soft objects, which have no geom.
+        others = np.array([*(model.geom(geom).name not in ground for geom in numbers), True])
+        owned = {name: frozenset(body.geoms.tolist()) for name, body in world.bodies.items()}
+        bodies = [(world.bodies[name], np.array([*(geom in own for geom in numbers), False])) for name, own in owned.items()]
         data = world.mj_data
 
         def look() -> None:
             if data.ncon == 0:
                 return
             pairs = data.contact.geom
-            for name, body, own in bodies:
+            for body, own in bodies:
                 mine = own[pairs]
                 if not (body.contacts.held() or ((mine[:, 0] != mine[:, 1]) & others[pairs].all(axis=1)).any()):
                     continue
                 for touch in body.contacts.touches():
                     if touch.other not in ground:
-                        contact = name, touch.part, touch.other
+                        contact = body.name, touch.part, touch.other
                         self._now[contact] = max(touch.force, self._now.get(contact, 0.0))
 
         world.watchers.append(look)
