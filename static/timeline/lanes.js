@@ -102,7 +102,6 @@ export class Lanes {
   clear() {
     this.lanes = new Map();
     this.tones = new Map();
-    this.clocks = new Map();
     this.asked = new Map();
     this.former = new Former();
     this.numbers = new Numbers();
@@ -132,13 +131,7 @@ export class Lanes {
   /** Adds one event: [time in us, source, kind, data]. */
   take(event) {
     const [time, source, kind, data] = event;
-    // If a program makes one run after another, each one's time starts at 0; on the axis they follow each other.
-    const run = runOf(source);
-    const before = this.clocks.get(run) ?? 0;
-    if (time > before) {
-      this.clocks.set(run, time);
-      this.now += time - before;
-    }
+    this.now = Math.max(this.now, time);
     const now = this.now / 1e6;
     this.begin ??= now;
     TAKERS[kind]?.(this, now, source, data, event);
