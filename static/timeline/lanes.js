@@ -1,5 +1,6 @@
 // Lanes made of a run's events as they arrive: a row for each thing with states, with a band for each state; and curves of their numbers.
 
+import { runOf } from "../inspector/agents.js";
 import { chunkText } from "../parts/chunk.js";
 import { Former } from "./commands.js";
 import { firstWhere } from "./search.js";
@@ -86,11 +87,6 @@ class Lane {
 export function bandText(band) {
   band.text ??= chunkText(band.chunk);
   return band.text;
-}
-
-/** Returns which run of a program a source belongs to: "top" for the first, then "top#2" and so on. */
-function runOf(source) {
-  return /^top#\d+/.exec(source)?.[0] ?? "top";
 }
 
 /** All lanes of a run. */
