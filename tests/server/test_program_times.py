@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -128,7 +127,9 @@ def test_a_recording_of_a_program_counts_its_time_in_the_same_way(desk: Desk, tm
     assert data is not None
     assert [round(1e6 * row[0]) for row in json.loads(data[1])["events"]["rows"]] == [time for time, *_ in events]
 
-    other = desk.begin(tmp_path, source.replace("range(6)", "range(5)").replace("0.2)", "0.1)").replace("0.07", "0.06"), seed=3, record=True)
+    other = desk.begin(
+        tmp_path, source.replace("range(6)", "range(5)").replace("0.2)", "0.1)").replace("0.07", "0.06"), seed=3, record=True
+    )
     ended(other)
     desk.do(other.session.stop())
     difference = compare(path, other.sessions.recordings.path(other.facts["recording"]))["difference"]
@@ -139,8 +140,8 @@ def test_a_recording_of_a_program_counts_its_time_in_the_same_way(desk: Desk, tm
 def test_explanations_have_the_times_of_the_clock(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, TRIALS, seed=3)
     end = ended(talk)
-    said = [time / 1e6 for time, source, kind, data in talk.events if kind == "fire" and data["production"] == "say"]
-    asked = [time / 1e6 for time, source, kind, data in talk.events if kind == "fire" and data["production"] == "ask"]
+    said = [time / 1e6 for time, _, kind, data in talk.events if kind == "fire" and data["production"] == "say"]
+    asked = [time / 1e6 for time, _, kind, data in talk.events if kind == "fire" and data["production"] == "ask"]
     assert {one["time"] for one in talk.say("explain")} == {end}
     talk.say("seek", time=said[3])
     talk.until("paused", time=said[3])

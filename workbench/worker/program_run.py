@@ -309,6 +309,7 @@ class ProgramRun(ControlledRun):
         self._rush = None
         self._over = True
         self._introduce()
+        self._clock = max(self._clock, self._times.last)
         self._furthest = max(self._furthest, self._clock)
         self._controller.end(status, reason)
 
@@ -329,6 +330,7 @@ class ProgramRun(ControlledRun):
         if self._changed:  # its effects of the moment have happened
             self._changed = False
             controller.show()
+        self._clock = max(self._clock, self._times.last)  # a tick of a simulation that failed counts up to its last event
         due = self._changes.due(sch, end)
         to = self._clock + (end if due is None else due) - sch.now_us
         self._waits = sch, sch.now_us, self._clock
@@ -379,7 +381,7 @@ class ProgramRun(ControlledRun):
         self._show(simulation)
         self._hold_models()
         self._introduce()
-        self._clock += passed
+        self._clock = max(self._clock + passed, self._times.last)
         self._tick_begin = simulation.ticks * self.period
         self._check_left()
         if self._rush is not None and self._clock < self._rush:
