@@ -511,14 +511,55 @@ def test_runs_of_a_program_follow_each_other_as_its_clock_counts_them(pages: Cal
     rows.filter(has_text="prints").nth(1).click()
     when(page, f"{ends['printed'][1]:.2f}")
     expect(at).to_have_attribute("placeholder", f"{ends['printed'][1]:.3f}")
-    fired = rows.filter(has_text="say").nth(1)
-    fired.hover()
-    fired.get_by_role("button", name="why").click()
+    page.get_by_label("Filter the trace").fill("top#2 fire say")
+    expect(rows).to_have_count(1)
+    rows.hover()
+    rows.get_by_role("button", name="why").click()
     expect(page.locator("#why-text")).to_contain_text("say: matches, and is about to fire")
     page.evaluate("async () => (await part('inspector/asked.js')).shownReasons.value = 'conflict'")
     conflict = page.get_by_role("region", name="Conflict set of top#2")
     expect(conflict).to_contain_text(f"at {ends['printed'][1] - 0.05:.3f} s: 1 matched, say is about to fire")
     expect(conflict).to_contain_text("what=red")
+
+
+FAILS = """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+class Walker(ACTR):
+    goal = Buffer()
+    skin = BodyPort()
+    def init():
+        goal.set("one")
+    def one(goal="one"):
+        goal.set("two")
+    def two(goal="two"):
+        goal.set("three")
+    def three(goal="three"):
+        print("goes")
+        skin.set("walk_to", 3, 1.5)
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": Walker}, seed=1)
+"""
+
+
+def test_a_run_that_fails_in_a_tick_is_at_the_moment_of_the_failure(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "fails_in_tick.py").write_text(FAILS, encoding="utf-8")
+    page = pages("fails_in_tick.py")
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "^failed")
+    when(page, "0.15")
+    assert page.evaluate("async () => (await part('timeline/record.js')).lanes.lanes.get('said').bands[0].from") == 0.15
+    page.click("#back")
+    shows(page, "#status", "went to this time")
+    when(page, "0.14")
+    page.locator("#timeline").focus()
+    page.keyboard.press("End")
+    shows(page, "#status", "^failed")
+    when(page, "0.15")
 
 
 COUNTS = """
