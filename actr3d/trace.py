@@ -49,7 +49,7 @@ class TraceEvent(NamedTuple):
     @property
     def run(self) -> int:
         """The number of its run in the trace, counted from 1."""
-        return int(self.source.removeprefix("top#").partition(".")[0]) if self.source.startswith("top#") else 1
+        return run_of(self.source)
 
     def to_json(self) -> str:
         """Returns the event as one line of JSON; the same event always gives the same bytes.
@@ -254,6 +254,11 @@ class Trace:
     def select(self, kind: str, source: str | None = None) -> list[TraceEvent]:
         """Returns the events of one kind, optionally of one source, in order."""
         return [e for e in self if e.kind == kind and (source is None or e.source == source)]
+
+
+def run_of(source: str) -> int:
+    """Returns the number of the run that a source belongs to, counted from 1."""
+    return int(source.removeprefix("top#").partition(".")[0]) if source.startswith("top#") else 1
 
 
 def top_path(number: int) -> str:

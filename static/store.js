@@ -12,8 +12,9 @@ export const session = signal(null);
 export const me = signal("");
 /** The newest state: status, time, speed, apertures, parameters, parts (`Session.state_json`); null before the first. */
 export const state = signal(null);
-/** The events of the run in order, each [time in us, source, kind, data]; also those after the current moment of a run that went
- * back. `first` is the number of the first, `missing` how many were dropped before it. The list grows in place. */
+/** The events of the run in order, each [time in us, source, kind, data], where the time is that of the run's clock also for a program
+ * that makes several runs; also those after the current moment of a run that went back. `first` is the number of the first, `missing`
+ * how many were dropped before it. The list grows in place. */
 export const events = signal({ list: [], first: 0, missing: 0 });
 /** The notices to the user: {number, level, text, file, line, detail, attempt, version}. */
 export const notices = signal([]);

@@ -15,6 +15,7 @@ from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent
 from workbench.live_parameters import parameter_set_by
 from workbench.loader import listing_of
+from workbench.program_time import timed_events
 from workbench.recording_index import UNREADABLE
 
 CONTEXT = 8
@@ -134,7 +135,7 @@ def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> 
 
 
 def _events(recorded: Recorded, kinds: frozenset[str]) -> Iterator[TraceEvent]:
-    return (event for event in recorded.events() if not kinds or event.kind in kinds)
+    return (event for event in timed_events(recorded) if not kinds or event.kind in kinds)
 
 
 def _alike(mine: TraceEvent, its: TraceEvent) -> bool:

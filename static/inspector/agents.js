@@ -25,3 +25,8 @@ export function agentOf(path, agents) {
 export function nameIn(agent, path) {
   return agent && path.startsWith(`${agent}.`) ? path.slice(agent.length + 1) : path;
 }
+
+/** Returns the number of the run of a program that a part belongs to, counted from 1. */
+export function runOf(path) {
+  return Number(/^top#(\d+)/.exec(path)?.[1] ?? 1);
+}

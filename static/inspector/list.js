@@ -3,7 +3,7 @@
 import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { ChangeMenu } from "../changes/changes.js";
 import { counted } from "../parts/count.js";
-import { systemsOf } from "./agents.js";
+import { runOf, systemsOf } from "./agents.js";
 import { at, production } from "./asked.js";
 import { breakpoints, held, toggleBreakpoint } from "./breakpoints.js";
 import { chosenText, isBare, isGone, nothing } from "../run_status.js";
@@ -34,11 +34,11 @@ export function productionsOf(parts, reasons) {
 
 const same = (one, other) => Boolean(one && other) && one.system === other.system && one.name === other.name;
 
-/** Returns the production to explain: the requested one, else the chosen one or the first that matches. */
+/** Returns the production to explain: the requested one, else of a program's latest run the chosen one or the first that matches. */
 export function explained(all) {
   const wanted = all.find((one) => same(one, production.value));
   const rank = ({ reason }) => (reason?.selected ? 0 : reason?.matches ? 1 : 2);
-  return wanted ?? all.toSorted((one, other) => rank(one) - rank(other))[0] ?? null;
+  return wanted ?? all.toSorted((one, other) => runOf(other.system) - runOf(one.system) || rank(one) - rank(other))[0] ?? null;
 }
 
 function isForbidden(system, name) {

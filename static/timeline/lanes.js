@@ -1,5 +1,6 @@
 // Lanes made of a run's events as they arrive: a row for each thing with states, with a band for each state; and curves of their numbers.
 
+import { runOf } from "../inspector/agents.js";
 import { chunkText } from "../parts/chunk.js";
 import { Former } from "./commands.js";
 import { firstWhere } from "./search.js";
@@ -88,11 +89,6 @@ export function bandText(band) {
   return band.text;
 }
 
-/** Returns which run of a program a source belongs to: "top" for the first, then "top#2" and so on. */
-function runOf(source) {
-  return /^top#\d+/.exec(source)?.[0] ?? "top";
-}
-
 /** All lanes of a run. */
 export class Lanes {
   constructor() {
@@ -102,7 +98,6 @@ export class Lanes {
   clear() {
     this.lanes = new Map();
     this.tones = new Map();
-    this.clocks = new Map();
     this.asked = new Map();
     this.former = new Former();
     this.numbers = new Numbers();
@@ -132,13 +127,7 @@ export class Lanes {
   /** Adds one event: [time in us, source, kind, data]. */
   take(event) {
     const [time, source, kind, data] = event;
-    // If a program makes one run after another, each one's time starts at 0; on the axis they follow each other.
-    const run = runOf(source);
-    const before = this.clocks.get(run) ?? 0;
-    if (time > before) {
-      this.clocks.set(run, time);
-      this.now += time - before;
-    }
+    this.now = Math.max(this.now, time);
     const now = this.now / 1e6;
     this.begin ??= now;
     TAKERS[kind]?.(this, now, source, data, event);

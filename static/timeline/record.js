@@ -21,7 +21,7 @@ effect(() => {
   taken.next = first + list.length;
   if (first > taken.first) {
     taken.first = first;
-    if (list.length && lanes.clocks.size === 1) lanes.forget(list[0][0] / 1e6);
+    if (list.length) lanes.forget(list[0][0] / 1e6);
   }
   lanesVersion.value = lanesVersion.peek() + 1;
 });

@@ -436,11 +436,11 @@ RUNS = """async () => {
     of(0, "top", "run");
     hold(0, "walker.goal", "go");
     of(4, "top", "stop");
-    of(0, "top#2", "run");
-    hold(0, "top#2.bob.goal", "go");
-    of(2, "top#2", "stop");
-    of(4, "top", "run");
-    of(5, "walker", "fire", { production: "end" });
+    of(4, "top#2", "run");
+    hold(4, "top#2.bob.goal", "go");
+    of(6, "top#2", "stop");
+    of(6, "top", "run");
+    of(7, "walker", "fire", { production: "end" });
     const bands = (key) => lanes.lanes.get(key).bands.map(({ from, to }) => [from, to]);
     return [bands("buffer walker.goal"), bands("buffer top#2.bob.goal")];
 }"""
@@ -448,6 +448,118 @@ RUNS = """async () => {
 
 def test_what_a_buffer_holds_is_drawn_while_its_run_goes_on(page: Page) -> None:
     assert page.evaluate(RUNS) == [[[0, 4], [6, None]], [[4, 6]]]
+
+
+TRIALS = """
+from actr3d.actr import *
+
+class Trial(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval, latency=0.3, threshold=None)
+    noise = DMNoise(memory, noise=0.6)
+    def init():
+        memory.add("word:red")
+    def ask(goal="look"):
+        memory.request("word:?what")
+        goal.set("wait")
+    def say(goal="wait", retrieval="word:?what"):
+        print("said", what)
+        goal.set("done")
+        self.stop()
+
+for n in range(6):
+    trial = Trial()
+    trial.goal.set("look")
+    trial.run()
+"""
+"""Runs of different durations, some of which are longer than the first one."""
+ENDS = """async () => {
+  const { lanes } = await part("timeline/record.js");
+  const { state } = await part("store.js");
+  const fired = [1, 2, 3, 4, 5, 6].map((run) => lanes.lanes.get(`productions ${run === 1 ? "top" : `top#${run}`}`)?.bands.at(-1).to);
+  const latest = Math.max(...[...lanes.numbers.curves.values()].map(({ times }) => times.at(-1)));
+  return { fired, printed: lanes.lanes.get("said").bands.map(({ from }) => from), now: state.value.time, latest };
+}"""
+"""When the last production of each run has fired, when something was printed, the time of the run, and that of the last number."""
+
+
+def test_runs_of_a_program_follow_each_other_as_its_clock_counts_them(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "trials.py").write_text(TRIALS, encoding="utf-8")
+    page = pages("trials.py")
+    shows(page, "#status", "at its start")
+    page.evaluate("async () => (await part('server.js')).say({ type: 'restart', seed: 3, run: true })")
+    shows(page, "#status", "ended")
+    until(page, lambda: len(page.evaluate(ENDS)["printed"]) == 6)
+    ends = page.evaluate(ENDS)
+    assert ends["fired"] == ends["printed"] == sorted(ends["printed"])
+    assert ends["latest"] <= ends["printed"][-1] == ends["now"]
+    lasted = [end - begin for begin, end in pairwise([0, *ends["printed"]])]
+    assert max(lasted[1:]) > lasted[0]
+    page.locator("#timeline").focus()
+    page.keyboard.press("End")
+    when(page, f"{ends['now']:.2f}")
+    page.evaluate("async (time) => (await part('timeline/seek.js')).travel(time)", ends["printed"][2])
+    when(page, f"{ends['printed'][2]:.2f}")
+
+    page.get_by_role("tab", name="Productions").click()
+    rows, at = page.locator("#events tbody tr"), page.get_by_label("Explain the time [s]")
+    expect(rows.filter(has_text="prints").nth(2)).to_contain_text(f"{ends['printed'][2]:.3f}")
+    expect(rows.filter(has_text="prints").nth(5)).to_contain_text(f"{ends['now']:.3f}")
+    expect(at).to_have_attribute("placeholder", f"{ends['printed'][2]:.3f}")
+    expect(page.locator("#why-text")).to_contain_text("In top#4")  # which has begun at that moment
+    rows.filter(has_text="prints").nth(1).click()
+    when(page, f"{ends['printed'][1]:.2f}")
+    expect(at).to_have_attribute("placeholder", f"{ends['printed'][1]:.3f}")
+    page.get_by_label("Filter the trace").fill("top#2 fire say")
+    expect(rows).to_have_count(1)
+    rows.hover()
+    rows.get_by_role("button", name="why").click()
+    expect(page.locator("#why-text")).to_contain_text("say: matches, and is about to fire")
+    page.evaluate("async () => (await part('inspector/asked.js')).shownReasons.value = 'conflict'")
+    conflict = page.get_by_role("region", name="Conflict set of top#2")
+    expect(conflict).to_contain_text(f"at {ends['printed'][1] - 0.05:.3f} s: 1 matched, say is about to fire")
+    expect(conflict).to_contain_text("what=red")
+
+
+FAILS = """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+class Walker(ACTR):
+    goal = Buffer()
+    skin = BodyPort()
+    def init():
+        goal.set("one")
+    def one(goal="one"):
+        goal.set("two")
+    def two(goal="two"):
+        goal.set("three")
+    def three(goal="three"):
+        print("goes")
+        skin.set("walk_to", 3, 1.5)
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": Walker}, seed=1)
+"""
+
+
+def test_a_run_that_fails_in_a_tick_is_at_the_moment_of_the_failure(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "fails_in_tick.py").write_text(FAILS, encoding="utf-8")
+    page = pages("fails_in_tick.py")
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "^failed")
+    when(page, "0.15")
+    assert page.evaluate("async () => (await part('timeline/record.js')).lanes.lanes.get('said').bands[0].from") == 0.15
+    page.click("#back")
+    shows(page, "#status", "went to this time")
+    when(page, "0.14")
+    page.locator("#timeline").focus()
+    page.keyboard.press("End")
+    shows(page, "#status", "^failed")
+    when(page, "0.15")
 
 
 COUNTS = """

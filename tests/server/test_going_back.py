@@ -20,6 +20,7 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.output import ModelOutput, printing_to
 from actr3d.runner.model_factory import build
 from actr3d.simulation import Simulation
+from actr3d.trace import TraceEvent
 from actr3d.values import to_json
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from tests.simulation.test_seek import COUNTED
@@ -78,7 +79,17 @@ def asked(shown: Shown) -> Any:
     """Returns the part of a run that questions use."""
     simulation = shown.simulation
     tops = [Top(agent) for agent in simulation.agents.values()]
-    return SimpleNamespace(trace=simulation.trace, tops=lambda: tops, shown=shown, curves=shown.curves)
+    trace, clock = simulation.trace, simulation.ticks * shown.period
+    assert trace is not None
+
+    def events(first: int, end: int) -> list[TraceEvent]:
+        return trace.since(first)[: end - first]
+
+    def same(_: str, time: int) -> int:
+        return time
+
+    times = {"clock": clock, "events": events, "own_time": same, "whole_time": same}
+    return SimpleNamespace(trace=trace, tops=lambda: tops, shown=shown, curves=shown.curves, **times)
 
 
 def questions(shown: Shown) -> list[Any]:

@@ -20,6 +20,7 @@ from workbench.curves import stride
 from workbench.geom_colours import dress
 from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
 from workbench.palette import palette
+from workbench.program_time import timed_events
 from workbench.scene_framing import SceneFraming
 
 RATE = 30
@@ -81,7 +82,7 @@ def _events(recorded: Recorded) -> dict[str, Any]:
     """Returns the events as rows, the number of events left out, and the result separately."""
     rows: list[tuple[float, str, str, str]] = []
     result: dict[str, Any] | None = None
-    for event in recorded.events():
+    for event in timed_events(recorded):
         if len(rows) < MAX_EVENTS:
             rows.append((event.time, event.source, event.kind, _text(event)))
         if event.kind == "result":

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
+from actr3d.clock import MICROSECONDS, seconds
+from actr3d.errors import ParameterError
 from workbench.page_commands.command import Name, Question, Seconds, page_command, unknown
 
 if TYPE_CHECKING:
     from actr3d.actr.kernel.model import Model
     from actr3d.actr.procedural.production_system import ProductionSystem
+    from actr3d.actr.reasons import Explanation
     from workbench.worker.controlled_run import ControlledRun
 
 
 @page_command
 class Explain(Question):
-    """Explains productions and retrievals of all agents or of one, now or at a past time."""
+    """Explains productions and retrievals of all agents or of one, now or at a past time; all times are those of the run."""
 
     type: Literal["explain"] = "explain"
     at: Seconds | None = None
@@ -35,7 +39,9 @@ class Explain(Question):
         explained: list[dict[str, Any]] = []
         names: list[str] = []
         for top, agent in asked:
-            explanation = agent.explain(self.at)
+            explanation = self._explanation(run, top.name(path_of(agent)), agent)
+            if explanation is None:
+                continue
             reasons = [reason for reason in explanation.productions if self.production in (None, reason.name)]
             plain = plain_answer(explanation)
             plain["productions"] = [{**plain_answer(reason), "source": reason.source, "text": str(reason)} for reason in reasons]
@@ -45,6 +51,29 @@ class Explain(Question):
         if self.production is not None and not any(one["productions"] for one in explained):
             raise unknown("production", self.production, names)
         return explained
+
+    def _explanation(self, run: ControlledRun, name: str, agent: ProductionSystem) -> Explanation | None:
+        """Returns the explanation of an agent; None if it did not exist at that time, and all agents are asked for.
+
+        Raises:
+            ParameterError: If the time lies ahead, or the agent did not exist then.
+        """
+        time = run.clock if self.at is None else round(self.at * MICROSECONDS)
+        if time > run.clock:
+            raise ParameterError(f"explain(at): {self.at:g} s lies ahead; it is {seconds(run.clock):g} s now")
+        own = run.own_time(name, time)
+        if own is None:
+            if self.agent is None:
+                return None
+            raise ParameterError(f"explain(at): '{name}' did not exist at {self.at:g} s")
+        found = agent.explain(None if self.at is None else seconds(own))
+
+        def of_run(own: float) -> float:
+            return seconds(run.whole_time(name, round(own * MICROSECONDS)))
+
+        retrievals = tuple(replace(reason, time=of_run(reason.time)) for reason in found.retrievals)
+        searches = tuple(replace(reason, time=of_run(reason.time)) for reason in found.searches)
+        return replace(found, time=seconds(time), retrievals=retrievals, searches=searches)
 
 
 def _agents(model: Model) -> Iterator[ProductionSystem]:
@@ -92,7 +121,7 @@ class Events(Question):
 
     def answer(self, run: ControlledRun) -> dict[str, Any]:
         trace = run.trace
-        events = [] if trace is None else trace.since(self.first)[: self.most]
+        events = run.events(self.first, self.first + self.most)
         wanted = [(number, event) for number, event in enumerate(events, self.first) if self.kinds is None or event.kind in self.kinds]
         return {
             "first": self.first,

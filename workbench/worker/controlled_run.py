@@ -9,7 +9,7 @@ from typing import Any
 from actr3d.actr.explain.snapshot import snapshot_of
 from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
-from actr3d.trace import Trace
+from actr3d.trace import Trace, TraceEvent
 from workbench.worker.names import Names, Top
 from workbench.worker.shown import Shown
 from workbench.worker.stop_conditions import Touches
@@ -39,6 +39,23 @@ class ControlledRun(ABC):
     @abstractmethod
     def trace(self) -> Trace | None:
         """The trace up to now."""
+
+    def events(self, first: int, end: int) -> list[TraceEvent]:
+        """Returns the events from a number on and before another one, with the times of the whole run."""
+        return [] if self.trace is None else self.trace.since(first)[: max(0, end - first)]
+
+    def own_time(self, source: str, time: int) -> int | None:
+        """Returns the time of the model of an agent at a time of the run [us]; None if there was no such model yet.
+
+        Args:
+            source: The name of the agent in the trace.
+            time: The time of the run [us].
+        """
+        return time
+
+    def whole_time(self, source: str, time: int) -> int:
+        """Returns the time of the run at a time of the model of an agent [us]."""
+        return time
 
     @property
     @abstractmethod

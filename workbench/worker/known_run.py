@@ -11,6 +11,7 @@ from actr3d.clock import microseconds, seconds
 from actr3d.recording import Recorded
 from actr3d.runner.facts import REACHED
 from actr3d.trace import TraceEvent
+from workbench.program_time import timed_events
 from workbench.worker.messages import Notice, notice
 from workbench.worker.truncation import event_json
 
@@ -37,13 +38,14 @@ class KnownRun:
         with Recorded(path) as recorded:
             self.facts: dict[str, Any] = recorded.facts
             self.ticks: int = recorded.ticks
-            times: list[int] = []
-            for event in recorded.events():
-                self._take(event, times)
+            time = 0
+            for event, timed in zip(recorded.events(), timed_events(recorded), strict=True):
+                time = max(time, timed.time_us)
+                self._take(event, timed)
             if keep is not None:
                 for _, tick, data, _ in recorded.states():
                     keep(tick, data)
-        self.time = max(sum(times), microseconds(self.facts.get(REACHED, 0)))
+        self.time = max(time, microseconds(self.facts.get(REACHED, 0)))
         """The duration of the recording, summed over all its runs [us]."""
 
     @property
@@ -56,13 +58,9 @@ class KnownRun:
         """The number of the first event in `events`."""
         return self.count - len(self.events)
 
-    def _take(self, event: TraceEvent, times: list[int]) -> None:
-        if event.kind == "start" or not times:
-            times.append(0)
-        times[-1] = max(times[-1], event.time_us)
-        text = event_json(event)
-        self._digests.append(hash(text))
-        self.events.append(text)
+    def _take(self, event: TraceEvent, timed: TraceEvent) -> None:
+        self._digests.append(hash(event_json(event)))
+        self.events.append(event_json(timed))
         if len(self.events) > 2 * MAX_EVENTS:
             del self.events[:-MAX_EVENTS]
 
@@ -82,7 +80,7 @@ def difference_notice(now: float, event: TraceEvent | None) -> Notice:
 
     Args:
         now: The current time of the run [s].
-        event: The event that differs; None if the run has ended before its recording.
+        event: The event that differs, with the time of the run; None if the run has ended before its recording.
     """
     when = now if event is None else seconds(event.time_us)
     does = (

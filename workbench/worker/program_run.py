@@ -24,7 +24,7 @@ from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.runner.program_changes import ProgramChanges
 from actr3d.runner.traceback_report import failure
 from actr3d.simulation import Simulation
-from actr3d.trace import Run, Trace, TraceEvent, top_path
+from actr3d.trace import Run, Trace, TraceEvent, run_of, top_path
 from actr3d.values import to_json
 from workbench.curves import joined
 from workbench.loader import ModelListing
@@ -36,6 +36,7 @@ from workbench.worker.kept_branch import KeptBranch
 from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import ENDED, Facts
 from workbench.worker.names import Names, Top, names_of_program
+from workbench.worker.program_times import ProgramTimes
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.shown import Kept, Shown
 
@@ -128,6 +129,9 @@ class ProgramRun(ControlledRun):
         self._limits = RunLimits()
         self._output: ProgramOutput | None = None
         self._clock: int = 0
+        self._tick_begin: int | None = None
+        """While a simulation ticks: its own time at the start of the tick [us], which is the time of the clock."""
+        self._times = ProgramTimes()
         self._furthest: int = 0
         self._rush: int | None = None
         """The time up to which it runs without being shown or paused [us]."""
@@ -226,7 +230,10 @@ class ProgramRun(ControlledRun):
         self._held.clear()
         self._shown = self._waits = self._recorded = None
         self._changed = False
+        self._tick_begin = None
+        self._times = ProgramTimes()
         trace = Trace("all")
+        trace.listen(self._note_time)
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
             limits.recorder = self._recorded = again = _RecordedOnce(self._recording, lambda: self._left)
@@ -265,6 +272,11 @@ class ProgramRun(ControlledRun):
             controller.channel.post(notice_of(exited))
             self._end("failed", describe_error(exited))
 
+    def _note_time(self, event: TraceEvent) -> None:
+        """Stores when an event happens: now, or within the tick of a simulation."""
+        since = 0 if self._tick_begin is None else event.time_us - self._tick_begin
+        self._times.add(event, self._clock + (since if 0 <= since <= self.period else 0))
+
     def _hold_at_start(self) -> None:
         """Waits before the program begins, where nothing says that it is to go on."""
         controller = self._controller
@@ -297,6 +309,7 @@ class ProgramRun(ControlledRun):
         self._rush = None
         self._over = True
         self._introduce()
+        self._clock = max(self._clock, self._times.last)
         self._furthest = max(self._furthest, self._clock)
         self._controller.end(status, reason)
 
@@ -313,9 +326,11 @@ class ProgramRun(ControlledRun):
             return False  # in a copy of the process that the model has made, which nobody watches
         self._introduce()
         self._hold_models()
+        self._tick_begin = None
         if self._changed:  # its effects of the moment have happened
             self._changed = False
             controller.show()
+        self._clock = max(self._clock, self._times.last)  # a tick of a simulation that failed counts up to its last event
         due = self._changes.due(sch, end)
         to = self._clock + (end if due is None else due) - sch.now_us
         self._waits = sch, sch.now_us, self._clock
@@ -366,7 +381,8 @@ class ProgramRun(ControlledRun):
         self._show(simulation)
         self._hold_models()
         self._introduce()
-        self._clock += passed
+        self._clock = max(self._clock + passed, self._times.last)
+        self._tick_begin = simulation.ticks * self.period
         self._check_left()
         if self._rush is not None and self._clock < self._rush:
             return
@@ -428,6 +444,16 @@ class ProgramRun(ControlledRun):
     @property
     def trace(self) -> Trace | None:
         return self._limits.trace
+
+    def events(self, first: int, end: int) -> list[TraceEvent]:
+        times = self._times.between(first, end)  # of an event that another thread is adding there may be none yet
+        return [event._replace(time_us=time) for event, time in zip(super().events(first, end), times, strict=False)]
+
+    def own_time(self, source: str, time: int) -> int | None:
+        return self._times.own(run_of(source), time)
+
+    def whole_time(self, source: str, time: int) -> int:
+        return self._times.whole(run_of(source), time)
 
     @property
     def shown(self) -> Shown | None:

@@ -351,7 +351,7 @@ class RunController:
         on_its_thread = threading.current_thread() is threading.main_thread()  # otherwise the run may be in the middle of a tick
         if self._known_run is not None and trace is not None and on_its_thread:
             state = self._compare(self._known_run, state, trace)
-        news = [] if trace is None or count <= self._sent else trace.since(self._sent)[: count - self._sent]
+        news = self.run.events(self._sent, count)
         self.channel.show(state, self._sent, [event_json(event) for event in news])
         self._sent, self._last = max(self._sent, count), state
 
@@ -367,7 +367,7 @@ class RunController:
         self.run.forget_ahead()
         self._sent = state.events if found is None else found
         self.channel.cut(Cut(events=self._sent), self._sent)
-        self.channel.post(difference_notice(state.time, None if found is None else events[found - self._compared]))
+        self.channel.post(difference_notice(state.time, None if found is None else self.run.events(found, found + 1)[0]))
         return msgspec.structs.replace(state, furthest=state.time)
 
     def _halt(self) -> None:

@@ -64,6 +64,8 @@ class SimulationRun(ControlledRun):
         self._end: tuple[int, str] | None = None
         """At which tick the run is over, and why, once that is known."""
         self._failed = False
+        self._failed_at: int | None = None
+        """When the tick after the last whole one fails [us], if that is known."""
         self._known_run: KnownRun | None = None
         """The recorded run that is repeated."""
         self._simulation: Simulation
@@ -114,6 +116,8 @@ class SimulationRun(ControlledRun):
             ended: dict[str, Any] | None = known_run.facts.get("ended")
             if ended is not None and ended.get("by") in ENDINGS:
                 self._end = known_run.ticks, str(ended["by"])
+            if known_run.facts.get("failed") is not None:
+                self._failed_at = known_run.time
 
     def _facts(self, limits: RunLimits, parameters: dict[str, Any]) -> Facts:
         return Facts(
@@ -182,11 +186,11 @@ class SimulationRun(ControlledRun):
 
     @property
     def clock(self) -> int:
-        return self._simulation.ticks * self.period
+        return self._simulation.timeline.lockstep.agents.time  # after a failure also within a tick
 
     @property
     def furthest(self) -> int:
-        return microseconds(self._simulation.furthest)
+        return max(microseconds(self._simulation.furthest), self._failed_at or 0)
 
     @property
     def period(self) -> int:
@@ -201,7 +205,11 @@ class SimulationRun(ControlledRun):
         return self._shown
 
     def go_to(self, time: int) -> None:
-        tick = round(time / self.period)
+        last = self._simulation.timeline.furthest
+        if self.clock > last * self.period:
+            self._failed_at = self.clock
+        fails = self._failed_at is not None and last * self.period < time <= self._failed_at
+        tick = last if fails else round(time / self.period)
         try:
             self._simulation.seek(seconds(tick * self.period))
         except SimulationError as error:
@@ -209,6 +217,12 @@ class SimulationRun(ControlledRun):
                 self._controller.end("failed", str(error))
                 self._controller.show()
             raise
+        if fails:
+            try:
+                self._simulation.advance(1)
+            except UNFORESEEN as error:
+                self._controller.end("failed", describe_error(error))
+                return
         if self._end is None or tick != self._end[0]:
             self._controller.went_back()
             return
@@ -237,6 +251,7 @@ class SimulationRun(ControlledRun):
         except BaseException:
             branch.undo()
             raise
+        self._failed_at = None
         if self._failed:
             self._record_failure(None)
         if self._end is not None:
@@ -263,6 +278,7 @@ class SimulationRun(ControlledRun):
     def forget_ahead(self) -> None:
         self._simulation.forget_ahead()
         self._shown.kept.cut(self._simulation.ticks)
+        self._failed_at = None
         if self._end is not None and self._end[0] > self._simulation.ticks:
             self._end = None
 

@@ -20,7 +20,7 @@ from actr3d.actr.procedural.production_system import ProductionSystem, prepare_c
 from actr3d.actr.reasons import Explanation
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import ParameterError, SchedulerError
-from actr3d.trace import TraceEvent
+from actr3d.trace import run_of
 
 Kind = TypeVar("Kind", bound=Model)
 
@@ -62,7 +62,7 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
     if time > agent.sch.now_us:
         raise ParameterError(f"explain(at): {at:g} s lies ahead; it is {agent.now():g} s now")
     top = top_of(agent)
-    run = TraceEvent(0, path_of(top), "", {}).run
+    run = run_of(path_of(top))
     begin = next((event.time for event in trace if event.run == run), agent.now())
     if time < microseconds(begin):
         raise ParameterError(f"explain(at): the trace begins at {begin:g} s; what was before the trace is not known (got {at:g} s)")

@@ -1,0 +1,55 @@
+"""The time of a program: that of all its runs, one after the other. In recordings, the time of each run starts at 0."""
+
+from __future__ import annotations
+
+from array import array
+from collections import defaultdict
+from collections.abc import Iterator
+from itertools import chain, repeat
+
+from actr3d.clock import MICROSECONDS
+from actr3d.recording import Recorded
+from actr3d.trace import TraceEvent
+
+
+def timed_events(recorded: Recorded) -> Iterator[TraceEvent]:
+    """Yields the events of a recording; those of a program with their times since its start, as a run in the workbench shows them.
+
+    Raises:
+        RecordingError: If the recording is damaged.
+    """
+    if recorded.facts.get("kind") != "program":
+        yield from recorded.events()
+        return
+    clock = _Clock()
+    states = chain(recorded.states(), repeat(None))
+    state = next(states)
+    for number, event in enumerate(recorded.events()):
+        while state is not None and state.events <= number:
+            clock.advance(state.run, round(array("d", state.data[:8])[0] * MICROSECONDS))  # a state begins with its time
+            state = next(states)
+        yield event._replace(time_us=clock.at(event))
+
+
+class _Clock:
+    """Adds up the times of a program's runs."""
+
+    def __init__(self) -> None:
+        self._now = 0
+        self._reached: defaultdict[int, int] = defaultdict(int)
+        """The time of each run, by number [us]."""
+        self._latest = 1
+        """The number of the run that has begun last; its time is that of output."""
+
+    def advance(self, run: int, time: int) -> int:
+        """Advances a run to its own time [us]; returns the time of the program."""
+        passed = max(0, time - self._reached[run])
+        self._reached[run] += passed
+        self._now += passed
+        return self._now
+
+    def at(self, event: TraceEvent) -> int:
+        """Returns the time of the program at an event [us]."""
+        if event.kind == "start":
+            self._latest = event.run
+        return self.advance(self._latest if event.kind == "output" else event.run, event.time_us)
