@@ -271,8 +271,9 @@ UNDER = """() => {
   const inset = document.querySelector(".inset").getBoundingClientRect();
   return [...frame.contentDocument.querySelectorAll(".scene-labels p")].some((label) => {
     const box = label.getBoundingClientRect();
-    const isSeen = getComputedStyle(label).visibility !== "hidden";
-    return isSeen && box.left + left < inset.right && inset.left < box.right + left && box.top + top < inset.bottom && inset.top < box.bottom + top;
+    const isBeside = box.left + left >= inset.right || inset.left >= box.right + left;
+    const isAboveOrBelow = box.top + top >= inset.bottom || inset.top >= box.bottom + top;
+    return getComputedStyle(label).visibility !== "hidden" && !isBeside && !isAboveOrBelow;
   });
 }"""
 """Returns whether a label lies under the small retina."""
