@@ -55,8 +55,8 @@ function ViewBar() {
       ${canMove() || isOfProgram() ? html`<button disabled=${!canMove()} aria-label="Move, push …" title=${canMove() ? MOVES : OF_PROGRAM} onClick=${moveOrPush}><span class="in-words">Move, push …</span><${Icon} name="move" /></button>` : null}
       <button aria-expanded=${open.value} aria-label="Overlays" title="Overlays: what is drawn over the scene" onClick=${() => (open.value = !open.value)} onKeyDown=${hideByEscape}><span class="in-words">Overlays</span><${Icon} name="layers" /></button>
       <button aria-label="Save the 3D view as a picture" title=${buttonTitle(keep)} onClick=${keepPicture}><${Icon} name="download" /></button>
-      <button class="rare" aria-label="Make a video of the 3D view" title=${buttonTitle(film)} onClick=${makeVideo}><${Icon} name="film" /></button>
-      <span class="rare"><${ManualLink} page="scene" title="3D view" /></span>
+      <button aria-label="Make a video of the 3D view" title=${buttonTitle(film)} onClick=${makeVideo}><${Icon} name="film" /></button>
+      <${ManualLink} page="scene" title="3D view" />
       <${AreaMenu} area="scene" opening=${openScene} />
     </div>
     ${open.value &&

@@ -309,7 +309,11 @@ def test_at_150_percent_the_3d_view_s_tools_are_one_row_and_the_hint_is_whole(pa
     page = pages("doorway.py", 853, 533, paced=True)
     shows(page, "#status", "at its start")
     tools = page.get_by_role("toolbar", name="3D view")
+    right = "one => one.getBoundingClientRect().right"
+    assert tools.get_by_role("button", name="Arrange").evaluate(right) <= page.locator("#scene").evaluate(right)
     assert tools.evaluate("bar => bar.offsetHeight") < 2 * tools.get_by_label("Camera").evaluate("one => one.offsetHeight")
+    for name in ("Overlays", "Move, push …", "Make a video of the 3D view"):
+        expect(tools.get_by_role("button", name=name)).to_be_visible()
     tools.get_by_role("button", name="Overlays").click()
     expect(page.get_by_role("group", name="Overlays")).to_be_visible()
     hint = page.get_by_role("button", name="Real time: press + to go faster")
