@@ -79,7 +79,7 @@ export function nothing(none) {
   if (!isBare.value) return none;
   const { is, text } = runStatus.value;
   if (is === "ended") return `The program is over, and has made no model. ${AGAIN}`;
-  return is === "ready" ? `There is no model yet. ${text}` : is === "running" ? "There is no model yet." : text;
+  return is === "ready" ? `There is nothing to show yet. ${text}` : is === "running" ? "There is no model yet." : text;
 }
 
 /** Returns the text for an empty list of events; `never` is the text once the run has ended. */

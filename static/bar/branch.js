@@ -55,7 +55,7 @@ export function Branch() {
   const where = `the recording ${recording}, which is listed in Runs`;
   if (recording === recorded) {
     const title = `Changed at ${seconds(at)}; the original continuation is still in ${where}. What follows is recorded as a branch of it.`;
-    return html`<${Notice} key=${which} which=${which} title=${title}>The recording is unchanged: it still has the run up to ${seconds(until)}<//>`;
+    return html`<${Notice} key=${which} which=${which} title=${title}>The recording keeps the run up to ${seconds(until)}<//>`;
   }
   const open = () => openRun({ id: recording, model, made });
   return html`<${Notice} key=${which} which=${which} title="Changed at ${seconds(at)}; the original continuation is kept as ${where}">

@@ -10,6 +10,12 @@ import { travel } from "../timeline/seek.js";
 
 /** The model files of the folder: {path, title, kind}. */
 export const models = signal([]);
+/** Returns the name of a model's file, with its folder if another folder has a file of that name. */
+export function shortName(path) {
+  const nameOf = (one) => one.split("/").at(-1);
+  return models.value.some((one) => one.path !== path && nameOf(one.path) === nameOf(path)) ? path : nameOf(path);
+}
+
 /** The path of the folder. */
 export const folder = signal("");
 /** Whether the manual is there. */
@@ -183,16 +189,16 @@ export function ModelChoice() {
   const shown = recorded !== null ? "" : session.value?.model ?? model.value ?? "";
   const gone = shown && models.value.length > 0 && !models.value.some(({ path }) => path === shown);
   const folders = Map.groupBy(models.value, ({ path }) => path.split("/").slice(0, -1).join("/"));
-  const option = ({ path, title }) => html`<option key=${path} value=${path} title=${title}>${path.split("/").at(-1)}</option>`;
+  const option = ({ path, title }) => html`<option key=${path} value=${path} title=${title}>${shortName(path)}</option>`;
   return html`<select
     class="model"
     aria-label="Model"
-    title=${models.value.find(({ path }) => path === shown)?.title ?? ""}
+    title=${recorded !== null ? `recording of ${session.value.model}` : models.value.find(({ path }) => path === shown)?.title ?? ""}
     value=${shown}
     onChange=${(event) => choose(event.currentTarget.value)}
   >
     ${models.value.length === 0 ? html`<option value="">no models</option>` : null}
-    ${recorded !== null ? html`<option value="">recording of ${session.value.model.split("/").at(-1)}</option>` : null}
+    ${recorded !== null ? html`<option value="">a recording</option>` : null}
     ${gone ? html`<option value=${shown}>${shown} (not in the folder)</option>` : null}
     ${[...folders].map(([folder, list]) => (folder ? html`<optgroup key=${folder} label=${folder}>${list.map(option)}</optgroup>` : list.map(option)))}
   </select>`;

@@ -24,13 +24,15 @@ export function StatusLine() {
   const { is, line } = runStatus.value;
   return html`<footer class="status-line">
     <span id="status" role="status" class=${BAD.includes(is) ? "bad" : is} title=${line}>${line}</span>
-    <${Hint} />
-    <span class="stretch"></span>
-    ${embedded === null ? html`<${Branch} /><${Former} /><${Share} />` : null}
-    ${recording ? html`<span class="fact" title="Kept as this recording">rec ${recording}</span>` : null}
-    ${seed !== null && seed !== undefined ? html`<span class="fact" title="The seed of the run">seed ${String(seed)}</span>` : null}
-    <span class="fact">${counted(state.value?.events ?? 0, "event")}</span>
-    ${watching.length > 1 ? html`<span id="browsers" title="All can control the run; the last to do something is in control">${pagesText(watching, control)}</span>` : null}
+    <span class="if-room hint"><${Hint} /></span>
+    ${embedded === null ? html`<${Branch} /><${Former} />` : null}
+    <span class="if-room facts">
+      ${watching.length > 1 ? html`<span id="browsers" title="All can control the run; the last to do something is in control">${pagesText(watching, control)}</span>` : null}
+      <span>${counted(state.value?.events ?? 0, "event")}</span>
+      ${seed !== null && seed !== undefined ? html`<span title="The seed of the run">seed ${String(seed)}</span>` : null}
+      ${recording ? html`<span title="Kept as this recording">rec ${recording}</span>` : null}
+    </span>
+    ${embedded === null ? html`<${Share} />` : null}
     <span id="connection" class=${connected.value === false ? "bad" : ""}>
       ${connected.value === false ? LOST : connected.value ? "connected" : "connecting …"}
     </span>

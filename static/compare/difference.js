@@ -1,8 +1,9 @@
 // The first event at which the traces of two runs differ, with the events before and after it.
 
-import { html } from "../vendor/preact.js";
+import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { chunkText, valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
+import { commandText } from "../timeline/commands.js";
 
 const KINDS = [
   ["all events", []],
@@ -13,12 +14,30 @@ const KINDS = [
   ["output", ["output"]],
 ];
 
+const isCommand = (event) => event?.[2] === "command";
+
+/** Returns the data of an event as text; a command as the timeline shows it. */
+function dataText(event) {
+  return isCommand(event) ? commandText(event).join(" ") : chunkText(event[3]);
+}
+
+/** Returns what differs between two events, as [name, one, other]. */
+function differing({ what, events }) {
+  const rows = what.map(([name, one, other]) => [name, valueText(one), valueText(other)]);
+  if (!events.every(isCommand)) return rows;
+  const [[name, one], [otherName, other]] = events.map((event) => commandText(event));
+  if (name === otherName && one === other) return rows;
+  const command = name === otherName ? [name, one, other] : ["command", `${name} ${one}`, `${otherName} ${other}`];
+  return [...rows.filter(([part]) => ["time", "source"].includes(part)), command];
+}
+
 function Cells({ event, none }) {
   if (!event) return html`<td colspan="4" class="empty">${none}</td>`;
-  const [time, source, kind, data] = event;
+  const [time, source, kind] = event;
+  const text = dataText(event);
   return html`
     <td class="number">${(time / 1e6).toFixed(3)}</td><td class="mono" title=${source}>${source}</td><td>${kind}</td>
-    <td class="mono particulars" title=${chunkText(data)}>${chunkText(data)}</td>
+    <td class="mono particulars" title=${text}>${text}</td>
   `;
 }
 
@@ -32,10 +51,11 @@ function headline({ same_events: same, whole, difference }) {
   return `${first} the same; the traces part at ${difference.time.toFixed(3)} s.`;
 }
 
-function What({ what }) {
+function What({ difference }) {
+  const what = differing(difference);
   if (what.length === 0) return null;
   return html`<ul class="what" aria-label="What differs">
-    ${what.map(([name, one, other]) => html`<li key=${name}><b>${name}</b> <span class="mono"><span class="dot first"></span>${valueText(one)}</span> <span class="mono"><span class="dot second"></span>${valueText(other)}</span></li>`)}
+    ${what.map(([name, one, other]) => html`<li key=${name}><b>${name}</b> <span class="mono"><span class="dot first"></span>${one}</span> <span class="mono"><span class="dot second"></span>${other}</span></li>`)}
   </ul>`;
 }
 
@@ -43,7 +63,19 @@ function Rows({ difference }) {
   const { before, events, after } = difference;
   const rest = Array.from({ length: Math.max(after[0].length, after[1].length) }, (_, n) => [after[0][n], after[1][n]]);
   const over = "no more events";
-  return html`<div class="parting" tabindex="0" role="region" aria-label="Events side by side"><table aria-label="Events around the first difference">
+  const box = useRef(null);
+  // The first difference is in sight, also in a smaller window.
+  useLayoutEffect(() => {
+    const show = () => {
+      const here = box.current.querySelector(".here");
+      box.current.scrollTop = here.offsetTop - (box.current.clientHeight - here.offsetHeight) / 2;
+    };
+    show();
+    const watch = new ResizeObserver(() => box.current && show());
+    watch.observe(box.current);
+    return () => watch.disconnect();
+  }, [difference]);
+  return html`<div class="parting" ref=${box} tabindex="0" role="region" aria-label="Events side by side"><table aria-label="Events around the first difference">
     <thead><tr>${["first", "second"].map((side) => html`<th class="number" scope="col"><span class="dot ${side}"></span>time</th><th scope="col">source</th><th scope="col">kind</th><th scope="col">data</th>`)}</tr></thead>
     <tbody>
       ${before.map((event, n) => html`<tr key="b${n}" class="same"><${Cells} event=${event} /><${Cells} event=${event} /></tr>`)}
@@ -68,6 +100,6 @@ export function Difference({ answer, waiting, kinds }) {
       </select>
       <p role="status" class="headline">${waiting ? html`<progress aria-label="Comparing"></progress> ` : null}${headline(answer)}</p>
     </header>
-    ${difference ? html`<${What} what=${difference.what} /><${Rows} difference=${difference} />` : null}
+    ${difference ? html`<${What} difference=${difference} /><${Rows} difference=${difference} />` : null}
   </section>`;
 }

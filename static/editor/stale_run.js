@@ -39,8 +39,8 @@ export function Former() {
   const facts = former.value;
   // The editor shows this itself, beside the text.
   if (!facts || (openTab.value === "editor" && shown.value.path === facts.path)) return null;
-  return html`<span class="former" role="status">
-    ${facts.text}
+  return html`<span class="former" role="status" title=${facts.text}>
+    <span>${facts.text}</span>
     ${facts.gone ? null : html`<button onClick=${() => runNew(facts.path)}>Run the new one</button>`}
   </span>`;
 }

@@ -4,6 +4,7 @@ import { html, signal, useEffect, useLayoutEffect, useSignal } from "../vendor/p
 import { remembered } from "../local_storage.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
+import { Prose } from "../parts/prose.js";
 import { call } from "../server.js";
 import { session } from "../store.js";
 import { experiments, isRunning, shown, startExperiment } from "./list.js";
@@ -236,7 +237,7 @@ export function NewExperiment() {
     </div>
     ${problem.value ? html`<p class="problem bad" role="alert">The designs cannot be listed: ${problem.value}</p>` : null}
     <div class="new">
-      ${chosen ? html`<div class="description">${chosen.description.split("\n\n").map((text, n) => html`<p key=${n} class=${n ? "quiet" : ""}>${text}</p>`)}</div>` : null}
+      ${chosen ? html`<div class="description"><${Prose} text=${chosen.description} /></div>` : null}
       ${facts ? html`<${Form} key=${design} design=${design} facts=${facts} />` : null}
     </div>
     ${chosen ? html`<${Foot} key=${design} design=${design} facts=${facts} error=${error} />` : null}

@@ -3,6 +3,7 @@
 import { html, useSignal, useEffect } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { Icon } from "../parts/icon.js";
+import { Prose } from "../parts/prose.js";
 import { whenInFull, whenText } from "../runs/wording.js";
 import { call } from "../server.js";
 import { useFresh } from "./answer.js";
@@ -57,7 +58,7 @@ function About({ experiment, facts }) {
     ["seed", facts.seed],
   ];
   return html`<div class="about-design">
-    <div class="description">${(facts.description ?? "").split("\n\n").map((text, n) => html`<p key=${n} class=${n ? "quiet" : ""}>${text}</p>`)}</div>
+    <div class="description"><${Prose} text=${facts.description ?? ""} /></div>
     <table><tbody>${rows.filter(([, value]) => value !== undefined && value !== "").map(([name, value]) => html`<tr key=${name}><th scope="row">${name}</th><td>${value}</td></tr>`)}</tbody></table>
   </div>`;
 }

@@ -1,6 +1,7 @@
 // The model's description: its docstring, with values to try, and links to its source and its page in the manual.
 
 import { h, html } from "../vendor/preact.js";
+import { shortName } from "../bar/models.js";
 import { useDescription } from "../inspector/description.js";
 import { Icon } from "../parts/icon.js";
 import { openAt } from "../parts/place.js";
@@ -38,7 +39,7 @@ function About() {
   const shown = session.value;
   const { answer, problem } = useDescription();
   if (!shown) return html`<p class="empty">${runStatus.value.text}</p>`;
-  const file = shown.model.split("/").at(-1);
+  const file = shortName(shown.model);
   const isLost = runStatus.value.is === "unloadable";
   return html`<div class="about-frame"><article class="about">
     <header>

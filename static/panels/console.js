@@ -14,6 +14,7 @@ import { openTab } from "../open_tab.js";
 import { nothingYet } from "../run_status.js";
 import { alive, moment, notices, session, state } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
+import { inThePast } from "../timeline/seek.js";
 
 const SIDES = 40; // the room for the margins of a row and for a scroll bar [px]
 const LONGEST = 2000; // the number of characters of a line that are drawn
@@ -108,7 +109,8 @@ function listing(memo = (make) => make()) {
     return wanted ? past.filter(({ text }) => has(text)) : past;
   }, [version, first, present, wanted]);
   const listed = new Listed(shown, wanted ? messages.filter((notice) => has(textOf(notice))) : messages);
-  return { listed, ahead: lines.length - present, all: present - first + messages.length, gaps, dropped, cleared, of };
+  // Lines can arrive before the state of their moment; they are only ahead if the user has gone back.
+  return { listed, ahead: inThePast.value ? lines.length - present : 0, all: present - first + messages.length, gaps, dropped, cleared, of };
 }
 
 function Line({ entry: [line, row] }) {

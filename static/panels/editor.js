@@ -52,6 +52,7 @@ commandsOf(() =>
     ...INSERTIONS.map(({ text, work }) => ({ text: `Insert a snippet: ${text}`, work })),
     { text: "New model …", work: makeNew, ready: () => true },
     { text: "Duplicate the file …", work: () => duplicate(shown.value.path) },
+    { text: "Check: load the text, and list what is wrong", work: () => checkByLoading(shownDocument()) },
     { text: "Rename the file …", work: () => rename(shown.value.path) },
     { text: "Delete the file …", work: () => remove(shown.value.path, shownDocument().dirty.value) },
   ].map(({ key = null, text, work, ready = hasText }) => {
@@ -113,8 +114,9 @@ function Files({ path, document }) {
 
 function Standing({ document }) {
   const dirty = document.dirty.value;
+  const full = `${folder.value}/${document.path}`;
   return html`<div class="file-status">
-    <span class="path" title="${folder.value}/${document.path}">${folder.value}/</span>
+    <span class="path" title=${full}>${full.slice(0, full.lastIndexOf("/") + 1)}</span>
     <span class=${dirty ? "state unsaved" : "state quiet"} role="status">
       ${document.saving.value ? "saving …" : dirty ? `● unsaved${document.note.value && document.note.value !== "saved" ? `: ${document.note.value}` : ""}` : document.note.value}
     </span>

@@ -52,8 +52,8 @@ function ViewBar() {
         ${Object.entries(VIEWS).map(([id, title]) => html`<option key=${id} value=${id}>${title}</option>`)}
       </select>
       <button aria-label="Reset view" title=${buttonTitle(reset)} onClick=${resetView}><${Icon} name="restart" /></button>
-      ${canMove() || isOfProgram() ? html`<button disabled=${!canMove()} title=${canMove() ? MOVES : OF_PROGRAM} onClick=${moveOrPush}>Move, push …</button>` : null}
-      <button aria-expanded=${open.value} title="What is drawn over the scene" onClick=${() => (open.value = !open.value)} onKeyDown=${hideByEscape}>Overlays</button>
+      ${canMove() || isOfProgram() ? html`<button disabled=${!canMove()} aria-label="Move, push …" title=${canMove() ? MOVES : OF_PROGRAM} onClick=${moveOrPush}><span class="in-words">Move, push …</span><${Icon} name="move" /></button>` : null}
+      <button aria-expanded=${open.value} aria-label="Overlays" title="Overlays: what is drawn over the scene" onClick=${() => (open.value = !open.value)} onKeyDown=${hideByEscape}><span class="in-words">Overlays</span><${Icon} name="layers" /></button>
       <button aria-label="Save the 3D view as a picture" title=${buttonTitle(keep)} onClick=${keepPicture}><${Icon} name="download" /></button>
       <button aria-label="Make a video of the 3D view" title=${buttonTitle(film)} onClick=${makeVideo}><${Icon} name="film" /></button>
       <${ManualLink} page="scene" title="3D view" />

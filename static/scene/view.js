@@ -72,6 +72,18 @@ function room() {
 
 camera.room = room;
 
+const OVER = ".inset, .inset-closed, .view-bar"; // what the page shows over the picture
+
+/** Returns the rectangles of the picture that the page covers. */
+function covered() {
+  if (parent === window) return [];
+  const { left, top } = frameElement.getBoundingClientRect();
+  return [...frameElement.parentElement.querySelectorAll(OVER)].map((one) => {
+    const box = one.getBoundingClientRect();
+    return { left: box.left - left, top: box.top - top, width: box.width, height: box.height };
+  });
+}
+
 /** Returns the number of the moment at which the shapes are drawn; null as long as there are no shapes. */
 function drawnNumber() {
   let number = null;
@@ -160,7 +172,7 @@ viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   const shade = theme();
   labels.layer.dataset.theme = shade;
   ground.draw(shade, camera.horizon(stage), stage, camera.flat);
-  labels.draw(now.labels, now.heads, camera);
+  labels.draw(now.labels, now.heads, camera, covered());
 };
 
 /** Without a surrounding page, it has buttons of its own. */
@@ -184,4 +196,6 @@ given.drawnTime = () => (isWhole() ? (drawnNow()?.time ?? null) : null);
 given.onview = choose;
 given.camera = camera;
 choose();
-new MutationObserver(() => viewer.requestRender()).observe((parent === window ? document : parent.document).documentElement, { attributeFilter: ["data-theme", "data-mantine-color-scheme"] });
+const draws = new MutationObserver(() => viewer.requestRender());
+if (parent !== window) draws.observe(frameElement.parentElement, { childList: true }); // another part of the picture is covered
+draws.observe((parent === window ? document : parent.document).documentElement, { attributeFilter: ["data-theme", "data-mantine-color-scheme"] });

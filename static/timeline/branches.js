@@ -10,6 +10,7 @@ import { deleteRuns, openRun } from "../runs/actions.js";
 import { labelRun } from "../runs/label.js";
 import { follow, present, runs } from "../runs/list.js";
 import { outcomeText, whenText } from "../runs/wording.js";
+import { counted } from "../parts/count.js";
 import { choose } from "../bar/models.js";
 import { call } from "../server.js";
 import { alive, complain, session, state } from "../store.js";
@@ -161,7 +162,7 @@ export function Branches() {
   }, [several]);
   if (!several) return null;
   return html`<section ref=${box} class="branches" aria-label="Branches">
-    <button class="bare branches-head" aria-expanded=${open.value} onClick=${() => (open.value = !open.value)}><${Icon} name=${open.value ? "down" : "right"} />${tree.value.length} branches</button>
+    <button class="bare branches-head" aria-expanded=${open.value} onClick=${() => (open.value = !open.value)}><${Icon} name=${open.value ? "down" : "right"} />${counted(tree.value.filter(({ depth }) => depth > 0).length, "branch", "branches")}</button>
     ${open.value ? html`<ul>${tree.value.map(({ run, depth }) => html`<${Row} key=${run.id} run=${run} depth=${depth} width=${width} />`)}</ul>` : null}
   </section>`;
 }

@@ -33,6 +33,7 @@ def test_a_branch_is_deleted_by_its_name_and_its_notice_goes_with_it(page: Page)
     shows(page, "#status", "at its start")
     change_the_past(page)
     expect(page.locator(".branched")).to_have_count(1)
+    expect(page.locator(".branches-head")).to_have_text("1 branch")
     page.get_by_role("button", name="Delete at 0.50 s").click()
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text(re.compile(r"Delete the recording «doorway\.py .* branch at 0\.50 s»[?]"))
@@ -41,6 +42,29 @@ def test_a_branch_is_deleted_by_its_name_and_its_notice_goes_with_it(page: Page)
     expect(page.locator(".branches")).to_have_count(0)
     assert page.evaluate("async () => (await part('store.js')).session.value.branched.kept") is False  # on other pages, too
     until(page, lambda: page.evaluate("document.activeElement !== document.body"))
+
+
+WHOLE = """() => {
+  const box = (one) => one.getBoundingClientRect();
+  const facts = document.querySelector(".facts");
+  const isWhole = (one) => box(one).left >= box(facts).left && box(one).right <= box(facts).right && one.scrollWidth <= one.clientWidth;
+  const seen = [...facts.children].filter((one) => box(one).top < box(facts).bottom);
+  const whole = [...document.querySelectorAll("#status, #connection, .former > span")].every((one) => one.scrollWidth <= one.clientWidth);
+  return [whole && seen.every(isWhole), seen.length];
+}"""
+"""Returns whether no text of the status line is cut, and how many facts are seen."""
+
+
+@pytest.mark.slow
+def test_in_the_status_line_facts_are_left_out_before_a_text_is_cut(pages: Callable[..., Page]) -> None:
+    page, other = pages(), pages()
+    shows(page, "#status", "at its start")
+    shows(other, "#status", "at its start")
+    change_the_past(page)
+    expect(page.locator("#browsers")).to_have_text("2 pages show this run, you are in control")
+    for width, seen in ((1920, 4), (1280, 3), (853, 0)):
+        page.set_viewport_size({"width": width, "height": 533})
+        until(page, lambda seen=seen: page.evaluate(WHOLE) == [True, seen])
 
 
 @pytest.mark.slow
@@ -100,5 +124,5 @@ def test_a_recording_that_is_changed_is_not_said_to_have_a_branch(pages: Callabl
     page.goto(f"{page.url.partition('?')[0]}?run={name}")
     expect(page.locator(".recording-banner")).to_contain_text("1.00 s are known")
     change_the_past(page)
-    shows(page, ".branched", r"The recording is unchanged: it still has the run up to 1\.00 s")
+    shows(page, ".branched", r"The recording keeps the run up to 1\.00 s")
     expect(page.locator(".branched")).not_to_contain_text("branch")

@@ -305,6 +305,46 @@ def test_nothing_overflows_at_any_usual_size(pages: Callable[..., Page]) -> None
 
 
 @pytest.mark.slow
+def test_at_150_percent_the_3d_view_s_tools_are_one_row_and_the_hint_is_whole(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py", 853, 533, paced=True)
+    shows(page, "#status", "at its start")
+    tools = page.get_by_role("toolbar", name="3D view")
+    right = "one => one.getBoundingClientRect().right"
+    assert tools.get_by_role("button", name="Arrange").evaluate(right) <= page.locator("#scene").evaluate(right)
+    assert tools.evaluate("bar => bar.offsetHeight") < 2 * tools.get_by_label("Camera").evaluate("one => one.offsetHeight")
+    for name in ("Overlays", "Move, push …", "Make a video of the 3D view"):
+        expect(tools.get_by_role("button", name=name)).to_be_visible()
+    tools.get_by_role("button", name="Overlays").click()
+    expect(page.get_by_role("group", name="Overlays")).to_be_visible()
+    hint = page.get_by_role("button", name="Real time: press + to go faster")
+    assert hint.evaluate("one => one.scrollWidth <= one.clientWidth && one.offsetWidth <= one.parentElement.clientWidth")
+    page.keyboard.press("?")
+    manual = page.get_by_role("dialog").get_by_role("link", name="Manual of ACT-R 3D")
+    assert manual.evaluate("({ parentElement: line }) => line.scrollHeight <= line.clientHeight")
+
+
+@pytest.mark.slow
+def test_models_of_one_name_are_told_apart(pages: Callable[..., Page], workbench: Served) -> None:
+    folder = workbench.folder / "tutorial"
+    folder.mkdir()
+    for name in ("counting.py", "other.py"):
+        shutil.copy(MODELS / "counting.py", folder / name)
+    page = pages("tutorial/counting.py", tab="editor")
+    shows(page, "#status", "at its start")
+    model = page.get_by_label("Model", exact=True)
+    assert model.evaluate("list => list.selectedOptions[0].text") == "tutorial/counting.py"
+    assert model.evaluate("list => [...list.options].map(({ text }) => text)").count("counting.py") == 1
+    assert "other.py" in model.evaluate("list => [...list.options].map(({ text }) => text)")
+    expect(page.locator(".file-status .path")).to_have_text(re.compile("/models/tutorial/$"))
+    shutil.rmtree(folder)
+
+
+def test_code_in_texts_of_the_page_has_no_backticks(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="parameters")
+    shows(page, "#panel-parameters", "A frozen dataclass that build takes")
+
+
+@pytest.mark.slow
 def test_all_tools_of_the_timeline_are_in_reach_at_150_percent(pages: Callable[..., Page], workbench: Served) -> None:
     shutil.copy(MODELS / "aperture_passage.py", workbench.folder)
     page = pages("aperture_passage.py", 853, 533)

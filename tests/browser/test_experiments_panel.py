@@ -30,6 +30,8 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
     designs = page.get_by_label("Design", exact=True)
     expect(designs).to_have_value(design)  # of the file that is shown
     designs.select_option("fan_effect")
+    designs.select_option("critical_ratio")
+    expect(page.locator(".description code")).to_have_text("predictive")
     designs.select_option(design)
     foot = page.locator(".foot")
     expect(foot).to_contain_text("24 trials")

@@ -183,6 +183,10 @@ def test_the_console_shows_output_as_it_is_printed_and_goes_back_with_the_run(pa
     shows(page, ".console", "Earlier lines are cleared")
     page.locator(".console").get_by_role("button", name="Show all").click()
     expect(lines(page)).to_have_count(9)
+    # Lines that arrive before the state of their moment are not ahead of it.
+    page.evaluate("async () => { const { state } = await part('store.js'); state.value = { ...state.value, events: 0 }; }")
+    expect(lines(page)).to_have_count(0)
+    expect(page.locator(".console")).not_to_contain_text("after this moment")
     page.click("#back")
     shows(page, "#status", "went to this time")
     expect(lines(page)).to_have_count(6)

@@ -24,7 +24,7 @@ def places(page: Page) -> dict[str, Any]:
 
 def test_the_graph_shows_what_is_read_written_asked_and_filled(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", tab="graph")
-    shows(page, ".graph", "There is no model yet")
+    shows(page, ".graph", "There is nothing to show yet. Press Run")
     # Of a size that changes another one the browser reports that it takes two pictures: no fault of the page.
     page.evaluate("dispatchEvent(new ErrorEvent('error', { message: 'ResizeObserver loop completed with undelivered notifications.' }))")
     expect(page.locator(".toast")).to_have_count(0)

@@ -90,6 +90,7 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
         "Page: Theme: light, dark, or as the system has it",
         "Editor: Save the text",
         "Editor: Format",
+        "Editor: Check: load the text, and list what is wrong",
         "Editor: Insert a snippet: a production",
         "Console: Clear the console",
         "Change by hand: production: Forbid once …",

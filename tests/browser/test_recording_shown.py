@@ -33,6 +33,7 @@ def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, work
     banner = page.locator(".recording-banner")
     expect(banner).to_contain_text(name)
     expect(banner).to_contain_text("6.80 s are known")
+    expect(banner).to_contain_text(re.compile(r"made \S+ \d+, \d{4}, \d\d:\d\d:\d\d "))  # not «3:03:40 PM»
     shows(page, "#time", "t = 0.00 s")
     assert page.url.endswith(f"/?run={name}")
     open_tab(page, "Productions")
@@ -84,6 +85,7 @@ def test_the_page_fits_its_window_whatever_a_recording_is_called(pages: Pages, w
         for width in (1280, 1024):
             page.set_viewport_size({"width": width, "height": 800})
             assert page.evaluate("document.documentElement.scrollWidth") == width
+            assert banner.locator("> span").last.evaluate("one => one.scrollWidth <= one.clientWidth"), "the name gives way"
             expect(banner.locator("button, select")).to_have_count(1)
             page.wait_for_function(
                 "document.querySelector('.recording-banner :is(button, select)').getBoundingClientRect().right <= innerWidth"
@@ -160,7 +162,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     order("seek", 1)
     drag("End")
     shows(page, "#status", r"paused: changed at 1\.00 s; the recording keeps the rest")  # without a question
-    expect(page.locator(".recording-banner")).to_contain_text("You have changed its course")
+    expect(page.locator(".recording-banner")).to_contain_text("Changed: what follows is recorded as a branch")
     width = page.locator("#width").inner_text()
     order("until", 2)
     order("seek", 1.5)

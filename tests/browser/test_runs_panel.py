@@ -230,6 +230,12 @@ def test_what_the_present_run_writes_is_not_deleted(pages: Callable[..., Page], 
     assert (recordings / f"{name}.sqlite").exists()
 
 
+IN_ITS_BOX = """row => {
+  const [inner, outer] = [row, row.closest(".parting")].map((one) => one.getBoundingClientRect());
+  return inner.top >= outer.top && inner.bottom <= outer.bottom;
+}"""
+
+
 @pytest.mark.slow
 def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     open_tab(page, "Runs")
@@ -241,9 +247,13 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     expect(sides.locator("tr.other").first).to_have_text(re.compile(r"≠width \[m\]0.[59]0.[59]"))
     expect(sides).to_contain_text("seed11")
     page.set_viewport_size({"width": 853, "height": 533})  # 1280 x 800 at 150 %
-    facts = dialog.locator(".compare-facts")
-    assert facts.evaluate("box => box.scrollWidth <= box.clientWidth"), "the table fits"
+    fits = "box => box.scrollWidth <= box.clientWidth"
+    assert dialog.locator(".compare-facts").evaluate(fits), "the table fits"
+    assert dialog.locator(".parting").evaluate(fits), "both runs of the trace"
+    expect(dialog.get_by_role("figure").first.locator("canvas")).to_be_in_viewport(ratio=0.7)
+    until(page, lambda: dialog.locator(".parting tr.here").evaluate(IN_ITS_BOX))
     page.set_viewport_size({"width": 1280, "height": 800})
+    assert dialog.locator(".plot-of").evaluate_all("all => all.every((one) => one.scrollWidth <= one.clientWidth)"), "no name is cut"
     sides.get_by_label("differences only").check()
     expect(sides).not_to_contain_text("seed")
 
@@ -288,6 +298,24 @@ def test_changes_during_a_run_are_shown_beside_its_initial_values(page: Page, tw
     page.get_by_role("button", name="Compare with the present run").click()
     sides = page.get_by_role("dialog", name="Two runs").get_by_role("table", name="Side by side")
     expect(sides.get_by_role("row", name=re.compile("width"))).to_have_text(re.compile(r"≠width \[m\]0\.5.* → 0\.9 at 0\.01 s$"))
+
+
+@pytest.mark.slow
+def test_commands_that_differ_are_worded_as_on_the_timeline(page: Page, recordings: Path) -> None:
+    say = "async (command) => void (await (await part('server.js')).say(command))"
+    expect(page.locator("#status")).to_have_text(re.compile("at its start"))
+    page.evaluate(say, {"type": "until", "time": 0.2})
+    expect(page.locator("#status")).to_have_text(re.compile(r"at 0\.2 s"))
+    page.evaluate(say, {"type": "command", "word": "aperture", "values": [0.51]})
+    page.evaluate(say, {"type": "step", "ticks": 5})
+    expect(page.locator("#time")).to_have_text("t = 0.25 s")
+    page.evaluate(say, {"type": "seek", "time": 0.2})
+    page.evaluate(say, {"type": "command", "word": "aperture", "values": [0.49]})
+    page.get_by_role("region", name="Branches").get_by_role("button", name="Compare").click()
+    dialog = page.get_by_role("dialog", name="Two runs")
+    dialog.get_by_label("Which events are compared").select_option("all events")
+    expect(dialog.get_by_role("list", name="What differs").get_by_role("listitem")).to_have_text("aperture 51 cm 49 cm")
+    expect(dialog.locator(".parting tr.here .particulars")).to_have_text(["aperture 51 cm", "aperture 49 cm"])
 
 
 @pytest.mark.slow

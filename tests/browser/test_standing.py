@@ -55,7 +55,7 @@ def test_all_panels_say_the_same_of_the_state_of_the_run_and_what_to_do(pages: C
 
     shows(page, "#status", "^paused: at its start$")
     says(page, "These are in its text. Press Run: the program makes its model as it goes.", ("Buffers",))
-    says(page, "There is no model yet. Press Run: the program makes its model as it goes.", ("Memory", "Eye"))
+    says(page, "There is nothing to show yet. Press Run: the program makes its model as it goes.", ("Memory", "Eye"))
     says(page, "Nothing has happened yet. Press Run", ("Productions",))
     expect(timeline).to_contain_text("Nothing has happened yet. Press Run")
 

@@ -265,6 +265,44 @@ def test_with_the_body_it_stays_in_the_middle_whatever_the_user_does(pages: Call
     in_the_middle(page, frame)
 
 
+UNDER = """() => {
+  const frame = document.querySelector("#scene iframe");
+  const { left, top } = frame.getBoundingClientRect();
+  const inset = document.querySelector(".inset").getBoundingClientRect();
+  return [...frame.contentDocument.querySelectorAll(".scene-labels p")].some((label) => {
+    const box = label.getBoundingClientRect();
+    const isBeside = box.left + left >= inset.right || inset.left >= box.right + left;
+    const isAboveOrBelow = box.top + top >= inset.bottom || inset.top >= box.bottom + top;
+    return getComputedStyle(label).visibility !== "hidden" && !isBeside && !isAboveOrBelow;
+  });
+}"""
+"""Returns whether a label lies under the small retina."""
+
+
+@pytest.mark.slow
+def test_no_label_lies_under_the_retina(pages: Callable[..., Page]) -> None:
+    page = pages()
+    frame = frame_of(page)
+    in_the_middle(page, frame)
+    expect(page.locator(".inset")).to_be_visible()
+    page.get_by_role("button", name="Hide the retina").click()
+    page.add_style_tag(content=".inset { inset: 40px 0 0 0 !important; width: auto !important; height: auto !important; }")
+    frame.evaluate(
+        """() => {
+          const { now } = window.scene.facts;
+          window.scene.receive("now", { ...now, labels: [{ text: "opening 50 cm", place: [2, 0, 1], chosen: true }] });
+          window.__viserMutable.requestRender();
+        }"""
+    )
+    label = frame.locator(".scene-labels p")
+    expect(label).to_be_visible()
+    page.get_by_role("button", name="Eye", exact=True).click()
+    expect(page.locator(".inset")).to_be_visible()
+    until(page, lambda: not page.evaluate(UNDER))
+    page.get_by_role("button", name="Hide the retina").click()
+    expect(label).to_be_visible()
+
+
 def test_the_view_is_saved_as_a_picture_with_sky_and_labels(pages: Callable[..., Page], tmp_path: Path) -> None:
     page = pages()
     frame = frame_of(page)
