@@ -28,7 +28,7 @@ def timed_events(recorded: Recorded) -> Iterator[TraceEvent]:
         while state is not None and state.events <= number:
             clock.advance(state.run, round(array("d", state.data[:8])[0] * MICROSECONDS))  # a state begins with its time
             state = next(states)
-        yield event._replace(time_us=clock.at(event))
+        yield TraceEvent(clock.at(event), *event[1:])
 
 
 class _Clock:

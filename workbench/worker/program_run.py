@@ -447,7 +447,7 @@ class ProgramRun(ControlledRun):
 
     def events(self, first: int, end: int) -> list[TraceEvent]:
         times = self._times.between(first, end)  # of an event that another thread is adding there may be none yet
-        return [event._replace(time_us=time) for event, time in zip(super().events(first, end), times, strict=False)]
+        return [TraceEvent(time, *event[1:]) for event, time in zip(super().events(first, end), times, strict=False)]
 
     def own_time(self, source: str, time: int) -> int | None:
         return self._times.own(run_of(source), time)
