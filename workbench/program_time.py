@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from array import array
 from collections import defaultdict
 from collections.abc import Iterator
 from itertools import chain, repeat
+from struct import error as StructError  # noqa: N812 - it is a class
+from struct import unpack_from
 
 from actr3d.clock import MICROSECONDS
+from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent
 
@@ -26,9 +28,18 @@ def timed_events(recorded: Recorded) -> Iterator[TraceEvent]:
     state = next(states)
     for number, event in enumerate(recorded.events()):
         while state is not None and state.events <= number:
-            clock.advance(state.run, round(array("d", state.data[:8])[0] * MICROSECONDS))  # a state begins with its time
+            clock.advance(state.run, _time_of(state.data))
             state = next(states)
         yield TraceEvent(clock.at(event), *event[1:])
+
+
+def _time_of(state: bytes) -> int:
+    """Returns the time at the start of a physics state [us]."""
+    try:
+        (time,) = unpack_from("d", state)
+        return round(time * MICROSECONDS)
+    except (StructError, ValueError, OverflowError):  # too short, or no finite number
+        raise RecordingError("a state has no time") from None
 
 
 class _Clock:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from struct import pack
 
 import pytest
 
-from actr3d.recording import Recorded
+from actr3d.errors import RecordingError
+from actr3d.recording import Recorded, Recording
+from actr3d.trace import TraceEvent
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.exports import EXPORTS
 from workbench.program_time import timed_events
@@ -135,6 +138,15 @@ def test_a_recording_of_a_program_counts_its_time_in_the_same_way(desk: Desk, tm
     difference = compare(path, other.sessions.recordings.path(other.facts["recording"]))["difference"]
     assert difference["time"] >= 0.1
     assert difference["events"][0][0] == events[difference["number"]][0]
+
+
+@pytest.mark.parametrize("state", [b"short", pack("d", float("nan")), pack("d", float("inf"))])
+def test_a_forged_state_without_a_time_is_refused(tmp_path: Path, state: bytes) -> None:
+    with Recording(tmp_path / "forged", {"kind": "program"}) as recording:
+        recording.state(1, 0, state)
+        recording.event_alone(TraceEvent(0, "top", "run", {}))
+    with Recorded(tmp_path / "forged") as recorded, pytest.raises(RecordingError, match="a state has no time"):
+        list(timed_events(recorded))
 
 
 def test_explanations_have_the_times_of_the_clock(desk: Desk, tmp_path: Path) -> None:

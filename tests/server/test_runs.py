@@ -123,7 +123,7 @@ def test_a_summary_is_read_again_when_its_file_has_changed(desk: Desk, tmp_path:
 
 
 def test_the_first_difference_has_its_surroundings(tmp_path: Path) -> None:
-    one = written(tmp_path, "a", [*firing(20, "left"), *firing(1)], parameters={"width": 0.5, "same": 1})
+    one = written(tmp_path, "a", [*firing(20, "left"), firing(21)[-1]], parameters={"width": 0.5, "same": 1})
     other = written(tmp_path, "b", firing(20, "right"), parameters={"width": 0.9, "same": 1}, sources={"m.py": "x = 1\ny = 3\n"})
     told = compare(one, other)
     assert told["parameters"] == {"width": [0.5, 0.9]}
@@ -132,7 +132,7 @@ def test_the_first_difference_has_its_surroundings(tmp_path: Path) -> None:
     assert (difference["number"], difference["time"]) == (19, 0.95)
     assert difference["what"] == [["production", "left", "right"]]
     assert [event[0] for event in difference["before"]] == [50_000 * n for n in range(19 - CONTEXT, 19)]
-    assert difference["after"] == [[[0, "agent", "fire", {"production": "go", "bound": None}]], []]
+    assert difference["after"] == [[[1_000_000, "agent", "fire", {"production": "go", "bound": None}]], []]
     assert "-y = 2" in told["text"]
     assert "+y = 3" in told["text"]
 
