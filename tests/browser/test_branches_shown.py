@@ -44,29 +44,6 @@ def test_a_branch_is_deleted_by_its_name_and_its_notice_goes_with_it(page: Page)
     until(page, lambda: page.evaluate("document.activeElement !== document.body"))
 
 
-WHOLE = """() => {
-  const box = (one) => one.getBoundingClientRect();
-  const facts = document.querySelector(".facts");
-  const isWhole = (one) => box(one).left >= box(facts).left && box(one).right <= box(facts).right && one.scrollWidth <= one.clientWidth;
-  const seen = [...facts.children].filter((one) => box(one).top < box(facts).bottom);
-  const whole = [...document.querySelectorAll("#status, #connection, .former > span")].every((one) => one.scrollWidth <= one.clientWidth);
-  return [whole && seen.every(isWhole), seen.length];
-}"""
-"""Returns whether no text of the status line is cut, and how many facts are seen."""
-
-
-@pytest.mark.slow
-def test_in_the_status_line_facts_are_left_out_before_a_text_is_cut(pages: Callable[..., Page]) -> None:
-    page, other = pages(), pages()
-    shows(page, "#status", "at its start")
-    shows(other, "#status", "at its start")
-    change_the_past(page)
-    expect(page.locator("#browsers")).to_have_text("2 pages show this run, you are in control")
-    for width, seen in ((1920, 4), (1280, 3), (853, 0)):
-        page.set_viewport_size({"width": width, "height": 533})
-        until(page, lambda seen=seen: page.evaluate(WHOLE) == [True, seen])
-
-
 @pytest.mark.slow
 def test_a_branch_of_a_paused_run_is_not_listed_as_ended_and_its_notice_is_shown_once(page: Page) -> None:
     shows(page, "#status", "at its start")
@@ -126,3 +103,29 @@ def test_a_recording_that_is_changed_is_not_said_to_have_a_branch(pages: Callabl
     change_the_past(page)
     shows(page, ".branched", r"The recording keeps the run up to 1\.00 s")
     expect(page.locator(".branched")).not_to_contain_text("branch")
+
+
+WHOLE = """() => {
+  const box = (one) => one.getBoundingClientRect();
+  const facts = document.querySelector(".facts");
+  const isWhole = (one) => box(one).left >= box(facts).left && box(one).right <= box(facts).right && one.scrollWidth <= one.clientWidth;
+  const seen = [...facts.children].filter((one) => box(one).top < box(facts).bottom);
+  const whole = [...document.querySelectorAll("#status, #connection, .former > span")].every((one) => one.scrollWidth <= one.clientWidth);
+  return [whole && seen.every(isWhole), seen.length];
+}"""
+"""Returns whether no text of the status line is cut, and how many facts are seen."""
+
+
+@pytest.mark.slow
+def test_in_the_status_line_facts_are_left_out_before_a_text_is_cut(pages: Callable[..., Page]) -> None:
+    page, other = pages(), pages()
+    shows(page, "#status", "at its start")
+    shows(other, "#status", "at its start")
+    change_the_past(page)
+    expect(page.locator("#browsers")).to_have_text("2 pages show this run, you are in control")
+    for width, seen in ((1920, 4), (1280, 3), (853, 0)):
+        page.set_viewport_size({"width": width, "height": 533})
+        until(page, lambda seen=seen: page.evaluate(WHOLE) == [True, seen])
+    page.get_by_role("button", name="Delete at 0.50 s").click()
+    page.get_by_role("dialog").get_by_role("button", name="Delete").click()
+    expect(page.locator(".branches")).to_have_count(0)
