@@ -10,6 +10,7 @@ import pytest
 
 from actr3d.actr.loading import load_text
 from actr3d.recording import Recorded
+from actr3d.world.contacts import Touch
 from tests.helpers.sessions import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, ended, recording
 from workbench.curves import NOTHING
@@ -75,8 +76,8 @@ def least(values: list[float | None]) -> float:
 
 def test_a_touch_that_is_over_before_its_tick_ends_is_seen(desk: Desk, tmp_path: Path) -> None:
     simulation = load_text(STRUCK).build()
-    skin: Any = simulation.world.bodies["walker"]
-    skin.touched = ()  # from now on it feels
+    skin = simulation.world.bodies["walker"]
+    skin.touched = tuple[Touch, ...]()  # from now on it feels
     felt: dict[int, float] = {}
     for tick in range(1, 401):
         simulation.step()
