@@ -113,14 +113,14 @@ class GeometricCamera:
         object = int(self._objects[names.index(geom)])
         return int(self._labels[object]) or None if object > 0 else None
 
-    def geoms_by_label(self) -> dict[int, list[int]]:
+    def geoms_by_label(self) -> dict[int, tuple[int, ...]]:
         """Returns the geoms of all objects that have a label, by label, as MuJoCo numbers geoms; for observers, as `label_of`."""
         geoms: dict[int, list[int]] = {}
         for geom, object in enumerate(self._objects.tolist()):
             label = int(self._labels[object]) if object > 0 else 0
             if label:
                 geoms.setdefault(label, []).append(geom)
-        return geoms
+        return {label: tuple(own) for label, own in geoms.items()}
 
     def state(self) -> tuple[int, ...]:
         """Returns the labels that were given, to be passed to `restore`: all that a camera keeps from one look to the next."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 from weakref import WeakKeyDictionary
 
 from mujoco import mj_name2id, mjtObj
@@ -14,6 +15,8 @@ from actr3d.camera.view import View
 from actr3d.errors import CameraError
 from actr3d.world.body import Body, sensor
 from actr3d.world.frames import heading_of
+
+T = TypeVar("T")
 
 USUAL = CameraParameters()
 """The parameters that are used if no options are given."""
@@ -81,7 +84,7 @@ class Sight:
         """Returns the pose of the eye when it saw a view, for observers; None if this eye did not compute the view."""
         return self._stands.get(view)
 
-    def geoms_by_label(self) -> dict[int, list[int]]:
+    def geoms_by_label(self) -> dict[int, tuple[int, ...]]:
         """Returns the geoms of all objects that have a label, by label; for observers."""
         return self._camera.geoms_by_label()
 
@@ -131,10 +134,10 @@ def glance(body: Body, parameters: CameraParameters | None = None) -> View:
     Raises:
         CameraError: If the body has no eye, or the poses are not finite.
     """
-    return glance_with_geoms(body, parameters)[0]
+    return _observed(body, parameters, Sight.look)
 
 
-def glance_with_geoms(body: Body, parameters: CameraParameters | None = None) -> tuple[View, dict[int, list[int]]]:
+def glance_with_geoms(body: Body, parameters: CameraParameters | None = None) -> tuple[View, dict[int, tuple[int, ...]]]:
     """Returns what is visible now, as `glance` does, and the geoms of all objects that have a label, by label.
 
     Args:
@@ -144,6 +147,11 @@ def glance_with_geoms(body: Body, parameters: CameraParameters | None = None) ->
     Raises:
         CameraError: If the body has no eye, or the poses are not finite.
     """
+    return _observed(body, parameters, lambda eye: (eye.look(), eye.geoms_by_label()))
+
+
+def _observed(body: Body, parameters: CameraParameters | None, read: Callable[[Sight], T]) -> T:
+    """Returns what an observer reads from a body's eye, which keeps the labels that the agent knows."""
     if body.eye is None:
         raise CameraError(f"body '{body.name}' has no eye")
     if parameters is None:
@@ -151,7 +159,7 @@ def glance_with_geoms(body: Body, parameters: CameraParameters | None = None) ->
     eye = body.unused_sense(Sight, parameters)
     labels = eye.state()
     try:
-        return eye.look(), eye.geoms_by_label()
+        return read(eye)
     finally:
         if eye.state() != labels:
             eye.restore(labels)

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
-from functools import cached_property
+from functools import cache, cached_property, partial
 from itertools import islice
 from typing import Any
-
-from mujoco import MjModel
 
 from actr3d.camera import CameraParameters, Sight
 from actr3d.clock import microseconds, seconds
@@ -130,20 +128,20 @@ class Shown:
         """Computes curves from the past, on a copy of the scene; created at the first request."""
         return CurveReader(loaded(self.mj_model), self.surroundings)
 
-    def colours(self, geoms: Mapping[int, Sequence[int]]) -> dict[int, str]:
+    def colours(self, geoms: Mapping[int, tuple[int, ...]]) -> dict[int, str]:
         """Returns the colours with which objects are drawn in the scene, by label.
 
         Args:
             geoms: The geoms of each object, by label.
         """
-        return {label: colour_of_object(self._drawn_model, own) for label, own in geoms.items()}
+        return {label: self._colour_of(own) for label, own in geoms.items()}
 
     @cached_property
-    def _drawn_model(self) -> MjModel:
-        """The compiled scene at the start, with the colours in which it is drawn; created at the first request."""
+    def _colour_of(self) -> Callable[[tuple[int, ...]], str]:
+        """Returns the colour of an object by its geoms, as it is drawn; each is computed once."""
         model = loaded(self.mj_model)
         dress(model, [self.surroundings["bodies"][name]["root"] for name in self.simulation.embodied])
-        return model
+        return cache(partial(colour_of_object, model))
 
     def eyesight(self, name: str) -> CameraParameters:
         """Returns how an agent sees with its body's eye: as its vision module does, or else as in the body's first view."""
