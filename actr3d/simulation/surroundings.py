@@ -22,9 +22,14 @@ def surroundings(world: World) -> dict[str, Any]:
         for name, body in world.bodies.items()
     }
     walls = {part.name: asdict(part.gap_in(world.mj_model)) for part in world.scene.parts if isinstance(part, Aperture)}
-    grounds = {part.name for part in world.scene.parts if isinstance(part, Floor)}
+    grounds = ground_names(world)
     ground = [geom for geom, owner in enumerate(world.owners) if owner in grounds]
     return {"bodies": bodies, "apertures": list(walls), "walls": walls, "ground": ground}
+
+
+def ground_names(world: World) -> frozenset[str]:
+    """Returns the names of a world's floors, whose contacts with bodies are not shown."""
+    return frozenset(part.name for part in world.scene.parts if isinstance(part, Floor))
 
 
 def _finite(limit: float) -> float | None:

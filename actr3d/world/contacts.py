@@ -61,14 +61,20 @@ class BodyContacts:
         sides = self._sides(self.own_geoms())
         return not np.any(sides[:, 0] != sides[:, 1])
 
-    def any_in_step(self) -> bool:
-        """Returns whether anything touched the body in the last physics step, which had contacts."""
+    def any_in_step(self, apart_from: NDArray[np.bool_] | None = None) -> bool:
+        """Returns whether anything touched the body in the last physics step, which had contacts.
+
+        Args:
+            apart_from: By geom, whether its contacts do not count, `(ngeom + 1,)`; the last entry is for soft objects. None: all count.
+        """
         own, held = self._own_or_soft, self.held()
         if held:
             own = own.copy()
             own[held] = True
-        one, other = own[self._physics.mj_data.contact.geom].T
-        return bool((one != other).any())
+        pairs = self._physics.mj_data.contact.geom
+        one, other = own[pairs].T
+        touching = one != other
+        return bool((touching if apart_from is None else touching & ~apart_from[pairs].any(axis=1)).any())
 
     def touches(self) -> tuple[Touch, ...]:
         """Returns the touches of the solver's last result, sorted by name. For observers of single physics steps."""

@@ -16,9 +16,9 @@ from actr3d.clock import microseconds, seconds
 from actr3d.errors import Actr3dError
 from actr3d.parameter_schema import Parameter
 from actr3d.simulation import Simulation
-from actr3d.simulation.surroundings import surroundings
+from actr3d.simulation.surroundings import ground_names, surroundings
 from actr3d.vision import visions
-from actr3d.world import Aperture, Floor
+from actr3d.world import Aperture
 from actr3d.world.compiled import loaded, saved
 from actr3d.world.sensors.touch import present
 from workbench.curves import CurveReader, contact_force, stretch, stride
@@ -88,7 +88,7 @@ class Shown:
     def touches(self) -> Touches:
         """Returns the contacts of bodies with anything but the ground, now and at any time of the last tick."""
         world = self.simulation.world
-        ground = {part.name for part in world.scene.parts if isinstance(part, Floor)}
+        ground = ground_names(world)
         return self.kept.touched.at(self.simulation.ticks).union(
             (name, touch.part, touch.other) for name, body in world.bodies.items() for touch in present(body) if touch.other not in ground
         )

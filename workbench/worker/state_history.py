@@ -11,8 +11,10 @@ import mujoco
 import numpy as np
 from mujoco import MjData
 
-from actr3d.world import Floor, World
+from actr3d.simulation.surroundings import ground_names
+from actr3d.world import World
 from workbench.curves import INTEGRATION, stride
+from workbench.worker.stop_conditions import Contact, Touches
 
 MAX_BYTES = 48_000_000
 """Above this size every second state is dropped, so that memory use stays bounded for long runs; a walker's state takes 1.8 kB."""
@@ -20,8 +22,6 @@ STEP = 50_000
 """Interval between two points of a path [us]."""
 MAX_TOUCHED = 50_000
 """Maximum number of ticks in which something touched that are stored; contacts that last are seen at the ends of ticks as well."""
-Contact = tuple[str, str, str]
-"""A body, its part, and the other object."""
 MAX_POINTS = 1_000
 """Maximum number of points that are drawn; if there are more, every second one is left out, repeatedly."""
 
@@ -171,24 +171,12 @@ class Touched:
 
     def watch(self, world: World) -> None:
         """Looks at each physics step of a world from now on."""
-        ground = frozenset(part.name for part in world.scene.parts if isinstance(part, Floor))
-        model: Any = world.mj_model
-        numbers = range(model.ngeom)
-        # The last entries are for soft objects, which have no geom.
-        others = np.array([*(model.geom(geom).name not in ground for geom in numbers), True])
-        owned = {name: frozenset(body.geoms.tolist()) for name, body in world.bodies.items()}
-        bodies = [(world.bodies[name], np.array([*(geom in own for geom in numbers), False])) for name, own in owned.items()]
-        data = world.mj_data
+        ground, data = ground_names(world), world.mj_data
+        floors = np.array([*(owner in ground for owner in world.owners), False])
 
         def look() -> None:
-            if data.ncon == 0:
-                return
-            pairs = data.contact.geom
-            for body, own in bodies:
-                mine = own[pairs]
-                if not (body.contacts.held() or ((mine[:, 0] != mine[:, 1]) & others[pairs].all(axis=1)).any()):
-                    continue
-                for touch in body.contacts.touches():
+            for body in world.bodies.values() if data.ncon else ():
+                for touch in body.contacts.touches() if body.contacts.any_in_step(floors) else ():
                     if touch.other not in ground:
                         contact = body.name, touch.part, touch.other
                         self._now[contact] = max(touch.force, self._now.get(contact, 0.0))
@@ -208,8 +196,8 @@ class Touched:
         for later in [known for known in self._ticks if known > tick]:
             del self._ticks[later]
 
-    def at(self, tick: int) -> frozenset[Contact]:
-        """Returns what touched in a tick: body, its part, and the other object."""
+    def at(self, tick: int) -> Touches:
+        """Returns what touched in a tick."""
         return frozenset(self._ticks.get(tick, ()))
 
     def forces(self, first: int, last: int | None) -> dict[int, dict[str, float]]:

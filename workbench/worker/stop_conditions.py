@@ -12,8 +12,9 @@ from actr3d.actr.declarative.chunk_query import search_for
 from actr3d.clock import seconds
 from actr3d.trace import TraceEvent
 
-Touches = frozenset[tuple[str, str, str]]
-"""Contacts: the body, its part, and the other object."""
+Contact = tuple[str, str, str]
+"""A body, its part, and the other object."""
+Touches = frozenset[Contact]
 
 
 @dataclass
@@ -35,7 +36,7 @@ class Watch:
     contact: str | None = None
     """Stops when this body touches something; an empty text means any body."""
     breakpoints: frozenset[str] = frozenset()
-    touching: Touches = field(default_factory=frozenset[tuple[str, str, str]])
+    touching: Touches = field(default_factory=Touches)
     """The contacts that existed at the last check, which do not count as new."""
 
     def renewed(self, **wanted: Any) -> Watch:
