@@ -20,8 +20,17 @@ def timed_events(recorded: Recorded) -> Iterator[TraceEvent]:
     Raises:
         RecordingError: If the recording is damaged.
     """
+    return (timed for _, timed in events_both_ways(recorded))
+
+
+def events_both_ways(recorded: Recorded) -> Iterator[tuple[TraceEvent, TraceEvent]]:
+    """Yields each event as it is recorded, and as `timed_events` does.
+
+    Raises:
+        RecordingError: If the recording is damaged.
+    """
     if recorded.facts.get("kind") != "program":
-        yield from recorded.events()
+        yield from ((event, event) for event in recorded.events())
         return
     clock = _Clock()
     states = chain(recorded.states(), repeat(None))
@@ -30,7 +39,7 @@ def timed_events(recorded: Recorded) -> Iterator[TraceEvent]:
         while state is not None and state.events <= number:
             clock.advance(state.run, _time_of(state.data))
             state = next(states)
-        yield TraceEvent(clock.at(event), *event[1:])
+        yield event, TraceEvent(clock.at(event), *event[1:])
 
 
 def _time_of(state: bytes) -> int:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import difflib
 from collections import deque
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import islice, zip_longest
 from pathlib import Path
 from typing import Any, cast
 
 from actr3d.clock import seconds
 from actr3d.errors import RecordingError
+from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent
 from workbench.live_parameters import parameter_set_by
@@ -49,11 +50,12 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
         with Recorded(first) as one, Recorded(second) as other:
             left, right = _settings_of(one.facts), _settings_of(other.facts)
             different = {name: [left.get(name), right.get(name)] for name in {**left, **right} if left.get(name) != right.get(name)}
+            of_one, of_other = (listing_of(_source(recorded.facts)).parameters for recorded in (one, other))
             agreeing, difference, whole = _first_difference(one, other, frozenset(kinds))
             return {
                 "parameters": different,
-                "changed": [_changed(one), _changed(other)],
-                "units": {**_units(other), **_units(one)},
+                "changed": [_changed(one, of_one), _changed(other, of_other)],
+                "units": {**_units(other, of_other), **_units(one, of_one)},
                 "text": _changes(_source(one.facts), _source(other.facts)) if left["model"] == right["model"] else [],
                 "same_events": agreeing,
                 "whole": whole,
@@ -70,18 +72,17 @@ def _settings_of(facts: dict[str, Any]) -> dict[str, Any]:
     return {**facts.get("parameters", {}), "seed": facts.get("program_seed", facts.get("seed")), "model": Path(facts.get("file", "")).name}
 
 
-def _units(recorded: Recorded) -> dict[str, str]:
+def _units(recorded: Recorded, parameters: Iterable[Parameter]) -> dict[str, str]:
     """Returns the units of the model's parameters that have one, and of the widths of apertures, by name."""
     world: dict[str, Any] = recorded.facts.get("world") or {}
     units: dict[str, str] = dict.fromkeys(world.get("apertures", ()), "m")
-    return units | {one.name: one.unit for one in listing_of(_source(recorded.facts)).parameters if one.unit is not None}
+    return units | {one.name: one.unit for one in parameters if one.unit is not None}
 
 
-def _changed(recorded: Recorded) -> dict[str, list[list[Any]]]:
+def _changed(recorded: Recorded, parameters: Sequence[Parameter]) -> dict[str, list[list[Any]]]:
     """Returns the parameters and apertures that users changed during the run, as pairs of time [s] and new value."""
     from actr3d.simulation import Command  # takes long to import; the server needs only the names in this module
 
-    parameters = listing_of(_source(recorded.facts)).parameters
     period = recorded.facts.get("period_us", 0)
     found: dict[str, list[list[Any]]] = {}
     for one in (Command.from_data(command.tick, command.data) for command in recorded.commands()):

@@ -10,7 +10,7 @@ import builtins
 from collections.abc import Iterator
 from importlib import import_module
 
-from actr3d.actr.kernel.source_code import defines_by_code, names_defined_by
+from actr3d.actr.kernel.source_code import names_defined_in
 from actr3d.errors import did_you_mean
 
 LIBRARY = ("actr3d.actr", "actr3d.world", "actr3d.motor", "actr3d.vision", "actr3d.simulation", "actr3d.sgoms", "actr3d.experiment")
@@ -19,16 +19,16 @@ LIBRARY = ("actr3d.actr", "actr3d.world", "actr3d.motor", "actr3d.vision", "actr
 
 def undefined_names(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """Yields the line and a message for each name that is read there, and that nothing in the text defines or imports."""
-    known = set(dir(builtins)) | {"__file__", "__name__", "__doc__"}
+    defined = names_defined_in(tree)
+    if defined is None:
+        return
+    known = {*dir(builtins), "__file__", "__name__", "__doc__", *defined}
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.names[0].name == "*":
             if node.module not in LIBRARY:
                 return
             module = import_module(node.module)
-            known |= set(getattr(module, "__all__", dir(module)))
-        known |= set(names_defined_by(node))
-    if defines_by_code(tree):
-        return
+            known.update(getattr(module, "__all__", dir(module)))
     for name in sorted(_read_first(tree.body), key=lambda name: (name.lineno, name.col_offset)):
         if name.id not in known:
             yield name.lineno, f"nothing defines '{name.id}'{did_you_mean(name.id, known)}"

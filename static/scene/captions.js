@@ -43,9 +43,9 @@ export class Captions {
   /**
    * @param labels The labels: `text`, `place` in the world, whether the agent attends to it (`chosen`).
    * @param heads Spheres that no label covers: x, y, z, radius.
-   * @param covered Rectangles of the picture that the page covers [px].
+   * @param covered Returns the rectangles of the picture that the page covers [px].
    */
-  draw(labels, heads, camera, covered = []) {
+  draw(labels, heads, camera, covered = () => []) {
     const size = { width: innerWidth, height: innerHeight };
     while (this.shown.length < labels.length) {
       const label = document.createElement("p");
@@ -67,7 +67,7 @@ export class Captions {
       const at = camera.at(place);
       return { x: at.depth > 0 ? at.x * size.width : -1, y: at.y * size.height, width: one.width, height: one.height };
     });
-    const boxes = placed(wanted, [...blocked.filter(Boolean), ...covered], size);
+    const boxes = placed(wanted, [...blocked.filter(Boolean), ...(labels.length > 0 ? covered() : [])], size);
     this.shown.forEach((one, n) => {
       const box = boxes[n];
       let style = "visibility:hidden";

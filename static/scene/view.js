@@ -172,7 +172,7 @@ viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   const shade = theme();
   labels.layer.dataset.theme = shade;
   ground.draw(shade, camera.horizon(stage), stage, camera.flat);
-  labels.draw(now.labels, now.heads, camera, covered());
+  labels.draw(now.labels, now.heads, camera, covered);
 };
 
 /** Without a surrounding page, it has buttons of its own. */

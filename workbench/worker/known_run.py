@@ -11,7 +11,7 @@ from actr3d.clock import microseconds, seconds
 from actr3d.recording import Recorded
 from actr3d.runner.facts import REACHED
 from actr3d.trace import TraceEvent
-from workbench.program_time import timed_events
+from workbench.program_time import events_both_ways
 from workbench.worker.messages import Notice, notice
 from workbench.worker.truncation import event_json
 
@@ -39,7 +39,7 @@ class KnownRun:
             self.facts: dict[str, Any] = recorded.facts
             self.ticks: int = recorded.ticks
             time = 0
-            for event, timed in zip(recorded.events(), timed_events(recorded), strict=True):
+            for event, timed in events_both_ways(recorded):
                 time = max(time, timed.time_us)
                 self._take(event, timed)
             if keep is not None:
@@ -59,8 +59,9 @@ class KnownRun:
         return self.count - len(self.events)
 
     def _take(self, event: TraceEvent, timed: TraceEvent) -> None:
-        self._digests.append(hash(event_json(event)))
-        self.events.append(event_json(timed))
+        text = event_json(event)
+        self._digests.append(hash(text))
+        self.events.append(text if timed == event else event_json(timed))
         if len(self.events) > 2 * MAX_EVENTS:
             del self.events[:-MAX_EVENTS]
 

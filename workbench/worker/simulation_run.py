@@ -55,10 +55,9 @@ class SimulationRun(ControlledRun):
     def __init__(self, controller: RunController, listing: ModelListing) -> None:
         self._controller = controller
         self._listing = listing
-        self._live = [parameter for parameter in listing.parameters if parameter.live is not None]
+        self._commands: Sequence[Command] = []
         self._changed: dict[str, Any] = {}
-        self._counted = 0
-        """The number of commands of users from which `_changed` was made."""
+        """The values of parameters that these commands of users have set."""
         self._start = controller.channel.start
         self._tick_time = 0.0
         self._end: tuple[int, str] | None = None
@@ -128,7 +127,9 @@ class SimulationRun(ControlledRun):
             world=to_json(self._shown.world(self._listing.parameters)).encode(),
             mj_model=self._shown.mj_model,
             changes=change_menu(agents_only=False),
-            live=to_json([{"name": one.name, "unit": one.unit, **asdict(one.live)} for one in self._live if one.live is not None]).encode(),
+            live=to_json(
+                [{"name": one.name, "unit": one.unit, **asdict(one.live)} for one in self._listing.parameters if one.live is not None]
+            ).encode(),
         )
 
     def _go_on(self) -> None:
@@ -239,7 +240,7 @@ class SimulationRun(ControlledRun):
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
         if self._controller.status == "ended":
             raise SimulationError("the run is over: go back to an earlier time, or restart it")
-        set_by = parameter_set_by(self._live, word, values, named, body)
+        set_by = parameter_set_by(self._listing.parameters, word, values, named, body)
         if set_by is not None:
             parameter, value = set_by
             parameter.check(value)
@@ -261,10 +262,10 @@ class SimulationRun(ControlledRun):
 
     def changed_parameters(self) -> dict[str, Any]:
         commands = self._simulation.timeline.commands
-        if len(commands) != self._counted:
-            found = (parameter_set_by(self._live, one.word, one.values, one.named, one.body) for one in commands)
+        if commands != self._commands:
+            found = (parameter_set_by(self._listing.parameters, one.word, one.values, one.named, one.body) for one in commands)
             self._changed = {one[0].name: one[1] for one in found if one is not None}
-            self._counted = len(commands)
+            self._commands = commands
         return self._changed
 
     def _record_failure(self, text: str | None) -> None:

@@ -165,13 +165,16 @@ DYNAMIC = {"exec", "globals", "vars", "locals", "setattr"}
 """A text that uses one of these may define names that are not written in it."""
 
 
-def defines_by_code(tree: ast.AST) -> bool:
-    """Returns whether a text may define names that are not written in it."""
-    return any(isinstance(node, ast.Name) and node.id in DYNAMIC for node in ast.walk(tree))
+def names_defined_in(tree: ast.AST) -> set[str] | None:
+    """Returns all names that a text defines, in whatever scope; None if its code may define others."""
+    nodes = list(ast.walk(tree))
+    if any(isinstance(node, ast.Name) and node.id in DYNAMIC for node in nodes):
+        return None
+    return {name for node in nodes for name in _names_defined_by(node)}
 
 
-def names_defined_by(node: ast.AST) -> Iterator[str]:
-    """Yields the names that a node defines, in whatever scope."""
+def _names_defined_by(node: ast.AST) -> Iterator[str]:
+    """Yields the names that a node defines."""
     match node:
         case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name) | ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
             yield name

@@ -16,7 +16,7 @@ from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.declarative.partial_matching import Partial
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import MethodWrapper, Model
-from actr3d.actr.kernel.source_code import defines_by_code, function_node, names_defined_by, source_of, syntax_tree
+from actr3d.actr.kernel.source_code import function_node, names_defined_in, source_of, syntax_tree
 from actr3d.actr.lint.slot_inference import slots_held
 from actr3d.actr.lint.slot_names import GIVERS, READERS, SURE, slip_of, slots_in, text_of, vocabulary
 from actr3d.actr.modules.imaginal import ImaginalModule
@@ -65,10 +65,9 @@ def _check_names(production: Production, known: set[str], where: str) -> None:
 def _defined_in(text: str) -> set[str] | None:
     """Returns all names and attributes that a text defines anywhere; None if code may define others."""
     tree = syntax_tree(text)
-    if defines_by_code(tree):
-        return None
+    names = names_defined_in(tree)
     attributes = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)}
-    return attributes.union(*map(names_defined_by, ast.walk(tree)))
+    return None if names is None else names | attributes
 
 
 def check_modeller_method(func: Callable[..., Any], part: Model) -> None:
