@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -39,11 +40,22 @@ def pytest_xdist_auto_num_workers() -> int:
     return (os.cpu_count() or 1) + 1
 
 
+COMPILING = pytest.StashKey[subprocess.Popen[bytes]]()
+
+
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Compiles what models with a body need before several processes begin: each of them would compile it."""
+    """Begins to compile what models with a body need, while the processes collect the tests."""
     if "PYTEST_XDIST_WORKER" not in os.environ and session.config.getoption("numprocesses", None):
         model = Path(__file__).parents[1] / "models" / "aperture_passage.py"
-        subprocess.run([sys.executable, "-m", "actr3d", "run", str(model)], stdout=subprocess.DEVNULL, check=False)
+        compiling = subprocess.Popen([sys.executable, "-m", "actr3d", "run", str(model)], stdout=subprocess.DEVNULL)
+        session.config.stash[COMPILING] = compiling
+        session.config.add_cleanup(compiling.wait)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_node_collection_finished(node: Any) -> None:
+    """Waits until that is compiled before a process gets its first test: each would compile it."""
+    node.config.stash[COMPILING].wait()
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest leaves out what is marked as slow

@@ -72,8 +72,8 @@ def test_people_turn_below_the_critical_ratio_the_more_the_narrower(model: Any, 
 @pytest.mark.parametrize("aperture", [0.4, 0.45])
 def test_hips_that_turn_leave_the_margin_where_it_is_narrow(model: Any, group: str, least: float, most: float, aperture: float) -> None:
     """0.30 of the shoulders' width, as at wider doorways (Human data); hips that face ahead would leave 5 cm and less at 40 cm."""
-    results = [passed(model, seed, group=group, aperture=aperture) for seed in range(1, 5)]
-    margin = sum((result.clearance_left_m or 0) + (result.clearance_right_m or 0) for result in results) / 8
+    results = [passed(model, seed, group=group, aperture=aperture) for seed in (1, 2)]
+    margin = sum((result.clearance_left_m or 0) + (result.clearance_right_m or 0) for result in results) / 4
     assert least < margin < most
 
 
@@ -200,16 +200,14 @@ def shrunk(model: Any, at: float, to: float, seed: int = 1, **given: Any) -> Pas
 )
 def test_a_walker_that_notices_late_touches_nothing(model: Any, at: float, to: float, given: dict[str, Any]) -> None:
     """The edges of a doorway are off the way ahead when they are near, and a fast walker goes some way until it stands."""
-    for seed in (1, 2):
-        assert shrunk(model, at, to, seed, aperture=0.6, **given).contacts == 0
+    assert shrunk(model, at, to, aperture=0.6, **given).contacts == 0
 
 
 @pytest.mark.daily(1)
 @pytest.mark.parametrize(("at", "given"), [(6.45, {}), (6.6, {"speed": 0.5}), (6.0, {"variant": "replication"})])
 def test_a_walker_that_notices_that_there_is_no_way_through_stops(model: Any, at: float, given: dict[str, Any]) -> None:
-    for seed in (1, 2):
-        result = shrunk(model, at, 0.2, seed, aperture=0.6, **given)
-        assert (result.outcome, result.contacts, result.wall_angle_deg) == ("stopped", 0, None)
+    result = shrunk(model, at, 0.2, aperture=0.6, **given)
+    assert (result.outcome, result.contacts, result.wall_angle_deg) == ("stopped", 0, None)
 
 
 @pytest.mark.daily(1)

@@ -89,12 +89,12 @@ def test_any_past_time_comes_back_exactly_and_goes_on_exactly(answers: int, monk
     monkeypatch.setattr(timeline, "SPACING", 10)
     simulation, digests = first_run()
     choose = random.Random(1)
-    for tick in [100, 200, 0, 199, 3, *(choose.randrange(201) for _ in range(7))]:
+    for tick in [100, 200, 0, 199, 3, *(choose.randrange(201) for _ in range(3))]:
         simulation.seek(tick / 100)
         assert simulation.ticks == tick
         assert simulation.furthest == 2.0
         assert digest(simulation) == digests[tick]
-        for later in range(tick + 1, min(tick + 12, 200) + 1):
+        for later in range(tick + 1, min(tick + 8, 200) + 1):
             simulation.step()
             assert digest(simulation) == digests[later], f"{later} after {tick}"
     simulation.seek(0)

@@ -49,12 +49,11 @@ def test_they_are_made_once(cache: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("broken", [b"", b"short", b"\0" * 400])
-def test_a_broken_file_is_made_again(cache: Path, broken: bytes) -> None:
+def test_a_broken_file_is_made_again(cache: Path) -> None:
     made = convex_parts(ring(), 0.2, 1)
     (file,) = cache.iterdir()
     whole = file.read_bytes()
-    for content in (broken, whole[:-8], whole[:50] + b"x" + whole[51:]):
+    for content in (b"", b"short", b"\0" * 400, whole[:-8], whole[:50] + b"x" + whole[51:]):
         file.write_bytes(content)
         assert same(convex_parts(ring(), 0.2, 1), made)
         assert file.read_bytes() == whole
