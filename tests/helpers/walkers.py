@@ -8,7 +8,7 @@ from weakref import WeakKeyDictionary
 
 from actr3d.actr.loading import load_text
 from actr3d.simulation import Simulation
-from actr3d.trace import TraceEvent
+from actr3d.trace import Trace
 from actr3d.world import Aperture, Floor, Mannequin, Scene
 
 DRIVER = """
@@ -51,17 +51,18 @@ def driving(trace: str = "none", seed: int = 1) -> Simulation:
     return Simulation(scene_of("walker", "other"), {"walker": Driver, "other": Driver}, seed=seed, trace=trace)
 
 
-_written: WeakKeyDictionary[Simulation, list[tuple[TraceEvent, str]]] = WeakKeyDictionary()
-"""The events of each trace with their lines, which are written once: tests ask after each tick."""
+_hashed: WeakKeyDictionary[Simulation, tuple[Trace, int, bytes]] = WeakKeyDictionary()
+"""The trace of each simulation, how many of its events are known, and a hash of these: tests ask after each tick."""
 
 
 def digest(simulation: Simulation) -> str:
     """Returns a hash of the present state, with what bodies are about to do, and of the whole trace."""
-    known, events = _written.setdefault(simulation, []), list(simulation.trace or ())
-    same = next(
-        (n for n, (one, (other, _)) in enumerate(zip(events, known, strict=False)) if one is not other), min(len(events), len(known))
-    )
-    known[same:] = [(event, event.to_json()) for event in events[same:]]
+    events, trace = b"", simulation.trace
+    if trace is not None:
+        of, count, known = _hashed.get(simulation, (trace, 0, b""))
+        count, events = (count, known) if of is trace else (0, b"")
+        for event in trace.since(count):
+            events = hashlib.sha256(events + event.to_json().encode()).digest()
+        _hashed[simulation] = trace, len(trace), events
     state = simulation.world.state()
-    lines = "\n".join(line for _, line in known)
-    return hashlib.sha256(state.mj_state.tobytes() + repr(state.bodies).encode() + lines.encode()).hexdigest()
+    return hashlib.sha256(state.mj_state.tobytes() + repr(state.bodies).encode() + events).hexdigest()
