@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import islice, zip_longest
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from actr3d.clock import seconds
 from actr3d.errors import RecordingError
@@ -126,7 +126,6 @@ def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> 
                 "number": number,
                 "time": min(seconds(event[0]) for event in (mine, its) if event is not None),
                 "events": [None if event is None else list(event) for event in (mine, its)],
-                "what": _what(mine, its),
                 "before": [list(event) for event in before],
                 "after": after,
             }
@@ -142,29 +141,3 @@ def _events(recorded: Recorded, kinds: frozenset[str]) -> Iterator[TraceEvent]:
 def _alike(mine: TraceEvent, its: TraceEvent) -> bool:
     """Returns whether two events are equal except for memory addresses of objects."""
     return mine[:3] == its[:3] and mine.to_json() == its.to_json()
-
-
-def _what(mine: TraceEvent | None, its: TraceEvent | None) -> list[list[Any]]:
-    """Returns the parts in which two events differ, as names with both values."""
-    if mine is None or its is None:
-        return []
-    found: list[list[Any]] = []
-    for name, one, other in zip(("time", "source", "kind"), (seconds(mine[0]), *mine[1:3]), (seconds(its[0]), *its[1:3]), strict=True):
-        if one != other:
-            found.append([name, one, other])
-    if mine[2] == its[2]:
-        found += _differing("", mine.data, its.data)
-    return found[:CONTEXT]
-
-
-def _differing(name: str, one: Any, other: Any) -> Iterator[list[Any]]:
-    """Yields the innermost values in which two values differ, with the path to each."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        left, right = cast("dict[str, Any]", one), cast("dict[str, Any]", other)
-        for key in {**left, **right}:
-            yield from _differing(f"{name}.{key}" if name else key, left.get(key), right.get(key))
-    elif isinstance(one, list) and isinstance(other, list) and len(cast("list[Any]", one)) == len(cast("list[Any]", other)):
-        for number, (mine, its) in enumerate(zip(cast("list[Any]", one), cast("list[Any]", other), strict=True)):
-            yield from _differing(f"{name}.{number}", mine, its)
-    elif one != other:
-        yield [name, one, other]

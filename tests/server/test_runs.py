@@ -130,7 +130,7 @@ def test_the_first_difference_has_its_surroundings(tmp_path: Path) -> None:
     assert (told["same_events"], told["whole"]) == (19, True)
     difference = told["difference"]
     assert (difference["number"], difference["time"]) == (19, 0.95)
-    assert difference["what"] == [["production", "left", "right"]]
+    assert [event[3]["production"] for event in difference["events"]] == ["left", "right"]
     assert [event[0] for event in difference["before"]] == [50_000 * n for n in range(19 - CONTEXT, 19)]
     assert difference["after"] == [[[1_000_000, "agent", "fire", {"production": "go", "bound": None}]], []]
     assert "-y = 2" in told["text"]
