@@ -32,9 +32,9 @@ MAX_LINES = 400
 def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str, Any]:
     """Compares two recordings and returns their differences.
 
-    The result has these keys. `parameters`: settings that differ, each with both values. `changed`: for each recording, what users
-    changed during the run, by parameter name, as pairs of time [s] and value. `units`: the units of these, by name. `text`: a diff of the
-    model texts, if both recordings are of the same model file. `same_events`: how many events agree. `whole`: False if the comparison
+    The result has these keys. `parameters`: settings and seeds that differ, each with both values. `changed`: for each recording, what
+    users changed during the run, by parameter name, as pairs of time [s] and value. `units`: the units of these, by name. `text`: a diff of
+    the model texts, if both model files have the same name. `same_events`: how many events agree. `whole`: False if the comparison
     stopped at the maximum number of events. `difference`: the first event that differs, with some events before and after it; None if no
     compared event differs.
 
@@ -49,6 +49,7 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
     try:
         with Recorded(first) as one, Recorded(second) as other:
             left, right = _settings_of(one.facts), _settings_of(other.facts)
+            names = {Path(recorded.facts.get("file", "")).name for recorded in (one, other)}
             different = {name: [left.get(name), right.get(name)] for name in {**left, **right} if left.get(name) != right.get(name)}
             of_one, of_other = (listing_of(_source(recorded.facts)).parameters for recorded in (one, other))
             agreeing, difference, whole = _first_difference(one, other, frozenset(kinds))
@@ -56,7 +57,7 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
                 "parameters": different,
                 "changed": [_changed(one, of_one), _changed(other, of_other)],
                 "units": {**_units(other, of_other), **_units(one, of_one)},
-                "text": _changes(_source(one.facts), _source(other.facts)) if left["model"] == right["model"] else [],
+                "text": _changes(_source(one.facts), _source(other.facts)) if len(names) == 1 else [],
                 "same_events": agreeing,
                 "whole": whole,
                 "difference": difference,
@@ -68,8 +69,8 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
 
 
 def _settings_of(facts: dict[str, Any]) -> dict[str, Any]:
-    """Returns the settings, the seed and the model name that the user chose for a run."""
-    return {**facts.get("parameters", {}), "seed": facts.get("program_seed", facts.get("seed")), "model": Path(facts.get("file", "")).name}
+    """Returns the settings and the seed that the user chose for a run."""
+    return {**facts.get("parameters", {}), "seed": facts.get("program_seed", facts.get("seed"))}
 
 
 def _units(recorded: Recorded, parameters: Iterable[Parameter]) -> dict[str, str]:
