@@ -61,7 +61,10 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
     expect(rows).to_have_count(24)
     page.get_by_role("button", name="Sort by luck").click()
     expect(page.get_by_role("columnheader").filter(has_text="luck")).to_have_attribute("aria-sort", "descending")
-    number = rows.first.locator("td").first.inner_text()
+    (made,) = workbench.get("/api/experiments").json()["experiments"]
+    sorted_rows = workbench.get(f"/api/experiments/{made['id']}/rows", params={"sort": "luck", "down": True}).json()["rows"]
+    number = str(sorted_rows[0]["trial"])
+    expect(rows.first.locator("td").first).to_have_text(number)
     rows.first.click()
     expect(page).to_have_url(re.compile(rf"run=counting_trial_{number}-"))
     assert page.evaluate("document.readyState") == "complete"
