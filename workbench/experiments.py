@@ -12,6 +12,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
+import msgspec
+
 from actr3d.errors import Actr3dError
 from workbench.design_files import Checking, Starting, design_argument, stamp_of
 from workbench.experiment_command import (
@@ -181,6 +183,7 @@ class Experiments:
         found: dict[str, Any] = {
             "id": name,
             "name": _STAMP.sub("", name) if facts is None else facts.name,
+            "model": "" if facts is None else facts.model,
             "made": begun(folder.path),
             "total": total,
             "changed": {} if facts is None else facts.changed,
@@ -212,7 +215,11 @@ class Experiments:
 
     def _facts(self, folder: ExperimentFolder) -> ExperimentFacts | None:
         run = self._running.get(folder.path.name)
-        return folder.facts if run is None or run.facts is None else run.facts
+        return self._shown(folder.facts if run is None or run.facts is None else run.facts)
+
+    def _shown(self, facts: ExperimentFacts | None) -> ExperimentFacts | None:
+        """Returns facts with the model file as pages show it."""
+        return None if facts is None else msgspec.structs.replace(facts, model=self._models.shown(facts.model))
 
     # -- checking
 
@@ -234,7 +241,7 @@ class Experiments:
         self._checked.move_to_end(key)
         while len(self._checked) > KEPT:
             self._checked.popitem(last=False)
-        return as_values(self._checked[key])
+        return as_values(self._shown(self._checked[key]))
 
     async def _first(self, arguments: Sequence[str], kind: type[E], patience: float) -> E:
         """Runs a command until it sends a message of a kind; returns that message.

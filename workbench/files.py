@@ -109,6 +109,18 @@ class ModelFolder:
             raise FileError("the path is outside the models folder")
         return where
 
+    def shown(self, file: str) -> str:
+        """Returns a recorded path as pages show it: the path inside the folder, or only the name of a file that may lie elsewhere."""
+        path = Path(os.path.normpath(Path(file).absolute()))
+        name = path.name if file else ""
+        try:
+            end = path.resolve()
+        except (OSError, RuntimeError, ValueError):  # links that form a loop, or characters that no path has
+            return name
+        if file == name or not end.is_relative_to(self.root):
+            return name
+        return (path if path.is_relative_to(self.root) else end).relative_to(self.root).as_posix()
+
     def read(self, path: str) -> ModelFile:
         """Reads a model file.
 

@@ -33,11 +33,13 @@ class Listing:
     Args:
         recordings: The recordings.
         workers: The pool that starts workers.
+        models: The models folder.
     """
 
-    def __init__(self, recordings: Recordings, workers: Workers) -> None:
+    def __init__(self, recordings: Recordings, workers: Workers, models: Path) -> None:
         self._recordings = recordings
         self._workers = workers
+        self._models = models
         self._known: dict[str, tuple[_Stamp, Summary]] = {}
         self._coming: dict[str, asyncio.Future[Summary]] = {}
         """The summaries that are being read; all who ask for one wait for the same result."""
@@ -106,7 +108,7 @@ class Listing:
             async with self._turns:
                 while left:
                     reading = _Reading(left, found)
-                    start = Start(job="list", recordings=tuple(map(str, left)))
+                    start = Start(job="list", folder=str(self._models), recordings=tuple(map(str, left)))
                     async with doing(self._workers, start, reading, memory=MEMORY):
                         await reading.end()
                     left = left[reading.count :]

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import islice, zip_longest
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from actr3d.clock import seconds
 from actr3d.errors import RecordingError
@@ -32,9 +32,9 @@ MAX_LINES = 400
 def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str, Any]:
     """Compares two recordings and returns their differences.
 
-    The result has these keys. `parameters`: settings that differ, each with both values. `changed`: for each recording, what users
-    changed during the run, by parameter name, as pairs of time [s] and value. `units`: the units of these, by name. `text`: a diff of the
-    model texts, if both recordings are of the same model file. `same_events`: how many events agree. `whole`: False if the comparison
+    The result has these keys. `parameters`: settings and seeds that differ, each with both values. `changed`: for each recording, what
+    users changed during the run, by parameter name, as pairs of time [s] and value. `units`: the units of these, by name. `text`: a diff of
+    the model texts, if both model files have the same name. `same_events`: how many events agree. `whole`: False if the comparison
     stopped at the maximum number of events. `difference`: the first event that differs, with some events before and after it; None if no
     compared event differs.
 
@@ -49,6 +49,7 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
     try:
         with Recorded(first) as one, Recorded(second) as other:
             left, right = _settings_of(one.facts), _settings_of(other.facts)
+            names = {Path(recorded.facts.get("file", "")).name for recorded in (one, other)}
             different = {name: [left.get(name), right.get(name)] for name in {**left, **right} if left.get(name) != right.get(name)}
             of_one, of_other = (listing_of(_source(recorded.facts)).parameters for recorded in (one, other))
             agreeing, difference, whole = _first_difference(one, other, frozenset(kinds))
@@ -56,7 +57,7 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
                 "parameters": different,
                 "changed": [_changed(one, of_one), _changed(other, of_other)],
                 "units": {**_units(other, of_other), **_units(one, of_one)},
-                "text": _changes(_source(one.facts), _source(other.facts)) if left["model"] == right["model"] else [],
+                "text": _changes(_source(one.facts), _source(other.facts)) if len(names) == 1 else [],
                 "same_events": agreeing,
                 "whole": whole,
                 "difference": difference,
@@ -68,8 +69,8 @@ def compare(first: Path, second: Path, kinds: Collection[str] = ()) -> dict[str,
 
 
 def _settings_of(facts: dict[str, Any]) -> dict[str, Any]:
-    """Returns the settings, the seed and the model name that the user chose for a run."""
-    return {**facts.get("parameters", {}), "seed": facts.get("program_seed", facts.get("seed")), "model": Path(facts.get("file", "")).name}
+    """Returns the settings and the seed that the user chose for a run."""
+    return {**facts.get("parameters", {}), "seed": facts.get("program_seed", facts.get("seed"))}
 
 
 def _units(recorded: Recorded, parameters: Iterable[Parameter]) -> dict[str, str]:
@@ -126,7 +127,6 @@ def _first_difference(one: Recorded, other: Recorded, kinds: frozenset[str]) -> 
                 "number": number,
                 "time": min(seconds(event[0]) for event in (mine, its) if event is not None),
                 "events": [None if event is None else list(event) for event in (mine, its)],
-                "what": _what(mine, its),
                 "before": [list(event) for event in before],
                 "after": after,
             }
@@ -142,29 +142,3 @@ def _events(recorded: Recorded, kinds: frozenset[str]) -> Iterator[TraceEvent]:
 def _alike(mine: TraceEvent, its: TraceEvent) -> bool:
     """Returns whether two events are equal except for memory addresses of objects."""
     return mine[:3] == its[:3] and mine.to_json() == its.to_json()
-
-
-def _what(mine: TraceEvent | None, its: TraceEvent | None) -> list[list[Any]]:
-    """Returns the parts in which two events differ, as names with both values."""
-    if mine is None or its is None:
-        return []
-    found: list[list[Any]] = []
-    for name, one, other in zip(("time", "source", "kind"), (seconds(mine[0]), *mine[1:3]), (seconds(its[0]), *its[1:3]), strict=True):
-        if one != other:
-            found.append([name, one, other])
-    if mine[2] == its[2]:
-        found += _differing("", mine.data, its.data)
-    return found[:CONTEXT]
-
-
-def _differing(name: str, one: Any, other: Any) -> Iterator[list[Any]]:
-    """Yields the innermost values in which two values differ, with the path to each."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        left, right = cast("dict[str, Any]", one), cast("dict[str, Any]", other)
-        for key in {**left, **right}:
-            yield from _differing(f"{name}.{key}" if name else key, left.get(key), right.get(key))
-    elif isinstance(one, list) and isinstance(other, list) and len(cast("list[Any]", one)) == len(cast("list[Any]", other)):
-        for number, (mine, its) in enumerate(zip(cast("list[Any]", one), cast("list[Any]", other), strict=True)):
-            yield from _differing(f"{name}.{number}", mine, its)
-    elif one != other:
-        yield [name, one, other]

@@ -17,6 +17,7 @@ from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
 from actr3d.runner.facts import REACHED
 from actr3d.values import to_json
+from workbench.files import ModelFolder
 from workbench.loader import listing_of
 from workbench.retention import begun, branched_at, size_of, written
 
@@ -37,6 +38,7 @@ class Summary:
 
     id: str
     model: str = ""
+    """The model file as pages name it; see `ModelFolder.shown`."""
     kind: str = ""
     seed: Any = None
     parameters: dict[str, Any] = field(default_factory=dict[str, Any])
@@ -67,8 +69,12 @@ class Summary:
     """Why the recording cannot be read; None if it can."""
 
 
-def summary_json(path: Path) -> bytes:
+def summary_json(path: Path, models: ModelFolder) -> bytes:
     """Returns the `Summary` of a file as JSON; if the file is not a recording, the summary gives the reason.
+
+    Args:
+        path: The file.
+        models: The folder of the models.
 
     Raises:
         RecordingError: If the summary is too long.
@@ -76,7 +82,7 @@ def summary_json(path: Path) -> bytes:
     size = size_of(path)
     try:
         with Recorded(path) as recorded:
-            found = _read(recorded, size)
+            found = _read(recorded, size, models)
     except UNREADABLE as error:
         reason = str(error) if isinstance(error, (RecordingError, OSError)) else f"it is damaged ({type(error).__name__}: {error})"
         found = unreadable(path, without_path(reason, path))
@@ -103,7 +109,7 @@ def unreadable(path: Path, reason: str) -> Summary:
     return Summary(id=path.stem, size=size_of(path), made=begun(path), problem=reason.removeprefix("it is ")[:2_000])
 
 
-def _read(recorded: Recorded, size: int) -> Summary:
+def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
     facts, path = recorded.facts, recorded.path
     ended: dict[str, Any] | None = facts.get("ended")
     last = [
@@ -113,7 +119,7 @@ def _read(recorded: Recorded, size: int) -> Summary:
     file = str(facts.get("file", ""))
     return Summary(
         id=path.stem,
-        model=Path(file).name,
+        model=models.shown(file),
         kind=str(facts["kind"]),
         seed=facts.get("program_seed", facts.get("seed")),
         parameters=parameters,

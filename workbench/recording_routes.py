@@ -120,7 +120,8 @@ async def download(request: Request, recording: Id, form: File = "sqlite") -> Re
     if form == "sqlite" and stands_alone(path):
         file = sessions.recordings.opened(recording)
     else:
-        file = await _made(request, form, path)
+        options = {"models": str(sessions.folder.root)} if form == "replay.html" else {}
+        file = await _made(request, form, path, **options)
     return OpenFile(file, KINDS[form], f"{recording}.{form}")
 
 

@@ -57,7 +57,7 @@ class Sessions:
         self.recordings = recordings
         self.workers = workers
         self.readers = Readers(workers)
-        self.listing = Listing(recordings, workers)
+        self.listing = Listing(recordings, workers, folder.root)
         self.reruns = Reruns(workers)
         self._sessions: dict[str, Session] = {}
         self._views: dict[str, SceneView] = {}
@@ -166,10 +166,8 @@ class Sessions:
             if open_already:
                 return open_already[-1]
             began = await self.trusted(recording, trust)
-            path = Path(began.file).resolve()
-            if not path.is_relative_to(self.folder.root):
-                path = self.folder.root / path.name  # a new run uses the user's own model of that name, if there is one
-            shown = path.relative_to(self.folder.root).as_posix()
+            shown = self.folder.shown(began.file)
+            path = self.folder.root / shown  # a new run uses the user's own model of that name, if there is one
             options = RunOptions(settings=began.parameters, seed=began.seed, repeated=began)
             return await self._begun(path, shown, options, real_time=real_time)
 

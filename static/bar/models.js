@@ -11,7 +11,7 @@ import { travel } from "../timeline/seek.js";
 /** The model files of the folder: {path, title, kind}. */
 export const models = signal([]);
 /** Returns the name of a model's file, with its folder if another folder has a file of that name. */
-export function shortName(path) {
+function shortName(path) {
   const nameOf = (one) => one.split("/").at(-1);
   return models.value.some((one) => one.path !== path && nameOf(one.path) === nameOf(path)) ? path : nameOf(path);
 }

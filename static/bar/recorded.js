@@ -6,7 +6,7 @@ import { runs } from "../runs/list.js";
 import { whenInFull } from "../runs/wording.js";
 import { call } from "../server.js";
 import { session, state } from "../store.js";
-import { before, choose, models, shortName, showSession } from "./models.js";
+import { before, choose, models, showSession } from "./models.js";
 
 /** The other open sessions, the newest of each model or recording. */
 function useOthers(id) {
@@ -33,11 +33,14 @@ function Others({ id, model }) {
     const show = ({ currentTarget: list }) => showSession(others.find((one) => one.id === list.value));
     return html`<select aria-label="Open runs" value="" onChange=${show}>
       <option value="" disabled>${others.length} other runs are open</option>
-      ${others.map((one) => html`<option key=${one.id} value=${one.id}>${one.recorded ? `recording ${one.recorded}` : `run of ${shortName(one.model)}`}</option>`)}
+      ${others.map((one) => html`<option key=${one.id} value=${one.id}>${one.recorded ? `recording ${one.recorded}` : `run of ${one.model}`}</option>`)}
     </select>`;
   }
   const there = before.value?.model ?? (models.value.some(({ path }) => path === model) ? model : null);
-  return there ? html`<button onClick=${() => choose(there)}><${Icon} name="back" />${before.value ? "Back to the run of" : "Show the model"} ${shortName(there)}</button>` : null;
+  if (there === null) return null;
+  return html`<button title=${there} onClick=${() => choose(there)}>
+    <${Icon} name="back" />${before.value ? html`Back to the run of${" "}<span class="path"><bdi>${there}</bdi></span>` : "Show the model"}
+  </button>`;
 }
 
 export function RecordingBanner() {
@@ -45,12 +48,19 @@ export function RecordingBanner() {
   if (recorded === null) return null;
   const changed = cuts.length > 0;
   const name = runs.value?.find((run) => run.id === recorded)?.label?.name;
+  const when = `made ${whenInFull(made)}`;
   return html`<div class="recording-banner" role="status">
     <b>Recording</b>
-    <span title=${recorded}>${shortName(model)}, made ${whenInFull(made)} ${name ? html`<b>${name}</b>` : html`<span class="mono quiet">${recorded}</span>`}</span>
-    <span class="quiet" title=${changed ? "You have changed its course: what follows is new, and is recorded as a branch of it." : "Running it shows again what happened."}>
-      ${changed ? "Changed: what follows is recorded as a branch" : `${(state.value?.furthest ?? 0).toFixed(2)} s are known`}
-    </span>
+    <div class="of">
+      <span class="name" title=${recorded}>${name ? html`<b>${name}</b>` : html`<span class="mono">${recorded}</span>`}</span>
+      <div class="facts quiet">
+        <span class="path" title=${model}><bdi>${model}</bdi></span>
+        <span class="when" title=${when}>${when}</span>
+        <span title=${changed ? "You have changed its course: what follows is new, and is recorded as a branch of it." : "Running it shows again what happened."}>
+          ${changed ? "Changed: recorded as a branch" : `${(state.value?.furthest ?? 0).toFixed(2)} s are known`}
+        </span>
+      </div>
+    </div>
     <${Others} id=${id} model=${model} />
   </div>`;
 }

@@ -1,9 +1,9 @@
 // The first event at which the traces of two runs differ, with the events before and after it.
 
 import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
-import { chunkText, valueText } from "../parts/chunk.js";
+import { eventText, eventValues, timeText } from "../inspector/event_text.js";
+import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
-import { commandText } from "../timeline/commands.js";
 
 const KINDS = [
   ["all events", []],
@@ -14,30 +14,41 @@ const KINDS = [
   ["output", ["output"]],
 ];
 
-const isCommand = (event) => event?.[2] === "command";
+const MOST = 8; // the number of different values that are shown
 
-/** Returns the data of an event as text; a command as the timeline shows it. */
-function dataText(event) {
-  return isCommand(event) ? commandText(event).join(" ") : chunkText(event[3]);
+const isNested = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
+const exactText = (value) => (typeof value === "string" ? value : JSON.stringify(value));
+
+/** Returns the values that differ, as [name, one, other]; inside values that have named parts, these parts. */
+function unequal(one, other) {
+  return [...new Set([...Object.keys(one), ...Object.keys(other)])].flatMap((name) => {
+    const values = [one, other].map((all) => (Object.hasOwn(all, name) ? all[name] : undefined));
+    if (JSON.stringify(values[0]) === JSON.stringify(values[1])) return [];
+    if (values.every(isNested)) return unequal(...values).map(([part, ...both]) => [`${name} ${part}`, ...both]);
+    const texts = values.map((value) => (value === undefined ? "–" : valueText(value)));
+    return [[name, ...(texts[0] === texts[1] ? values.map(exactText) : texts)]];
+  });
 }
 
-/** Returns what differs between two events, as [name, one, other]. */
-function differing({ what, events }) {
-  const rows = what.map(([name, one, other]) => [name, valueText(one), valueText(other)]);
-  if (!events.every(isCommand)) return rows;
-  const [[name, one], [otherName, other]] = events.map((event) => commandText(event));
-  if (name === otherName && one === other) return rows;
-  const command = name === otherName ? [name, one, other] : ["command", `${name} ${one}`, `${otherName} ${other}`];
-  return [...rows.filter(([part]) => ["time", "source"].includes(part)), command];
+/** Returns what differs between two events in words, as [name, one, other]. */
+export function differing([one, other]) {
+  const [mine, its] = [one, other].map(([time, source]) => ({ "time [s]": time / 1e6, source }));
+  const [[what, text], [otherWhat, otherText]] = [eventText(one), eventText(other)];
+  const rows = unequal(mine, its);
+  if (one[2] !== other[2] || what !== otherWhat) return [...rows, ["event", `${what} ${text}`.trim(), `${otherWhat} ${otherText}`.trim()]];
+  const [values, others] = [eventValues(one), eventValues(other)];
+  const named = Object.keys(values).some((name) => Object.hasOwn(others, name)) ? unequal(values, others) : [];
+  if (named.length > 0) return [...rows, ...named];
+  return [...rows, ...(text === otherText ? unequal(one[3] ?? {}, other[3] ?? {}) : [[what, text, otherText]])];
 }
 
 function Cells({ event, none }) {
-  if (!event) return html`<td colspan="4" class="empty">${none}</td>`;
-  const [time, source, kind] = event;
-  const text = dataText(event);
+  if (!event) return html`<td colspan="3" class="empty">${none}</td>`;
+  const [time, source] = event;
+  const [what, text] = eventText(event);
   return html`
-    <td class="number">${(time / 1e6).toFixed(3)}</td><td class="mono" title=${source}>${source}</td><td>${kind}</td>
-    <td class="mono particulars" title=${text}>${text}</td>
+    <td class="number">${timeText(time)}</td><td class="mono" title=${source}>${source}</td>
+    <td class="event" title="${what} ${text}"><b>${what}</b> ${text}</td>
   `;
 }
 
@@ -52,10 +63,11 @@ function headline({ same_events: same, whole, difference }) {
 }
 
 function What({ difference }) {
-  const what = differing(difference);
+  const what = difference.events.includes(null) ? [] : differing(difference.events);
   if (what.length === 0) return null;
   return html`<ul class="what" aria-label="What differs">
-    ${what.map(([name, one, other]) => html`<li key=${name}><b>${name}</b> <span class="mono"><span class="dot first"></span>${one}</span> <span class="mono"><span class="dot second"></span>${other}</span></li>`)}
+    ${what.slice(0, MOST).map(([name, one, other]) => html`<li key=${name}><b>${name}</b> <span class="mono"><span class="dot first"></span>${one}</span> <span class="mono"><span class="dot second"></span>${other}</span></li>`)}
+    ${what.length > MOST ? html`<li class="quiet">and ${what.length - MOST} more</li>` : null}
   </ul>`;
 }
 
@@ -76,7 +88,7 @@ function Rows({ difference }) {
     return () => watch.disconnect();
   }, [difference]);
   return html`<div class="parting" ref=${box} tabindex="0" role="region" aria-label="Events side by side"><table aria-label="Events around the first difference">
-    <thead><tr>${["first", "second"].map((side) => html`<th class="number" scope="col"><span class="dot ${side}"></span>time</th><th scope="col">source</th><th scope="col">kind</th><th scope="col">data</th>`)}</tr></thead>
+    <thead><tr>${["first", "second"].map((side) => html`<th class="number" scope="col"><span class="dot ${side}"></span>time</th><th scope="col">source</th><th scope="col">event</th>`)}</tr></thead>
     <tbody>
       ${before.map((event, n) => html`<tr key="b${n}" class="same"><${Cells} event=${event} /><${Cells} event=${event} /></tr>`)}
       <tr class="here"><${Cells} event=${events[0]} none=${over} /><${Cells} event=${events[1]} none=${over} /></tr>

@@ -8,7 +8,7 @@ import { Prose } from "../parts/prose.js";
 import { call } from "../server.js";
 import { session } from "../store.js";
 import { experiments, isRunning, shown, startExperiment } from "./list.js";
-import { baseName, durationText, levelsText, readLevels } from "./wording.js";
+import { durationText, levelsText, readLevels } from "./wording.js";
 
 const PAUSE = 700; // how long the user has not typed before the design is checked [ms]
 const DESIGN = remembered("design", "");
@@ -159,7 +159,7 @@ function Form({ design, facts }) {
         ? html`<tr><th scope="row">groups</th><td colspan="2">${Object.keys(facts.groups).map((name) => html`<div key=${name}><b>${name}</b> <span class="quiet mono">${valuesText(facts.group_parameters[name])}</span></div>`)}</td></tr>`
         : null}
       ${settings.length > 0 ? html`<tr><th scope="row">settings</th><td colspan="2" class="quiet mono">${valuesText(Object.fromEntries(settings))}</td></tr>` : null}
-      <tr><th scope="row">model</th><td colspan="2">${baseName(facts.model)}</td></tr>
+      <tr><th scope="row">model</th><td colspan="2">${facts.model}</td></tr>
     </tbody>
   </table>`;
 }

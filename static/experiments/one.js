@@ -11,7 +11,7 @@ import { Figure } from "./figure.js";
 import { busy, deleteExperiment, experiments, isRunning, makeReport, part, resumeExperiment, shown, stopExperiment } from "./list.js";
 import { Parts } from "./parts.js";
 import { Trials } from "./trials.js";
-import { baseName, changedText, doneText, durationText, failuresText, levelsText, rateText, stateText } from "./wording.js";
+import { changedText, doneText, durationText, failuresText, levelsText, rateText, stateText } from "./wording.js";
 
 function Actions({ experiment }) {
   const { state, done, total } = experiment;
@@ -47,7 +47,7 @@ function About({ experiment, facts }) {
     ["began", whenInFull(experiment.made)],
     ["folder", html`<span class="mono">.workbench/experiments/${experiment.id}</span>`],
     ["changed", changedText(experiment.changed) || "nothing"],
-    ["model", facts.model && baseName(facts.model)],
+    ["model", facts.model],
     ...Object.entries(facts.factors ?? {}).map(([name, levels]) => [name, levelsText(levels)]),
     ...Object.entries(facts.groups ?? {}).map(([name, number]) => [
       `group ${name}`,
@@ -101,7 +101,7 @@ export function Experiment() {
   return html`
     <div class="tools">
       <button class="bare" title="All experiments" onClick=${back}><span class="back"><${Icon} name="right" /></span>Experiments</button>
-      <b class="name" title=${experiment.id}>${experiment.name}</b>
+      <b class="name" title=${[experiment.model, experiment.id].filter(Boolean).join("\n")}>${experiment.name}</b>
       <span class="quiet when" title=${whenInFull(experiment.made)}>${whenText(experiment.made)}</span>
       <span class="state ${experiment.state}">${stateText(experiment)}</span>
       <span class="stretch"></span>

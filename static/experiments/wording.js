@@ -61,6 +61,3 @@ export function readLevels(text) {
     return null; // wrong quotes
   }
 }
-
-/** Returns the name of a file without its folders. */
-export const baseName = (path) => path.split("/").at(-1);

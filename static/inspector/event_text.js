@@ -23,12 +23,12 @@ const OWN_TEXTS = {
   command: (_data, event) => ["user", commandText(event).join(" ")],
   contact: ({ force, lasts }) => ["touch", `begins: ${(1000 * lasts).toFixed(0)} ms, with up to ${force.toFixed(0)} N`],
   planning_unit: (data) => ["plan", `${data.name} ${data.what}${data.by ? ` by ${data.by}` : ""}`],
-  conflict: (data) => ["matching", Object.keys(data.utilities).join(", ") || "none"],
+  conflict: (data) => ["matching", Object.keys(data.utilities ?? {}).join(", ") || "none"],
   buffer: (data) => ["holds", data.chunk ? chunkText(data.chunk) : "nothing"],
   retrieval: (data) => (data.failed ? ["fails", "nothing is retrieved"] : ["retrieved", data.chunk]),
   add: (data) => [data.merged ? "merges" : "adds", chunkText(data.chunk)],
   request: (data) => ["request", data.asked === undefined ? pairs(data) : requestText(data.asked)],
-  search: (data) => [data.bottom_up ? "notices" : "searches", `${data.asked}: ${data.noticed.length} noticed${data.why ? `, ${data.why}` : ""}`],
+  search: (data) => [data.bottom_up ? "notices" : "searches", `${data.asked}: ${data.noticed?.length ?? 0} noticed${data.why ? `, ${data.why}` : ""}`],
   sight: (data) => (data.failed ? ["sees", "nothing of that kind"] : ["sees", chunkText(data.chunk)]),
 };
 
@@ -39,6 +39,37 @@ export function eventText(event) {
   if (OWN_TEXTS[kind]) return OWN_TEXTS[kind](data ?? {}, event);
   const [title, text] = TEXTS[kind] ?? [kind, ""];
   return [title, text ? text.replace(/\{(\w+)\}/g, (_, name) => valueText(data?.[name])) : pairs(data)];
+}
+
+const slots = ({ chunk }) => chunk;
+
+/** The values that texts of events list, by their names. */
+const LISTED = {
+  fire: ({ bound }) => bound,
+  command: (_data, event) => Object.fromEntries([commandText(event)]),
+  buffer: slots,
+  add: slots,
+  sight: slots,
+  request: (data) => (data.asked === undefined ? data : null),
+};
+
+/** Values that texts of events leave out, with their names. */
+const LEFT_OUT = {
+  conflict: ({ utilities = {} }) => Object.entries(utilities).map(([production, value]) => [`utility of ${production}`, value]),
+  request: ({ candidates = [] }) => candidates.map((candidate) => [`activation of ${candidate[0]}`, candidate.at(-1)]),
+  search: ({ noticed = [] }) => noticed.map(([feature, salience], n) => [`noticed ${n + 1}`, { ...feature, salience }]),
+};
+
+/** Returns the values of an event by names that users know: slots, variables, utilities; what has no name is in the text of the event. */
+export function eventValues(event) {
+  const [, , kind] = event;
+  const data = event[3] ?? {};
+  const [title, text] = eventText(event);
+  const template = TEXTS[kind]?.[1];
+  const listed = LISTED[kind]?.(data, event) ?? (OWN_TEXTS[kind] || template ? null : data);
+  if (listed && !Object.keys(listed).some((name) => /^\d+$/.test(name))) return listed;
+  const leftOut = template ? Object.entries(data).filter(([name]) => !template.includes(`{${name}}`)) : LEFT_OUT[kind]?.(data);
+  return { [title]: text, ...Object.fromEntries(leftOut ?? []) };
 }
 
 /** Returns names with their values in one line. */

@@ -1,7 +1,6 @@
 // The model's description: its docstring, with values to try, and links to its source and its page in the manual.
 
 import { h, html } from "../vendor/preact.js";
-import { shortName } from "../bar/models.js";
 import { useDescription } from "../inspector/description.js";
 import { Icon } from "../parts/icon.js";
 import { openAt } from "../parts/place.js";
@@ -39,11 +38,10 @@ function About() {
   const shown = session.value;
   const { answer, problem } = useDescription();
   if (!shown) return html`<p class="empty">${runStatus.value.text}</p>`;
-  const file = shortName(shown.model);
   const isLost = runStatus.value.is === "unloadable";
   return html`<div class="about-frame"><article class="about">
     <header>
-      <span class="mono">${file}</span>
+      <span class="mono">${shown.model}</span>
       <span class="stretch"></span>
       ${answer?.manual ? html`<a href=${answer.manual} target="_blank" rel="noopener" title="Its page in the manual, with what it prints and a picture of a run"><${Icon} name="book" />Manual</a>` : null}
       <button title="Open its file in the editor" onClick=${() => openAt(shown.model, 1)}><${Icon} name="pen" />Edit</button>

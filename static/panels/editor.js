@@ -116,7 +116,7 @@ function Standing({ document }) {
   const dirty = document.dirty.value;
   const full = `${folder.value}/${document.path}`;
   return html`<div class="file-status">
-    <span class="path" title=${full}>${full.slice(0, full.lastIndexOf("/") + 1)}</span>
+    <span class="path" title=${full}><bdi>${full.slice(0, full.lastIndexOf("/") + 1)}</bdi></span>
     <span class=${dirty ? "state unsaved" : "state quiet"} role="status">
       ${document.saving.value ? "saving …" : dirty ? `● unsaved${document.note.value && document.note.value !== "saved" ? `: ${document.note.value}` : ""}` : document.note.value}
     </span>

@@ -9,10 +9,14 @@ import { Experiment } from "../experiments/one.js";
 import { changedText, doneText, durationText, failuresText, stateText } from "../experiments/wording.js";
 
 function Row({ experiment }) {
-  const { id, name, made, state, done, total, failures, left, changed } = experiment;
+  const { id, name, model, made, state, done, total, failures, left, changed } = experiment;
   const open = () => showExperiment(id);
+  const how = changedText(changed) || "as designed";
   return html`<tr data-experiment=${id} onClick=${open}>
-    <td class="name"><button class="link" onClick=${(event) => (event.stopPropagation(), open())}>${name}</button><small>${changedText(changed) || "as designed"}</small></td>
+    <td class="name" title=${[model, how].filter(Boolean).join("\n")}>
+      <button class="link" onClick=${(event) => (event.stopPropagation(), open())}>${name}</button>
+      <small>${model ? html`<span class="path"><bdi>${model}</bdi></span>` : null}<span>${how}</span></small>
+    </td>
     <td class="when" title=${whenInFull(made)}><span class="number">${whenText(made)}</span><small>${agoText(made)}</small></td>
     <td class="state ${state}"><span>${stateText(experiment)}</span><small>${isRunning(experiment) && left !== null ? `${durationText(left)} left` : failures > 0 ? html`<span class="bad">${failuresText(failures)}</span>` : ""}</small></td>
     <td class="done"><span class="number">${doneText(experiment)}</span><progress aria-label="Finished trials" value=${done} max=${total ?? Math.max(1, done)}></progress></td>

@@ -63,6 +63,7 @@ function Row({ run, list, number, now, toggle, open }) {
   const isChosen = chosen.value.has(run.id);
   const own = run.id === present.value;
   const different = differentText(run);
+  const { name = "", tags = [] } = run.label ?? {};
   return html`<tr
     class="${isChosen ? "chosen" : ""} ${own ? "present" : ""}"
     aria-selected=${isChosen}
@@ -75,8 +76,11 @@ function Row({ run, list, number, now, toggle, open }) {
       <input type="checkbox" checked=${isChosen} aria-label="Choose ${run.model || run.id} of ${whenText(run.made)}" onClick=${(event) => { event.stopPropagation(); toggle(run.id, event, true); }} />
     </td>
     <td class="when" title=${whenInFull(run.made)}><span class="number">${whenText(run.made)}</span><small>${agoText(run.made, now)}</small></td>
-    <td class="model" title="${run.model || run.id}${different ? `\n${different}` : ""}\nseed ${String(run.seed)}">
-      <span>${run.label?.name ? html`<b>${run.label.name}</b> <span class="quiet">${run.model || run.id}</span>` : run.model || run.id}${(run.label?.tags ?? []).map((tag) => html` <span key=${tag} class="tag">${tag}</span>`)}</span>
+    <td class="model" title=${[name, run.model || run.id, tags.join(", "), different, `seed ${run.seed}`].filter(Boolean).join("\n")}>
+      <span class="names">
+        ${name ? html`<b>${name}</b>` : null}<span class=${name ? "path quiet" : "path"}><bdi>${run.model || run.id}</bdi></span>
+        ${tags.map((tag) => html`<span key=${tag} class="tag">${tag}</span>`)}
+      </span>
       <small>${run.session ? html`<b class="present-mark" title=${own ? "The run that is shown" : "Its session is still there: choose its model above to show it"}>${own ? "present" : "open"}</b> · ` : null}${run.problem ? "" : html`${run.branched === null ? null : html`<b title="branch ${originText(run, list)}">${branchText(run)}</b> · `}${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
     </td>
     <td class="outcome ${run.problem || run.failed ? "bad" : ""}" title=${endedText(run)}>

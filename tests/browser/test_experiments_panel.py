@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Callable, Iterator
 
 import pytest
@@ -15,11 +16,11 @@ from tests.helpers.workbench_server import Served
 
 @pytest.fixture(scope="module")
 def design(workbench: Served) -> Iterator[str]:
-    """A small experiment among the models."""
-    path = write_experiment(workbench.folder)
-    yield f"{path.name}:counting"
-    path.unlink()
-    (workbench.folder / "counter.py").unlink()
+    """A small experiment in a folder among the models."""
+    folder = workbench.folder / "course"
+    folder.mkdir()
+    yield f"course/{write_experiment(folder).name}:counting"
+    shutil.rmtree(folder)
 
 
 def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page], workbench: Served, design: str) -> None:
@@ -60,7 +61,10 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
     expect(rows).to_have_count(24)
     page.get_by_role("button", name="Sort by luck").click()
     expect(page.get_by_role("columnheader").filter(has_text="luck")).to_have_attribute("aria-sort", "descending")
-    number = rows.first.locator("td").first.inner_text()
+    (made,) = workbench.get("/api/experiments").json()["experiments"]
+    sorted_rows = workbench.get(f"/api/experiments/{made['id']}/rows", params={"sort": "luck", "down": True}).json()["rows"]
+    number = str(sorted_rows[0]["trial"])
+    expect(rows.first.locator("td").first).to_have_text(number)
     rows.first.click()
     expect(page).to_have_url(re.compile(rf"run=counting_trial_{number}-"))
     assert page.evaluate("document.readyState") == "complete"
@@ -70,6 +74,7 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
     expect(page.locator(".tools .name")).to_have_text("counting")  # the experiment is still shown
     page.get_by_role("button", name="Design").click()
     expect(page.locator(".about-design")).to_contain_text("trials 3 · n 1, 2, 5, 9 · mode count")
+    expect(page.get_by_role("row", name="model", exact=False).locator("td")).to_have_text("course/counter.py")
     page.get_by_role("button", name="Make report").click()
     report = page.frame_locator("iframe.report")
     expect(report.get_by_role("heading", level=1)).to_have_text("counting", timeout=120_000)
@@ -85,7 +90,9 @@ def test_two_pages_see_an_experiment_stop_and_go_on(pages: Callable[..., Page], 
     name = workbench.post("/api/experiments", wanted).json()["id"]
     first, second = (pages("counting.py", tab="experiments", refusals=True) for _ in range(2))
     for page in (first, second):
-        page.locator(f"tr[data-experiment='{name}']").click()
+        row = page.locator(f"tr[data-experiment='{name}']")
+        expect(row.locator(".name")).to_have_text("countingcourse/counter.pytrials 2000")
+        row.click()
         expect(page.locator(".point")).not_to_have_count(0)
     first.get_by_role("button", name="Stop", exact=True).click()
     for page in (first, second):

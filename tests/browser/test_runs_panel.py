@@ -261,8 +261,8 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     around = dialog.get_by_role("table", name="Events around the first difference")
     expect(around.locator("tr.here")).to_have_count(1)
     dialog.get_by_label("Which events are compared").select_option("firings")
-    expect(around.locator("tr.here")).to_contain_text(re.compile("walker.*fire.*production:turn.*fire.*production:|fire.*fire.*turn"))
-    expect(dialog.get_by_role("list", name="What differs")).to_contain_text("production")
+    expect(around.locator("tr.here")).to_contain_text(re.compile("walker.*turn"))
+    expect(dialog.get_by_role("list", name="What differs")).to_contain_text(re.compile("event.*turn"))
 
     expect(dialog.get_by_role("figure", name="walker speed")).to_be_visible()
     dialog.get_by_label("Add a curve").select_option("walker_torso_yaw speed")
@@ -300,8 +300,64 @@ def test_changes_during_a_run_are_shown_beside_its_initial_values(page: Page, tw
     expect(sides.get_by_role("row", name=re.compile("width"))).to_have_text(re.compile(r"≠width \[m\]0\.5.* → 0\.9 at 0\.01 s$"))
 
 
+Event = tuple[str, dict[str, Any] | None]
+"""A kind and its data."""
+CHOICES = [["go", [0.5], 0, 1.5], ["stay", [0.5], 0, 0.5]]
+DIFFERENT: list[tuple[Event, Event, list[list[str]]]] = [
+    (("buffer", {"chunk": {"0": "count", "1": "2"}}), ("buffer", {"chunk": {"0": "count", "1": "3"}}), [["holds", "count 2", "count 3"]]),
+    (("buffer", {"chunk": {"isa": "a", "width": 0.504}}), ("buffer", {"chunk": {"isa": "a", "width": 0.4}}), [["width", "0.504", "0.4"]]),
+    (("buffer", {"chunk": {"x": 1e-20}}), ("buffer", {"chunk": {"x": 2e-20}}), [["x", "1e-20", "2e-20"]]),
+    (("buffer", {"chunk": None}), ("buffer", {"chunk": {"isa": "a"}}), [["holds", "nothing", "isa:a"]]),
+    (("sight", {"failed": True}), ("sight", {"failed": False, "chunk": {"isa": "a"}}), [["sees", "nothing of that kind", "isa:a"]]),
+    (("add", {"chunk": {"a": "1"}, "merged": True}), ("add", {"chunk": {"a": "2"}, "merged": True}), [["a", "1", "2"]]),
+    (("add", {"chunk": {"a": "1"}, "size": 3}), ("add", {"chunk": {"a": "1"}, "size": 4}), [["size", "3", "4"]]),
+    (("fire", {"production": "go", "bound": {"n": "2"}}), ("fire", {"production": "go", "bound": {"n": "3"}}), [["n", "2", "3"]]),
+    (("fire", {"production": "go", "bound": {"n": "2"}}), ("fire", {"production": "stay", "bound": None}), [["event", "go n=2", "stay"]]),
+    (("conflict", {"utilities": {"go": 1.25}}), ("conflict", {"utilities": {"go": 1}}), [["utility of go", "1.25", "1"]]),
+    (("request", {"asked": "0:a 1:?b"}), ("request", {"asked": "0:a 1:?c"}), [["request", "a ?b", "a ?c"]]),
+    (
+        ("request", {"asked": "a", "candidates": CHOICES}),
+        ("request", {"asked": "a", "candidates": CHOICES[:1]}),
+        [["activation of stay", "0.5", "–"]],
+    ),
+    (("request", {"call": "turn", "angle": 1}), ("request", {"call": "turn", "angle": 2}), [["angle", "1", "2"]]),
+    (
+        ("retrieval", {"failed": False, "chunk": "a"}),
+        ("retrieval", {"failed": True}),
+        [["event", "retrieved a", "fails nothing is retrieved"]],
+    ),
+    (
+        ("search", {"asked": "isa:a", "noticed": [[{"x": 1}, 0.5]]}),
+        ("search", {"asked": "isa:a", "noticed": [[{"x": 2}, 0.5]]}),
+        [["noticed 1 x", "1", "2"]],
+    ),
+    (
+        ("move", {"movement": "turn", "group": "torso", "speed": 1}),
+        ("move", {"movement": "turn", "group": "torso", "speed": 2}),
+        [["speed", "1", "2"]],
+    ),
+    (
+        ("moved", {"movement": "turn", "group": "torso", "end": "done"}),
+        ("select", {"production": "go"}),
+        [["event", "moved turn (torso): done", "chosen go"]],
+    ),
+    (
+        ("state", {"speed": {"x": 1, "y": 2}}),
+        ("state", {"speed": {"x": 1, "y": 3}, "constructor": 1}),
+        [["speed y", "2", "3"], ["constructor", "–", "1"]],
+    ),
+]
+"""Pairs of events, and what differs."""
+
+
 @pytest.mark.slow
-def test_commands_that_differ_are_worded_as_on_the_timeline(page: Page, recordings: Path) -> None:
+def test_what_differs_is_worded_as_in_trace_and_timeline(page: Page, recordings: Path) -> None:
+    worded = "async (pairs) => { const { differing } = await part('compare/difference.js'); return pairs.map(differing); }"
+    pairs = [[[10_000, "agent", *one], [10_000, "agent", *other]] for one, other, _ in DIFFERENT]
+    assert page.evaluate(worded, pairs) == [expected for *_, expected in DIFFERENT]
+    later = [[950_000, "goal", "buffer", {"chunk": None}], [950_001, "visual", "buffer", {"chunk": None}]]
+    assert page.evaluate(worded, [later]) == [[["time [s]", "0.95", "0.950001"], ["source", "goal", "visual"]]]
+
     say = "async (command) => void (await (await part('server.js')).say(command))"
     expect(page.locator("#status")).to_have_text(re.compile("at its start"))
     page.evaluate(say, {"type": "until", "time": 0.2})
@@ -315,7 +371,7 @@ def test_commands_that_differ_are_worded_as_on_the_timeline(page: Page, recordin
     dialog = page.get_by_role("dialog", name="Two runs")
     dialog.get_by_label("Which events are compared").select_option("all events")
     expect(dialog.get_by_role("list", name="What differs").get_by_role("listitem")).to_have_text("aperture 51 cm 49 cm")
-    expect(dialog.locator(".parting tr.here .particulars")).to_have_text(["aperture 51 cm", "aperture 49 cm"])
+    expect(dialog.locator(".parting tr.here .event")).to_have_text(["user aperture 51 cm", "user aperture 49 cm"])
 
 
 @pytest.mark.slow

@@ -70,9 +70,10 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
         assert list(recorded.commands()) == []
     renamed = branch.rename(branch.with_name("tidy.sqlite"))
     assert json.loads(talk.session.facts_json())["branched"]["kept"] is False
-    assert b'"branched":0.1' in summary_json(renamed)
+    models = talk.sessions.folder
+    assert b'"branched":0.1' in summary_json(renamed, models)
     renamed.rename(branch)
-    assert b'"branched":null' in summary_json(branch.with_name(f"{origin}.sqlite"))
+    assert b'"branched":null' in summary_json(branch.with_name(f"{origin}.sqlite"), models)
     assert retention.is_unnamed(branch)  # so that it goes, one day
     there(talk, 50)
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.5

@@ -89,8 +89,9 @@ def test_a_design_is_checked_with_its_changes(workbench: Served) -> None:
     facts = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"n": [3, 4]}, "participants": 5, "trials": 7}).json()
     assert (facts["trials"], facts["factors"], facts["groups"], facts["trials_a_cell"]) == (70, {"n": [3, 4]}, {"all": 5}, 7)
     assert [parameter["name"] for parameter in facts["parameters"]] == ["n", "mode"]
-    tried = workbench.post("/api/designs/check", {"design": COUNTING, "trial": True}).json()
+    tried = workbench.post("/api/designs/check", {"design": "slow/counting_design.py:counting", "trial": True}).json()
     assert 0 < tried["seconds_a_trial"] < 60
+    assert tried["model"] == "slow/counter.py"
     wrong = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"nn": 3}})
     assert wrong.status_code == 422
     assert wrong.json()["error"].startswith("--set nn: Design: the model has no parameter 'nn'; did you mean 'n'?")
@@ -168,6 +169,7 @@ def test_an_experiment_is_stopped_and_continued_while_sessions_go_on(workbench: 
     assert workbench.post(f"/api/experiments/{name}/delete").status_code == 409
     now = awaited(workbench, name, "running", done=20)
     assert now["workers"] == 1
+    assert now["model"] == now["facts"]["model"] == "slow/counter.py"
     assert now["rate"] is None or now["rate"] > 0
     session = workbench.post("/api/sessions", {"model": "counting.py", "run": True}).json()["id"]
     workbench.post(f"/api/sessions/{session}/close")

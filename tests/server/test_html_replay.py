@@ -177,8 +177,8 @@ def test_long_runs_and_large_scenes_have_bounds(walked: Path, tmp_path: Path, mo
 
 
 def test_it_is_made_in_another_process_and_errors_are_reported(desk: Desk, walked: Path, tmp_path: Path) -> None:
-    with desk.do(Readers(desk.workers).make("replay.html", walked)) as made:
-        assert inside(made.read().decode())["model"] == "model.py"
+    with desk.do(Readers(desk.workers).make("replay.html", walked, models=str(tmp_path.parent))) as made:
+        assert inside(made.read().decode())["title"] == f"{tmp_path.name}/model.py · seed 1"
     broken = tmp_path / "broken.sqlite"
     broken.write_bytes(b"nothing")
     with pytest.raises(ReadingError, match=r"^'broken' is not a recording: file is not a database$"):

@@ -101,6 +101,26 @@ def test_a_list_has_the_newest_first_and_names_what_cannot_be_read(desk: Desk, t
     assert [summary.id for summary in desk.listed(tmp_path, 1, 2)[1]] == [summary.id for summary in found[1:3]]
 
 
+def test_models_are_listed_with_their_folders(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / "link.py").symlink_to("a/walk.py")
+    (tmp_path / "loop.py").symlink_to("loop.py")
+    outside = tmp_path.parent / "outside.py"
+    files = {
+        "a": (tmp_path / "a" / "walk.py", "a/walk.py"),
+        "b": (tmp_path / "a" / ".." / "b" / "walk.py", "b/walk.py"),
+        "linked": (tmp_path / "link.py", "link.py"),
+        "outside": (outside, "outside.py"),
+        "loop": (tmp_path / "loop.py", "loop.py"),
+        "bare": ("walk.py", "walk.py"),  # it does not say of which folder
+        "none": ("", ""),
+    }
+    paths = {name: written(tmp_path, name, firing(1), file=str(file), sources={str(file): name}) for name, (file, _) in files.items()}
+    assert {one.id: one.model for one in desk.listed(tmp_path)[1]} == {name: shown for name, (_, shown) in files.items()}
+    told = compare(paths["a"], paths["b"])
+    assert (told["parameters"], told["difference"]) == ({}, None)
+    assert told["text"][-2:] == ["-a", "+b"]  # files of one name may be versions of one model
+
+
 def test_a_summary_is_read_again_when_its_file_has_changed(desk: Desk, tmp_path: Path) -> None:
     listing = desk.sessions(tmp_path).listing
     path = tmp_path / ".workbench" / "recordings" / "m.sqlite"
@@ -130,7 +150,7 @@ def test_the_first_difference_has_its_surroundings(tmp_path: Path) -> None:
     assert (told["same_events"], told["whole"]) == (19, True)
     difference = told["difference"]
     assert (difference["number"], difference["time"]) == (19, 0.95)
-    assert difference["what"] == [["production", "left", "right"]]
+    assert [event[3]["production"] for event in difference["events"]] == ["left", "right"]
     assert [event[0] for event in difference["before"]] == [50_000 * n for n in range(19 - CONTEXT, 19)]
     assert difference["after"] == [[[1_000_000, "agent", "fire", {"production": "go", "bound": None}]], []]
     assert "-y = 2" in told["text"]

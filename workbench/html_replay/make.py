@@ -17,6 +17,7 @@ from actr3d.trace import TraceEvent
 from actr3d.values import to_json
 from actr3d.world.compiled import from_text, loaded
 from workbench.curves import stride
+from workbench.files import ModelFolder
 from workbench.geom_colours import dress
 from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
 from workbench.palette import palette
@@ -36,15 +37,20 @@ LONGEST = 400
 """Maximum length of an event's text [characters]."""
 
 
-def write_replay(path: Path, to: Path) -> None:
+def write_replay(path: Path, to: Path, *, models: str | None = None) -> None:
     """Writes the replay of a recording to a file.
+
+    Args:
+        path: The recording.
+        to: The new file.
+        models: The models folder, below which the path of the model is shown; None for its name alone.
 
     Raises:
         RecordingError: If the recording cannot be read, or its scene is too large.
         OSError: If the file cannot be written.
     """
     with Recorded(path) as recorded:
-        facts, events = _facts(recorded), _events(recorded)
+        facts, events = _facts(recorded, models), _events(recorded)
         agents = list(dict.fromkeys(source.partition(".")[0] for _, source, _, _ in events["rows"]))
         content = {**facts, "palette": palette(), "events": events, "scene": _scene(recorded, agents)}
     # No text from a model can close the HTML element that contains it.
@@ -64,9 +70,10 @@ def _scripts(folder: Path) -> str:
     return "\n".join(_read(folder, name) for name in ("space.js", "solids.js", "camera.js", "drawing.js", "events.js", "player.js"))
 
 
-def _facts(recorded: Recorded) -> dict[str, Any]:
+def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
     facts = recorded.facts
-    model = Path(facts.get("file", "")).name
+    file = facts.get("file", "")
+    model = Path(file).name if models is None else ModelFolder(Path(models)).shown(file)
     seed = facts.get("program_seed", facts.get("seed"))
     ended = facts.get("ended")
     return {

@@ -12,6 +12,7 @@ from actr3d.recording import Recorded
 from actr3d.runner.replay import replay
 from actr3d.values import to_json
 from workbench.exports import EXPORTS
+from workbench.files import ModelFolder
 from workbench.recording_index import summary_json, without_path
 from workbench.worker.channel import Channel
 from workbench.worker.memory import relieve
@@ -64,8 +65,9 @@ def make(channel: Channel) -> None:
 
 def summarize(channel: Channel) -> None:
     """Replies with the summary of each recording, in order."""
+    models = ModelFolder(Path(channel.start.folder))
     for number, path in enumerate(map(Path, channel.start.recordings)):
-        channel.post(_answer(number, lambda path=path: summary_json(path), [path]))
+        channel.post(_answer(number, lambda path=path: summary_json(path, models), [path]))
 
 
 def _answer(number: int, work: Callable[[], bytes], paths: list[Path]) -> Reply:
