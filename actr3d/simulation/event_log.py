@@ -24,6 +24,11 @@ Listener = Callable[[TraceEvent], object]
 class StateKeeper(Protocol):
     """Stores the states of a run for its observers, and changes nothing."""
 
+    @property
+    def furthest(self) -> int:
+        """The last tick that was stored."""
+        ...
+
     def keep(self, tick: int, world: World) -> None:
         """Stores the start of the run (tick 0) or the end of a tick, also of one that runs again."""
         ...
@@ -210,6 +215,10 @@ class EventLog:
             self._recording.state(1, tick, world.state_bytes())
         if self._program is not None and not self.silent:
             self._program.state(tick, world)
+
+    def known(self, tick: int) -> int:
+        """Returns the last tick up to a given one whose state nobody needs again."""
+        return tick if self.keeper is None else min(tick, self.keeper.furthest)
 
     def command(self, command: Command) -> None:
         """Records a new command of a user."""

@@ -230,7 +230,7 @@ class Timeline:
 
     def _repeat(self, to: int) -> None:
         history, lockstep = self._history, self.lockstep
-        kept, state = history.before(to)
+        kept, state = history.before(self._log.known(to))
         if kept > lockstep.ticks:
             while lockstep.ticks < kept:
                 lockstep.repeat_commands(history.commands, only_agents=True)

@@ -38,6 +38,11 @@ class Kept:
         self.walked = Walked(period)
         self.touched = Touched()
 
+    @property
+    def furthest(self) -> int:
+        """The last tick that was stored."""
+        return self.states.furthest
+
     def keep(self, tick: int, world: World) -> None:
         """Stores the end of a tick, or the start of the run (tick 0); known ticks are skipped."""
         self.states.keep(tick, world)
@@ -60,9 +65,14 @@ class Past:
         """Only every n-th tick is stored."""
         self._last: tuple[int, bytes] = (-1, b"")
 
+    @property
+    def furthest(self) -> int:
+        """The last tick that was stored."""
+        return self._last[0]
+
     def keep(self, tick: int, world: World) -> None:
         """Stores the state at the end of a tick, or at the start of the run (tick 0); known ticks are skipped."""
-        if tick > self._last[0]:
+        if tick > self.furthest:
             self.add(tick, world.state_bytes())
 
     def add(self, tick: int, state: bytes) -> None:
