@@ -35,7 +35,7 @@ def write_events_csv(path: Path, to: Path) -> None:
 
 
 def write_states_csv(path: Path, to: Path) -> None:
-    """Writes the physics of a recording: one row per tick with all numbers of MuJoCo's integration state.
+    """Writes the physics of a recording: one row per tick with all numbers of MuJoCo's integration state, and the contacts in the tick.
 
     The columns are named after joints, actuators and bodies if the recording holds its compiled scene; otherwise they are numbered.
     For a program, which may run several simulations, the first column is the number of the run, and each run begins with its own row of
@@ -55,12 +55,13 @@ def write_states_csv(path: Path, to: Path) -> None:
 
 
 def _state_rows(recorded: Recorded, names: list[str] | None, period: int | None) -> Iterator[tuple[Any, ...]]:
-    for run, tick, state, _ in recorded.states():
+    for run, tick, state, _, contacts in recorded.states():
         numbers = array("d", state)
         if tick == 0:
             known = names if names is not None and len(names) == len(numbers) else [f"state_{number}" for number in range(len(numbers))]
-            yield ("run", "tick", *known) if period is None else ("time [s]", *known)
-        yield (run, tick, *numbers) if period is None else (seconds(tick * period), *numbers)
+            yield (*(("run", "tick") if period is None else ("time [s]",)), *known, "contacts")
+        listed = to_json([(*contact, force) for contact, force in contacts.items()]) if contacts else ""
+        yield (*((run, tick) if period is None else (seconds(tick * period),)), *numbers, listed)
 
 
 def _write(to: Path, head: tuple[str, ...] | None, rows: Iterable[tuple[Any, ...]]) -> None:

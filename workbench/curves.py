@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -14,10 +13,13 @@ import numpy as np
 from mujoco import MjData, MjModel
 from numpy.typing import NDArray
 
-from actr3d.clock import microseconds
+from actr3d.actr.kernel.run_limits import Contacts
+from actr3d.clock import microseconds, seconds
 
 INTEGRATION = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 Values = Sequence[float | None]
+Moment = tuple[int, bytes, Contacts]
+"""A tick, the state at its end, and the contacts since the state before."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +36,17 @@ class Source(ABC):
     """Computes the values of some curves from a state."""
 
     curves: tuple[Curve, ...]
-    needs = 0
-    """What must be computed for a state first: 0 nothing, 1 positions and velocities, 2 also contacts and forces."""
+    needs_pose = False
+    """Whether positions and velocities must be computed for a state first."""
 
     @abstractmethod
-    def read(self, numbers: NDArray[np.float64]) -> Values:
-        """Returns the value of each of its curves in a state; None if there is no value."""
+    def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
+        """Returns the value of each of its curves in a state; None if there is no value.
+
+        Args:
+            numbers: The state.
+            contacts: The contacts since the state before.
+        """
 
 
 class Joints(Source):
@@ -68,7 +75,7 @@ class Joints(Source):
         self._columns = np.array(columns, dtype=np.intp)
         self._factors = np.array(factors)
 
-    def read(self, numbers: NDArray[np.float64]) -> Values:
+    def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
         """Returns all joint positions and speeds."""
         return (numbers[self._columns] * self._factors).tolist()
 
@@ -83,14 +90,14 @@ class Motion(Source):
         root: The number of its MuJoCo body.
     """
 
-    needs = 1
+    needs_pose = True
 
     def __init__(self, model: MjModel, data: MjData, name: str, root: int) -> None:
         self.curves = (Curve(f"{name} x", "m", "place"), Curve(f"{name} y", "m", "place"), Curve(f"{name} speed", "m/s", "speed"))
         self._model, self._data, self._root = model, data, root
         self._speeds = np.zeros(6)
 
-    def read(self, numbers: NDArray[np.float64]) -> Values:
+    def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
         """Returns x and y of the body's root [m] and the horizontal speed of that point [m/s]."""
         mujoco.mj_objectVelocity(self._model, self._data, mujoco.mjtObj.mjOBJ_XBODY, self._root, self._speeds, 0)
         x, y, _ = self._data.xpos[self._root].tolist()
@@ -109,7 +116,7 @@ class Room(Source):
         where: The suffix of the curves' names if there are several doorways.
     """
 
-    needs = 1
+    needs_pose = True
 
     def __init__(self, model: MjModel, data: MjData, name: str, geoms: NDArray[np.intp], wall: dict[str, Any], where: str) -> None:
         self.curves = tuple(Curve(f"{name} clearance {side}{where}", "m", "clearance") for side in ("left", "right"))
@@ -118,62 +125,25 @@ class Room(Source):
 
         self._clearance = Clearance(model, data, geoms, Gap(**wall))
 
-    def read(self, numbers: NDArray[np.float64]) -> Values:
+    def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
         """Returns the smallest distances to the left and right wall segment [m]; None if no part of the body is in the doorway."""
         return self._clearance.rooms() or (None, None)
 
 
-def contact_force(name: str) -> str:
-    """Returns the name of the curve of the contact force on a body."""
-    return f"{name} contact force"
-
-
 class Force(Source):
-    """Computes the largest contact force on a body from anything but the ground, like `PassageResult` but only at the ends of ticks.
+    """Reads the greatest contact force on a body from anything but the ground, at the beginnings of physics steps like `PassageResult`.
 
     Args:
-        model: The compiled scene.
-        data: The state of the scene.
         name: The body's name.
-        feels: The geoms that sense contacts.
-        own: For each geom, whether it belongs to the body; the last entry is for soft objects (flexes), which have no geom.
-        owners: For each geom, the number of the object that it belongs to; the last entry is for soft objects.
-        ground: The geoms of the ground.
     """
 
-    needs = 2
+    def __init__(self, name: str) -> None:
+        self.curves = (Curve(f"{name} contact force", "N", "contact"),)
+        self._name = name
 
-    def __init__(
-        self,
-        model: MjModel,
-        data: MjData,
-        name: str,
-        *,
-        feels: Iterable[int],
-        own: NDArray[Any],
-        owners: NDArray[Any],
-        ground: Iterable[int],
-    ) -> None:
-        self.curves = (Curve(contact_force(name), "N", "contact"),)
-        self._model, self._data, self._own, self._owners = model, data, own, owners
-        # A geom without a name counts as part of its MuJoCo body.
-        self._parts = {geom: geom if model.geom(geom).name else -1 - int(model.geom_bodyid[geom]) for geom in feels}
-        self._ground = frozenset(ground)
-        self._wrench = np.zeros(6)
-
-    def read(self, numbers: NDArray[np.float64]) -> Values:
-        """Returns the largest force [N], summed over all contacts of one part with one object."""
-        if self._data.ncon == 0:
-            return (0.0,)
-        pairs = self._data.contact.geom
-        is_body = self._own[pairs]
-        forces: defaultdict[tuple[int, int], float] = defaultdict(float)
-        for number in np.flatnonzero(is_body[:, 0] != is_body[:, 1]).tolist():
-            mine, other = pairs[number].tolist() if is_body[number, 0] else pairs[number, ::-1].tolist()
-            if mine in self._parts and other not in self._ground and self._data.contact.dist[number] <= 0:
-                mujoco.mj_contactForce(self._model, self._data, number, self._wrench)
-                forces[self._parts[mine], int(self._owners[other])] += float(self._wrench[0])
-        return (max(forces.values(), default=0.0),)
+    def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
+        """Returns the greatest force [N] of one object on one part, summed over all contacts of the two."""
+        return (max((force for (body, _, _), force in contacts.items() if body == self._name), default=0.0),)
 
 
 class CurveReader:
@@ -193,37 +163,36 @@ class CurveReader:
         """All curves with name, unit and group."""
         return [asdict(curve) for source in self._sources for curve in source.curves]
 
-    def sampled(self, moments: Iterable[tuple[float, bytes]], names: Sequence[str] | None) -> dict[str, Any]:
+    def sampled(self, moments: Iterable[Moment], names: Sequence[str] | None, period: int, zero: int = 0) -> dict[str, Any]:
         """Returns `names` (all curves with unit and group), `times` [s], and `curves` (values by name).
 
         Args:
-            moments: Times [s] with MuJoCo's integration state at each.
+            moments: The moments, as `thinned` yields them.
             names: The curves to compute; None for all. Unknown names are ignored.
+            period: Length of a tick [us].
+            zero: Time of tick 0 [us].
         """
         wanted = [source for source in self._sources if names is None or any(curve.name in names for curve in source.curves)]
-        depth = max((source.needs for source in wanted), default=0)
+        needs_pose = any(source.needs_pose for source in wanted)
         times: list[float] = []
         columns: dict[str, list[float | None]] = {curve.name: [] for source in wanted for curve in source.curves}
-        for time, state in moments if wanted else ():
+        for tick, state, contacts in moments if wanted else ():
             numbers = np.frombuffer(state)
-            self._pose(numbers, depth)
-            times.append(time)
+            if needs_pose:
+                self._pose(numbers)
+            times.append(seconds(zero + tick * period))
             for source in wanted:
-                for curve, value in zip(source.curves, source.read(numbers), strict=True):
+                for curve, value in zip(source.curves, source.read(numbers, contacts), strict=True):
                     columns[curve.name].append(value if value is not None and math.isfinite(value) else None)
         chosen = {name: values for name, values in columns.items() if names is None or name in names}
         return {"names": self.names, "times": times, "curves": chosen}
 
-    def _pose(self, numbers: NDArray[np.float64], depth: int) -> None:
+    def _pose(self, numbers: NDArray[np.float64]) -> None:
         """Computes the quantities that the curves need for a state."""
-        if depth:
-            mujoco.mj_setState(self._model, self._data, numbers, INTEGRATION)
-        if depth == 1:
-            mujoco.mj_kinematics(self._model, self._data)
-            mujoco.mj_comPos(self._model, self._data)
-            mujoco.mj_comVel(self._model, self._data)
-        elif depth == 2:
-            mujoco.mj_forward(self._model, self._data)
+        mujoco.mj_setState(self._model, self._data, numbers, INTEGRATION)
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_comPos(self._model, self._data)
+        mujoco.mj_comVel(self._model, self._data)
 
 
 NOTHING: dict[str, Any] = {"names": [], "times": [], "curves": {}}
@@ -246,15 +215,13 @@ def joined(parts: Iterable[dict[str, Any]]) -> dict[str, Any]:
 
 def _sources(model: MjModel, data: MjData, world: dict[str, Any]) -> Iterable[Source]:
     """Yields the sources of the curves of bodies."""
-    roots = np.append(model.body_rootid[model.geom_bodyid], -1)
-    owners = np.where(roots == 0, -2 - np.arange(len(roots)), roots)  # each geom of the world body counts as an object of its own
     walls = world["walls"]
     for name, body in world["bodies"].items():
-        own = np.append(np.isin(model.geom_bodyid, _members(model, body["root"])), False)
+        geoms = np.flatnonzero(np.isin(model.geom_bodyid, _members(model, body["root"])))
         yield Motion(model, data, name, body["root"])
         for at, wall in walls.items():
-            yield Room(model, data, name, np.flatnonzero(own), wall, "" if len(walls) == 1 else f" of {at}")
-        yield Force(model, data, name, feels=body["feels"], own=own, owners=owners, ground=world["ground"])
+            yield Room(model, data, name, geoms, wall, "" if len(walls) == 1 else f" of {at}")
+        yield Force(name)
 
 
 def _members(model: MjModel, root: int) -> list[int]:
@@ -281,3 +248,33 @@ def stretch(first: float, last: float | None, period: int, zero: int = 0) -> tup
 def stride(count: int, most: int) -> int:
     """Returns the step n, so that every n-th of `count` moments gives at most `most` moments."""
     return max(1, -(-count // most))
+
+
+def harder(one: Contacts, other: Contacts) -> Contacts:
+    """Returns the greatest force of each contact in two periods."""
+    if not (one and other):
+        return one or other
+    return {contact: max(one.get(contact, 0.0), other.get(contact, 0.0)) for contact in {**one, **other}}
+
+
+def thinned(known: Callable[[], Iterable[Moment]], most: int, every: int = 1) -> Iterator[Moment]:
+    """Yields known moments: evenly spaced ones, those with contacts, and the last one; no contact is lost.
+
+    Args:
+        known: Returns the known moments, each time from the first on.
+        most: Maximum number of evenly spaced moments, at least 2, and of those with contacts.
+        every: Every n-th tick is known, besides the last one.
+    """
+    count, last, touched = 0, -1, list[int]()
+    for last, _, contacts in known():
+        count += 1
+        if contacts:
+            touched.append(last)
+    every *= stride(count, most - 1)
+    chosen = {last, *touched[:: stride(len(touched), most)]}
+    since: Contacts = {}
+    for tick, state, contacts in known():
+        since = harder(since, contacts)
+        if tick % every == 0 or tick in chosen:
+            yield tick, state, since
+            since = {}

@@ -7,19 +7,18 @@ must not harm the server.
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.recording.opening import opened
 from actr3d.values import to_json
 from actr3d.world.compiled import from_text, loaded
 from workbench.csv_files import write_events_csv, write_states_csv
-from workbench.curves import NOTHING, CurveReader, stretch, stride
+from workbench.curves import NOTHING, CurveReader, Moment, stretch, thinned
 from workbench.experiment_table import Table, counts
 from workbench.html_replay.make import write_replay
 from workbench.recorded_start import beginning_of, written
@@ -49,7 +48,7 @@ def curves_of(path: Path, *, names: Sequence[str] | None, first: float, most: in
         path: The recording.
         names: Which curves; None for all.
         first: The start of the interval [s].
-        most: Maximum number of times, evenly spaced; the last moment is included.
+        most: Maximum number of times, evenly spaced; the last moment is included, and so are moments of contacts.
         last: The end of the interval [s]; None for the end of the recording.
 
     Raises:
@@ -59,13 +58,15 @@ def curves_of(path: Path, *, names: Sequence[str] | None, first: float, most: in
         facts = recorded.facts
         if "compiled" not in facts:
             return NOTHING
-        period, ticks = facts["period_us"], recorded.ticks
-        begin, end = stretch(first, last, period)
-        end = ticks if end is None else min(end, ticks)
-        every = stride(end + 1 - begin, most - 1)
-        states = ((tick, state) for _, tick, state, _ in recorded.states() if begin <= tick <= end)
-        moments = ((seconds(tick * period), state) for tick, state in states if tick % every == 0 or tick == end)
-        return CurveReader(loaded(from_text(facts["compiled"])), facts["world"]).sampled(moments, names)
+        begin, end = stretch(first, last, facts["period_us"])
+
+        def known() -> Iterator[Moment]:
+            for _, tick, state, _, contacts in recorded.states():
+                if begin <= tick and (end is None or tick <= end):
+                    yield tick, state, contacts
+
+        reader = CurveReader(loaded(from_text(facts["compiled"])), facts["world"])
+        return reader.sampled(thinned(known, most), names, facts["period_us"])
 
 
 def _from_table(what: Callable[..., Any]) -> Callable[..., Any]:

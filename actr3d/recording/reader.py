@@ -6,12 +6,15 @@ import hmac
 import json
 import sqlite3
 from array import array
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 from contextlib import closing
+from math import isfinite
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple, Self, cast
 
+from actr3d.actr.kernel.run_limits import Contacts
 from actr3d.errors import RecordingError
 from actr3d.notebook import show_in_notebook
 from actr3d.recording.checksums import Checksums
@@ -178,15 +181,15 @@ class Recorded:
         return (Answer(*thing) for thing in self._things("answers", 5, (int, int, str, str)))
 
     def states(self) -> Iterator[State]:
-        """Yields the physics state of each run at the start (tick 0), and at the end of each tick."""
+        """Yields the physics state of each run at the start (tick 0), and at the end of each tick, with the contacts in that tick."""
         with self._reading():
-            for count, data, marks in self._rows("states"):
+            for count, data, marks, contacts in self._rows("states"):
                 numbers = array("q", marks)
                 if len(numbers) != 4 * count or min(numbers) < 0 or sum(numbers[3::4]) != len(data):
                     raise ValueError("the marks of its states do not fit them")
-                each, begin = iter(numbers), 0
-                for run, tick, events, size in zip(each, each, each, each, strict=True):
-                    yield State(run, tick, data[begin : begin + size], events)
+                touching, each, begin = _contacts(contacts, count), iter(numbers), 0
+                for number, (run, tick, events, size) in enumerate(zip(each, each, each, each, strict=True)):
+                    yield State(run, tick, data[begin : begin + size], events, touching.get(number, {}))
                     begin += size
 
     def commands(self) -> Iterator[RecordedCommand]:
@@ -290,6 +293,21 @@ def _parsed(text: str) -> Any:
         return json.loads(text)
     except RecursionError:
         raise ValueError("something in it is nested too deeply") from None
+
+
+def _contacts(text: str, count: int) -> Mapping[int, Contacts]:
+    """Returns the contacts of the states in a row by the number of the state, which is below `count`.
+
+    Raises:
+        ValueError: If something is not a contact.
+    """
+    found: defaultdict[int, dict[tuple[str, str, str], float]] = defaultdict(dict)
+    for contact in _parsed(text):
+        if _types(*contact) != (int, str, str, str, float) or not 0 <= contact[0] < count or not isfinite(contact[4]):
+            raise ValueError(f"{_short(contact)} is not one of its contacts")
+        number, body, part, other, force = contact
+        found[number][body, part, other] = force
+    return found
 
 
 def _is_command(data: Any) -> bool:

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from actr3d.actr.kernel.run_limits import Contacts
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import RecordingError
 from actr3d.forks import detach_in_copies
@@ -113,15 +114,21 @@ class Recording:
         self.commands += 1
         self._writer.commands.append(CommandRow(run, tick, json.dumps(data)))
 
-    def state(self, run: int, tick: int, data: bytes) -> None:
+    def state(self, run: int, tick: int, data: bytes, contacts: Contacts) -> None:
         """Writes the physics state of a run at its start, and then at the end of each tick; it must be the last item of the tick.
+
+        Args:
+            run: The number of the simulation.
+            tick: The number of the tick; 0 for the start.
+            data: The state.
+            contacts: The contacts in that tick; they must not change afterwards.
 
         Raises:
             RecordingError: If the file can no longer be written.
         """
         self.states += 1
         writer = self._writer
-        writer.states.append(State(run, tick, data, self.events))
+        writer.states.append(State(run, tick, data, self.events, contacts))
         if tick * self._period != self._time:
             self._pass(tick * self._period)
         if len(writer.states) > MAX_WAITING or len(writer.events) > MAX_WAITING or writer.failure is not None:

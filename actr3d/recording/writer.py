@@ -13,6 +13,7 @@ from pathlib import Path
 from threading import Event, Lock, Thread
 from typing import Any, NamedTuple
 
+from actr3d.actr.kernel.run_limits import Contacts
 from actr3d.actr.modules.answers import plain_answer
 from actr3d.errors import RecordingError
 from actr3d.recording.checksums import Checksums
@@ -43,6 +44,8 @@ class State(NamedTuple):
     """MuJoCo's `mjSTATE_INTEGRATION`, 8 bytes per number."""
     events: int
     """The number of events until then."""
+    contacts: Contacts
+    """What touched bodies in any physics step of the tick; contacts with floors are left out."""
 
 
 class CommandRow(NamedTuple):
@@ -250,8 +253,9 @@ class Writer:
             self._insert("answers", len(some), len(some), json.dumps([plain_answer(answer) for answer in some]))
         for row in _parts(states, max(1, BLOB // len(states[0].data)) if states else 1):
             data = b"".join([state.data for state in row])
-            marks = array("q", [mark for run, tick, state, events in row for mark in (run, tick, events, len(state))]).tobytes()
-            self._insert("states", len(row), len(row), data, marks)
+            marks = array("q", [mark for state in row for mark in (state.run, state.tick, state.events, len(state.data))]).tobytes()
+            contacts = [(number, *contact, force) for number, state in enumerate(row) for contact, force in state.contacts.items()]
+            self._insert("states", len(row), len(row), data, marks, json.dumps(contacts))
             self._written["ticks"] += sum(1 for state in row if state.tick)
         for command in commands:
             self._insert("commands", 1, *command)
@@ -292,10 +296,11 @@ class Writer:
                 self._insert(table, len(things), len(things), json.dumps(things, ensure_ascii=False))
         last = self._delete("states", kept["states"])
         if last is not None:
-            first, _, data, marks, _ = last
+            first, _, data, marks, contacts, _ = last
             left = kept["states"] - first
             marks = marks[: MARKS * left]
-            self._insert("states", left, left, data[: sum(array("q", marks)[3::4])], marks)
+            contacts = [contact for contact in json.loads(contacts) if contact[0] < left]
+            self._insert("states", left, left, data[: sum(array("q", marks)[3::4])], marks, json.dumps(contacts))
         self._written["ticks"] = max(0, kept["states"] - 1)
         self._delete("commands", kept["commands"])
         self._seal(self._file, self._checksums)

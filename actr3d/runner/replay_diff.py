@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from actr3d.actr.kernel.run_limits import EndOfRun
+from actr3d.actr.kernel.run_limits import Contacts, EndOfRun
 from actr3d.actr.modules.answers import plain_answer
 from actr3d.clock import seconds
 from actr3d.forks import detach_in_copies
@@ -95,8 +95,8 @@ class Comparator:
     event_alone = event
     """For a program that may record only events."""
 
-    def state(self, run: int, tick: int, data: bytes) -> None:
-        """Compares the physics at the start of a run, or at the end of a tick.
+    def state(self, run: int, tick: int, data: bytes, contacts: Contacts) -> None:
+        """Compares the physics at the start of a run, or at the end of a tick, and the contacts in that tick.
 
         Raises:
             Differs: As `event` does.
@@ -112,6 +112,7 @@ class Comparator:
             return
         if then.data != data:
             self._differ(f"the physics at the end of {moment}: {first_number(then.data, data)}")
+        self._compare(f"contacts in {moment}", _listed(then.contacts), _listed(contacts))
         if then.events != self.events:
             self._differ(f"there were {then.events:,} events at the end of {moment}, and are {self.events:,} now")
         self.ticks += tick > 0
@@ -174,6 +175,10 @@ class Comparator:
         things = {"event": self._events, "state": self._states, "answer": self._answers, "command": self._commands}
         left = {kind: sum(1 for _ in more) for kind, more in things.items()}
         return {kind: count for kind, count in left.items() if count}
+
+
+def _listed(contacts: Contacts) -> str:
+    return json.dumps([(*contact, force) for contact, force in contacts.items()])
 
 
 def first_number(then: bytes, now: bytes) -> str:

@@ -7,13 +7,14 @@ from contextlib import contextmanager
 from typing import Any, Protocol
 from weakref import ref
 
-from actr3d.actr.kernel.run_limits import Recorder
+from actr3d.actr.kernel.run_limits import Contacts, Recorder
 from actr3d.actr.modules.port import Request
 from actr3d.errors import ParameterError
 from actr3d.recording import Recording
 from actr3d.simulation.commands import Command
 from actr3d.simulation.program_run import ProgramRun
 from actr3d.simulation.stdout_capture import StdoutCapture
+from actr3d.simulation.tick_contacts import TickContacts
 from actr3d.trace import Run, Trace, TraceEvent
 from actr3d.trace_kinds import LEVELS
 from actr3d.world import World
@@ -22,10 +23,15 @@ Listener = Callable[[TraceEvent], object]
 
 
 class StateKeeper(Protocol):
-    """Stores the states of a run for its observers, and changes nothing."""
+    """Stores the states and contacts of a run for its observers, and changes nothing."""
 
-    def keep(self, tick: int, world: World) -> None:
-        """Stores the start of the run (tick 0) or the end of a tick, also of one that runs again."""
+    @property
+    def furthest(self) -> int:
+        """The last tick that was stored."""
+        ...
+
+    def keep(self, tick: int, world: World, contacts: Contacts) -> None:
+        """Stores the start of the run (tick 0) or the end of a tick, also of one that runs again, with the contacts in that tick."""
         ...
 
     def cut(self, tick: int) -> None:
@@ -41,13 +47,16 @@ class EventLog:
 
     Args:
         level: What the trace records; one of `actr3d.trace.LEVELS`.
+        world: The world of the run.
 
     Raises:
         ParameterError: If the level is unknown.
     """
 
-    def __init__(self, level: str) -> None:
+    def __init__(self, level: str, world: World) -> None:
         self._level = Trace(level).level
+        self._world = world
+        self._contacts: TickContacts | None = None
         self._keep = level != "none"
         self._listeners: list[Listener] = []
         self._recording: Recording | None = None
@@ -57,8 +66,7 @@ class EventLog:
         """Whether the run repeats its past on the way to another time; listeners receive no events then."""
         self.trace: Trace | None = None
         """The trace of the run up to now; a new one replaces it when the run goes back."""
-        self.keeper: StateKeeper | None = None
-        """Stores the states, if set."""
+        self._keeper: StateKeeper | None = None
         self._events = self._answers = 0
         self._held: list[TraceEvent] | None = None
         self._preface: list[str] = []
@@ -86,6 +94,15 @@ class EventLog:
             self.trace.listen(self._hear)
         self._listeners.append(listener)
 
+    def keep_states(self, keeper: StateKeeper) -> None:
+        """Passes each state to a keeper from now on, in place of the last one."""
+        self._keeper = keeper
+        self._watch_contacts()
+
+    def _watch_contacts(self) -> None:
+        if self._contacts is None:
+            self._contacts = TickContacts(self._world)
+
     def join_program(self, trace: Trace, recorder: Recorder | None) -> None:
         """Passes to the trace of the whole program the events of its level, and all other events to its recorder."""
         self.raise_level(trace.level)
@@ -93,6 +110,8 @@ class EventLog:
             log = ref(self)  # the program's trace does not keep the simulation alive
             self._program = ProgramRun(trace, recorder, lambda: (here := log()) and here.run)
             self.listen(self._program.take)
+        if recorder is not None:
+            self._watch_contacts()
 
     @property
     def run(self) -> Run | None:
@@ -108,6 +127,7 @@ class EventLog:
         """Records everything from now on."""
         self.raise_level("all")
         self._recording = recording
+        self._watch_contacts()
 
     def end_recording(self, *, whole: bool) -> None:
         """Ends the recording.
@@ -202,14 +222,19 @@ class EventLog:
                 if self._answers > recording.answers:
                     recording.answer(1, tick, request.body, request.word, answer)
 
-    def state(self, tick: int, world: World) -> None:
-        """Records the state at the end of a tick."""
-        if self.keeper is not None:
-            self.keeper.keep(tick, world)
+    def state(self, tick: int) -> None:
+        """Records the state at the end of a tick, and the contacts since the state before."""
+        contacts: Contacts = {} if self._contacts is None else self._contacts.take()
+        if self._keeper is not None:
+            self._keeper.keep(tick, self._world, contacts)
         if self._recording is not None and tick == self._recording.states:
-            self._recording.state(1, tick, world.state_bytes())
+            self._recording.state(1, tick, self._world.state_bytes(), contacts)
         if self._program is not None and not self.silent:
-            self._program.state(tick, world)
+            self._program.state(tick, self._world, contacts)
+
+    def known(self, tick: int) -> int:
+        """Returns the last tick up to a given one whose state nobody needs again."""
+        return tick if self._keeper is None else min(tick, self._keeper.furthest)
 
     def command(self, command: Command) -> None:
         """Records a new command of a user."""
@@ -221,7 +246,7 @@ class EventLog:
     def cut(self, tick: int, commands: int) -> None:
         """Ends the known run after a tick, because from here it gets another future."""
         self.stdout.cut()
-        if self.keeper is not None:
-            self.keeper.cut(tick)
+        if self._keeper is not None:
+            self._keeper.cut(tick)
         if self._recording is not None:
             self._recording.cut(tick, self._events, self._answers, commands)

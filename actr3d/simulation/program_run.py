@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, cast
 
-from actr3d.actr.kernel.run_limits import Recorder
+from actr3d.actr.kernel.run_limits import Contacts, Recorder
 from actr3d.actr.modules.port import Request
 from actr3d.simulation.commands import Command
 from actr3d.trace import Run, Trace, TraceEvent, top_path
@@ -41,14 +41,14 @@ class ProgramRun:
         self._pass_on(event, self._trace)
         self._trace.raise_failures()
 
-    def state(self, tick: int, world: World) -> None:
-        """Passes the physics state at the end of a tick on.
+    def state(self, tick: int, world: World, contacts: Contacts) -> None:
+        """Passes the physics state at the end of a tick on, and the contacts in that tick.
 
         Raises:
             Exception: What the recorder raises.
         """
         if self._recorder is not None:
-            self._recorder.state(self._number, tick, world.state_bytes())
+            self._recorder.state(self._number, tick, world.state_bytes(), contacts)
 
     def answer(self, tick: int, request: Request, value: Any) -> None:
         """Passes the answer of a body in a tick on."""

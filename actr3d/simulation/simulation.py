@@ -81,7 +81,7 @@ class Simulation:
         check_names(self._embodied, self._bodiless, self.world.bodies)
         self._steps = steps_of(period, self.world)
         self._period = self._steps * self.world.scene.timestep_us
-        self.event_log = EventLog(trace)
+        self.event_log = EventLog(trace, self.world)
         """Passes all events on; for recorders and runners."""
         if limits is not None and limits.trace is not None:
             self.event_log.join_program(limits.trace, limits.recorder)

@@ -1,4 +1,4 @@
-"""Describes a world for pages, curves and overlays: its bodies, doorways and ground, with MuJoCo's numbers."""
+"""Describes a world for pages, curves and overlays: its bodies and doorways, with MuJoCo's numbers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from dataclasses import asdict
 from typing import Any
 
-from actr3d.world import Aperture, Floor, World
+from actr3d.world import Aperture, World
 
 
 def surroundings(world: World) -> dict[str, Any]:
@@ -16,20 +16,12 @@ def surroundings(world: World) -> dict[str, Any]:
             "shoulders": body.anatomy.shoulders,
             "eye": body.eye,
             "root": body.root,
-            "feels": body.touch_geoms.tolist(),
             "joints": {joint.name: [_finite(limit) for limit in joint.limits] for joint in body.joints.values()},
         }
         for name, body in world.bodies.items()
     }
     walls = {part.name: asdict(part.gap_in(world.mj_model)) for part in world.scene.parts if isinstance(part, Aperture)}
-    grounds = ground_names(world)
-    ground = [geom for geom, owner in enumerate(world.owners) if owner in grounds]
-    return {"bodies": bodies, "apertures": list(walls), "walls": walls, "ground": ground}
-
-
-def ground_names(world: World) -> frozenset[str]:
-    """Returns the names of a world's floors, whose contacts with bodies are not shown."""
-    return frozenset(part.name for part in world.scene.parts if isinstance(part, Floor))
+    return {"bodies": bodies, "apertures": list(walls), "walls": walls}
 
 
 def _finite(limit: float) -> float | None:

@@ -116,7 +116,7 @@ class Timeline:
         """
         if self._lockstep is None:
             self._lockstep = self._begin()
-            self._log.state(0, self._world)
+            self._log.state(0)
         return self._lockstep
 
     @property
@@ -162,7 +162,7 @@ class Timeline:
             history.add_tick(ticks, answers)
             if history.wants(ticks):
                 history.keep(ticks, self._world.state())
-        self._log.state(ticks, self._world)
+        self._log.state(ticks)
 
     def command(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None) -> None:
         """Carries out a new command of a user; after the run went back, its former future is forgotten.
@@ -230,7 +230,7 @@ class Timeline:
 
     def _repeat(self, to: int) -> None:
         history, lockstep = self._history, self.lockstep
-        kept, state = history.before(to)
+        kept, state = history.before(self._log.known(to))
         if kept > lockstep.ticks:
             while lockstep.ticks < kept:
                 lockstep.repeat_commands(history.commands, only_agents=True)

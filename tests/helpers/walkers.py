@@ -40,6 +40,38 @@ class Driver(ACTR):
 Driver: Any = load_text(DRIVER, "driver.py").Driver
 
 
+STRUCK = """from actr3d.actr import *
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Floor, Mannequin, Scene, Wall
+
+class Walker(ACTR):
+    goal = Buffer()
+    felt = Buffer()
+    skin = BodyPort(felt)
+
+    def init():
+        goal.set("aside")
+        skin.set("waypoint", 3, 1.5, 1.2)
+
+    def ask(goal="aside", felt=None, skin="busy:False"):
+        skin.request("pose")
+
+    def look(goal="aside", felt="pose x:?x"):
+        felt.clear()
+        if float(x) > 2.8:
+            goal.set("on")
+            skin.set("waypoint", 6, 0, 1.2)
+
+    def go_on(goal="on"):
+        goal.set("on")
+
+def build() -> Simulation:
+    wall = Wall(name="block", start=(3.0, -1.2), end=(3.0, 1.2), height=1.2)
+    return Simulation(Scene(parts=(Floor(), wall, Mannequin(name="walker"))), {"walker": Walker}, seed=1)
+"""
+"""It grazes the end of a wall: each touch is over before its tick ends."""
+
+
 def scene_of(*names: str, timestep: float = 0.002) -> Scene:
     """Returns a scene with a doorway and mannequins side by side, the first in front of the gap."""
     walkers = [Mannequin(name=name, position=(0.0, float(number))) for number, name in enumerate(names)]

@@ -12,10 +12,12 @@ from actr3d.actr.loading import load_text
 from actr3d.recording import Recorded
 from actr3d.world.contacts import Touch
 from tests.helpers.sessions import Desk, Talk
+from tests.helpers.walkers import STRUCK
 from tests.server.test_recorded_runs import APERTURE, ended, recording
 from workbench.curves import NOTHING
 from workbench.exports import curves_of
 from workbench.worker.state_history import Past
+from workbench.worker.stop_conditions import Contact
 
 PUSHED = """from actr3d.actr import *
 from actr3d.motor import Motor
@@ -38,72 +40,66 @@ def build() -> Simulation:
     return Simulation(Scene(parts=parts), {"walker": Walker}, seed=1)
 """
 
-STRUCK = """from actr3d.actr import *
-from actr3d.simulation import BodyPort, Simulation
-from actr3d.world import Floor, Mannequin, Scene, Wall
-
-class Walker(ACTR):
-    goal = Buffer()
-    felt = Buffer()
-    skin = BodyPort(felt)
-
-    def init():
-        goal.set("aside")
-        skin.set("waypoint", 3, 1.5, 1.2)
-
-    def ask(goal="aside", felt=None, skin="busy:False"):
-        skin.request("pose")
-
-    def look(goal="aside", felt="pose x:?x"):
-        felt.clear()
-        if float(x) > 2.8:
-            goal.set("on")
-            skin.set("waypoint", 6, 0, 1.2)
-
-    def go_on(goal="on"):
-        goal.set("on")
-
-def build() -> Simulation:
-    wall = Wall(name="block", start=(3.0, -1.2), end=(3.0, 1.2), height=1.2)
-    return Simulation(Scene(parts=(Floor(), wall, Mannequin(name="walker"))), {"walker": Walker}, seed=1)
-"""
-"""It grazes the end of a wall: each touch is over before its tick ends."""
-
 
 def least(values: list[float | None]) -> float:
     return min(value for value in values if value is not None)
 
 
-def test_a_touch_that_is_over_before_its_tick_ends_is_seen(desk: Desk, tmp_path: Path) -> None:
+def test_contacts_within_ticks_are_the_same_live_recorded_and_opened(desk: Desk, tmp_path: Path) -> None:
     simulation = load_text(STRUCK).build()
     skin = simulation.world.bodies["walker"]
     skin.touched = tuple[Touch, ...]()  # from now on it feels
     felt: dict[int, float] = {}
+    begins: dict[int, str] = {}
+    before = set[str]()
     for tick in range(1, 401):
         simulation.step()
         if skin.touched:
             felt[tick] = max(touch.force for touch in skin.touched)
-    assert len(felt) > 3
-    talk = desk.begin(tmp_path, STRUCK)
-    talk.say("until", contact="walker")
-    state = talk.until("paused", tick=min(felt))
-    assert state["reason"] == "right_upper_arm of walker touches block"
-    talk.say("until", time=4.0)
-    talk.until("paused", tick=400)
+        now = {f"{touch.part} of walker touches {touch.other}" for touch in skin.touched}
+        if now - before:
+            begins[tick] = min(now - before)
+        before = now
+    assert len(felt) > len(begins) > 2
 
-    def forces(most: int) -> dict[int, float]:
-        told = talk.say("curves", names=["walker contact force"], most=most)
+    def forces(told: dict[str, Any]) -> dict[int, float]:
         curve = told["curves"]["walker contact force"]
         return {round(100 * time): force for time, force in zip(told["times"], curve, strict=True) if force}
 
-    for most in (5_000, 20):
-        assert forces(most) == pytest.approx(felt)
+    def check(talk: Talk) -> None:
+        for most in (5_000, 20):
+            assert forces(talk.say("curves", names=["walker contact force"], most=most)) == felt
+
+    def run_until_touched(talk: Talk) -> None:
+        for tick, reason in begins.items():
+            talk.say("until", contact="walker")
+            assert talk.until("paused", tick=tick)["reason"] == reason
+        talk.say("until", time=4.0)
+        talk.until("paused", tick=400)
+
+    talk = desk.begin(tmp_path, STRUCK, record=True)
+    run_until_touched(talk)
+    check(talk)
     talk.say("seek", time=2.0)
     talk.until("paused", tick=200)
-    assert forces(20) == pytest.approx(felt)
-    talk.say("command", word="teleport", body="walker", values=[0.0, 0.0, 0.0], drop=True)
-    talk.wait(lambda: talk.state["furthest"] == 2.0)
-    assert forces(20) == {}
+    check(talk)
+    told = [talk.say("curves", most=most) for most in (5_000, 20)]
+    path = recording(desk, talk)
+    assert [curves_of(path, names=None, first=0.0, most=most) for most in (5_000, 20)] == told
+
+    opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
+    opened.until("paused", tick=0)
+    check(opened)
+    assert opened.say("curves") == curves_of(path, names=None, first=0.0, most=1_000)
+    run_until_touched(opened)
+    check(opened)
+    past = [*begins][1]
+    opened.say("seek", time=past / 100)
+    opened.until("paused", tick=past)
+    opened.say("command", word="teleport", body="walker", values=[0.0, 0.0, 0.0], drop=True)
+    opened.wait(lambda: opened.state["furthest"] == past / 100)
+    known = {tick: force for tick, force in felt.items() if tick <= past}
+    assert forces(opened.say("curves", names=["walker contact force"])) == known
 
 
 @pytest.mark.slow
@@ -218,28 +214,32 @@ def test_a_program_has_no_curves(desk: Desk, tmp_path: Path) -> None:
     assert curves_of(recording(desk, talk), names=None, first=0.0, most=100) == NOTHING
 
 
-class Steady:
-    """A world whose states are large."""
+def test_of_a_long_past_every_second_state_is_left_out_and_no_contact() -> None:
+    def state(tick: int) -> bytes:
+        return tick.to_bytes(8, "big") * 125_000
 
-    def __init__(self) -> None:
-        self.tick = 0
+    def known(first: int = 0, last: int | None = None) -> list[tuple[int, dict[Contact, float]]]:
+        return [(tick, dict(contacts)) for tick, numbers, contacts in past.between(first, last) if numbers == state(tick)]
 
-    def state_bytes(self) -> bytes:
-        return self.tick.to_bytes(8, "big") * 125_000
+    def touching(force: float) -> dict[Contact, float]:
+        return {("walker", "hand", "wall"): force}
 
-
-def test_of_a_long_past_every_second_state_is_left_out() -> None:
-    world: Any = Steady()
     past = Past()
-    for world.tick in range(200):
-        past.keep(world.tick, world)
-    ticks = [tick for tick, state in past.within(0, None, 5000) if state[:8] == tick.to_bytes(8, "big")]
-    assert ticks == [*range(0, 200, 8), 199]
+    contacts = {17: touching(2.0), 18: touching(3.0), 24: touching(1.0), 97: touching(4.0), 198: touching(5.0)}
+    for tick in range(200):
+        past.add(tick, state(tick), contacts.get(tick, {}))
+    assert [tick for tick, _ in known()] == [*range(0, 200, 8), 199]
+    assert [(tick, one) for tick, one in known() if one] == [
+        (24, touching(3.0)),
+        (104, touching(4.0)),
+        (199, touching(5.0)),
+    ]
     past.cut(100)
-    assert [tick for tick, _ in past.within(0, None, 5000)] == [*range(0, 97, 8)]
-    for world.tick in range(101, 106):
-        past.keep(world.tick, world)
-    assert [tick for tick, _ in past.within(90, None, 5000)] == [96, 104, 105]
+    assert [tick for tick, _ in known()] == [*range(0, 97, 8)]
+    for tick in range(101, 106):
+        past.add(tick, state(tick), touching(6.0) if tick == 105 else {})
+    assert known(90) == [(96, {}), (104, {}), (105, touching(6.0))]
+    assert (past.contacts(105), past.contacts(101)) == (touching(6.0), {})
 
 
 def test_a_recording_keeps_its_scene(desk: Desk, tmp_path: Path) -> None:

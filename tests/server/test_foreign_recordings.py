@@ -27,7 +27,7 @@ from workbench.readers import Readers, ReadingError
 from workbench.worker.messages import LONGEST
 
 ENDLESS = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n)"
-WORLD: dict[str, Any] = {"walls": {}, "bodies": {}, "ground": []}
+WORLD: dict[str, Any] = {"walls": {}, "bodies": {}}
 
 
 def altered(script: str) -> Callable[[Path], None]:

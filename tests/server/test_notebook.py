@@ -28,6 +28,7 @@ from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Scene
 from tests.helpers.asgi_client import HOST, Answer, ask
 from tests.helpers.manual import FENCE, ROOT, compare
+from tests.helpers.walkers import driving
 from workbench.auth import Gate, Guard, Token
 from workbench.notebook import widget
 from workbench.notebook.live_run import LiveRun
@@ -173,6 +174,22 @@ def test_a_run_that_has_begun_is_shown_from_its_start() -> None:
         assert server.state(0.3).furthest == 0.4
         assert simulation.time == 0.3
         assert server.events() == list(range(len(simulation.trace or ()))) != []
+
+    in_notebook(cells)
+
+
+def test_a_run_that_has_begun_has_the_curves_of_one_that_was_shown_from_its_start() -> None:
+    async def cells() -> None:
+        told: list[Any] = []
+        for begun in (1.2, 0.0):  # states and answers of the first second are stored, so that going back needs no physics
+            simulation = driving()
+            simulation.run(begun)
+            run = Server(simulation).run()
+            assert run is not None
+            simulation.run(1.3 - begun)
+            told.append(run.curves(None, 0.0, None, 5_000))
+        assert told[0] == told[1]
+        assert len(told[0]["times"]) == 131
 
     in_notebook(cells)
 

@@ -143,7 +143,7 @@ def test_a_recording_of_a_program_counts_its_time_in_the_same_way(desk: Desk, tm
 @pytest.mark.parametrize("state", [b"short", pack("d", float("nan")), pack("d", float("inf"))])
 def test_a_forged_state_without_a_time_is_refused(tmp_path: Path, state: bytes) -> None:
     with Recording(tmp_path / "forged", {"kind": "program"}) as recording:
-        recording.state(1, 0, state)
+        recording.state(1, 0, state, {})
         recording.event_alone(TraceEvent(0, "top", "run", {}))
     with Recorded(tmp_path / "forged") as recorded, pytest.raises(RecordingError, match="a state has no time"):
         list(timed_events(recorded))

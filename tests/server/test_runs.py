@@ -49,7 +49,7 @@ def test_a_list_shows_the_result_and_values_that_differ_from_the_defaults(desk: 
     assert summary.result is not None
     assert (summary.result["outcome"], summary.ended) == ("declined", "stop")
     with Recorded(talk.sessions.recordings.path(name)) as recorded:
-        assert summary.time == pytest.approx(sum(1 for _, tick, _, _ in recorded.states() if tick) / 100)
+        assert summary.time == pytest.approx(sum(1 for state in recorded.states() if state.tick) / 100)
 
 
 FAILING = """from actr3d.actr import *

@@ -150,7 +150,7 @@ def _scene(recorded: Recorded, agents: Sequence[str]) -> dict[str, Any] | None:
     times: list[float] = []
 
     def states() -> Iterator[bytes]:
-        for _, tick, state, _ in recorded.states():
+        for _, tick, state, *_ in recorded.states():
             if tick % every == 0 or tick == ticks:
                 times.append(seconds(tick * period))
                 yield state

@@ -13,7 +13,6 @@ from actr3d.recording import Recording
 from actr3d.simulation import Simulation
 from actr3d.simulation.observers import Glimpse
 from actr3d.values import to_json
-from workbench.html_replay.make import MAX_FRAMES
 from workbench.loader import listing_of
 from workbench.worker.change_menu import change_menu
 from workbench.worker.channel import Channel
@@ -126,8 +125,8 @@ class LiveRun(SimulationRun):
         """Writes the run up to now to a new recording, which can only be looked at: commands and answers are left out."""
         for event in self.trace or ():
             recording.event(event)
-        for tick, state in self._shown.kept.states.within(0, self._simulation.ticks, MAX_FRAMES):
-            recording.state(1, tick, state)
+        for moment in self._shown.kept.states.between(0, self._simulation.ticks):
+            recording.state(1, *moment)
 
     # -- what pages do
 

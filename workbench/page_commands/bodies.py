@@ -82,7 +82,7 @@ class Curves(Question):
     The answer is `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`. `names` lists all curves, with
     angles in degrees; `curves` holds the requested ones, with one value for each time, or null if there is no value (for example the
     clearance of a body that is not in the doorway). Groups are `place`, `speed`, `clearance`, `contact`, `joint` and `joint speed`. All
-    values are those at the ends of ticks; the contact force is the greatest of the tick, and of an opened recording that at its end. After
+    values are those at the ends of ticks, except the contact force: it is the greatest in the physics steps since the time before. After
     going back, a run still returns what lies ahead, until it continues differently. `/api/recordings/{recording}/curves` returns the
     same for a recording.
     """

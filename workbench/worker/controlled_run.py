@@ -134,7 +134,7 @@ class ControlledRun(ABC):
         return None if self.shown is None else self.shown.result()
 
     def touches(self) -> Touches:
-        """Returns the current contacts of bodies with anything but the ground."""
+        """Returns the contacts of bodies with anything but the ground in the last tick."""
         return frozenset() if self.shown is None else self.shown.touches()
 
     def parts(self) -> dict[str, dict[str, Any]]:

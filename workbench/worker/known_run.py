@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from actr3d.actr.kernel.run_limits import Contacts
 from actr3d.clock import microseconds, seconds
 from actr3d.recording import Recorded
 from actr3d.runner.facts import REACHED
@@ -24,13 +25,13 @@ class KnownRun:
 
     Args:
         path: The recording.
-        keep: Called with the tick and the physics state at the end of each tick of a single simulation.
+        keep: Called with each tick of a single simulation, the physics state at its end, and the contacts in it.
 
     Raises:
         RecordingError: If the recording cannot be read.
     """
 
-    def __init__(self, path: Path, keep: Callable[[int, bytes], object] | None = None) -> None:
+    def __init__(self, path: Path, keep: Callable[[int, bytes, Contacts], object] | None = None) -> None:
         self._digests = array("q")
         """A hash of each event."""
         self.events: list[bytes] = []
@@ -43,8 +44,8 @@ class KnownRun:
                 time = max(time, timed.time_us)
                 self._take(event, timed)
             if keep is not None:
-                for _, tick, data, _ in recorded.states():
-                    keep(tick, data)
+                for state in recorded.states():
+                    keep(state.tick, state.data, state.contacts)
         self.time = max(time, microseconds(self.facts.get(REACHED, 0)))
         """The duration of the recording, summed over all its runs [us]."""
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
-from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
+from actr3d.actr.kernel.run_limits import Contacts, EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.kernel.tree import children_of
 from actr3d.actr.loading import run_text
@@ -96,9 +96,9 @@ class _RecordedOnce:
         elif new:
             self._recording.event_alone(event)
 
-    def state(self, run: int, tick: int, data: bytes) -> None:
+    def state(self, run: int, tick: int, data: bytes, contacts: Contacts) -> None:
         if self._is_new("state", self._recording.states):
-            self._recording.state(run, tick, data)
+            self._recording.state(run, tick, data, contacts)
 
     def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
         if self._is_new("answer", self._recording.answers):

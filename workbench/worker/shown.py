@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_left
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from functools import cache, cached_property, partial
-from itertools import islice
 from typing import Any
 
 from actr3d.camera import CameraParameters, Sight
-from actr3d.clock import microseconds, seconds
+from actr3d.clock import microseconds
 from actr3d.errors import Actr3dError
 from actr3d.parameter_schema import Parameter
 from actr3d.simulation import Simulation
-from actr3d.simulation.surroundings import ground_names, surroundings
+from actr3d.simulation.surroundings import surroundings
 from actr3d.vision import visions
 from actr3d.world import Aperture
 from actr3d.world.compiled import loaded, saved
-from actr3d.world.sensors.touch import present
-from workbench.curves import CurveReader, contact_force, stretch, stride
+from workbench.curves import CurveReader, stretch, thinned
 from workbench.geom_colours import colour_of_object, dress
 from workbench.overlays import OVERLAYS, Observed
 from workbench.worker.state_history import Kept
@@ -44,9 +41,8 @@ class Shown:
         self.period = microseconds(simulation.period)
         """Length of a tick [us]."""
         self.kept = kept or Kept(self.period)
-        self.kept.keep(0, simulation.world)
-        simulation.event_log.keeper = self.kept
-        self.kept.touched.watch(simulation.world)
+        self.kept.keep(0, simulation.world, {})
+        simulation.event_log.keep_states(self.kept)
         self.mj_model = saved(simulation.world.mj_model)
         """The compiled scene at the start, in MuJoCo's binary format."""
         self.surroundings = surroundings(simulation.world)
@@ -86,12 +82,8 @@ class Shown:
         return None if result is None else asdict(result)
 
     def touches(self) -> Touches:
-        """Returns the contacts of bodies with anything but the ground, now and at any time of the last tick."""
-        world = self.simulation.world
-        ground = ground_names(world)
-        return self.kept.touched.at(self.simulation.ticks).union(
-            (name, touch.part, touch.other) for name, body in world.bodies.items() for touch in present(body) if touch.other not in ground
-        )
+        """Returns the contacts of bodies with anything but the ground in the last tick."""
+        return frozenset(self.kept.states.contacts(self.simulation.ticks))
 
     def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int, begin: int = 0) -> dict[str, Any]:
         """Returns curves of the known run.
@@ -103,25 +95,9 @@ class Shown:
             most: Maximum number of times.
             begin: The time at which the simulation began, as pages count it [us].
         """
-        ticks = stretch(first, last, self.period, begin)
-        forces = self.kept.touched.forces(*ticks)
-        moments = dict(self.kept.states.within(*ticks, most))
-        for tick in islice(forces, 0, None, stride(len(forces), most)):
-            state = self.kept.states.state(tick)
-            if state is not None:
-                moments[tick] = state
-        sampled = self._curves.sampled(((seconds(begin + tick * self.period), moments[tick]) for tick in sorted(moments)), names)
-        self._with_forces(sampled["curves"], sorted(moments), forces)
-        return sampled
-
-    def _with_forces(self, curves: dict[str, list[float | None]], ticks: Sequence[int], forces: Mapping[int, Mapping[str, float]]) -> None:
-        """Adds the contact forces within ticks to curves, each at its tick, or at the next one that the curves have."""
-        for tick, of in forces.items():
-            number = bisect_left(ticks, tick)
-            for name, force in of.items() if number < len(ticks) else ():
-                values = curves.get(contact_force(name))
-                if values is not None:
-                    values[number] = max(force, values[number] or 0.0)
+        states = self.kept.states
+        known = partial(states.between, *stretch(first, last, self.period, begin))
+        return self._curves.sampled(thinned(known, most, states.every), names, self.period, begin)
 
     @cached_property
     def _curves(self) -> CurveReader:

@@ -1,5 +1,5 @@
-"""Stores the past of a simulation: the physics states at the ends of ticks, from which curves are computed, the paths of bodies, and what
-touched them within ticks."""
+"""Stores the past of a simulation: the physics states at the ends of ticks, from which curves are computed, the contacts of bodies
+within ticks, and their paths."""
 
 from __future__ import annotations
 
@@ -11,17 +11,16 @@ import mujoco
 import numpy as np
 from mujoco import MjData
 
-from actr3d.simulation.surroundings import ground_names
+from actr3d.actr.kernel.run_limits import Contacts
 from actr3d.world import World
-from workbench.curves import INTEGRATION, stride
-from workbench.worker.stop_conditions import Contact, Touches
+from workbench.curves import INTEGRATION, Moment, harder
 
 MAX_BYTES = 48_000_000
 """Above this size every second state is dropped, so that memory use stays bounded for long runs; a walker's state takes 1.8 kB."""
 STEP = 50_000
 """Interval between two points of a path [us]."""
-MAX_TOUCHED = 50_000
-"""Maximum number of ticks in which something touched that are stored; contacts that last are seen at the ends of ticks as well."""
+CONTACTS = 500
+"""The memory that the contacts of a tick take, approximately [bytes]."""
 MAX_POINTS = 1_000
 """Maximum number of points that are drawn; if there are more, every second one is left out, repeatedly."""
 
@@ -36,79 +35,83 @@ class Kept:
     def __init__(self, period: int) -> None:
         self.states = Past()
         self.walked = Walked(period)
-        self.touched = Touched()
 
-    def keep(self, tick: int, world: World) -> None:
+    @property
+    def furthest(self) -> int:
+        """The last tick that was stored."""
+        return self.states.furthest
+
+    def keep(self, tick: int, world: World, contacts: Contacts) -> None:
         """Stores the end of a tick, or the start of the run (tick 0); known ticks are skipped."""
-        self.states.keep(tick, world)
+        if tick > self.furthest:
+            self.states.add(tick, world.state_bytes(), contacts)
         self.walked.keep(tick, world)
-        self.touched.keep(tick)
 
     def cut(self, tick: int) -> None:
         """Removes what came after a tick, because the run continues differently."""
         self.states.cut(tick)
         self.walked.cut(tick)
-        self.touched.cut(tick)
 
 
 class Past:
-    """Stores the states of a run, whether or not anyone watches, including those ahead of the present after it has gone back."""
+    """Stores the states of a run, and the contacts of bodies between them, whether or not anyone watches, including those ahead of the
+    present after it has gone back."""
 
     def __init__(self) -> None:
         self._states: list[bytes] = []
-        self._every = 1
-        """Only every n-th tick is stored."""
-        self._last: tuple[int, bytes] = (-1, b"")
+        self._contacts: dict[int, Contacts] = {}
+        """By the number of a state, and of the one to come: the contacts since the state before."""
+        self.every = 1
+        """Only every n-th tick is stored, and the last one."""
+        self._last: Moment = (-1, b"", {})
 
-    def keep(self, tick: int, world: World) -> None:
-        """Stores the state at the end of a tick, or at the start of the run (tick 0); known ticks are skipped."""
-        if tick > self._last[0]:
-            self.add(tick, world.state_bytes())
+    @property
+    def furthest(self) -> int:
+        """The last tick that was stored."""
+        return self._last[0]
 
-    def add(self, tick: int, state: bytes) -> None:
-        """Stores a state at the end of a tick; known ticks are skipped."""
-        if tick <= self._last[0]:
+    def add(self, tick: int, state: bytes, contacts: Contacts) -> None:
+        """Stores the state at the end of a tick, or at the start of the run (tick 0), and the contacts in it; known ticks are skipped."""
+        if tick <= self.furthest:
             return
-        self._last = tick, state
-        if tick % self._every:
+        self._last = tick, state, contacts
+        self._add_contacts(-(-tick // self.every), contacts)
+        if tick % self.every:
             return
         self._states.append(state)
-        if len(self._states) * len(state) > MAX_BYTES:
+        if len(self._states) * len(state) + len(self._contacts) * CONTACTS > MAX_BYTES:
             del self._states[1::2]
-            self._every *= 2
+            self.every *= 2
+            known, self._contacts = self._contacts, {}
+            for number, contacts in known.items():
+                self._add_contacts(-(-number // 2), contacts)
+
+    def _add_contacts(self, number: int, contacts: Contacts) -> None:
+        if contacts:
+            self._contacts[number] = harder(self._contacts.get(number, {}), contacts)
 
     def cut(self, tick: int) -> None:
-        """Removes the states after a tick, because the run continues differently."""
-        if tick < self._last[0]:
-            del self._states[tick // self._every + 1 :]
+        """Removes what came after a tick, because the run continues differently."""
+        if tick < self.furthest:
+            del self._states[tick // self.every + 1 :]
             kept = len(self._states) - 1
-            self._last = kept * self._every, self._states[kept]
+            self._contacts = {number: contacts for number, contacts in self._contacts.items() if number <= kept}
+            self._last = self._stored(kept)
 
-    def state(self, tick: int) -> bytes | None:
-        """Returns the state at the end of a tick; None if it is not stored."""
-        if tick == self._last[0]:
-            return self._last[1]
-        return None if tick % self._every or not 0 <= tick < self._last[0] else self._states[tick // self._every]
+    def contacts(self, tick: int) -> Contacts:
+        """Returns the contacts in a tick; if not every tick is stored, those since the state before."""
+        return self._last[2] if tick == self.furthest else self._contacts.get(-(-tick // self.every), {})
 
-    def within(self, first: int, last: int | None, most: int) -> Iterator[tuple[int, bytes]]:
-        """Yields the ticks of an interval with their states, evenly spaced, at most `most`, including the last one.
+    def between(self, first: int, last: int | None) -> Iterator[Moment]:
+        """Yields the stored moments of an interval of ticks; if `last` is None, up to the furthest that the run has reached."""
+        end = self.furthest if last is None else min(last, self.furthest)
+        for number in range(-(-first // self.every), end // self.every + 1):
+            yield self._stored(number)
+        if end == self.furthest >= first and end % self.every:
+            yield end, self._last[1], self._contacts.get(len(self._states), {})
 
-        Args:
-            first: The first tick of the interval.
-            last: The last tick; None for the furthest that the run has reached.
-            most: Maximum number of states, at least 2.
-        """
-        end = self._last[0] if last is None else min(last, self._last[0])
-        if end < first:
-            return
-        begin, beyond = -(-first // self._every), min(len(self._states), end // self._every + 1)
-        final = self._last if end == self._last[0] else ((beyond - 1) * self._every, self._states[beyond - 1])
-        every = stride(max(0, beyond - begin), most - 1)
-        for number in range(-(-begin // every) * every, beyond, every):
-            if number * self._every != final[0]:
-                yield number * self._every, self._states[number]
-        if final[0] >= first:
-            yield final
+    def _stored(self, number: int) -> Moment:
+        return number * self.every, self._states[number], self._contacts.get(number, {})
 
 
 class Walked:
@@ -158,57 +161,6 @@ class Walked:
         mujoco.mj_kinematics(world.mj_model, self._data)
         places: Any = self._data.xpos
         return {name: places[body.root, :2].tolist() for name, body in world.bodies.items()}
-
-
-class Touched:
-    """Stores what touched bodies in any physics step of a tick, and how hard: many a touch is over at the end of its tick."""
-
-    def __init__(self) -> None:
-        self._ticks: dict[int, dict[Contact, float]] = {}
-        """By tick, in their order: the greatest force of each contact in it [N]."""
-        self._now: dict[Contact, float] = {}
-        self._last = 0
-
-    def watch(self, world: World) -> None:
-        """Looks at each physics step of a world from now on."""
-        ground, data = ground_names(world), world.mj_data
-        floors = np.array([*(owner in ground for owner in world.owners), False])
-
-        def look() -> None:
-            for body in world.bodies.values() if data.ncon else ():
-                for touch in body.contacts.touches() if body.contacts.any_in_step(floors) else ():
-                    if touch.other not in ground:
-                        contact = body.name, touch.part, touch.other
-                        self._now[contact] = max(touch.force, self._now.get(contact, 0.0))
-
-        world.watchers.append(look)
-
-    def keep(self, tick: int) -> None:
-        """Stores what touched in the tick that has just ended; known ticks are skipped."""
-        if tick > self._last and self._now and len(self._ticks) < MAX_TOUCHED:
-            self._ticks[tick] = self._now
-        self._last = max(self._last, tick)
-        self._now = {}
-
-    def cut(self, tick: int) -> None:
-        """Removes what came after a tick, because the run continues differently."""
-        self._last, self._now = min(self._last, tick), {}
-        for later in [known for known in self._ticks if known > tick]:
-            del self._ticks[later]
-
-    def at(self, tick: int) -> Touches:
-        """Returns what touched in a tick."""
-        return frozenset(self._ticks.get(tick, ()))
-
-    def forces(self, first: int, last: int | None) -> dict[int, dict[str, float]]:
-        """Returns the greatest force of each body that was touched, by tick of an interval and by body [N]."""
-        found: dict[int, dict[str, float]] = {}
-        for tick, contacts in self._ticks.items():
-            if first <= tick and (last is None or tick <= last):
-                forces = found[tick] = dict[str, float]()
-                for (name, _, _), force in contacts.items():
-                    forces[name] = max(force, forces.get(name, 0.0))
-        return found
 
 
 def _pairs(points: array[float], count: int, stride: int) -> list[list[float]]:

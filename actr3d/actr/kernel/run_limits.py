@@ -27,11 +27,15 @@ MAX_REFUSALS = 100
 """The number of refused requests for time after which a program counts as one that catches every error and never ends by itself."""
 
 
+Contacts = Mapping[tuple[str, str, str], float]
+"""The contacts of a tick: by body, its part, and the other object, the greatest force [N]."""
+
+
 class Recorder(Protocol):
     """Records what the simulations of a program do besides events; `run` is the number in the program's trace."""
 
-    def state(self, run: int, tick: int, data: bytes) -> None:
-        """Records the physics state at the start of a run, or at the end of a tick."""
+    def state(self, run: int, tick: int, data: bytes, contacts: Contacts) -> None:
+        """Records the physics state at the start of a run, or at the end of a tick, and the contacts in that tick."""
         ...
 
     def answer(self, run: int, tick: int, body: str, word: str, value: Any) -> None:
