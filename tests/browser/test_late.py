@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, Request, Route, WebSocketRoute, expect
 
-from tests.helpers.page import choose, drawn, open_tab, shows, until
+from tests.helpers.page import answer_to, choose, drawn, open_tab, shows, until
 from tests.helpers.workbench_server import Served
 
 CODE = ".code .cm-content"
@@ -86,7 +86,7 @@ def holding(page: Page, where: str, wanted: Callable[[Request], bool]) -> Genera
 
     def hold(route: Route) -> None:
         if wanted(route.request):
-            held.append((route, route.fetch()))
+            held.append((route, answer_to(route)))
         else:
             route.continue_()
 
