@@ -181,6 +181,14 @@ def drawn(page: Page) -> None:
     page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
+def duplicate(page: Page) -> Page:
+    """Returns a page with the address and the session storage of another one, as a browser makes it that duplicates a tab."""
+    twin = page.context.new_page()
+    twin.add_init_script(f"Object.assign(sessionStorage, {page.evaluate('JSON.stringify(sessionStorage)')})")
+    twin.goto(page.url)
+    return twin
+
+
 def choose(page: Page, model: str) -> None:
     """Shows a model, and waits until it is there."""
     page.get_by_label("Model", exact=True).select_option(model)
