@@ -64,24 +64,36 @@ function leaveOut() {
   }
 }
 
-/** Returns the part of the picture's width that the retina does not cover. */
-function room() {
-  const inset = parent === window ? null : parent.document.querySelector(".inset");
-  return inset ? Math.max(0.5, (innerWidth - inset.offsetWidth - 8) / innerWidth) : 1;
-}
-
-camera.room = room;
-
 const OVER = ".inset, .inset-closed, .view-bar"; // what the page shows over the picture
 
 /** Returns the rectangles of the picture that the page covers. */
-function covered() {
+function covered(kinds = OVER) {
   if (parent === window) return [];
   const { left, top } = frameElement.getBoundingClientRect();
-  return [...frameElement.parentElement.querySelectorAll(OVER)].map((one) => {
+  return [...frameElement.parentElement.querySelectorAll(kinds)].map((one) => {
     const box = one.getBoundingClientRect();
     return { left: box.left - left, top: box.top - top, width: box.width, height: box.height };
   });
+}
+
+const MOST = 0.5; // the largest part of the picture that counts as covered
+const part = (share) => Math.min(MOST, Math.max(0, share));
+
+/** Returns what the page covers of the picture: the tools from the top, and the retina from the right, except where the body is in the
+ * middle, which the retina leaves free. */
+camera.coveredIn = (view) => {
+  const [bar] = covered(".view-bar");
+  const [inset] = view === "follow" ? [] : covered(".inset");
+  return { right: inset ? part(1 - inset.left / innerWidth) : 0, top: bar ? part((bar.top + bar.height) / innerHeight) : 0 };
+};
+
+/** Returns the camera to the start of its view if another part of the picture is covered now, unless the user has moved it. */
+function reframe() {
+  viewer.requestRender();
+  const { view, touched, covered: before } = camera;
+  if (touched || view === "eye" || innerWidth === 0) return; // without a width, the page does not show it
+  const { right, top } = camera.coveredIn(view);
+  if (right !== before.right || top !== before.top) choose();
 }
 
 /** Returns the number of the moment at which the shapes are drawn; null as long as there are no shapes. */
@@ -197,5 +209,8 @@ given.onview = choose;
 given.camera = camera;
 choose();
 const draws = new MutationObserver(() => viewer.requestRender());
-if (parent !== window) draws.observe(frameElement.parentElement, { childList: true }); // another part of the picture is covered
+if (parent !== window) {
+  new MutationObserver(reframe).observe(frameElement.parentElement, { childList: true });
+  addEventListener("resize", reframe);
+}
 draws.observe((parent === window ? document : parent.document).documentElement, { attributeFilter: ["data-theme", "data-mantine-color-scheme"] });
