@@ -49,7 +49,7 @@ const camera = new SceneCamera(viewer);
 const ground = new Ground(viewer);
 const labels = new Captions();
 const cutaway = new Cutaway(viewer);
-let { stage } = given.facts;
+let stage = null; // of the scene that is drawn
 let shaded = null;
 let leftOut = false;
 
@@ -115,12 +115,13 @@ function drawnNow() {
 }
 
 function choose() {
-  if (isWhole()) camera.choose(given.view, stage, drawnNow());
+  if (stage !== null && isWhole()) camera.choose(given.view, stage, drawnNow());
   else waiting = true;
+  viewer.requestRender();
 }
 
-const PATIENCE = 5000; // a new scene is shown after this time [ms], whatever is missing
-let since = null; // when a new scene was first incomplete [ms]
+const PATIENCE = 10_000; // a scene is shown after this time [ms], whatever is missing
+let since = null; // when a scene was first incomplete [ms]
 let waiting = false; // whether a view was chosen meanwhile
 
 /** Returns whether all shapes of the newest scene are there: viser removes those of the former scene at once, and reads new ones one
@@ -139,11 +140,12 @@ function isWhole() {
   });
 }
 
-/** Keeps the last picture of the former scene until all shapes of a new one are there. */
+/** Keeps the last picture of the former scene, or what covers the page's first one, until all shapes of a new one are there. */
 function keepFormer(renderer) {
   const { render } = renderer;
   renderer.render = (scene, seenBy) => {
-    if (scene === viewer.scene && seenBy === viewer.camera && !isWhole()) {
+    const isView = scene === viewer.scene && seenBy === viewer.camera;
+    if (isView && !isWhole()) {
       since ??= performance.now();
       if (performance.now() - since < PATIENCE) {
         viewer.requestRender();
@@ -152,19 +154,24 @@ function keepFormer(renderer) {
     }
     since = null;
     render.call(renderer, scene, seenBy);
+    if (isView && !isDrawn) parent.postMessage({ drawn: true }, location.origin);
+    isDrawn ||= isView;
   };
 }
 
+let isDrawn = false; // whether there has been a picture
 let kept = false;
 
 viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   if (seenBy !== viewer.camera) return;
   if (renderer.toneMapping) renderer.toneMapping = 0; // unchanged colours
   if (!kept) {
+    kept = true;
     keepFormer(renderer);
     given.picture = (sharpness, canvas) => pictureOf({ renderer, viewer, ground, labels }, sharpness, canvas);
+    viewer.requestRender();
+    return; // this picture has begun without the rest
   }
-  kept = true;
   const now = drawnNow();
   if (now.stage !== stage) {
     // Another scene: if its stage differs, the camera returns to the start of its view.
