@@ -5,13 +5,19 @@ export function addressed(name) {
   return new URLSearchParams(location.search).get(name);
 }
 
-/** Identifies the page that this window belongs to: itself, unless it was opened by one. */
-export const page = addressed("page") ?? ownName();
+/** Identifies this window, also after a reload. */
+export const ownName = takeName();
 
-function ownName() {
-  const known = sessionStorage.getItem("page");
-  const name = known ?? String(Math.random()).slice(2);
-  sessionStorage.setItem("page", name);
+/** Identifies the page that this window belongs to: itself, unless it was opened by one. */
+export const page = addressed("page") ?? ownName;
+
+/** The name is stored only between two pages of this window: a browser that duplicates a tab copies what is stored. */
+function takeName() {
+  const name = sessionStorage.getItem("name") ?? String(Math.random()).slice(2);
+  const take = () => sessionStorage.removeItem("name");
+  take();
+  addEventListener("pagehide", () => sessionStorage.setItem("name", name));
+  addEventListener("pageshow", take); // the browser may show the same page again
   return name;
 }
 

@@ -1,6 +1,6 @@
 // Runs before viser's own script, in its page. It keeps connecting while the page is in the background; `?panel=hidden` hides viser's
-// panel and notices, for a page with its own controls around it; it notifies that page when the first picture is drawn; it receives
-// what the server sends of the scene; and it draws less without a graphics card. It is not a module: modules may run after viser has
+// panel and notices, for a page with its own controls around it; it notifies that page if there will be no picture; it receives what the
+// server sends of the scene; and it draws less without a graphics card. It is not a module: modules may run after viser has
 // read its address.
 
 {
@@ -33,28 +33,10 @@
     document.documentElement.append(style);
   }
 
-  /** Notifies the surrounding page whether there is a picture, or, with false, that there will be none. */
-  const notifyDrawn = (drawn) => parent.postMessage({ drawn }, location.origin);
-
-  /** Detects the first drawing on the screen itself, not into an intermediate buffer. */
-  function notifyFirst() {
-    const kind = WebGL2RenderingContext.prototype;
-    for (const name of ["drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"]) {
-      const draw = kind[name];
-      kind[name] = function (...all) {
-        draw.apply(this, all);
-        if (this.getParameter(this.FRAMEBUFFER_BINDING) !== null) return;
-        kind[name] = draw;
-        notifyDrawn(true);
-      };
-    }
-  }
-
   /** Whether the processor draws, without a graphics card. */
   function drawnBySoftware() {
     const gl = document.createElement("canvas").getContext("webgl2");
-    if (gl) notifyFirst();
-    else notifyDrawn(false);
+    if (!gl) parent.postMessage({ drawn: false }, location.origin); // there will be no picture; view.js notifies of the first one
     const info = gl?.getExtension("WEBGL_debug_renderer_info");
     const name = gl ? String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER)) : "";
     gl?.getExtension("WEBGL_lose_context")?.loseContext();

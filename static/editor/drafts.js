@@ -1,36 +1,27 @@
 // Unsaved work, stored in the browser so that it survives a reload: one draft per file and tab, with the version it was edited from.
 
 import { signal } from "../vendor/preact.js";
+import { ownName } from "../address.js";
 import { complain } from "../store.js";
 
 const PREFIX = "actr3d.draft.";
+const LOCK = "actr3d.tab.";
 const MAX_DRAFTS = 20;
 const LARGEST = 2_000_000; // all drafts together [characters]; browsers store about five million per site
-const PATIENCE = 20_000; // how long to wait for a tab that neither closes nor answers, such as one paused in a debugger [ms]
 
 /** The files with a draft of this tab. */
 export const drafted = signal([]);
-
-const tabs = new BroadcastChannel("actr3d.tabs"); // a tab asks here whether another one has its name
-addEventListener("pagehide", () => tabs.close()); // a closed page must not answer
-
-let tab = "";
 
 /** Determines which drafts belong to this tab: its own from before a reload, and those of closed tabs. */
 export const ready = settle();
 
 async function settle() {
-  tab = sessionStorage.getItem("tab") ?? crypto.getRandomValues(new Uint32Array(2)).join("");
-  // A duplicated tab has the same name as the original, which holds the lock of the name.
-  if (navigator.locks && !(await locked(tab))) {
-    tab = crypto.getRandomValues(new Uint32Array(2)).join("");
-    await locked(tab);
-  }
-  sessionStorage.setItem("tab", tab);
-  const held = navigator.locks ? (await navigator.locks.query()).held.map(({ name }) => name) : [];
+  // The lock shows that the tab is open; it is not waited for, as the page before a reload may still have it.
+  navigator.locks?.request(LOCK + ownName, () => new Promise(() => {}));
+  const held = ((await navigator.locks?.query())?.held ?? []).map(({ name }) => name);
   for (const { key, draft } of all()) {
     const owner = key.slice(PREFIX.length).split(" ", 1)[0];
-    if (owner === tab || held.includes(`actr3d.tab.${owner}`)) continue;
+    if (owner === ownName || held.includes(LOCK + owner)) continue;
     const own = read(draft.path);
     localStorage.removeItem(key);
     if (!own || own.at < draft.at) write(keyOf(draft.path), draft);
@@ -38,27 +29,7 @@ async function settle() {
   refresh();
 }
 
-/** Takes the lock of a name; returns whether this tab has it: not if another open tab answers that the name is its own. The
- * page that was here before a reload does not answer: its lock is released, however long that takes. */
-function locked(name) {
-  const taken = new AbortController();
-  const hear = ({ data }) => data.has === name && taken.abort();
-  tabs.addEventListener("message", hear);
-  return new Promise((resolve) => {
-    navigator.locks
-      .request(`actr3d.tab.${name}`, { signal: AbortSignal.any([taken.signal, AbortSignal.timeout(PATIENCE)]) }, () => {
-        tabs.addEventListener("message", ({ data }) => data.asks === name && tabs.postMessage({ has: name }));
-        tabs.postMessage({ has: name }); // to the tabs that asked before
-        resolve(true);
-        return new Promise(() => {}); // as long as the tab is open
-      })
-      .catch(() => resolve(false))
-      .finally(() => tabs.removeEventListener("message", hear));
-    tabs.postMessage({ asks: name });
-  });
-}
-
-const keyOf = (path) => `${PREFIX}${tab} ${path}`;
+const keyOf = (path) => `${PREFIX}${ownName} ${path}`;
 
 /** Returns all drafts of all tabs, the oldest first. */
 function all() {
@@ -91,7 +62,6 @@ let warned = false;
 
 /** Stores a draft; removes the oldest ones if there are too many. */
 export function keep(path, text, version) {
-  if (!tab) return;
   if (!write(keyOf(path), { path, text, version, at: Date.now() }) && !warned) {
     warned = true;
     complain(`The browser has no room to keep the unsaved text of ${path}: save it before you leave the page.`, "warning");

@@ -1,26 +1,29 @@
 // New, duplicate, rename, delete: asks for a name, and shows what is wrong with it.
 
-import { listModels, models, note } from "../bar/models.js";
+import { choose, listModels, models, note } from "../bar/models.js";
 import { asked, confirmed } from "../parts/dialog.js";
-import { call } from "../server.js";
+import { call, sinceNow } from "../server.js";
 import { complain, session } from "../store.js";
 import { close, open, renamed, save, shown } from "./documents.js";
 import { TEMPLATES } from "./templates.js";
 
-/** Creates a new model file and opens it here; it does not run yet. */
+/** Creates a new model file, and shows its text here and its run in the page, as choosing a model does. */
 export async function makeNew() {
   const before = shown.peek();
+  const wanted = sinceNow();
   const choices = TEMPLATES.map(({ value, text }) => ({ value, text }));
   const file = await named("New model", "Name of the file", "my_model.py", "Create", { choices }, (path, choice) => {
     const { source } = TEMPLATES.find(({ value }) => value === choice);
     return call("PUT", "/api/model", { path, text: source, version: null });
   });
-  showNew(file, before);
+  if (showNew(file, before) && wanted()) choose(file.path);
 }
 
-/** Opens a new file, unless the user has chosen another one since. */
+/** Opens a new file, unless the user has chosen another one since; returns whether it is opened. */
 function showNew(file, before) {
-  if (file && shown.peek() === before) open(file.path);
+  const isWanted = file !== null && shown.peek() === before;
+  if (isWanted) open(file.path);
+  return isWanted;
 }
 
 /** Copies the saved version of a model file. */
@@ -74,7 +77,7 @@ async function named(title, label, name, action, more, work) {
     }
     try {
       const file = await work(name, choice);
-      listModels().catch((error) => complain(error.message));
+      await listModels().catch((error) => complain(error.message));
       return file;
     } catch (error) {
       problem = error.message;

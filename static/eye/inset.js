@@ -20,7 +20,7 @@ export function RetinaInset({ through }) {
   if (!open.value) return html`<button class="inset-closed" onClick=${() => (open.value = true)}>Eye</button>`;
   return html`<aside class="inset" aria-label="Retina">
     <header>
-      <b>eye of ${body}</b><span class="stretch"></span>
+      <b title="eye of ${body}"><span class="of">eye of </span>${body}</b><span class="stretch"></span>
       <button class="bare" aria-label="Larger" title="Larger, with the table of edges" onClick=${() => (openTab.value = "eye")}><${Icon} name="more" /></button>
       <button class="bare" aria-label="Hide the retina" title="Hide" onClick=${() => (open.value = false)}><${Icon} name="close" /></button>
     </header>

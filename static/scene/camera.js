@@ -1,7 +1,7 @@
 // The camera of this browser: its view, and how it follows the body. It moves viser's own camera controls, which
 // rotate, pan and zoom by mouse.
 
-import { FOV, anchorOf, cameraPose } from "./stage.js";
+import { FOV, NOTHING, anchorOf, cameraPose } from "./stage.js";
 import { cross, plus } from "./space.js";
 
 const SLIGHT = 1e-6; // smaller movements are ignored [m]
@@ -16,7 +16,8 @@ export class SceneCamera {
     this.view = null;
     this.flat = false; // whether the picture is without perspective
     this.anchor = [0, 0, 0];
-    this.room = () => 1;
+    this.coveredIn = () => NOTHING; // what the page covers of the picture in a view
+    this.covered = NOTHING;
     this.aspect = 0;
     this.touched = false; // whether the user has moved it
     this.vector = this.camera.position.clone();
@@ -27,6 +28,7 @@ export class SceneCamera {
     camera.updateProjectionMatrix = () => {
       usual.call(camera);
       if (this.flat) this.flatten();
+      this.shift();
     };
     this.straightenRays();
     this.actions = this.controls.constructor.ACTION;
@@ -53,6 +55,7 @@ export class SceneCamera {
     this.aspect = this.camera.aspect;
     const { controls, camera, actions } = this;
     this.flat = view === "top" || view === "side";
+    if (!stays) this.covered = view === "eye" ? NOTHING : this.coveredIn(view);
     controls.setFocalOffset(0, 0, 0, false);
     // A view without perspective pans and does not rotate; one that follows the body pans within the picture and rotates about the body.
     controls.mouseButtons.left = this.flat ? actions.TRUCK : actions.ROTATE;
@@ -61,7 +64,7 @@ export class SceneCamera {
     this.setFov(FOV);
     this.anchor = anchorOf(view, stage, now.body);
     if (view !== "eye" && !stays) {
-      const { target, back, distance } = cameraPose(view, stage, now.body, camera.aspect, this.room());
+      const { target, back, distance } = cameraPose(view, stage, now.body, camera.aspect, this.covered);
       const place = this.toThree(plus(target, back, distance)).toArray();
       controls.setLookAt(...place, ...this.toThree(target).toArray(), false);
     }
@@ -114,7 +117,16 @@ export class SceneCamera {
     const high = this.controls.distance * Math.tan(FOV / 2);
     const wide = high * camera.aspect;
     camera.projectionMatrix.makeOrthographic(-wide, wide, high, -high, -DEEP, DEEP, camera.coordinateSystem, camera.reversedDepth);
-    camera.projectionMatrixInverse.copy(camera.projectionMatrix).invert();
+  }
+
+  /** Shifts the picture, so that its middle is in the middle of the part that is not covered. */
+  shift() {
+    const { projectionMatrix, projectionMatrixInverse } = this.camera;
+    const { right, top } = this.covered;
+    const [column, sign] = this.flat ? [12, -1] : [8, 1]; // with perspective, the shift is by a part of the depth
+    projectionMatrix.elements[column] += sign * right;
+    projectionMatrix.elements[column + 1] += sign * top;
+    projectionMatrixInverse.copy(projectionMatrix).invert();
   }
 
   /** Makes the rays from the pointer parallel where the picture has no perspective: they find what is dragged. */
@@ -151,6 +163,6 @@ export class SceneCamera {
     const pitch = Math.asin(Math.max(-1, Math.min(1, forward.dot(camera.up))));
     if (this.flat) return this.view === "top" ? -1 : this.at([stage.start[0], stage.start[1], stage.ground]).y;
     if (Math.abs(pitch) > 1.4) return pitch > 0 ? 2 : -1;
-    return 0.5 + Math.tan(pitch) / Math.tan((camera.fov * Math.PI) / 360) / 2;
+    return (1 + this.covered.top + Math.tan(pitch) / Math.tan((camera.fov * Math.PI) / 360)) / 2;
   }
 }

@@ -10,6 +10,9 @@ const ROOM = 1.06; // the distance of a camera relative to the minimum
 const BODY_PART = 0.4; // the body's part of the picture's height if the camera follows it
 const FARTHEST = 1.6; // to show the doorway too, the camera is at most this many times as far away
 
+/** What the page covers of the picture, from the right and from the top, as parts of its width and height. */
+export const NOTHING = { right: 0, top: 0 };
+
 /** Returns the direction from the target to a camera behind it: an angle to the side and an angle above [degrees]. */
 function behind([x, y], aside, raised) {
   const [c, s, flat] = [Math.cos(aside * DEGREE), Math.sin(aside * DEGREE), Math.cos(raised * DEGREE)];
@@ -22,15 +25,20 @@ function axesOf(back) {
   return [right, cross(back, right)];
 }
 
+/** Returns the tangents of half the angles of view of the part that is not covered: upwards and to the side. */
+function edgesOf(aspect, covered) {
+  const edge = Math.tan(FOV / 2);
+  return [edge * (1 - covered.top), edge * aspect * (1 - covered.right)];
+}
+
 /** Returns the middle of the corners as a camera sees them, and the distance at which all are in the picture; without perspective,
  * `distance` is the one at which the field of view would have the same size. */
-function fitted(corners, back, aspect, flat) {
+function fitted(corners, back, [upward, aside], flat) {
   const [right, up] = axesOf(back);
-  const upward = Math.tan(FOV / 2);
   const middle = [0, 1, 2].map((axis) => corners.reduce((sum, corner) => sum + corner[axis], 0) / corners.length);
   let target = middle;
   let distance = 0.1;
-  for (const [axis, edge] of [[up, upward], [right, upward * Math.min(Math.max(aspect, 0.5), 3)]]) {
+  for (const [axis, edge] of [[up, upward], [right, Math.min(Math.max(aside, 0.5 * upward), 3 * upward)]]) {
     let above = -Infinity;
     let below = Infinity;
     for (const corner of corners) {
@@ -47,15 +55,14 @@ function fitted(corners, back, aspect, flat) {
 
 /** Returns the distance of a camera that follows the body: the corners of the stage are in its picture too, unless the body would
  * become too small. */
-function following(stage, target, back, aspect) {
+function following(stage, target, back, [upward, aside]) {
   const [right, up] = axesOf(back);
-  const upward = Math.tan(FOV / 2);
   const least = stage.height / 2 / BODY_PART / upward;
   let distance = least;
   for (const corner of stage.corners) {
     const from = minus(corner, target);
     const near = dot(from, back);
-    distance = Math.max(distance, near + ROOM * Math.max(Math.abs(dot(from, up)) / upward, Math.abs(dot(from, right)) / upward / aspect));
+    distance = Math.max(distance, near + ROOM * Math.max(Math.abs(dot(from, up)) / upward, Math.abs(dot(from, right)) / aside));
   }
   return Math.min(distance, FARTHEST * least);
 }
@@ -67,22 +74,21 @@ export function anchorOf(view, stage, body) {
 }
 
 /**
- * Returns the start of a view's camera: its target, the direction from there to the camera, their distance, and
- * whether its picture is without perspective (`flat`).
+ * Returns the start of a view's camera: its target, which is in the middle of the part that is not covered, the direction from there to
+ * the camera, their distance, and whether its picture is without perspective (`flat`).
  * @param aspect The width of the picture divided by its height.
- * @param room The part of its width that the page does not cover, from the left.
  */
-export function cameraPose(view, stage, body, aspect, room = 1) {
+export function cameraPose(view, stage, body, aspect, covered = NOTHING) {
   const { ahead } = stage;
   const anchor = anchorOf(view, stage, body);
+  const edges = edgesOf(aspect, covered);
   if (view === "follow") {
     const back = behind(ahead, 7, 18);
-    return { target: anchor, back, distance: following(stage, plus(stage.start, stage.middle), back, aspect), flat: false };
+    return { target: anchor, back, distance: following(stage, plus(stage.start, stage.middle), back, edges), flat: false };
   }
   const flat = view !== "free";
   // From above and from the side, ahead is to the right, because most windows are wide.
   const back = { free: behind(ahead, 10, 25), top: unit([0.001 * ahead[1], -0.001 * ahead[0], 1]), side: [ahead[1], -ahead[0], 0] }[view];
-  const { target, distance } = fitted(stage.corners, back, aspect * room, flat);
-  const aside = (1 - room) * aspect * distance * Math.tan(FOV / 2);
-  return { target: plus(plus(target, anchor), axesOf(back)[0], aside), back, distance, flat };
+  const { target, distance } = fitted(stage.corners, back, edges, flat);
+  return { target: plus(target, anchor), back, distance, flat };
 }

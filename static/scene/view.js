@@ -49,7 +49,7 @@ const camera = new SceneCamera(viewer);
 const ground = new Ground(viewer);
 const labels = new Captions();
 const cutaway = new Cutaway(viewer);
-let { stage } = given.facts;
+let stage = null; // of the scene that is drawn
 let shaded = null;
 let leftOut = false;
 
@@ -64,24 +64,36 @@ function leaveOut() {
   }
 }
 
-/** Returns the part of the picture's width that the retina does not cover. */
-function room() {
-  const inset = parent === window ? null : parent.document.querySelector(".inset");
-  return inset ? Math.max(0.5, (innerWidth - inset.offsetWidth - 8) / innerWidth) : 1;
-}
-
-camera.room = room;
-
 const OVER = ".inset, .inset-closed, .view-bar"; // what the page shows over the picture
 
 /** Returns the rectangles of the picture that the page covers. */
-function covered() {
+function covered(kinds = OVER) {
   if (parent === window) return [];
   const { left, top } = frameElement.getBoundingClientRect();
-  return [...frameElement.parentElement.querySelectorAll(OVER)].map((one) => {
+  return [...frameElement.parentElement.querySelectorAll(kinds)].map((one) => {
     const box = one.getBoundingClientRect();
     return { left: box.left - left, top: box.top - top, width: box.width, height: box.height };
   });
+}
+
+const MOST = 0.5; // the largest part of the picture that counts as covered
+const part = (share) => Math.min(MOST, Math.max(0, share));
+
+/** Returns what the page covers of the picture: the tools from the top, and the retina from the right, except where the body is in the
+ * middle, which the retina leaves free. */
+camera.coveredIn = (view) => {
+  const [bar] = covered(".view-bar");
+  const [inset] = view === "follow" ? [] : covered(".inset");
+  return { right: inset ? part(1 - inset.left / innerWidth) : 0, top: bar ? part((bar.top + bar.height) / innerHeight) : 0 };
+};
+
+/** Returns the camera to the start of its view if another part of the picture is covered now, unless the user has moved it. */
+function reframe() {
+  viewer.requestRender();
+  const { view, touched, covered: before } = camera;
+  if (touched || view === "eye" || innerWidth === 0) return; // without a width, the page does not show it
+  const { right, top } = camera.coveredIn(view);
+  if (right !== before.right || top !== before.top) choose();
 }
 
 /** Returns the number of the moment at which the shapes are drawn; null as long as there are no shapes. */
@@ -103,12 +115,13 @@ function drawnNow() {
 }
 
 function choose() {
-  if (isWhole()) camera.choose(given.view, stage, drawnNow());
+  if (stage !== null && isWhole()) camera.choose(given.view, stage, drawnNow());
   else waiting = true;
+  viewer.requestRender();
 }
 
-const PATIENCE = 5000; // a new scene is shown after this time [ms], whatever is missing
-let since = null; // when a new scene was first incomplete [ms]
+const PATIENCE = 10_000; // a scene is shown after this time [ms], whatever is missing
+let since = null; // when a scene was first incomplete [ms]
 let waiting = false; // whether a view was chosen meanwhile
 
 /** Returns whether all shapes of the newest scene are there: viser removes those of the former scene at once, and reads new ones one
@@ -127,11 +140,12 @@ function isWhole() {
   });
 }
 
-/** Keeps the last picture of the former scene until all shapes of a new one are there. */
+/** Keeps the last picture of the former scene, or what covers the page's first one, until all shapes of a new one are there. */
 function keepFormer(renderer) {
   const { render } = renderer;
   renderer.render = (scene, seenBy) => {
-    if (scene === viewer.scene && seenBy === viewer.camera && !isWhole()) {
+    const isView = scene === viewer.scene && seenBy === viewer.camera;
+    if (isView && !isWhole()) {
       since ??= performance.now();
       if (performance.now() - since < PATIENCE) {
         viewer.requestRender();
@@ -140,19 +154,24 @@ function keepFormer(renderer) {
     }
     since = null;
     render.call(renderer, scene, seenBy);
+    if (isView && !isDrawn) parent.postMessage({ drawn: true }, location.origin);
+    isDrawn ||= isView;
   };
 }
 
+let isDrawn = false; // whether there has been a picture
 let kept = false;
 
 viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   if (seenBy !== viewer.camera) return;
   if (renderer.toneMapping) renderer.toneMapping = 0; // unchanged colours
   if (!kept) {
+    kept = true;
     keepFormer(renderer);
     given.picture = (sharpness, canvas) => pictureOf({ renderer, viewer, ground, labels }, sharpness, canvas);
+    viewer.requestRender();
+    return; // this picture has begun without the rest
   }
-  kept = true;
   const now = drawnNow();
   if (now.stage !== stage) {
     // Another scene: if its stage differs, the camera returns to the start of its view.
@@ -197,5 +216,8 @@ given.onview = choose;
 given.camera = camera;
 choose();
 const draws = new MutationObserver(() => viewer.requestRender());
-if (parent !== window) draws.observe(frameElement.parentElement, { childList: true }); // another part of the picture is covered
+if (parent !== window) {
+  new MutationObserver(reframe).observe(frameElement.parentElement, { childList: true });
+  addEventListener("resize", reframe);
+}
 draws.observe((parent === window ? document : parent.document).documentElement, { attributeFilter: ["data-theme", "data-mantine-color-scheme"] });

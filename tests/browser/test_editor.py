@@ -276,7 +276,10 @@ def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page],
 )
 def test_a_new_model_runs(page: Page, workbench: Served, choice: str, seen: str) -> None:
     shows(page, "#status", "at its start")
-    open_tab(page, "Editor")
+    page.click("#cycle")
+    shows(page, "#time", "0.05 s")
+    edit(page, "doorway.py")
+    write(page, "# not saved")
     page.get_by_role("button", name="New model", exact=True).click()
     name = page.get_by_label("Name of the file")
     name.fill("counting")
@@ -287,10 +290,16 @@ def test_a_new_model_runs(page: Page, workbench: Served, choice: str, seen: str)
     page.get_by_role("button", name="Create").click()
     expect(page.locator(CODE)).to_have_text(re.compile("Says in a line"))
     shows(page, "#status", "at its start")
+    shows(page, "#time", "0.00 s")
+    model = page.get_by_label("Model", exact=True)
+    expect(model).to_have_value(f"new {choice[-5:]}.py")
+    page.locator(CODE).focus()
     page.keyboard.press("Control+Enter")
     shows(page, "#status", f"ended: {seen}")
     shows(page, ".problems", "No problems")
-    expect(page.get_by_label("Model", exact=True)).to_have_value(f"new {choice[-5:]}.py")
+    model.select_option("doorway.py")  # nothing of the former model is lost
+    shows(page, "#time", "0.05 s")
+    ends(page, "# not saved")
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, Request, Route, WebSocketRoute, expect
 
-from tests.helpers.page import choose, drawn, open_tab, shows, until
+from tests.helpers.page import answer_to, choose, drawn, duplicate, open_tab, shows, until
 from tests.helpers.workbench_server import Served
 
 CODE = ".code .cm-content"
@@ -86,7 +86,7 @@ def holding(page: Page, where: str, wanted: Callable[[Request], bool]) -> Genera
 
     def hold(route: Route) -> None:
         if wanted(route.request):
-            held.append((route, route.fetch()))
+            held.append((route, answer_to(route)))
         else:
             route.continue_()
 
@@ -423,28 +423,20 @@ def test_a_tab_keeps_its_unsaved_work_however_slowly_the_page_before_goes(pages:
     edit(page, "kept.py")
     write(page, "b = 2\n")
     until(page, lambda: page.evaluate("Object.keys(localStorage).some((key) => key.endsWith(' kept.py'))"))
-    tab = page.evaluate("sessionStorage.getItem('tab')")
-    # Another page of the browser stands for what is left of this one, and says nothing.
+    # Another page of the browser stands for what is left of this one.
     left = page.context.new_page()
     left.goto(f"{workbench.url}/openapi.json")
-    left.evaluate("(name) => void navigator.locks.request(name, () => new Promise((done) => (window.go = done)))", f"actr3d.tab.{tab}")
+    name = page.evaluate("async () => (await part('address.js')).ownName")
+    left.evaluate("(name) => void navigator.locks.request(name, () => new Promise(() => {}))", f"actr3d.tab.{name}")
     page.on("dialog", lambda dialog: dialog.accept())
     page.reload()
     shows(page, "#status", "at its start")
-    open_tab(page, "Editor")
-    page.get_by_label("File", exact=True).select_option("kept.py")
-    begun = page.evaluate("performance.now()")
-    until(page, lambda: page.evaluate("performance.now()") > begun + 1000)  # it is not impatient
-    assert page.evaluate("sessionStorage.getItem('tab')") == tab
-    left.evaluate("go()")
+    edit(page, "kept.py")
     expect(page.locator(CODE)).to_have_text("a = 1b = 2")
-    with page.expect_popup() as opened:
-        page.evaluate("void window.open(location.href)")  # which has what this tab remembers, as one that is duplicated
-    twin = opened.value
-    until(twin, lambda: twin.evaluate("sessionStorage.getItem('tab')") != tab)
+    twin = duplicate(page)
     edit(twin, "kept.py")
     expect(twin.locator(CODE)).to_have_text("a = 1")
-    twin.close()
+    expect(page.locator(CODE)).to_have_text("a = 1b = 2")
 
 
 def test_nothing_is_asked_of_a_new_run_before_its_own_first_state_is_there(pages: Callable[..., Page]) -> None:

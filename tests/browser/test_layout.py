@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.page import choose, open_tab, shows, until
+from tests.helpers.page import choose, duplicate, open_tab, shows, until
 from tests.helpers.workbench_server import Served
 
 Pages = Callable[..., Page]
@@ -99,6 +99,10 @@ def test_a_panel_has_a_window_of_its_own_which_follows_the_page(pages: Pages) ->
     window.keyboard.press("ArrowRight")
     shows(page, "#time", "0.02 s")
     choose(page, "doorway.py")
+    expect(window).to_have_title("Buffers · doorway.py")
+    choose(duplicate(page), "counting.py")
+    page.click("#step")
+    shows(window, "#time", "0.01 s")
     expect(window).to_have_title("Buffers · doorway.py")
     page.close()
     window.reload()  # without the page that has opened it

@@ -345,6 +345,12 @@ def test_the_chunks_of_a_memory_are_shown_with_their_slots_in_the_order_of_the_m
     expect(page.locator("#chunks tbody td:first-child")).to_have_text(["wordzebraage3kindanimal", "wordantage1kindanimal"])
     page.locator("#chunks").get_by_role("button", name="Chunk").click()
     expect(page.locator("#chunks tbody td:first-child").first).to_contain_text("ant")
+    page.set_viewport_size({"width": 260, "height": 800})  # where the chunks are longer than a row
+    chunks = page.locator("#chunks tbody tr")
+    assert chunks.evaluate_all("(rows) => rows.map((row) => row.offsetHeight)") == [23, 23]
+    chunks.first.click()
+    slots = page.get_by_role("region", name="The chosen chunk").locator(".slot")
+    assert slots.evaluate_all("(slots) => slots.map((slot) => slot.getClientRects().length)") == [1, 1, 1]  # no word is broken
 
 
 def test_an_empty_agent_says_so(pages: Pages, workbench: Served) -> None:

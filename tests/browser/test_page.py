@@ -8,8 +8,10 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from tests.helpers.page import choose, open_tab, shows
+from tests.helpers.page import choose, duplicate, open_tab, shows
 from tests.helpers.workbench_server import Served
+
+NAME = "async () => (await part('address.js')).page"
 
 
 @pytest.mark.scene
@@ -55,6 +57,14 @@ def test_a_second_tab_and_a_reload_show_the_same(pages: Callable[..., Page], wor
     shows(page, "#events", "count_on")
     page.reload()
     shows(page, "#events", "count_on")
+    name = page.evaluate(NAME)
+    page.reload()
+    assert page.evaluate(NAME) == name
+    twin = duplicate(page)
+    twin.click("#cycle")
+    shows(twin, "#browsers", "^3 pages show this run, you are in control")
+    shows(page, "#browsers", "^3 pages show this run, another one is in control")
+    assert twin.evaluate(NAME) != page.evaluate(NAME) == name
 
 
 def test_what_was_chosen_last_is_shown_though_it_is_ready_first(page: Page) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from playwright.sync_api import Locator, Page, expect
 
-from tests.helpers.page import shows
+from tests.helpers.page import answer_to, shows
 
 INDEX = {
     "docs": [
@@ -121,7 +121,7 @@ def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Cal
     built = [False, True]
     page = pages("counting.py")
     shows(page, "#status", "at its start")
-    page.context.route("**/api/models", lambda route: route.fulfill(json={**route.fetch().json(), "manual": built.pop(0)}))
+    page.context.route("**/api/models", lambda route: route.fulfill(json={**answer_to(route).json(), "manual": built.pop(0)}))
     page.reload()
     shows(page, "#status", "at its start")
     search(page, "time chunk")

@@ -104,6 +104,25 @@ def test_framed_there_is_the_scene_only_and_the_dark_is_dark(workbench: Served, 
     expect(page.get_by_text("t = 0.00 s")).to_be_visible(timeout=PATIENCE)
 
 
+UNCOVERED = """() => {
+    const scene = document.querySelector("#scene");
+    new MutationObserver((_, observer) => {
+        if (scene.querySelector(".scene-cover")) return;
+        observer.disconnect();
+        const { scene: { shown }, __viserMutable: { nodeRefFromName }, __viserSceneTree } = scene.querySelector("iframe").contentWindow;
+        const isShape = ([name, node]) => name.startsWith("/bodies/") && /Glb/.test(node?.message.type);
+        const nodes = Object.entries(__viserSceneTree.getState()).filter(isShape);
+        const isThere = ([name]) => {
+            let meshes = 0;
+            nodeRefFromName[name]?.traverse((object) => (meshes += object.isMesh ? 1 : 0));
+            return meshes > 0;
+        };
+        window.uncovered = { shapes: nodes.length > 0 && nodes.every(isThere), placed: shown !== undefined };
+    }).observe(scene, { childList: true });
+}"""
+"""Notes whether the shapes of all bodies are there when the 3D view is first seen, and have been placed."""
+
+
 @pytest.mark.slow
 def test_the_frame_is_covered_until_it_has_drawn_and_has_the_page_s_theme_without_reloading(workbench: Served, page: Page) -> None:
     held: list[Route] = []
@@ -113,10 +132,12 @@ def test_the_frame_is_covered_until_it_has_drawn_and_has_the_page_s_theme_withou
     cover = page.locator(".scene-cover")
     expect(cover).to_have_text("The 3D view loads …", timeout=PATIENCE)
     until(page, lambda: bool(held))
+    page.evaluate(UNCOVERED)
     released.append(True)
     for route in held:
         route.continue_()
     expect(cover).to_have_count(0, timeout=PATIENCE)
+    assert page.evaluate("uncovered") == {"shapes": True, "placed": True}
     frame = page.frame_locator("iframe[title='3D view']").locator("html")
     begun = frame.evaluate("() => performance.timeOrigin")
     grounds: list[Any] = []

@@ -38,10 +38,12 @@ class Standing:
     Args:
         page: A page of the workbench, whose modules compute it.
         parts: What stands there beside the floor and a walker.
+        covered: What the page covers of the picture, from the right and from the top.
     """
 
-    def __init__(self, page: Page, *parts: Any) -> None:
+    def __init__(self, page: Page, *parts: Any, covered: tuple[float, float] = (0.0, 0.0)) -> None:
         self.page = page
+        self.covered = np.array(covered)
         self.model: MjModel = World(Scene(parts=(Floor(), Mannequin(name="walker"), *parts))).mj_model
         self.data = MjData(self.model)
         mujoco.mj_forward(self.model, self.data)
@@ -54,26 +56,27 @@ class Standing:
         mujoco.mj_forward(self.model, self.data)
         body = self.data.body("walker").xpos.tolist()
         self.told = self.page.evaluate(
-            """async ([view, stage, body, aspect]) => {
+            """async ([view, stage, body, aspect, [right, top]]) => {
                 const { cameraPose, anchorOf } = await part("scene/stage.js");
                 const { plus, minus } = await part("scene/space.js");
-                const found = cameraPose(view, stage, stage.start, aspect);
+                const found = cameraPose(view, stage, stage.start, aspect, { right, top });
                 const way = minus(anchorOf(view, stage, body), anchorOf(view, stage, stage.start));
                 return { ...found, target: plus(found.target, way) };
             }""",
-            [view, self.stage, body, ASPECT],
+            [view, self.stage, body, ASPECT, self.covered.tolist()],
         )
         self.back = np.array(self.told["back"])
         self.position = np.array(self.told["target"]) + self.told["distance"] * self.back
 
     def at(self, place: Any) -> tuple[float, float]:
-        """Returns where a place is in the picture: from -1 to 1 from the left to the right, and from below to above."""
+        """Returns where a place is in the part that is not covered: from -1 to 1 from the left to the right, and from below to above."""
         right = np.cross((0, 0, 1), self.back)
         right /= np.linalg.norm(right)
         way = np.array(place) - self.position
         edge = np.tan(FOV / 2) * (self.told["distance"] if self.told["flat"] else -way @ self.back)
         assert edge > 0
-        return float(way @ right / edge / ASPECT), float(way @ np.cross(self.back, right) / edge)
+        x, y = np.array((way @ right / edge / ASPECT, way @ np.cross(self.back, right) / edge)) / (1 - self.covered)
+        return float(x), float(y)
 
     def inside(self, place: Any) -> bool:
         return max(abs(part) for part in self.at(place)) < 1
@@ -98,8 +101,11 @@ def blank(users: Users, workbench: Served) -> Iterator[Page]:
 @pytest.mark.daily(1)
 @pytest.mark.parametrize("width", [0.4, 0.8])
 @pytest.mark.parametrize("view", ["follow", "free"])
-def test_walker_and_doorway_are_seen_well_from_the_start_to_behind_it(blank: Page, view: str, width: float) -> None:
-    seen = Standing(blank, Aperture(width=width))
+@pytest.mark.parametrize("covered", [(0.0, 0.15), (0.0, 0.0), (0.35, 0.15)])
+def test_walker_and_doorway_are_seen_well_from_the_start_to_behind_it(
+    blank: Page, view: str, width: float, covered: tuple[float, float]
+) -> None:
+    seen = Standing(blank, Aperture(width=width), covered=covered)
     seen.see(view)
     corners = [(7.0, side * (2.5 + width / 2), height) for side in (-1, 1) for height in (0.0, 2.5)]
     assert all(seen.inside(corner) for corner in corners)
@@ -114,7 +120,8 @@ def test_walker_and_doorway_are_seen_well_from_the_start_to_behind_it(blank: Pag
 
 
 def test_from_above_and_from_the_side_all_is_in_the_picture_and_ahead_is_to_the_right(blank: Page) -> None:
-    seen = Standing(blank, Aperture(width=0.5, position=(0.0, 7.0), heading=np.pi / 2))  # to the left of a body that faces along x
+    doorway = Aperture(width=0.5, position=(0.0, 7.0), heading=np.pi / 2)
+    seen = Standing(blank, doorway, covered=(0.3, 0.1))  # to the left of a body that faces along x
     for view in ("top", "side"):
         seen.see(view)
         assert seen.told["flat"]
@@ -178,9 +185,11 @@ def test_the_retina_pales_colours_with_distance(blank: Page) -> None:
 AT = """() => {
     const { camera, nodeRefFromName } = window.__viserMutable, { shown: now, facts: { stage } } = window.scene;
     const at = (place) => camera.position.clone().set(...place).applyMatrix4(nodeRefFromName[""].matrixWorld).project(camera).toArray();
-    const middle = now.body.map((x, axis) => x + stage.middle[axis]);
-    return { middle: at(middle), x: now.body[0], view: window.scene.camera.view, position: camera.position.toArray(),
-        distance: window.__viserMutable.cameraControl.distance, projection: [...camera.projectionMatrix.elements],
+    const middle = at(now.body.map((x, axis) => x + stage.middle[axis]));
+    const { right, top } = window.scene.camera.covered;
+    return { middle: [middle[0] + right, middle[1] + top], x: now.body[0], view: window.scene.camera.view,
+        position: camera.position.toArray(), distance: window.__viserMutable.cameraControl.distance,
+        projection: [...camera.projectionMatrix.elements],
         foot: at([now.body[0], 0, 0]), top: at([now.body[0], 0, 2]), eye: now.eye };
 }"""
 
@@ -201,10 +210,10 @@ def look(page: Page, frame: Frame) -> dict[str, Any]:
 
 
 def in_the_middle(page: Page, frame: Frame) -> dict[str, Any]:
-    """Asserts that the body is where the view with the body has it: in the middle of the picture."""
+    """Asserts that the body is where the view with the body has it: in the middle of what the page does not cover of the picture."""
     told = look(page, frame)
     assert told["view"] == "follow"
-    assert np.abs(told["middle"][:2]).max() < 0.04, told
+    assert np.abs(told["middle"]).max() < 0.04, told
     return told
 
 
@@ -279,6 +288,29 @@ UNDER = """() => {
 """Returns whether a label lies under the small retina."""
 
 
+COVERS = """() => {
+  const frame = document.querySelector("#scene iframe"), { camera, facts: { stage } } = frame.contentWindow.scene;
+  const { left, top, width, height } = frame.getBoundingClientRect();
+  const covers = [...document.querySelectorAll("#scene :is(.view-bar, .inset)")].map((one) => one.getBoundingClientRect());
+  const corners = stage.corners.map((corner) => camera.at(corner)).map(({ x, y }) => [left + x * width, top + y * height]);
+  const isUnder = ([x, y], box) => x > box.left && x < box.right && y > box.top && y < box.bottom;
+  return corners.some((corner) => covers.some((box) => isUnder(corner, box)) || corner[1] < top || corner[0] < left);
+}"""
+"""Returns whether the tools or the small retina cover a corner of what is on the stage, or it is not in the picture."""
+
+
+@pytest.mark.daily(1)
+@pytest.mark.parametrize("view", ["follow", "side"])
+def test_neither_tools_nor_retina_cover_the_doorway_in_a_small_window(pages: Callable[..., Page], view: str) -> None:
+    page = pages(width=853, height=533)
+    frame = frame_of(page)
+    page.get_by_label("Camera").select_option(view)
+    until(page, lambda: look(page, frame)["view"] == view and not page.evaluate(COVERS))
+    page.get_by_role("button", name="Eye", exact=True).click()
+    expect(page.locator(".inset")).to_be_visible()
+    until(page, lambda: not page.evaluate(COVERS))
+
+
 @pytest.mark.slow
 def test_no_label_lies_under_the_retina(pages: Callable[..., Page]) -> None:
     page = pages()
@@ -351,7 +383,8 @@ WATCH = """() => {
         if (camera !== viewer.camera) return;
         const drawn = found.object.getPositionAt(found.n).toArray();
         place.set(...drawn.map((x, axis) => x + middle[axis])).applyMatrix4(root.matrixWorld).project(camera);
-        window.watched.push({ at: [place.x, place.y], drawn, shown: window.scene.shown.body });
+        const { right, top } = window.scene.camera.covered;
+        window.watched.push({ at: [place.x + right, place.y + top], drawn, shown: window.scene.shown.body });
     };
     return found.off;
 }"""
@@ -390,7 +423,8 @@ WATCH_RESTART = """() => {
             }
         });
         place.set(...body.map((x, axis) => x + middle[axis])).applyMatrix4(root.matrixWorld).project(camera);
-        window.watched.push({ off, shapes, x: body[0], at: Math.max(Math.abs(place.x), Math.abs(place.y)) });
+        const { right, top } = window.scene.camera.covered;
+        window.watched.push({ off, shapes, x: body[0], at: Math.max(Math.abs(place.x + right), Math.abs(place.y + top)) });
     };
 }"""
 """Notes of each picture how far the next shape is from where the body is said to be, and how many shapes there are."""

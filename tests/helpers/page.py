@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, ConsoleMessage, Error, Page, expect, sync_playwright
+from playwright.sync_api import APIResponse, Browser, ConsoleMessage, Error, Page, Route, expect, sync_playwright
 
 PATIENCE = 60_000
 """Maximum time that a test waits [ms]; machines are slow at times."""
@@ -167,9 +167,26 @@ def until(page: Page, condition: Callable[[], bool]) -> None:
         page.wait_for_timeout(50)
 
 
+def answer_to(route: Route) -> APIResponse:
+    """Returns what the server answers to a request of the page.
+
+    The server closes a connection that nobody has used for some seconds, perhaps while a request is on its way to it. A browser then sends
+    the request again on a new connection; Playwright must be told to.
+    """
+    return route.fetch(max_retries=1)
+
+
 def drawn(page: Page) -> None:
     """Waits until the page has been drawn with what it has taken in."""
     page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+def duplicate(page: Page) -> Page:
+    """Returns a page with the address and the session storage of another one, as a browser makes it that duplicates a tab."""
+    twin = page.context.new_page()
+    twin.add_init_script(f"Object.assign(sessionStorage, {page.evaluate('JSON.stringify(sessionStorage)')})")
+    twin.goto(page.url)
+    return twin
 
 
 def choose(page: Page, model: str) -> None:
