@@ -49,7 +49,11 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         model = Path(__file__).parents[1] / "models" / "aperture_passage.py"
         compiling = subprocess.Popen([sys.executable, "-m", "actr3d", "run", str(model)], stdout=subprocess.DEVNULL)
         session.config.stash[COMPILING] = compiling
-        session.config.add_cleanup(compiling.wait)
+
+        def reap() -> None:
+            compiling.wait()
+
+        session.config.add_cleanup(reap)
 
 
 @pytest.hookimpl(optionalhook=True)
