@@ -141,7 +141,7 @@ class Parameters(Configuration):
     shoulder_width: Annotated[float, Ge(0.3), Le(0.7)] = 0.404
     """The shoulder width [m]. Source: the small group of Warren & Whang (1987)."""
 
-    speed: Annotated[float, Ge(0.3), Le(3)] = 1.29
+    speed: Annotated[float, Ge(0.3), Le(3), Live("parameter", "walker.pace.wanted")] = 1.29
     """The walking speed [m/s]. Source: Warren & Whang (1987), small group."""
 
     contact_cost: Annotated[float, Ge(0), Le(1000)] = CONTACT_COST
@@ -205,6 +205,10 @@ class Wait(Model):
         yield seconds
         if mine == self.begun:
             self.state = "over"
+
+
+class Pace(Model):
+    """The wanted walking speed [m/s], which a user may change; None: that of the start."""
 
 
 class Steering(ACTR):
@@ -328,6 +332,7 @@ class Person(ACTR):
     motor = Motor(memory=DM, size_grid=GRAIN, extreme_step=FELT)
     way = Wait()
     pause = Wait()
+    pace = Pace()
     steering = Steering()
     avoiding = Avoiding()
     planning = Planning()
@@ -410,6 +415,26 @@ class Person(ACTR):
         self.seen_at = self.now() + CYCLE  # when it will look again
         motor.walk(self.speed)
 
+    def change_pace(pace="wanted:?wanted kept:!?wanted"):
+        """Walks at another speed from now on."""
+        pace.kept = pace.wanted
+        before = self.speed
+        self.go_at(pace.wanted or usual)
+        if way.state == "on":
+            self.pass_in(max(0, self.through_at - self.now()) * before / self.speed)
+        if motor.walking:
+            motor.walk(self.speed)
+
+    def go_at(self, speed):
+        """Sets the walking speed [m/s], and with it the length of a step and the time for a turn, which takes one step."""
+        frequency = Gait().steps_per_second(speed)
+        self.speed, self.step, self.turning_time = speed, speed / frequency, TURNING / frequency
+
+    def pass_in(self, seconds):
+        """Starts the timer until the walker is through the doorway."""
+        self.through_at = self.now() + seconds
+        self.way.go(seconds)
+
     def sees(self, far, left, deep):
         """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees], with free depth behind it [m].
 
@@ -490,7 +515,7 @@ class Person(ACTR):
         self.judged = "turned" if float(turn) else "as it is"
         self.chosen = float(turn)
         self.turn_shoulders(float(turn), self.turning_time)
-        way.go((float(far) + BEHIND) / self.speed)
+        self.pass_in((float(far) + BEHIND) / self.speed)
         b_goal.set("do:pass")
 
     def leave(b_goal="do:pass", way="state:over"):
@@ -511,13 +536,14 @@ class Person(ACTR):
 def person(parameters: Parameters, name: str = "walker") -> Person:
     """Returns an agent."""
     p = parameters
-    frequency = Gait().steps_per_second(p.speed)
-    given = {field: getattr(p, field) for field in ("speed", "contact_cost", "memory_noise", "memories", "impact")}
-    timing = {"step": p.speed / frequency, "turning_time": TURNING / frequency}
+    given = {field: getattr(p, field) for field in ("contact_cost", "memory_noise", "memories", "impact")}
     task = {"always": p.turn, "only_judges": p.task == "judge", "noise": p.perceptual_noise}
     remembered = {"walks": p.gait, "hands": "empty" if p.bar is None else "bar"}
     who = "" if p.scene != "two people" else f"{name} "
-    return Person(judged=None, chosen=None, committed=None, who=who, **given, **timing, **task, **remembered)
+    agent = Person(judged=None, chosen=None, committed=None, who=who, usual=p.speed, **given, **task, **remembered)
+    agent.pace.wanted = agent.pace.kept = p.speed
+    agent.go_at(p.speed)
+    return agent
 
 
 def build(parameters: Parameters) -> Simulation:

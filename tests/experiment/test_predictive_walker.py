@@ -18,6 +18,7 @@ from actr3d.experiment.aperture import PassageResult, experiences
 from actr3d.experiment.aperture.experience import MASS, passage_remembered
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.trial import run_trial
+from actr3d.runner.model_factory import build
 from actr3d.simulation import Simulation
 
 ROOT = Path(__file__).parents[2]
@@ -57,6 +58,25 @@ def test_it_steers_through_a_doorway_from_any_start_and_touches_nothing(model: A
 def test_without_gait_it_steers_as_well(model: Any) -> None:
     result, _ = walked(model, aperture=0.8, start_aside=0.5, gait=False)
     assert (result.outcome, result.contacts) == ("passed", 0)
+
+
+@pytest.mark.parametrize(("at", "then"), [(5.0, 0.8), (7.2, 0.6)])
+def test_its_speed_may_change_on_the_way(at: float, then: float) -> None:
+    """As the parameter `speed` of `aperture_passage` does during a run; at 7.2 s it has turned and passes."""
+    file = FILE.with_name("aperture_passage.py")
+    with RunLimits(seed=1, until=60):
+        simulation, _ = build(file.read_text(encoding="utf-8"), str(file), {"variant": "predictive", "aperture": 0.8}, FILE.parent)
+        simulation.run(at)
+        simulation.command("parameter", "walker.pace.wanted", then)
+        simulation.run(0.6)
+        base = simulation.world.bodies["walker"].base
+        before = base.place[0]
+        simulation.run(0.5)
+        assert (base.place[0] - before) / 0.5 == pytest.approx(then, abs=0.1)
+        simulation.run()
+    result = simulation.result()
+    assert (result.outcome, result.contacts) == ("passed", 0)
+    assert 0.5 < base.place[0] - 7 < 1.5, "it stands behind the doorway"
 
 
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.slow)])
