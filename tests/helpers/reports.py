@@ -53,6 +53,7 @@ def walk(trial: Trial) -> dict[str, Any]:
     width = trial.values["shoulder_width"]
     need = float(baseline_angle([trial.values["aperture"] / width])[0])
     spread = 0.3 * math.sin(7.0 * trial.number)
+    left, right = (0.068, 0.07) if trial.number % 2 else (0.07, 0.068)
     angle = round(min(80.0, need + (4 if trial.values.get("condition") == "fast" else 0) + spread), 2) if need else 0.0
     return {
         "outcome": "passed",
@@ -63,8 +64,8 @@ def walk(trial: Trial) -> dict[str, Any]:
         "onset_time_s": 9.0 if angle else None,
         "contacts": 0,
         "max_force_n": 0.0,
-        "clearance_left_m": 0.069,
-        "clearance_right_m": 0.071,
+        "clearance_left_m": left,
+        "clearance_right_m": right,
         "speed_m_s": 1.3,
         "time_s": 11.0,
     }

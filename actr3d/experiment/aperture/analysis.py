@@ -100,6 +100,7 @@ def frame_of(results: Results, findings: Findings) -> Any:
         ("force", "max_force_n", 1),
     ):
         frame[name] = rows[column].to_numpy() * scale if column in rows else math.nan
+    frame["narrower"] = frame[["left", "right"]].min(axis=1, skipna=False)
     return frame
 
 
@@ -456,6 +457,10 @@ def _ratios_pane(rows: Any, condition: str, findings: Findings) -> Pane:
 # -- margins, contacts, onset
 
 
+SIDES = {"left": "left", "right": "right", "narrower": "narrower side"}
+"""The margins of a trial, and what figures call them; a walker that sways is nearer to the wall on one side, left or right by chance."""
+
+
 def _margins(findings: Findings, frame: Any) -> Parts:
     pd, by, scale = pandas(), findings.by, 100.0 if findings.by == "aperture" else 1.0
     x_label = "aperture [cm]" if by == "aperture" else OF_RATIO
@@ -464,27 +469,29 @@ def _margins(findings: Findings, frame: Any) -> Parts:
         for condition in findings.conditions:
             of = frame[(frame["group"] == group) & (frame["condition"] == condition)]
             curves: list[Curve] = []
-            for side in ("left", "right"):
+            for side in SIDES:
                 means = cell_means(of, side, ["level"])
                 x, low, high = (means["level"] * scale).tolist(), means["low"].tolist(), means["high"].tolist()
-                curves.append(Curve(label=side, source="this model", look="model", x=x, y=means["mean"].tolist(), low=low, high=high))
+                own: Any = {"label": SIDES[side], "source": "this model", "look": "model"}
+                curves.append(Curve(x=x, y=means["mean"].tolist(), low=low, high=high, **own))
             band = (100 * MARGIN[0], 100 * MARGIN[1], "people keep 6 to 8 cm")
             panes.append(Pane(title=", ".join(filter(None, (group, condition))), curves=curves, level=band))
     figure = curves_figure(panes, x_label, "smallest distance to the wall [cm]", from_zero=True)
-    note = "Means of participants with 95 % bootstrap intervals. At wide apertures there is more room than anyone wants."
-    parts.append(Plot(name="margins", title="Margins on the left and on the right", figure=figure, note=note))
+    note = "Means of participants with 95 % bootstrap intervals; the narrower side is that of each trial. "
+    note += "At wide apertures there is more room than anyone wants."
+    parts.append(Plot(name="margins", title="Margins on the left, on the right, and on the narrower side", figure=figure, note=note))
     there = frame[frame["left"].notna() & frame["right"].notna()]
     if len(there) and float((there["left"] - there["right"]).abs().max()) < 100 * SIDES_DIFFER:
         parts.append(Caution("Left and right are equal in every trial: this walker neither sways nor steers, which people do."))
     rows: list[dict[str, Any]] = []
     for (group, condition, level), of in there.groupby(["group", "condition", "level"], sort=False, observed=True):
         row: dict[str, Any] = {"group": group, "condition": condition, by: level, "trials": len(of)}
-        for side in ("left", "right"):
+        for side in SIDES:
             sd = float(of[side].std(ddof=1)) if len(of) > 1 else math.nan
             row |= {f"{side}_mean": float(of[side].mean()), f"{side}_least": float(of[side].min()), f"{side}_sd": sd}
         rows.append({**row, "largest_difference": float((of["left"] - of["right"]).abs().max())})
     table = in_order(pd.DataFrame(rows), ["group", "condition", by], frame)
-    of_sides = [name for name in table if name.startswith(("left", "right", "largest"))]
+    of_sides = [name for name in table if name.startswith((*SIDES, "largest"))]
     units, digits = dict.fromkeys(of_sides, "cm"), dict.fromkeys(of_sides, 1) | {"aperture": 2, "ratio": 2}
     note = "sd: between trials; largest difference: between the sides of one trial."
     units |= {"aperture": "m"} if by == "aperture" else {}
