@@ -127,10 +127,11 @@ class Parameters(Configuration):
 
     margin: Annotated[float, Ge(0), Le(1)] | None = None
     """The walker turns if an opening exceeds its width by less than this fraction; None: 0.30 for people (Warren & Whang 1987), 0.139
-    in the replication (docs/human-data.md)."""
+    in the replication (docs/human-data.md). The predictive walker has no such number."""
 
     noise: Annotated[float, Ge(0), Le(0.2)] = 0.01
-    """The standard deviation of perceived distances, as a fraction of them; 0 judges exactly. Source: chosen for this model."""
+    """The standard deviation of perceived distances, as a fraction of them; 0 judges exactly. Source: chosen for this model. The
+    predictive walker has `perceptual_noise` instead."""
 
     task: Literal["walk", "judge"] = "walk"
     """What the walker does: walks through the doorway, or only judges whether it could pass without turning."""

@@ -99,7 +99,8 @@ def test_apertures_have_their_own_sections(walked: Path) -> None:
         assert float(row["low"]) < 1.3 < float(row["high"])
     margins = table(walked, "margins")
     assert {row["narrower_mean"] for row in margins} == {"6.8"}
-    assert {row["left_mean"] for row in margins} > {"6.9"}, "walkers come nearer to the wall on either side"
+    for side in ("left", "right"):
+        assert any(float(row[f"{side}_mean"]) > 6.8 for row in margins), "no side is the narrower one in each trial"
     assert "Starts aside" not in page(walked)
 
 
