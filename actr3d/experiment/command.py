@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.text import Text
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
@@ -48,10 +49,10 @@ class Output:
         self.json = json
         self.console = Console(file=sys.stdout, soft_wrap=True)
 
-    def line(self, text: str, *, markup: bool = True) -> None:
-        """Prints a line of text, unless the output is JSON."""
+    def line(self, *parts: str | tuple[str, str]) -> None:
+        """Prints a line, unless the output is JSON: texts as they are, each alone or with the style in which it is printed."""
         if not self.json:
-            self.console.print(text, highlight=False, markup=markup, emoji=False)
+            self.console.print(Text.assemble(*parts))
 
     def event(self, name: str, data: Mapping[str, Any]) -> None:
         """Prints an object, if the output is JSON."""
@@ -67,7 +68,7 @@ def list_designs(out: Output) -> int:
         experiment = specify(name)
         out.event("design", {"name": name, "trials": len(experiment.design), "description": experiment.description})
         first = " ".join(experiment.description.partition("\n\n")[0].split())
-        out.line(f"  [bold]{name:<24}[/bold]{len(experiment.design):>8,} trials  {first}")
+        out.line("  ", (f"{name:<24}", "bold"), f"{len(experiment.design):>8,} trials  {first}")
     return 0
 
 
@@ -94,7 +95,7 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     about = {**facts, "seconds_a_trial": round(seconds, 3), "error": row["error"]}
     out.event("check", about)
     people = ", ".join(f"{count} {name}" for name, count in groups.items())
-    out.line(f"[bold]{about['name']}[/bold]: {total:,} trials of '{about['model']}' by participants: {people}")
+    out.line((str(about["name"]), "bold"), f": {total:,} trials of '{about['model']}' by participants: {people}")
     for factor, levels in design.factors.items():
         out.line(f"  {factor}: {', '.join(map(str, levels))}")
     out.line(
@@ -146,7 +147,7 @@ def run(
         facts = facts_of(experiment)
         store.write_facts({"event": "facts", **facts})
         out.event("facts", {**facts, "folder": str(store.folder)})
-        out.line(f"[bold]{experiment.specification.name}[/bold]: {total:,} trials in '{store.folder}', {before:,} finished")
+        out.line((experiment.specification.name, "bold"), f": {total:,} trials in '{store.folder}', {before:,} finished")
         if before < total:
             with (
                 _stopping() as stop,
@@ -218,7 +219,7 @@ def fit(
         result = running.run(candidates, hold_out=held_out, ablate=ablate, recover=recover)
     (path / "fit.json").write_text(to_json(result), encoding="utf-8")
     out.event("fit", asdict(result))
-    out.line(f"\n[bold]fitted[/bold] to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
+    out.line(("\nfitted", "bold"), f" to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
     for one in result.parameters:
         low, high = ("not determined" if bound is None else f"{bound:g}" for bound in (one.low, one.high))
         out.line(f"  {one.name} = {one.value:g}   95 % interval: {low} to {high}")
@@ -348,9 +349,9 @@ def _show_failures(store: Store, out: Output) -> None:
     if not store.failures:
         return
     kinds = Counter(summary(row["error"]) for row in store.rows() if row["error"] is not None)
-    out.line(f"[bold red]{store.failures:,} trials failed[/bold red] (columns `end` and `error` of the table):")
+    out.line((f"{store.failures:,} trials failed", "bold red"), " (columns `end` and `error` of the table):")
     for text, count in kinds.most_common(SHOWN):
-        out.line(f"  {count:,}  {text}", markup=False)
+        out.line(f"  {count:,}  {text}")
 
 
 def summary(error: str) -> str:

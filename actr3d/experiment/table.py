@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from itertools import islice
@@ -35,8 +36,8 @@ def export(store: Store) -> list[Path]:
 
 
 def _replaced(path: Path, write: Callable[[Path], None]) -> Path:
-    """Writes a file under another name first, so that a reader finds either the old or the new one, whole."""
-    part = path.with_suffix(f"{path.suffix}.part")
+    """Writes a file under a name of this process first: a reader finds either the old or the new one, whole, whoever else writes it."""
+    part = path.with_suffix(f"{path.suffix}.{os.getpid()}.part")
     try:
         write(part)
         part.replace(path)

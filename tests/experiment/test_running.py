@@ -23,11 +23,13 @@ import pytest
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
 from actr3d.experiment import cluster
+from actr3d.experiment import table as table_of_trials
 from actr3d.experiment.cluster import Progress, cluster_versions, existing_cluster, local_cluster, run_batch, run_experiment
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
 from tests.helpers.experiments import COUNTER, write_experiment
+from tests.helpers.reports import store_rows
 
 pytestmark = pytest.mark.long
 
@@ -328,6 +330,27 @@ def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFi
         assert says in capsys.readouterr().err
     assert main(["experiment", out]) == 0
     assert "counting: 0 of 24 trials have finished\n" in capsys.readouterr().out
+
+
+def test_texts_of_models_are_printed_as_they_are(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write_experiment(tmp_path, model=COUNTER.replace("cannot count to", "wrong [/int] list[int]"))
+    assert main(["experiment", str(path), "--check", "--set", "mode=fail"]) == 1
+    assert "RuntimeError: wrong [/int] list[int] " in capsys.readouterr().out
+
+
+def test_two_commands_may_write_the_table_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write_experiment(tmp_path)
+    folder = store_rows(tmp_path / "out", str(path), lambda trial: {"rt": 0.1, "luck": 0.5})
+    write = table_of_trials._write_csv
+
+    def write_after_another(file: Path, *given: Any) -> None:
+        assert subprocess.run([*COMMAND, str(folder), "--resume"], timeout=120, capture_output=True).returncode == 0
+        write(file, *given)
+
+    monkeypatch.setattr(table_of_trials, "_write_csv", write_after_another)
+    with Store(folder) as store:
+        assert all(file.exists() for file in export(store))
+    assert not [*folder.glob("*.part")]
 
 
 def test_other_versions_are_refused_unless_allowed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
