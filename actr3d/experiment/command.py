@@ -25,7 +25,7 @@ from actr3d.experiment.specification import Experiment, Specification, library_d
 from actr3d.experiment.store import SPECIFICATION, Store
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import PLAIN, record_trial
-from actr3d.experiment.trial_process import TrialProcess
+from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
 from actr3d.recording.schema import versions
 from actr3d.values import to_json
 
@@ -284,7 +284,11 @@ def run_again(folder: str, number: int, recording: str, out: Output) -> int:
         Exception: Any error that the model raises.
     """
     with Store(folder) as store, store.specification.sealed() as helpers:
-        experiment = Experiment(store.specification, helpers)
+        experiment, row = Experiment(store.specification, helpers), store.row(number)
+        if row is not None and row["error"] is not None:
+            out.line(f"in the experiment this trial failed: {summary(row['error'])}")
+            if row["end"] == TIME_LIMIT:
+                out.line("here it has no limit: Ctrl-C ends it, and what has happened until then is recorded")
         result = record_trial(experiment, experiment.design.trial(number), recording, helpers)
     if result is not None:
         out.line(str(result))

@@ -33,6 +33,9 @@ LOOK = 1.0
 ATTEMPTS = 3
 """How often a trial is tried whose process ends without an answer: another program may have ended it."""
 
+TIME_LIMIT = "time limit"
+"""What the column `end` says of a trial that was ended at its limit."""
+
 
 class TrialProcess:
     """Runs trials in a process of its own."""
@@ -63,7 +66,7 @@ class TrialProcess:
                 answer = self._ask(json.dumps(number), limit)
             except TimeoutError:
                 self.end()
-                return {"end": "time limit", "error": f"the trial took longer than its limit of {limit:g} s, and was ended"}
+                return {"end": TIME_LIMIT, "error": f"the trial took longer than its limit of {limit:g} s, and was ended"}
             if answer is not None:
                 self.about |= answer["about"]
                 return answer["row"]

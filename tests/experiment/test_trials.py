@@ -23,7 +23,7 @@ from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import run_trial
-from actr3d.experiment.trial_process import TrialProcess
+from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
 from tests.helpers.experiments import COUNTER, write_experiment
 
 
@@ -355,11 +355,17 @@ def test_a_trial_is_recorded_and_replayed(tmp_path: Path, capsys: pytest.Capture
     monkeypatch.chdir(tmp_path)
     path = write_experiment(tmp_path)
     experiment = specify(str(path))
-    Store.create("out", experiment.specification).close()
+    ended = {**experiment.design.trial(8).columns, "end": TIME_LIMIT, "error": "the trial took longer than its limit of 2 s, and was ended"}
+    with Store.create("out", experiment.specification) as store:
+        store.add([Finished(row=ended, wall_s=2.0, worker="0")], "v")
     path.unlink()
     (tmp_path / "counter.py").unlink()
     assert main(["experiment", "out", "--trial", "7", "--record", "seven.rec"]) == 0
-    assert "trial 7 is recorded in 'seven.rec'" in capsys.readouterr().out
+    assert capsys.readouterr().out == "trial 7 is recorded in 'seven.rec'\n"
+    assert main(["experiment", "out", "--trial", "8", "--record", "eight.rec"]) == 0
+    said = capsys.readouterr().out
+    assert "in the experiment this trial failed: the trial took longer than its limit of 2 s, and was ended" in said
+    assert "Ctrl-C ends it, and what has happened until then is recorded" in said
     assert main(["replay", "seven.rec"]) == 0
     assert main(["experiment", "out", "--trial", "99", "--record", "x.rec"]) == 2
     assert "trial: must be a number from 0 to 23 (got 99)" in capsys.readouterr().err

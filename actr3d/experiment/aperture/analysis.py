@@ -279,7 +279,8 @@ class Rotation:
         frame = frame.rename(columns={"level": self._findings.by})
         units: dict[str, str] = dict.fromkeys(("mean", "sd", "low", "high", "original", "baseline"), "degrees")
         units |= {"aperture": "m"} if self._by_aperture else {}
-        note = "Angles at the wall. sd: between participants; low, high: 95 % interval; n: participants."
+        note = "Angles at the wall; of trials that did not reach it, the greatest angle until then. "
+        note += "sd: between participants; low, high: 95 % interval; n: participants."
         digits = dict.fromkeys(units, 1) | {"aperture": 2, "ratio": 2}
         return Table(name="rotation", title="Rotation of each cell", frame=frame, units=units, digits=digits, note=note, folded=True)
 
