@@ -24,7 +24,7 @@ def timed_events(recorded: Recorded) -> Iterator[TraceEvent]:
 
 
 def events_both_ways(recorded: Recorded) -> Iterator[tuple[TraceEvent, TraceEvent]]:
-    """Yields each event as it is recorded, and as `timed_events` does.
+    """Yields each event with its recorded time, and with the time that `timed_events` gives it.
 
     Raises:
         RecordingError: If the recording is damaged.

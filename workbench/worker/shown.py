@@ -114,7 +114,7 @@ class Shown:
 
     @cached_property
     def _colour_of(self) -> Callable[[tuple[int, ...]], str]:
-        """Returns the colour of an object by its geoms, as it is drawn; each is computed once."""
+        """Returns the colour in which an object is drawn, by its geoms; each is computed once."""
         model = loaded(self.mj_model)
         dress(model, [self.surroundings["bodies"][name]["root"] for name in self.simulation.embodied])
         return cache(partial(colour_of_object, model))
