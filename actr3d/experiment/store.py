@@ -52,6 +52,18 @@ class Finished:
     """The name of the worker that ran it."""
 
 
+MEANINGS = {
+    "trial": "The number of the trial, from 0.",
+    "participant": "The simulated participant.",
+    "group": "The participant's group.",
+    "position": "The place of the trial among those of its participant, from 1.",
+    "repetition": "The place of the trial among the participant's trials of the same levels, from 1.",
+    "seed": "The seed of all random choices in the trial.",
+    "end": "What ended the trial.",
+    "error": "The error of a trial that failed, with its traceback.",
+}
+"""The meanings of the columns that every experiment has."""
+
 LAST = (
     Column(name="versions", type="text", meaning="The versions of the packages that ran the trial."),
     Column(name="wall_s", type="real", unit="s", meaning="The duration of the trial in real time; not reproducible."),
@@ -231,7 +243,7 @@ class Store:
     def columns(self) -> tuple[Column, ...]:
         """The columns of the table of trials, in order."""
         found = self._database.execute("SELECT name, type, unit, meaning FROM column ORDER BY name = 'end' OR name = 'error', place, name")
-        return (*(Column(name=n, type=t, unit=u, meaning=m or "") for n, t, u, m in found), *LAST)
+        return (*(Column(name=n, type=t, unit=u, meaning=m or MEANINGS.get(n, "")) for n, t, u, m in found), *LAST)
 
     def rows(self, after: int = -1) -> Iterator[Row]:
         """Yields all rows by the numbers of their trials, also those that are added meanwhile.

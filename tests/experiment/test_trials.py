@@ -293,7 +293,9 @@ def test_tables_have_the_types_and_units_of_their_columns(tmp_path: Path) -> Non
         assert table.column("flag").to_pylist() == [True, None]
         assert table.column("name").to_pylist() == ['\u00e9\n,"', None]
         assert table.schema.field("x").metadata[b"unit"] == b"m"
-        assert "x,real,m,Its width [m]." in (store.folder / "columns.csv").read_text()
+        columns = (store.folder / "columns.csv").read_text()
+        assert "x,real,m,Its width [m]." in columns
+        assert 'trial,integer,,"The number of the trial, from 0."' in columns
 
 
 def test_only_one_process_writes(tmp_path: Path) -> None:
