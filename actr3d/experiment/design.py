@@ -207,6 +207,8 @@ class Design(Configuration):
         grouped = {name for group in self.groups.values() for name in group.parameters}
         for twice in self.settings.keys() & {*self.factors, *grouped}:
             raise DesignError(f"Design.settings: '{twice}' is already a factor, or a parameter of a group", twice)
+        if isinstance(self.measures, (str, bytes)):
+            raise DesignError(f"Design.measures: must be a list of names (got {self.measures!r})", "measures")
         given = [one.name for one in self.kept]
         for measure in self.kept:
             if given.count(measure.name) > 1:

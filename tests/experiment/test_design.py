@@ -245,6 +245,10 @@ def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_run
             r"d\.py:5: Design\.measures: 'n' is there twice",
         ),
         (
+            "from actr3d.experiment import *\ntime = 1\n@design\ndef a():\n  return Design(\n    measures='time')\n",
+            r"d\.py:6: Design\.measures: must be a list of names \(got 'time'\)",
+        ),
+        (
             "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(\n    measures=[Measured(name='m', over='end')])\n",
             r"d\.py:6: Design\.measures: 'm' is over 'end', which is another column",
         ),
