@@ -132,13 +132,17 @@ def test_values_are_derived_from_others() -> None:
         ({"factors": {"size": [1]}}, r"Design\.groups\['young'\]: 'size' is a factor already"),
         ({"factors": {"seed": [1]}}, r"Design: 'seed' is a column of every table of trials; rename the parameter"),
         ({"settings": {"age": 1}}, r"Design\.settings: 'age' is already a factor, or a parameter of a group"),
+        ({"factors": {"a": [1, math.nan]}}, r"Design\.factors\['a'\]: must be finite \(got \[1, nan\]\)"),
+        ({"factors": {"a": [(1, -math.inf)]}}, r"Design\.factors\['a'\]: must be finite \(got \[\(1, -inf\)\]\)"),
+        ({"settings": {"fixed": math.inf}}, r"Design\.settings\['fixed'\]: must be finite \(got inf\)"),
+        ({"factors": {}, "derive": lambda _: {"x": math.nan}}, r"Design\.derive\['x'\]: must be finite \(got nan\)"),
         ({"groups": {}}, r"Design\.groups: must have at least one group \(got \{\}\)"),
         ({"groups": {"a": 3}}, r"Design\.groups\['a'\]: must be a Group \(got 3\)"),
     ],
 )
 def test_an_invalid_design_is_refused(changes: dict[str, Any], says: str) -> None:
     with pytest.raises(DesignError, match=says):
-        design_of(**changes)
+        design_of(**changes).trial(0)
 
 
 @pytest.mark.parametrize(
@@ -157,6 +161,9 @@ def test_wrong_fields_are_refused(make: Any, says: str) -> None:
 
 
 def test_distributions_without_values_are_refused() -> None:
+    with pytest.raises(DesignError, match=r"Normal: low 1e\+09 and high inf leave out nearly all values \(mean 0\.5, sd 0\.1\)"):
+        Normal(mean=0.5, sd=0.1, low=1e9)
+    assert Normal(mean=0, sd=1, low=4).quantile(0.5) == pytest.approx(4.1611, abs=1e-3)
     with pytest.raises(DesignError, match="no value lies between low 2 and high 1"):
         Normal(mean=1, sd=1, low=2, high=1)
     with pytest.raises(DesignError, match=r"Uniform\.high: must be >= low 2 \(got 1\)"):
@@ -207,7 +214,12 @@ def test_an_unknown_parameter_is_refused_with_its_line(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, trials=0)
     with pytest.raises(DesignError, match=r"counting_design\.py:12: Design\.trials: must be >= 1 \(got 0\)"):
         specify(str(path))
+    path = write_experiment(tmp_path, factors='{"n": [1, float("nan")]}')
+    with pytest.raises(DesignError, match=r"counting_design\.py:10: Design\.factors\['n'\]: must be finite \(got \[1, nan\]\)"):
+        specify(str(path))
     path = write_experiment(tmp_path)
+    with pytest.raises(DesignError, match=r"^--set mode: Design\.settings\['mode'\]: must be finite \(got inf\)"):
+        specify(str(path), values={"mode": math.inf})
     with pytest.raises(DesignError, match=r"^--set m: Design: the model has no parameter 'm'"):
         specify(str(path), values={"m": 3})
 
