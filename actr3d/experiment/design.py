@@ -122,6 +122,7 @@ class Group(Configuration):
             DesignError: If a value is not finite.
         """
         super().__post_init__()
+        object.__setattr__(self, "parameters", {name: as_python(value) for name, value in self.parameters.items()})
         for name, value in self.parameters.items():
             _check_finite(value, f"Group.parameters['{name}']", name)
 
@@ -145,8 +146,7 @@ class Measured(Configuration):
         """
         if self.over is None:
             return {self.name: value}
-        as_list: Any = getattr(value, "tolist", None)
-        value = as_list() if callable(as_list) else value  # of numpy
+        value = as_python(value)
         if not isinstance(value, (list, tuple)):
             raise DesignError(f"measure '{self.name}': must be a list, with a value for each {self.over} (got {value!r})", self.name)
         return {f"{self.name}_{number}": one for number, one in enumerate(cast("Sequence[Any]", value), start=1)}
@@ -205,6 +205,8 @@ class Design(Configuration):
             DesignError: If there is no trial, a parameter is given twice, or a value is not finite.
         """
         super().__post_init__()
+        for field_name in ("factors", "settings"):
+            object.__setattr__(self, field_name, {name: as_python(value) for name, value in getattr(self, field_name).items()})
         for name, levels in self.factors.items():
             given: Any = levels
             if isinstance(given, (str, bytes)) or not isinstance(given, Sequence):
@@ -313,7 +315,7 @@ class Design(Configuration):
             raise DesignError(f"Design.derive: failed with {type(error).__name__}: {error} (given {dict(values)!r})", "derive") from error
         if not isinstance(more, Mapping):
             raise DesignError(f"Design.derive: must return values by name (returned {more!r})", "derive")
-        found = {str(name): value for name, value in cast("Mapping[Any, Any]", more).items()}
+        found = {str(name): as_python(value) for name, value in cast("Mapping[Any, Any]", more).items()}
         for name, value in found.items():
             _check_finite(value, f"Design.derive['{name}']", "derive")
         return {**values, **found}
@@ -442,13 +444,23 @@ class _ReadNames(dict[str, Any]):
         return super().get(name, default)
 
 
+def as_python(value: Any) -> Any:
+    """Returns a value with the numbers and arrays of numpy in it as numbers and lists of Python, which tables and texts can hold."""
+    convert: Any = getattr(value, "tolist", None)
+    if callable(convert):
+        return convert()
+    if type(value) in (list, tuple):
+        return type(value)(map(as_python, value))
+    return value
+
+
 def _value(value: Any, seed: str) -> Any:
     """Returns a value, or one that is drawn from it if it is a distribution."""
-    return round(value.quantile(Random(seed).random()), DIGITS) if isinstance(value, Distribution) else value
+    return _example(value, Random(seed).random()) if isinstance(value, Distribution) else value
 
 
 def _example(value: Any, p: float) -> Any:
-    return round(value.quantile(p), DIGITS) if isinstance(value, Distribution) else value
+    return round(as_python(value.quantile(p)), DIGITS) if isinstance(value, Distribution) else value
 
 
 def _check_finite(value: Any, where: str, name: str) -> None:

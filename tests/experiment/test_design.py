@@ -9,6 +9,7 @@ from pathlib import Path
 from statistics import mean, stdev
 from typing import Any
 
+import numpy as np
 import pytest
 
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError
@@ -28,6 +29,10 @@ def design_of(**changes: Any) -> Design:
         "trials": 4,
     }
     return Design(**{**given, **changes})
+
+
+def without_value(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {"x": math.nan * values["fixed"]}
 
 
 def test_each_participant_does_each_cell_as_often_as_the_design_says() -> None:
@@ -135,7 +140,7 @@ def test_values_are_derived_from_others() -> None:
         ({"factors": {"a": [1, math.nan]}}, r"Design\.factors\['a'\]: must be finite \(got \[1, nan\]\)"),
         ({"factors": {"a": [(1, -math.inf)]}}, r"Design\.factors\['a'\]: must be finite \(got \[\(1, -inf\)\]\)"),
         ({"settings": {"fixed": math.inf}}, r"Design\.settings\['fixed'\]: must be finite \(got inf\)"),
-        ({"factors": {}, "derive": lambda _: {"x": math.nan}}, r"Design\.derive\['x'\]: must be finite \(got nan\)"),
+        ({"factors": {}, "derive": without_value}, r"Design\.derive\['x'\]: must be finite \(got nan\)"),
         ({"groups": {}}, r"Design\.groups: must have at least one group \(got \{\}\)"),
         ({"groups": {"a": 3}}, r"Design\.groups\['a'\]: must be a Group \(got 3\)"),
     ],
@@ -183,6 +188,22 @@ def test_changes_replace_levels_numbers_and_values() -> None:
     assert {trial.values["fixed"] for trial in changed.table()} == {4}
     assert changed.seed == 9
     assert len(changed) == 6 * 3
+
+
+def test_numbers_of_numpy_are_the_same_levels_as_those_of_python() -> None:
+    def more(values: Mapping[str, Any]) -> dict[str, Any]:
+        return {"double": np.float64(2) * values["a"]}
+
+    group = {"of numpy": Group(parameters={"size": np.float32(0.5), "age": np.arange(2)})}
+    given = design_of(
+        factors={"a": np.linspace(0, 1, 3), "b": [np.int64(1), np.bool_(True)]}, groups=group, settings={"c": np.int8(3)}, derive=more
+    )
+    plain = {"of numpy": Group(parameters={"size": 0.5, "age": [0, 1]})}
+    same = design_of(factors={"a": [0.0, 0.5, 1.0], "b": [1, True]}, groups=plain, settings={"c": 3}, derive=more)
+    assert repr(list(given.table())) == repr(list(same.table()))
+    assert type(given.trial(0).values["double"]) is float
+    with pytest.raises(DesignError, match=r"Design\.factors\['a'\]: must be finite \(got \[0\.0, inf\]\)"):
+        design_of(factors={"a": [0.0, np.float32(math.inf)]})
 
 
 # -- designs in files
