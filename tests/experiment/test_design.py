@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from actr3d.errors import ConfigurationError, DesignError, ExperimentError
+from actr3d.errors import ConfigurationError, DesignError, ExperimentError, ModelFileError
 from actr3d.experiment import Design, Group, Normal, Uniform
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from tests.helpers.experiments import write_experiment
@@ -291,6 +291,12 @@ def test_files_without_a_valid_design_are_refused(tmp_path: Path, text: str, say
     path = tmp_path / "d.py"
     path.write_text(text)
     with pytest.raises(ExperimentError, match=says):
+        specify(str(path))
+
+
+def test_a_syntax_error_in_the_model_is_named_with_file_and_line(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, model="n = 1\nmode = (\n")
+    with pytest.raises(ModelFileError, match=r"counter\.py:2: '\(' was never closed"):
         specify(str(path))
 
 
