@@ -19,6 +19,8 @@ from actr3d.parameter_schema import Parameter
 
 DIGITS = 6
 """Number of decimals to which drawn values are rounded, so that they are the same on every machine."""
+FEWEST = 1e-6
+"""Minimum probability between the bounds of a normal distribution; with less, nearly all drawn values would be at a bound."""
 FAR = 1e-9
 """Probability in the tails of an unbounded distribution within which the bounds of a parameter are checked."""
 MAX_TRIALS = 10_000_000
@@ -53,22 +55,28 @@ class Normal(Configuration):
 
         Raises:
             ConfigurationError: If a value is not a number.
-            DesignError: If no value lies between the bounds.
+            DesignError: If no value, or next to none, lies between the bounds.
         """
         super().__post_init__()
         low, high = self._bounds()
         if low > high or (self.sd == 0 and not low <= self.mean <= high):
             raise DesignError(f"Normal: no value lies between low {low:g} and high {high:g} (mean {self.mean:g}, sd {self.sd:g})")
+        if self.sd > 0 and self._whole.cdf(high) - self._whole.cdf(low) < FEWEST:
+            raise DesignError(f"Normal: low {low:g} and high {high:g} leave out nearly all values (mean {self.mean:g}, sd {self.sd:g})")
 
     def quantile(self, p: float) -> float:
         """Returns the value below which a drawn value lies with probability p, 0 < p < 1."""
         if self.sd == 0:
             return self.mean
         low, high = self._bounds()
-        whole = NormalDist(self.mean, self.sd)
-        below, up_to = whole.cdf(low), whole.cdf(high)
+        below, up_to = self._whole.cdf(low), self._whole.cdf(high)
         inside = min(max(below + p * (up_to - below), 1e-12), 1 - 1e-12)
-        return min(max(whole.inv_cdf(inside), low), high)
+        return min(max(self._whole.inv_cdf(inside), low), high)
+
+    @property
+    def _whole(self) -> NormalDist:
+        """The distribution without its bounds."""
+        return NormalDist(self.mean, self.sd)
 
     def _bounds(self) -> tuple[float, float]:
         return -math.inf if self.low is None else self.low, math.inf if self.high is None else self.high
@@ -106,6 +114,18 @@ class Group(Configuration):
     parameters: Mapping[str, Any] = field(default_factory=dict[str, Any])
     """Values of the model's parameters. From a `Normal` or `Uniform`, one value is drawn for each participant."""
 
+    def __post_init__(self) -> None:
+        """Checks the values.
+
+        Raises:
+            ConfigurationError: If the number is out of bounds.
+            DesignError: If a value is not finite.
+        """
+        super().__post_init__()
+        object.__setattr__(self, "parameters", {name: as_python(value) for name, value in self.parameters.items()})
+        for name, value in self.parameters.items():
+            _check_finite(value, f"Group.parameters['{name}']", name)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Measured(Configuration):
@@ -126,8 +146,7 @@ class Measured(Configuration):
         """
         if self.over is None:
             return {self.name: value}
-        as_list: Any = getattr(value, "tolist", None)
-        value = as_list() if callable(as_list) else value  # of numpy
+        value = as_python(value)
         if not isinstance(value, (list, tuple)):
             raise DesignError(f"measure '{self.name}': must be a list, with a value for each {self.over} (got {value!r})", self.name)
         return {f"{self.name}_{number}": one for number, one in enumerate(cast("Sequence[Any]", value), start=1)}
@@ -183,9 +202,11 @@ class Design(Configuration):
 
         Raises:
             ConfigurationError: If a field has the wrong type, or is out of bounds.
-            DesignError: If there is no trial, or a parameter is given twice.
+            DesignError: If there is no trial, a parameter is given twice, or a value is not finite.
         """
         super().__post_init__()
+        for field_name in ("factors", "settings"):
+            object.__setattr__(self, field_name, {name: as_python(value) for name, value in getattr(self, field_name).items()})
         for name, levels in self.factors.items():
             given: Any = levels
             if isinstance(given, (str, bytes)) or not isinstance(given, Sequence):
@@ -194,6 +215,9 @@ class Design(Configuration):
                 raise DesignError(f"Design.factors['{name}']: must have at least one level (got {given!r})", name)
             if len({repr(level) for level in levels}) < len(levels):
                 raise DesignError(f"Design.factors['{name}']: must name each level once (got {given!r})", name)
+            _check_finite(given, f"Design.factors['{name}']", name)
+        for name, value in self.settings.items():
+            _check_finite(value, f"Design.settings['{name}']", name)
         if not self.groups:
             raise DesignError("Design.groups: must have at least one group (got {})", "groups")
         for name, group in cast("Mapping[str, Any]", self.groups).items():
@@ -207,6 +231,8 @@ class Design(Configuration):
         grouped = {name for group in self.groups.values() for name in group.parameters}
         for twice in self.settings.keys() & {*self.factors, *grouped}:
             raise DesignError(f"Design.settings: '{twice}' is already a factor, or a parameter of a group", twice)
+        if isinstance(self.measures, (str, bytes)):
+            raise DesignError(f"Design.measures: must be a list of names (got {self.measures!r})", "measures")
         given = [one.name for one in self.kept]
         for measure in self.kept:
             if given.count(measure.name) > 1:
@@ -279,7 +305,7 @@ class Design(Configuration):
         """Returns the values of a trial with those that `derive` computes from them.
 
         Raises:
-            DesignError: If `derive` fails, or returns something else.
+            DesignError: If `derive` fails, or returns something else, or a value that is not finite.
         """
         if self.derive is None:
             return dict(values)
@@ -289,7 +315,10 @@ class Design(Configuration):
             raise DesignError(f"Design.derive: failed with {type(error).__name__}: {error} (given {dict(values)!r})", "derive") from error
         if not isinstance(more, Mapping):
             raise DesignError(f"Design.derive: must return values by name (returned {more!r})", "derive")
-        return {**values, **{str(name): value for name, value in cast("Mapping[Any, Any]", more).items()}}
+        found = {str(name): as_python(value) for name, value in cast("Mapping[Any, Any]", more).items()}
+        for name, value in found.items():
+            _check_finite(value, f"Design.derive['{name}']", "derive")
+        return {**values, **found}
 
     def table(self) -> Iterator[Trial]:
         """Yields all trials."""
@@ -415,13 +444,39 @@ class _ReadNames(dict[str, Any]):
         return super().get(name, default)
 
 
+def as_python(value: Any) -> Any:
+    """Returns a value with the numbers and arrays of numpy in it as numbers and lists of Python, which tables and texts can hold."""
+    convert: Any = getattr(value, "tolist", None)
+    if callable(convert):
+        return convert()
+    if type(value) in (list, tuple):
+        return type(value)(map(as_python, value))
+    return value
+
+
 def _value(value: Any, seed: str) -> Any:
     """Returns a value, or one that is drawn from it if it is a distribution."""
-    return round(value.quantile(Random(seed).random()), DIGITS) if isinstance(value, Distribution) else value
+    return _example(value, Random(seed).random()) if isinstance(value, Distribution) else value
 
 
 def _example(value: Any, p: float) -> Any:
-    return round(value.quantile(p), DIGITS) if isinstance(value, Distribution) else value
+    return round(as_python(value.quantile(p)), DIGITS) if isinstance(value, Distribution) else value
+
+
+def _check_finite(value: Any, where: str, name: str) -> None:
+    """Checks that a value, and each value in it, is finite: neither tables nor the text of a model have another way to write it.
+
+    Raises:
+        DesignError: If it is infinite or NaN.
+    """
+    waiting = [value]
+    for one in waiting:
+        if isinstance(one, (list, tuple)):
+            waiting += cast("Sequence[Any]", one)
+        elif isinstance(one, Mapping):
+            waiting += cast("Mapping[Any, Any]", one).values()
+        elif isinstance(one, float) and not math.isfinite(one):
+            raise DesignError(f"{where}: must be finite (got {value!r})", name)
 
 
 def _levels(value: Any, before: Sequence[Any]) -> Sequence[Any]:

@@ -25,7 +25,7 @@ from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sealed import sealed
-from actr3d.actr.loading.source_text import read_source
+from actr3d.actr.loading.source_text import compile_source, read_source
 from actr3d.actr.loading.sweep import parameters as variables_of
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, alternatives, did_you_mean
@@ -127,6 +127,7 @@ class Experiment:
             self.design = self.design.changed(
                 participants=specification.participants, trials=specification.trials, values=specification.values
             )
+        compile_source(model.text, model.file)
         check_build(model.text, model.file)
         self.blueprint: Blueprint | None = None
         """Builds the model's simulations; None for a program."""

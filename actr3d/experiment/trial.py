@@ -15,7 +15,7 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
 from actr3d.errors import ExperimentError, did_you_mean
-from actr3d.experiment.design import OWN_COLUMNS, Measured, Trial
+from actr3d.experiment.design import OWN_COLUMNS, Measured, Trial, as_python
 from actr3d.experiment.specification import Experiment
 from actr3d.output import ModelOutput, printing_to
 from actr3d.parameter_schema import parameters_of
@@ -137,9 +137,7 @@ def _plain(name: str, value: Any) -> Any:
     Raises:
         ExperimentError: If it has another type.
     """
-    item: Any = getattr(value, "item", None)
-    if type(value) not in PLAIN and callable(item) and getattr(value, "ndim", None) == 0:  # a number of numpy
-        value = item()
+    value = as_python(value)
     if isinstance(value, int) and not -LARGEST <= value < LARGEST:
         raise ExperimentError(
             f"measure '{name}': must be a whole number of at most 64 bits, or a float (got one of {value.bit_length()} bits)"

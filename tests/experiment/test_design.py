@@ -9,9 +9,10 @@ from pathlib import Path
 from statistics import mean, stdev
 from typing import Any
 
+import numpy as np
 import pytest
 
-from actr3d.errors import ConfigurationError, DesignError, ExperimentError
+from actr3d.errors import ConfigurationError, DesignError, ExperimentError, ModelFileError
 from actr3d.experiment import Design, Group, Normal, Uniform
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from tests.helpers.experiments import write_experiment
@@ -28,6 +29,10 @@ def design_of(**changes: Any) -> Design:
         "trials": 4,
     }
     return Design(**{**given, **changes})
+
+
+def without_value(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {"x": math.nan * values["fixed"]}
 
 
 def test_each_participant_does_each_cell_as_often_as_the_design_says() -> None:
@@ -132,13 +137,17 @@ def test_values_are_derived_from_others() -> None:
         ({"factors": {"size": [1]}}, r"Design\.groups\['young'\]: 'size' is a factor already"),
         ({"factors": {"seed": [1]}}, r"Design: 'seed' is a column of every table of trials; rename the parameter"),
         ({"settings": {"age": 1}}, r"Design\.settings: 'age' is already a factor, or a parameter of a group"),
+        ({"factors": {"a": [1, math.nan]}}, r"Design\.factors\['a'\]: must be finite \(got \[1, nan\]\)"),
+        ({"factors": {"a": [(1, -math.inf)]}}, r"Design\.factors\['a'\]: must be finite \(got \[\(1, -inf\)\]\)"),
+        ({"settings": {"fixed": math.inf}}, r"Design\.settings\['fixed'\]: must be finite \(got inf\)"),
+        ({"factors": {}, "derive": without_value}, r"Design\.derive\['x'\]: must be finite \(got nan\)"),
         ({"groups": {}}, r"Design\.groups: must have at least one group \(got \{\}\)"),
         ({"groups": {"a": 3}}, r"Design\.groups\['a'\]: must be a Group \(got 3\)"),
     ],
 )
 def test_an_invalid_design_is_refused(changes: dict[str, Any], says: str) -> None:
     with pytest.raises(DesignError, match=says):
-        design_of(**changes)
+        design_of(**changes).trial(0)
 
 
 @pytest.mark.parametrize(
@@ -157,6 +166,9 @@ def test_wrong_fields_are_refused(make: Any, says: str) -> None:
 
 
 def test_distributions_without_values_are_refused() -> None:
+    with pytest.raises(DesignError, match=r"Normal: low 1e\+09 and high inf leave out nearly all values \(mean 0\.5, sd 0\.1\)"):
+        Normal(mean=0.5, sd=0.1, low=1e9)
+    assert Normal(mean=0, sd=1, low=4).quantile(0.5) == pytest.approx(4.1611, abs=1e-3)
     with pytest.raises(DesignError, match="no value lies between low 2 and high 1"):
         Normal(mean=1, sd=1, low=2, high=1)
     with pytest.raises(DesignError, match=r"Uniform\.high: must be >= low 2 \(got 1\)"):
@@ -176,6 +188,22 @@ def test_changes_replace_levels_numbers_and_values() -> None:
     assert {trial.values["fixed"] for trial in changed.table()} == {4}
     assert changed.seed == 9
     assert len(changed) == 6 * 3
+
+
+def test_numbers_of_numpy_are_the_same_levels_as_those_of_python() -> None:
+    def more(values: Mapping[str, Any]) -> dict[str, Any]:
+        return {"double": np.float64(2) * values["a"]}
+
+    group = {"of numpy": Group(parameters={"size": np.float32(0.5), "age": np.arange(2)})}
+    given = design_of(
+        factors={"a": np.linspace(0, 1, 3), "b": [np.int64(1), np.bool_(True)]}, groups=group, settings={"c": np.int8(3)}, derive=more
+    )
+    plain = {"of numpy": Group(parameters={"size": 0.5, "age": [0, 1]})}
+    same = design_of(factors={"a": [0.0, 0.5, 1.0], "b": [1, True]}, groups=plain, settings={"c": 3}, derive=more)
+    assert repr(list(given.table())) == repr(list(same.table()))
+    assert type(given.trial(0).values["double"]) is float
+    with pytest.raises(DesignError, match=r"Design\.factors\['a'\]: must be finite \(got \[0\.0, inf\]\)"):
+        design_of(factors={"a": [0.0, np.float32(math.inf)]})
 
 
 # -- designs in files
@@ -207,7 +235,12 @@ def test_an_unknown_parameter_is_refused_with_its_line(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, trials=0)
     with pytest.raises(DesignError, match=r"counting_design\.py:12: Design\.trials: must be >= 1 \(got 0\)"):
         specify(str(path))
+    path = write_experiment(tmp_path, factors='{"n": [1, float("nan")]}')
+    with pytest.raises(DesignError, match=r"counting_design\.py:10: Design\.factors\['n'\]: must be finite \(got \[1, nan\]\)"):
+        specify(str(path))
     path = write_experiment(tmp_path)
+    with pytest.raises(DesignError, match=r"^--set mode: Design\.settings\['mode'\]: must be finite \(got inf\)"):
+        specify(str(path), values={"mode": math.inf})
     with pytest.raises(DesignError, match=r"^--set m: Design: the model has no parameter 'm'"):
         specify(str(path), values={"m": 3})
 
@@ -245,6 +278,10 @@ def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_run
             r"d\.py:5: Design\.measures: 'n' is there twice",
         ),
         (
+            "from actr3d.experiment import *\ntime = 1\n@design\ndef a():\n  return Design(\n    measures='time')\n",
+            r"d\.py:6: Design\.measures: must be a list of names \(got 'time'\)",
+        ),
+        (
             "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(\n    measures=[Measured(name='m', over='end')])\n",
             r"d\.py:6: Design\.measures: 'm' is over 'end', which is another column",
         ),
@@ -254,6 +291,12 @@ def test_files_without_a_valid_design_are_refused(tmp_path: Path, text: str, say
     path = tmp_path / "d.py"
     path.write_text(text)
     with pytest.raises(ExperimentError, match=says):
+        specify(str(path))
+
+
+def test_a_syntax_error_in_the_model_is_named_with_file_and_line(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, model="n = 1\nmode = (\n")
+    with pytest.raises(ModelFileError, match=r"counter\.py:2: '\(' was never closed"):
         specify(str(path))
 
 

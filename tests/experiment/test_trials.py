@@ -208,6 +208,15 @@ def test_numbers_of_numpy_and_without_value_are_plain_measures(tmp_path: Path) -
     assert (row["rt"], row["luck"]) == (0.5, None)
 
 
+def test_numbers_of_numpy_in_a_design_become_numbers_of_python(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, factors='{"n": list(np.arange(2)), "mode": np.array(["count"])}', participants=1, trials=1)
+    path.write_text("import numpy as np\n" + path.read_text())
+    rows = rows_of(path)
+    assert {row["error"] for row in rows} == {None}
+    assert {(type(row["n"]), type(row["mode"])) for row in rows} == {(int, str)}
+    assert sorted(row["rt"] for row in rows) == pytest.approx([0.05, 0.1])
+
+
 def test_helper_modules_of_model_and_design_travel_with_the_specification(tmp_path: Path) -> None:
     (tmp_path / "pace.py").write_text("from rates import speed\n")
     (tmp_path / "levels.py").write_text("many = [1, 2, 3]\n")
