@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2  # pyright: ignore[reportMissingTypeStubs]
 
 from actr3d.configuration import Configuration
-from actr3d.errors import ExperimentError, alternatives
+from actr3d.errors import DesignError, ExperimentError, alternatives
 from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import Design, Measured
 from actr3d.experiment.human_data import OF_MEANS, Schema, library_human_data, read_human_data
@@ -149,7 +149,7 @@ class Fit:
         target: The means to fit, of one measure.
         folder: Where candidates are kept.
         client: The cluster.
-        options: `values`, `participants` and `trials` for `specify`.
+        options: `values`, `participants` and `trials` for `specify`. The values hold for held-out designs too, the numbers do not.
         seed: The seed of the proposals.
         show: Called with the number of a candidate and the progress of its trials.
 
@@ -205,7 +205,11 @@ class Fit:
 
         Raises:
             ExperimentError: If no candidate has all means of the target.
+            DesignError: If a held-out design does not fit the values; before anything runs.
         """
+        lowest = {one.name: one.low for one in self._ranges}
+        for name in hold_out or {}:
+            self._other(name, lowest)
         for number in range(candidates):
             self._evaluate(number)
         best = min(range(candidates), key=lambda number: rmse(self._means[number], self.target))
@@ -258,9 +262,7 @@ class Fit:
         self._points.append(point)
         self._means.append(self._simulate("candidate", self._experiment(point)))
 
-    def _experiment(self, values: Mapping[str, Any], design: str | None = None) -> Experiment:
-        if design is not None:
-            return specify(design, values=values)
+    def _experiment(self, values: Mapping[str, Any]) -> Experiment:
         options = self._options
         return specify(self._design, values={**options["values"], **values}, participants=options["participants"], trials=options["trials"])
 
@@ -296,9 +298,29 @@ class Fit:
 
     # -- other designs, other models, other data
 
+    def _other(self, design: str, values: Mapping[str, Any]) -> Experiment:
+        """Returns a held-out design with the model of the fit; its participants, trials and factors are its own.
+
+        Raises:
+            DesignError: If it has a factor whose levels would be replaced, or does not fit the values.
+        """
+        values = {**self._options["values"], **values}
+        varied = specify(design).design.factors
+        for name in values:
+            if name in varied:
+                option = "--parameter" if name in self._names else "--set"
+                levels = ", ".join(map(str, varied[name]))
+                raise DesignError(
+                    f"--hold-out {design}: varies {name} ({levels}), which {option} {name} would replace; leave out one", name
+                )
+        try:
+            return specify(design, values=values)
+        except DesignError as error:
+            raise DesignError(f"--hold-out {design}: {error}", error.name) from None
+
     def _held_out(self, name: str, target: Sequence[TargetMean], values: Mapping[str, float]) -> Agreement:
         cells = cells_of_target(target)
-        return agreement(self._simulate("hold-out", self._experiment(values, name), target[0].measure, cells), cells)
+        return agreement(self._simulate("hold-out", self._other(name, values), target[0].measure, cells), cells)
 
     def _ablated(self, change: str, values: Mapping[str, float]) -> Agreement:
         name, equals, text = change.partition("=")

@@ -15,6 +15,7 @@ from actr3d.experiment.cluster import local_cluster
 from actr3d.experiment.design import Measured
 from actr3d.experiment.fit import Fit, QuadraticSurface, Range, TargetMean, agreement, cells_of_rows, cells_of_target, load_target
 from actr3d.experiment.specification import specify
+from actr3d.experiment.store import Store
 
 LINE = """
 x = 1
@@ -84,6 +85,29 @@ def test_held_out_designs_are_run_with_the_values_of_each_fit(tmp_path: Path, cl
     better = again.run(8, hold_out=held_out)
     assert better.parameters[0].value != fit.run(2).parameters[0].value
     assert [found.rmse for found in better.held_out.values()] != [one.rmse, other.rmse]
+
+
+def test_held_out_designs_are_run_with_the_model_and_their_own_numbers(tmp_path: Path, client: Any) -> None:
+    steeper = f"{tmp_path / 'line.py'}:steeper"
+    options = {"values": {"noise": 0, "offset": 7}, "participants": 1, "trials": 1}
+    fit = fit_of(tmp_path, client, "slope=0..3", options=options)
+    result = fit.run(1, hold_out={steeper: means((10, 20, 30))})
+    slope = result.parameters[0].value
+    assert [row["model"] for row in result.held_out[steeper].rows] == [pytest.approx(slope * x + 7) for x in (10, 20, 30)]
+    (folder,) = (tmp_path / "fit").glob("hold-out *")
+    with Store(folder) as store:
+        assert store.count == 3 * 4 * 3
+
+
+def test_held_out_designs_that_the_values_do_not_fit_are_refused_before_anything_runs(tmp_path: Path) -> None:
+    fit = fit_of(tmp_path, None, "slope=0..3", options={"values": {"x": [1, 2, 3, 4, 5]}})
+    says = r"--hold-out .*:steeper: varies x \(10, 20, 30\), which --set x would replace; leave out one"
+    with pytest.raises(DesignError, match=says):
+        fit.run(1, hold_out={f"{tmp_path / 'line.py'}:steeper": means((10, 20, 30))})
+    fit = fit_of(tmp_path, None, "slope=0..3", options={"values": {"noise": 0}})
+    (tmp_path / "other.py").write_text(LINE.replace("noise = 0.1", "").replace("noise *", "0.1 *"), encoding="utf-8")
+    with pytest.raises(DesignError, match=r"--hold-out .*other.py:steeper: --set noise: Design: the model has no parameter 'noise'"):
+        fit.run(1, hold_out={f"{tmp_path / 'other.py'}:steeper": means((10, 20, 30))})
 
 
 def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anything_runs(tmp_path: Path, client: Any) -> None:
