@@ -16,6 +16,7 @@ import itertools
 import json
 import math
 import random
+import re
 import warnings
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
@@ -31,7 +32,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2  # pyright: ignore[reportMissingTypeStubs]
 
 from actr3d.configuration import Configuration
-from actr3d.errors import ExperimentError, alternatives
+from actr3d.errors import DesignError, ExperimentError, alternatives
 from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import Design, Measured
 from actr3d.experiment.human_data import OF_MEANS, Schema, library_human_data, read_human_data
@@ -42,6 +43,8 @@ STARTING = 10
 """The number of candidates that are drawn evenly before any are proposed."""
 RISE: float = cast("Any", chi2).ppf(0.95, 1)
 """By how much -2 log likelihood rises at the bounds of an interval of 95 %."""
+DRAWS = 20
+"""The maximum number of values that are drawn for a simulated data set, until the model has all means."""
 GRID = 201
 """The number of values of each parameter at which the surface of one or two parameters is evaluated; fewer for more parameters."""
 
@@ -149,7 +152,7 @@ class Fit:
         target: The means to fit, of one measure.
         folder: Where candidates are kept.
         client: The cluster.
-        options: `values`, `participants` and `trials` for `specify`.
+        options: `values`, `participants` and `trials` for `specify`. The values hold for held-out designs too, the numbers do not.
         seed: The seed of the proposals.
         show: Called with the number of a candidate and the progress of its trials.
 
@@ -182,6 +185,7 @@ class Fit:
             _check_conditions(self.target, experiment.design)
         self._points: list[dict[str, float]] = []
         self._means: list[dict[Cell, float]] = []
+        self._failure = ""
 
     @property
     def _names(self) -> list[str]:
@@ -205,12 +209,16 @@ class Fit:
 
         Raises:
             ExperimentError: If no candidate has all means of the target.
+            DesignError: If a held-out design does not fit the values; before anything runs.
         """
+        lowest = {one.name: one.low for one in self._ranges}
+        for name in hold_out or {}:
+            self._other(name, lowest)
         for number in range(candidates):
             self._evaluate(number)
         best = min(range(candidates), key=lambda number: rmse(self._means[number], self.target))
         if not math.isfinite(rmse(self._means[best], self.target)):
-            raise ExperimentError(f"measure '{self.measure}': no candidate has a mean in all conditions of the target")
+            raise ExperimentError(f"measure '{self.measure}': no candidate has a mean in all conditions of the target{self._failure}")
         values = self._points[best]
         surface = self._surface(self.target)
         intervals = [surface.interval(axis) for axis in range(len(self._ranges))]
@@ -256,18 +264,18 @@ class Fit:
     def _evaluate(self, number: int) -> None:
         point = self._propose(number)
         self._points.append(point)
-        self._means.append(self._simulate("candidate", self._experiment(point)))
+        means, failure = self._simulate("candidate", self._experiment(point))
+        self._means.append(means)
+        self._failure = self._failure or failure
 
-    def _experiment(self, values: Mapping[str, Any], design: str | None = None) -> Experiment:
-        if design is not None:
-            return specify(design, values=values)
+    def _experiment(self, values: Mapping[str, Any]) -> Experiment:
         options = self._options
         return specify(self._design, values={**options["values"], **values}, participants=options["participants"], trials=options["trials"])
 
     def _simulate(
         self, kind: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
-    ) -> dict[Cell, float]:
-        """Runs an experiment, or continues it, and returns its means by cell.
+    ) -> tuple[dict[Cell, float], str]:
+        """Runs an experiment, or continues it; returns its means by cell, none if all trials failed, and the first failure, "" for none.
 
         Its folder is named by all that determines its rows: what has run before is used again, and nothing else.
 
@@ -283,7 +291,27 @@ class Fit:
         with store:
             run_experiment(experiment, store, self._client, show=lambda progress: self._show(kind, progress))
             columns = [name for name, _ in next(iter(self.target if target is None else target))]
-            return cells_of_rows(store.rows(), experiment.design.measure(measure or self.measure), columns)
+            failure = ""
+            if store.failures:
+                row = next(row for row in store.rows() if row["error"] is not None)
+                failure = f"; trial {row['trial']} in '{folder}' failed: {_error_line(row['error'])}"
+            if store.failures == store.count:
+                return {}, failure
+            finished = (row for row in store.rows() if row["error"] is None)
+            return cells_of_rows(finished, experiment.design.measure(measure or self.measure), columns), failure
+
+    def _compared(
+        self, kind: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
+    ) -> Agreement:
+        """Runs an experiment, or continues it, and compares its means with a target; for the arguments, see `_simulate`.
+
+        Raises:
+            ExperimentError: If they have no conditions in common.
+        """
+        means, failure = self._simulate(kind, experiment, measure, target)
+        if not means:
+            raise ExperimentError(f"{kind}: no trial has a value of '{measure or self.measure}'{failure}")
+        return agreement(means, self.target if target is None else target)
 
     def _surface(self, target: Mapping[Cell, float]) -> QuadraticSurface:
         """Returns the surface of the sums of squares of all candidates until now."""
@@ -296,9 +324,29 @@ class Fit:
 
     # -- other designs, other models, other data
 
+    def _other(self, design: str, values: Mapping[str, Any]) -> Experiment:
+        """Returns a held-out design with the model of the fit; its participants, trials and factors are its own.
+
+        Raises:
+            DesignError: If it has a factor whose levels would be replaced, or does not fit the values.
+        """
+        values = {**self._options["values"], **values}
+        varied = specify(design).design.factors
+        for name in values:
+            if name in varied:
+                option = "--parameter" if name in self._names else "--set"
+                levels = ", ".join(map(str, varied[name]))
+                raise DesignError(
+                    f"--hold-out {design}: varies {name} ({levels}), which {option} {name} would replace; leave out one", name
+                )
+        try:
+            return specify(design, values=values)
+        except DesignError as error:
+            raise DesignError(f"--hold-out {design}: {error}", error.name) from None
+
     def _held_out(self, name: str, target: Sequence[TargetMean], values: Mapping[str, float]) -> Agreement:
         cells = cells_of_target(target)
-        return agreement(self._simulate("hold-out", self._experiment(values, name), target[0].measure, cells), cells)
+        return self._compared("hold-out", self._other(name, values), target[0].measure, cells)
 
     def _ablated(self, change: str, values: Mapping[str, float]) -> Agreement:
         name, equals, text = change.partition("=")
@@ -308,16 +356,23 @@ class Fit:
             value: Any = json.loads(text)
         except ValueError:
             value = text
-        return agreement(self._simulate("ablated", self._experiment({**values, name: value})), self.target)
+        return self._compared("ablated", self._experiment({**values, name: value}))
 
     def _recover(self, number: int) -> dict[str, float]:
-        """Simulates data with known parameters, and estimates these from the candidates."""
+        """Simulates data with known parameters, and estimates these from the candidates.
+
+        Raises:
+            ExperimentError: If the model has means in all conditions of the target for none of the values that are drawn.
+        """
         rng = random.Random(f"{self._seed} recover {number}")
-        true = {one.name: round(rng.uniform(one.low, one.high), 6) for one in self._ranges}
-        experiment = self._experiment({**true, "seed": 1_000_000 + number})
-        simulated = self._simulate("simulated", experiment)
-        target = {cell: simulated[cell] for cell in self.target if cell in simulated}
-        return {**{f"true {name}": value for name, value in true.items()}, **self._values_at(self._surface(target).minimum())}
+        failure = ""
+        for _ in range(DRAWS):  # where the model fails, there are no data
+            true = {one.name: round(rng.uniform(one.low, one.high), 6) for one in self._ranges}
+            simulated, failure = self._simulate("simulated", self._experiment({**true, "seed": 1_000_000 + number}))
+            if math.isfinite(rmse(simulated, self.target)):
+                target = {cell: simulated[cell] for cell in self.target}
+                return {**{f"true {name}": value for name, value in true.items()}, **self._values_at(self._surface(target).minimum())}
+        raise ExperimentError(f"--recover: no mean in all conditions of the target for {DRAWS} drawn values{failure}")
 
 
 class QuadraticSurface:
@@ -449,22 +504,23 @@ def cells_of_target(target: Sequence[TargetMean]) -> dict[Cell, float]:
 
 
 def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[Cell, float]:
-    """Returns the means of a measure by cell, with participants as the unit: means of the participants' means.
+    """Returns the means of a measure by cell, with participants as the unit: means of the participants' means; none without values.
 
     Raises:
-        ExperimentError: If no row has the measure or a column.
+        ExperimentError: If no row has a column for the measure, or one of the columns.
     """
     found: defaultdict[Cell, defaultdict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
     known: dict[str, Any] = {}
     for row in rows:
         known = row
         for number, value in measure.values(row):
-            known = {**row, **number, measure.name: value}
+            known = {**row, **number} if measure.over is None else {**row, **number, measure.name: value}
             if isinstance(value, (int, float)) and all(column in known for column in columns):
                 found[tuple(sorted((column, known[column]) for column in columns))][row["participant"]].append(float(value))
     if not found:
-        wrong = next((name for name in (measure.name, *columns) if name not in known), measure.name)
-        raise ExperimentError(f"no trial has a value of '{wrong}'{alternatives(wrong, known, 'the columns are:')}")
+        wrong = next((name for name in (measure.name, *columns) if name not in known), None)
+        if wrong is not None:
+            raise ExperimentError(f"no trial has a value of '{wrong}'{alternatives(wrong, known, 'the columns are:')}")
     return {cell: fmean(fmean(values) for values in people.values()) for cell, people in found.items()}
 
 
@@ -497,6 +553,12 @@ def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agre
 def to_json(result: FitResult) -> str:
     """Returns the result as JSON."""
     return json.dumps(asdict(result), indent=1, ensure_ascii=False)
+
+
+def _error_line(text: str) -> str:
+    """Returns the line of a traceback that names the error; notes may follow it."""
+    lines = text.strip().splitlines()
+    return next((line for line in reversed(lines) if re.match(r"[\w.]+: ", line)), lines[-1])
 
 
 def _fitted(one: Range, value: float, low: float | None, high: float | None) -> Fitted:

@@ -13,8 +13,9 @@ import pytest
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError
 from actr3d.experiment.cluster import local_cluster
 from actr3d.experiment.design import Measured
-from actr3d.experiment.fit import Fit, QuadraticSurface, Range, TargetMean, agreement, cells_of_rows, cells_of_target, load_target
+from actr3d.experiment.fit import STARTING, Fit, QuadraticSurface, Range, TargetMean, agreement, cells_of_rows, cells_of_target, load_target
 from actr3d.experiment.specification import specify
+from actr3d.experiment.store import Store
 
 LINE = """
 x = 1
@@ -66,8 +67,8 @@ def means(levels: tuple[int, ...]) -> tuple[TargetMean, ...]:
     return tuple(TargetMean(conditions={"x": x}, measure="y", mean=TRUE["slope"] * x + TRUE["offset"]) for x in levels)
 
 
-def fit_of(tmp_path: Path, client: Any, *ranges: str, **options: Any) -> Fit:
-    (tmp_path / "line.py").write_text(LINE, encoding="utf-8")
+def fit_of(tmp_path: Path, client: Any, *ranges: str, line: str = LINE, **options: Any) -> Fit:
+    (tmp_path / "line.py").write_text(line, encoding="utf-8")
     parsed = [Range.from_text(text) for text in ranges or ("slope=0..3", "offset=0..2")]
     return Fit(f"{tmp_path / 'line.py'}:line", parsed, means((1, 2, 3, 4, 5)), tmp_path / "fit", client, **options)
 
@@ -84,6 +85,29 @@ def test_held_out_designs_are_run_with_the_values_of_each_fit(tmp_path: Path, cl
     better = again.run(8, hold_out=held_out)
     assert better.parameters[0].value != fit.run(2).parameters[0].value
     assert [found.rmse for found in better.held_out.values()] != [one.rmse, other.rmse]
+
+
+def test_held_out_designs_are_run_with_the_model_and_their_own_numbers(tmp_path: Path, client: Any) -> None:
+    steeper = f"{tmp_path / 'line.py'}:steeper"
+    options = {"values": {"noise": 0, "offset": 7}, "participants": 1, "trials": 1}
+    fit = fit_of(tmp_path, client, "slope=0..3", options=options)
+    result = fit.run(1, hold_out={steeper: means((10, 20, 30))})
+    slope = result.parameters[0].value
+    assert [row["model"] for row in result.held_out[steeper].rows] == [pytest.approx(slope * x + 7) for x in (10, 20, 30)]
+    (folder,) = (tmp_path / "fit").glob("hold-out *")
+    with Store(folder) as store:
+        assert store.count == 3 * 4 * 3
+
+
+def test_held_out_designs_that_the_values_do_not_fit_are_refused_before_anything_runs(tmp_path: Path) -> None:
+    fit = fit_of(tmp_path, None, "slope=0..3", options={"values": {"x": [1, 2, 3, 4, 5]}})
+    says = r"--hold-out .*:steeper: varies x \(10, 20, 30\), which --set x would replace; leave out one"
+    with pytest.raises(DesignError, match=says):
+        fit.run(1, hold_out={f"{tmp_path / 'line.py'}:steeper": means((10, 20, 30))})
+    fit = fit_of(tmp_path, None, "slope=0..3", options={"values": {"noise": 0}})
+    (tmp_path / "other.py").write_text(LINE.replace("noise = 0.1", "").replace("noise *", "0.1 *"), encoding="utf-8")
+    with pytest.raises(DesignError, match=r"--hold-out .*other.py:steeper: --set noise: Design: the model has no parameter 'noise'"):
+        fit.run(1, hold_out={f"{tmp_path / 'other.py'}:steeper": means((10, 20, 30))})
 
 
 def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anything_runs(tmp_path: Path, client: Any) -> None:
@@ -124,6 +148,28 @@ def test_a_fit_that_was_stopped_continues_to_the_same_result(tmp_path: Path, cli
     folders = [path.name for path in (tmp_path / "a" / "fit").iterdir()]
     assert len(folders) == 8
     assert all(name.startswith("candidate ") for name in folders)
+
+
+FAILING = LINE.replace("slope = 2.0", "slope = 1.0").replace(
+    "        self.value = ", "        if FAILS:\n            raise ValueError(f'no line: {slope}')\n        self.value = "
+)
+
+
+def test_candidates_at_which_the_model_fails_are_bad_ones(tmp_path: Path, client: Any) -> None:
+    fit = fit_of(tmp_path, client, "slope=0..3", line=FAILING.replace("FAILS", "slope > 1.8"))
+    result = fit.run(STARTING + 2, recover=2)
+    assert result.candidates == STARTING + 2
+    assert result.parameters[0].value == pytest.approx(1.4, abs=0.3)
+    assert result.fit.cells == 5
+    assert all(one["true slope"] <= 1.8 for one in result.recovered)
+
+
+def test_a_fit_at_whose_candidates_the_model_always_fails_shows_its_error(tmp_path: Path, client: Any) -> None:
+    fit = fit_of(tmp_path, client, "slope=0..3", line=FAILING.replace("FAILS", "slope != 1.0"))
+    with pytest.raises(
+        ExperimentError, match=r"no candidate has a mean .*; trial 0 in '.*candidate \w+' failed: ValueError: no line: [\d.]+$"
+    ):
+        fit.run(STARTING + 2)
 
 
 @pytest.mark.parametrize(
@@ -182,6 +228,7 @@ def test_means_of_lists_are_compared_by_number() -> None:
     assert cells_of_rows(rows, measure, ["block"]) == {(("block", 1),): 0.0, (("block", 2),): 0.75}
     with pytest.raises(ExperimentError, match="no trial has a value of 'word'"):
         cells_of_rows(rows, measure, ["word"])
+    assert cells_of_rows([{"participant": "a", "y": None}], Measured(name="y"), []) == {}
 
 
 def test_targets_are_means_of_human_data(tmp_path: Path) -> None:
