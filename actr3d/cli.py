@@ -284,7 +284,11 @@ def _add_fit(commands: Any) -> None:
     fit.add_argument("--measure", metavar="NAME", help="the measure to fit, if the data have several")
     fit.add_argument("--candidates", type=_count, default=40, metavar="N", help="number of candidates (default 40)")
     fit.add_argument(
-        "--hold-out", action="append", default=[], metavar="DESIGN", help="compare another design with its data, not fitted to"
+        "--hold-out",
+        action="append",
+        default=[],
+        metavar="DESIGN",
+        help="compare another design with its data, not fitted to; --set holds for it, --participants and --trials do not",
     )
     fit.add_argument("--ablate", action="append", default=[], metavar="NAME=VALUE", help="show the fit with this part changed")
     fit.add_argument("--recover", type=_count, default=0, metavar="N", help="estimate the known parameters of N simulated data sets")

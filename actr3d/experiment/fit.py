@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2  # pyright: ignore[reportMissingTypeStubs]
 
 from actr3d.configuration import Configuration
-from actr3d.errors import DesignError, ExperimentError, alternatives
+from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives
 from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import Design, Measured
 from actr3d.experiment.human_data import OF_MEANS, Schema, library_human_data, read_human_data
@@ -75,18 +75,18 @@ class Range(Configuration):
 
         Raises:
             ConfigurationError: If a bound is not a number.
-            ExperimentError: If the range is empty.
+            SettingError: If the range is empty.
         """
         super().__post_init__()
         if self.low >= self.high:
-            raise ExperimentError(f"--parameter {self.name}: must be a range LOW..HIGH with LOW < HIGH (got {self.low:g}..{self.high:g})")
+            raise SettingError(f"--parameter {self.name}: must be a range LOW..HIGH with LOW < HIGH (got {self.low:g}..{self.high:g})")
 
     @classmethod
     def from_text(cls, text: str) -> Range:
         """Returns the range that `NAME=LOW..HIGH` describes.
 
         Raises:
-            ExperimentError: If the text has another form.
+            SettingError: If the text has another form, or the range is empty or infinite.
         """
         name, equals, bounds = text.partition("=")
         low, dots, high = bounds.partition("..")
@@ -95,7 +95,9 @@ class Range(Configuration):
                 raise ValueError
             return cls(name=name.strip(), low=float(low), high=float(high))
         except ValueError:
-            raise ExperimentError(f"--parameter: must be NAME=LOW..HIGH (got {text!r})") from None
+            raise SettingError(f"--parameter: must be NAME=LOW..HIGH (got {text!r})") from None
+        except ConfigurationError as error:
+            raise error if isinstance(error, SettingError) else SettingError(f"--parameter {name.strip()}: {error}") from None
 
 
 @dataclass(frozen=True, kw_only=True)
