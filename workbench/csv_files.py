@@ -55,13 +55,15 @@ def write_states_csv(path: Path, to: Path) -> None:
 
 
 def _state_rows(recorded: Recorded, names: list[str] | None, period: int | None) -> Iterator[tuple[Any, ...]]:
+    time_columns = ("run", "tick") if period is None else ("time [s]",)
     for run, tick, state, _, contacts in recorded.states():
         numbers = array("d", state)
         if tick == 0:
             known = names if names is not None and len(names) == len(numbers) else [f"state_{number}" for number in range(len(numbers))]
-            yield (*(("run", "tick") if period is None else ("time [s]",)), *known, "contacts")
+            yield *time_columns, *known, "contacts"
         listed = to_json([(*contact, force) for contact, force in contacts.items()]) if contacts else ""
-        yield (*((run, tick) if period is None else (seconds(tick * period),)), *numbers, listed)
+        times = (run, tick) if period is None else (seconds(tick * period),)
+        yield *times, *numbers, listed
 
 
 def _write(to: Path, head: tuple[str, ...] | None, rows: Iterable[tuple[Any, ...]]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 import sys
 import threading
@@ -22,7 +21,7 @@ from rich.text import Text
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
-from actr3d.experiment.store import SPECIFICATION, Store
+from actr3d.experiment.store import SPECIFICATION, Store, summary
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import PLAIN, record_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
@@ -356,12 +355,6 @@ def _show_failures(store: Store, out: Output) -> None:
     out.line((f"{store.failures:,} trials failed", "bold red"), " (columns `end` and `error` of the table):")
     for text, count in kinds.most_common(SHOWN):
         out.line(f"  {count:,}  {text}")
-
-
-def summary(error: str) -> str:
-    """Returns the line of a traceback that names the error; notes may follow it."""
-    lines = error.strip().splitlines()
-    return next((line for line in reversed(lines) if re.match(r"[\w.]+: ", line)), lines[-1])
 
 
 @contextmanager

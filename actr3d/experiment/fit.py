@@ -16,7 +16,6 @@ import itertools
 import json
 import math
 import random
-import re
 import warnings
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
@@ -37,7 +36,7 @@ from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import Design, Measured
 from actr3d.experiment.human_data import OF_MEANS, Schema, library_human_data, read_human_data
 from actr3d.experiment.specification import Experiment, specify
-from actr3d.experiment.store import SPECIFICATION, Store
+from actr3d.experiment.store import SPECIFICATION, Store, summary
 
 STARTING = 10
 """The number of candidates that are drawn evenly before any are proposed."""
@@ -296,7 +295,7 @@ class Fit:
             failure = ""
             if store.failures:
                 row = next(row for row in store.rows() if row["error"] is not None)
-                failure = f"; trial {row['trial']} in '{folder}' failed: {_error_line(row['error'])}"
+                failure = f"; trial {row['trial']} in '{folder}' failed: {summary(row['error'])}"
             if store.failures == store.count:
                 return {}, failure
             finished = (row for row in store.rows() if row["error"] is None)
@@ -555,12 +554,6 @@ def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agre
 def to_json(result: FitResult) -> str:
     """Returns the result as JSON."""
     return json.dumps(asdict(result), indent=1, ensure_ascii=False)
-
-
-def _error_line(text: str) -> str:
-    """Returns the line of a traceback that names the error; notes may follow it."""
-    lines = text.strip().splitlines()
-    return next((line for line in reversed(lines) if re.match(r"[\w.]+: ", line)), lines[-1])
 
 
 def _fitted(one: Range, value: float, low: float | None, high: float | None) -> Fitted:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import json
 import os
+import re
 import secrets
 import sqlite3
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
@@ -307,3 +308,9 @@ def _joined(one: str, other: str) -> str:
 
 def _why(error: Exception) -> str:
     return error.strerror or str(error) if isinstance(error, OSError) else str(error)
+
+
+def summary(error: str) -> str:
+    """Returns the line of a trial's traceback that names the error; notes may follow it."""
+    lines = error.strip().splitlines()
+    return next((line for line in reversed(lines) if re.match(r"[\w.]+: ", line)), lines[-1])

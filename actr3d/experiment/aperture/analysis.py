@@ -470,11 +470,11 @@ def _margins(findings: Findings, frame: Any) -> Parts:
         for condition in findings.conditions:
             of = frame[(frame["group"] == group) & (frame["condition"] == condition)]
             curves: list[Curve] = []
-            for side in SIDES:
+            for side, label in SIDES.items():
                 means = cell_means(of, side, ["level"])
-                x, low, high = (means["level"] * scale).tolist(), means["low"].tolist(), means["high"].tolist()
-                own: Any = {"label": SIDES[side], "source": "this model", "look": "model"}
-                curves.append(Curve(x=x, y=means["mean"].tolist(), low=low, high=high, **own))
+                x, y = (means["level"] * scale).tolist(), means["mean"].tolist()
+                low, high = means["low"].tolist(), means["high"].tolist()
+                curves.append(Curve(label=label, source="this model", look="model", x=x, y=y, low=low, high=high))
             band = (100 * MARGIN[0], 100 * MARGIN[1], "people keep 6 to 8 cm")
             panes.append(Pane(title=", ".join(filter(None, (group, condition))), curves=curves, level=band))
     figure = curves_figure(panes, x_label, "smallest distance to the wall [cm]", from_zero=True)
