@@ -17,7 +17,7 @@ B = TypeVar("B", bound=Callable[..., int])
 
 
 BENCHMARKS: Registry[Callable[..., int]] = Registry("benchmark")
-"""By name, the functions that measure, print and return the exit code. They take `json_output`; some also take `trials`."""
+"""By name, the functions that measure, print and return the exit code. They take `json_output`."""
 
 
 def benchmark(name: str) -> Callable[[B], B]:

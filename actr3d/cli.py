@@ -236,7 +236,6 @@ def _add_replay(commands: Any) -> None:
 def _add_bench(commands: Any) -> None:
     bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
     bench.add_argument("name", metavar="NAME", nargs="?", help="what to measure (unless given, list all benchmarks)")
-    bench.add_argument("--trials", type=_count, metavar="N", help="number of trials per cell, for benchmarks that run trials")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
 
@@ -330,12 +329,7 @@ def _bench(options: argparse.Namespace) -> int:
     if options.name not in known:
         print(f"actr3d bench: no benchmark '{options.name}'{alternatives(options.name, sorted(known))}", file=sys.stderr)
         return 2
-    settings = {} if options.trials is None else {"trials": options.trials}
-    function = known[options.name]
-    if unknown := settings.keys() - inspect.signature(function).parameters:
-        print(f"actr3d bench {options.name}: it has no {', '.join(unknown)}", file=sys.stderr)
-        return 2
-    return function(json_output=options.json, **settings)
+    return known[options.name](json_output=options.json)
 
 
 def _with_packages(work: Callable[[argparse.Namespace], int]) -> Callable[[argparse.Namespace], int]:

@@ -63,7 +63,20 @@ def counting():
 
 def _aperture(folder: Path) -> list[Figure]:
     """Returns the cost of trials of the aperture model as multiples of their physics, and of all trials of the paper's design."""
-    specification = specify(DESIGN).specification
+    plain, recorded, minutes = _costs("descriptive", folder)
+    predictive, *_ = _costs("predictive", folder)
+    return [
+        Figure(name="a trial", value=plain, sense="at most", bar=3, what="processor time of a trial / bare mj_step of its ticks"),
+        Figure(name="a recorded trial", value=recorded, sense="at most", bar=3, what="the same with a recording"),
+        Figure(name="a predictive trial", value=predictive, sense="at most", bar=4, what="the same of the predictive variant"),
+        Figure(name="the paper's design", value=minutes, sense="at most", bar=20, what="minutes for 9,600 trials on all processors"),
+    ]
+
+
+def _costs(variant: str, folder: Path) -> tuple[float, float, float]:
+    """Returns the cost of a trial of a variant of the walker, and of a recorded one, as multiples of their physics; and the time that all
+    trials of the paper's design take on all processors [min]."""
+    specification = specify(DESIGN, values={"variant": variant}).specification
     with specification.sealed() as helpers:
         experiment = Experiment(specification, helpers)
         step = len(experiment.design) // SAMPLE
@@ -79,16 +92,12 @@ def _aperture(folder: Path) -> list[Figure]:
         def recorded() -> None:
             with printing_to(ModelOutput(lambda _: None)):
                 for trial in trials:
-                    record_trial(experiment, trial, folder / f"{next(count)}.rec", helpers)
+                    record_trial(experiment, trial, folder / f"{variant} {next(count)}.rec", helpers)
 
         physics = _physics(experiment, sum(steps))
         costs = [ratio(lambda work=work: processor_time_of(work), lambda: processor_time_of(physics), 3) for work in (plain, recorded)]
-        hours = processor_time_of(plain) / SAMPLE * len(experiment.design) / (os.cpu_count() or 1)
-    return [
-        Figure(name="a trial", value=costs[0], sense="at most", bar=3, what="processor time of a trial / bare mj_step of its ticks"),
-        Figure(name="a recorded trial", value=costs[1], sense="at most", bar=3, what="the same with a recording"),
-        Figure(name="the paper's design", value=hours / 60, sense="at most", bar=20, what="minutes for 9,600 trials on all processors"),
-    ]
+        seconds = processor_time_of(plain) / SAMPLE * len(experiment.design) / (os.cpu_count() or 1)
+    return costs[0], costs[1], seconds / 60
 
 
 def _timestep(experiment: Experiment) -> float:

@@ -198,7 +198,7 @@ def fit(
         data = of or experiment.design.human
         if data is None:
             raise ExperimentError(f"design '{design}': names no human data; give --target FILE")
-        return load_target(data, experiment.design, measure)
+        return load_target(data, experiment, measure)
 
     path = Path(folder or f"fit {Path(name).stem}")
     wanted = means(name, target)

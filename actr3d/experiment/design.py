@@ -25,6 +25,8 @@ FAR = 1e-9
 """Probability in the tails of an unbounded distribution within which the bounds of a parameter are checked."""
 MAX_TRIALS = 10_000_000
 """Maximum number of trials of an experiment."""
+LONGEST_NAME = 100
+"""Maximum number of characters of the name of a measure."""
 OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
 """The columns of every table of trials, whatever the design."""
 
@@ -137,6 +139,18 @@ class Measured(Configuration):
     over: str | None = None
     """What is numbered if a trial has a list of values, such as `block`; None if it has one value. The table of trials has a column for
     each number, `latency_1`, `latency_2`, ...; fits and reports take the number as another factor."""
+
+    def __post_init__(self) -> None:
+        """Checks the name, which is also that of files of a report.
+
+        Raises:
+            ConfigurationError: If a field has the wrong type.
+            DesignError: If the name cannot be that of a column and of a file.
+        """
+        super().__post_init__()
+        if not 0 < len(self.name) <= LONGEST_NAME or "/" in self.name or not self.name.isprintable():
+            right = f"1 to {LONGEST_NAME} printable characters without '/'"
+            raise DesignError(f"measure: its name must be {right} (got {self.name[:LONGEST_NAME]!r})", "measures")
 
     def columns(self, value: Any) -> dict[str, Any]:
         """Returns the columns that a value fills.

@@ -22,13 +22,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from hashlib import sha256
 from pathlib import Path
-from statistics import fmean
-from typing import Any, cast
+from statistics import NormalDist, fmean
+from typing import Any
 
 import numpy as np
 import optuna
 from numpy.typing import NDArray
-from scipy.stats import chi2  # pyright: ignore[reportMissingTypeStubs]
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives
@@ -40,8 +39,8 @@ from actr3d.experiment.store import SPECIFICATION, Store, summary
 
 STARTING = 10
 """The number of candidates that are drawn evenly before any are proposed."""
-RISE: float = cast("Any", chi2).ppf(0.95, 1)
-"""By how much -2 log likelihood rises at the bounds of an interval of 95 %."""
+RISE = NormalDist().inv_cdf(0.975) ** 2
+"""By how much -2 log likelihood rises at the bounds of an interval of 95 %: chi-squared with one degree of freedom."""
 DRAWS = 20
 """The maximum number of values that are drawn for a simulated data set, until the model has all means."""
 GRID = 201
@@ -210,11 +209,13 @@ class Fit:
 
         Raises:
             ExperimentError: If no candidate has all means of the target.
-            DesignError: If a held-out design does not fit the values; before anything runs.
+            DesignError: If a held-out design or an ablated model does not fit the values; before anything runs.
         """
         lowest = {one.name: one.low for one in self._ranges}
         for name in hold_out or {}:
             self._other(name, lowest)
+        for change in ablate:
+            self._without(change, lowest)
         for number in range(candidates):
             self._evaluate(number)
         best = min(range(candidates), key=lambda number: rmse(self._means[number], self.target))
@@ -317,7 +318,8 @@ class Fit:
     def _surface(self, target: Mapping[Cell, float]) -> QuadraticSurface:
         """Returns the surface of the sums of squares of all candidates until now."""
         points = [[(point[one.name] - one.low) / (one.high - one.low) for one in self._ranges] for point in self._points]
-        return QuadraticSurface(np.array(points), [len(target) * rmse(means, target) ** 2 for means in self._means], len(target))
+        squares = [len(target) * (loss := rmse(means, target)) * loss for means in self._means]  # infinite, where ** would be an error
+        return QuadraticSurface(np.array(points), squares, len(target))
 
     def _values_at(self, point: NDArray[np.float64]) -> dict[str, float]:
         parts = zip(self._ranges, point.tolist(), strict=True)
@@ -349,7 +351,13 @@ class Fit:
         cells = cells_of_target(target)
         return self._compared("hold-out", self._other(name, values), target[0].measure, cells)
 
-    def _ablated(self, change: str, values: Mapping[str, float]) -> Agreement:
+    def _without(self, change: str, values: Mapping[str, float]) -> Experiment:
+        """Returns the experiment of the fit with an ablated model.
+
+        Raises:
+            ExperimentError: If the change has another form than NAME=VALUE.
+            DesignError: If it does not fit the model.
+        """
         name, equals, text = change.partition("=")
         if not equals:
             raise ExperimentError(f"--ablate: must be NAME=VALUE (got {change!r})")
@@ -357,7 +365,13 @@ class Fit:
             value: Any = json.loads(text)
         except ValueError:
             value = text
-        return self._compared("ablated", self._experiment({**values, name: value}))
+        try:
+            return self._experiment({**values, name: value})
+        except DesignError as error:
+            raise DesignError(f"--ablate {change}: {error}", error.name) from None
+
+    def _ablated(self, change: str, values: Mapping[str, float]) -> Agreement:
+        return self._compared("ablated", self._without(change, values))
 
     def _recover(self, number: int) -> dict[str, float]:
         """Simulates data with known parameters, and estimates these from the candidates.
@@ -413,7 +427,12 @@ class QuadraticSurface:
         return grid[int(np.argmin(self._terms(grid) @ self._weights))]
 
     def interval(self, axis: int) -> tuple[float | None, float | None]:
-        """Returns the bounds of a parameter between which the profile likelihood is near its maximum; None where the range ends first."""
+        """Returns the bounds of a parameter between which the profile likelihood is near its maximum; None where the range ends first.
+
+        With no more data than parameters, nothing is left to tell how much the data vary: both are None.
+        """
+        if self._data <= self._axes:
+            return None, None
         grid = self._grid()
         losses = self._data * np.log(np.maximum(self._terms(grid) @ self._weights, self._least) / self._least)
         values = np.unique(grid[:, axis])
@@ -426,18 +445,18 @@ class QuadraticSurface:
 # -- means
 
 
-def load_target(name: str, design: Design, measure: str | None = None) -> tuple[TargetMean, ...]:
+def load_target(name: str, experiment: Experiment, measure: str | None = None) -> tuple[TargetMean, ...]:
     """Loads the means of human data; those of trials are means of the participants' means.
 
     Args:
         name: The name of data of the library, or a file.
-        design: The design whose groups and factors the data have.
+        experiment: The experiment whose groups and factors the data have.
         measure: The measure to load; None for all.
 
     Raises:
-        ExperimentError: If there are no such data, or they are not valid for the design.
+        ExperimentError: If there are no such data, or they are not valid for the experiment.
     """
-    known = library_human_data()
+    design, known = experiment.design, library_human_data()
     path = known.get(name, Path(name))
     if not path.is_file():
         raise ExperimentError(f"human data '{name}': no such file{alternatives(name, known, 'the library has:')}")
@@ -453,7 +472,9 @@ def load_target(name: str, design: Design, measure: str | None = None) -> tuple[
         measures = [row[place].strip() for row in lines[1:] if len(row) > place]
     else:
         measures = [column for column in head if column not in {"participant", "group", *OF_MEANS, *levels}]
-    data = read_human_data(path, Schema(groups=list(design.groups), factors=levels, measures=list(dict.fromkeys(measures))))
+    parameters = {one.name: one for one in experiment.parameters if one.name in design.factors}
+    schema = Schema(groups=list(design.groups), factors=levels, measures=list(dict.fromkeys(measures)), parameters=parameters)
+    data = read_human_data(path, schema)
     people: defaultdict[tuple[str, Cell], defaultdict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
     for number, row in enumerate(data.rows):
         cell = tuple((column, row[column]) for column in ("group", *levels) if row.get(column) is not None)
@@ -529,7 +550,7 @@ def rmse(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> float:
     """Returns the root mean square difference; infinite if a mean is missing."""
     if not target or any(cell not in means for cell in target):
         return math.inf
-    return math.sqrt(fmean((means[cell] - mean) ** 2 for cell, mean in target.items()))
+    return math.dist([means[cell] for cell in target], list(target.values())) / math.sqrt(len(target))
 
 
 def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agreement:

@@ -30,11 +30,12 @@ import csv
 import io
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from actr3d.errors import ExperimentError, alternatives, did_you_mean
+from actr3d.errors import ConfigurationError, ExperimentError, alternatives, did_you_mean
+from actr3d.parameter_schema import Parameter
 
 FOLDER = Path(__file__).parent / "human"
 """The folder of the library's published means."""
@@ -73,6 +74,8 @@ class Schema:
     factors: Mapping[str, Sequence[float] | Sequence[str]]
     """The factors of the design, and their levels: all numbers, or all texts."""
     measures: Sequence[str]
+    parameters: Mapping[str, Parameter] = field(default_factory=dict[str, Parameter])
+    """The parameters of the model that the factors are; levels of people must be within their bounds."""
 
 
 def library_human_data() -> dict[str, Path]:
@@ -207,7 +210,17 @@ class _Reader:
     def _level(self, line: int, column: str, text: str, levels: Sequence[float] | Sequence[str]) -> float | str | None:
         """Returns a level of a factor; a number need not be one of the levels of the design, because people can be drawn between them."""
         texts = [level for level in levels if isinstance(level, str)]
-        return self._one_of(line, column, text, texts) if texts else self._number(line, column, text)
+        if texts:
+            return self._one_of(line, column, text, texts)
+        value, parameter = self._number(line, column, text), self._schema.parameters.get(column)
+        if value is not None and parameter is not None:
+            try:
+                parameter.check(int(value) if value.is_integer() else value)
+            except ConfigurationError as error:
+                unit = f" [{parameter.unit}]" if parameter.unit else ""
+                self._errors.append(f"{self._path}:{line}: column '{column}': the model's parameter {error}{unit}")
+                return None
+        return value
 
     def _number(
         self, line: int, column: str, text: str, *, needed: bool = False, least: float = -math.inf, whole: bool = False

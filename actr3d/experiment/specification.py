@@ -31,6 +31,7 @@ from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, alternatives, did_you_mean
 from actr3d.experiment import designs
 from actr3d.experiment.design import Design, Measured, is_design
+from actr3d.experiment.human_data import library_human_data
 from actr3d.output import ModelOutput, printing_to
 from actr3d.parameter_schema import Parameter
 from actr3d.recording.schema import versions
@@ -223,7 +224,13 @@ def specify(
         values=values or {},
         versions=versions(),
     )
-    return Experiment(specification)
+    experiment, people = Experiment(specification), library_human_data()
+    human = experiment.design.human
+    if human is not None and human not in people:
+        with naming_the_line(source, chosen, {}):
+            hint = alternatives(human, people, "the library has:")
+            raise DesignError(f"Design.human: the library has no human data '{human}'; give a file with --human{hint}", "human")
+    return experiment
 
 
 def _file_of(name: str) -> tuple[Path, str]:

@@ -142,6 +142,10 @@ def test_values_are_derived_from_others() -> None:
         ({"settings": {"fixed": math.inf}}, r"Design\.settings\['fixed'\]: must be finite \(got inf\)"),
         ({"factors": {}, "derive": without_value}, r"Design\.derive\['x'\]: must be finite \(got nan\)"),
         ({"groups": {}}, r"Design\.groups: must have at least one group \(got \{\}\)"),
+        ({"measures": ["m/s"]}, r"measure: its name must be 1 to 100 printable characters without '/' \(got 'm/s'\)"),
+        ({"measures": [""]}, r"measure: its name must be"),
+        ({"measures": ["a\0"]}, r"measure: its name must be"),
+        ({"measures": ["a" * 101]}, r"measure: its name must be"),
         ({"groups": {"a": 3}}, r"Design\.groups\['a'\]: must be a Group \(got 3\)"),
     ],
 )
@@ -284,6 +288,10 @@ def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_run
         (
             "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(\n    measures=[Measured(name='m', over='end')])\n",
             r"d\.py:6: Design\.measures: 'm' is over 'end', which is another column",
+        ),
+        (
+            "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(measures=['n'],\n    human='fan_efect')\n",
+            r"d\.py:6: Design\.human: the library has no human data 'fan_efect'; give a file with --human; did you mean 'fan_effect'\?",
         ),
     ],
 )

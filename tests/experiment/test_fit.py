@@ -10,10 +10,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from actr3d.errors import DesignError, ExperimentError, SettingError
+from actr3d.errors import Actr3dError, DesignError, ExperimentError, SettingError
 from actr3d.experiment.cluster import local_cluster
 from actr3d.experiment.design import Measured
-from actr3d.experiment.fit import STARTING, Fit, QuadraticSurface, Range, TargetMean, agreement, cells_of_rows, cells_of_target, load_target
+from actr3d.experiment.fit import (
+    STARTING,
+    Fit,
+    QuadraticSurface,
+    Range,
+    TargetMean,
+    agreement,
+    cells_of_rows,
+    cells_of_target,
+    load_target,
+    rmse,
+)
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 
@@ -108,6 +119,14 @@ def test_held_out_designs_that_the_values_do_not_fit_are_refused_before_anything
     (tmp_path / "other.py").write_text(LINE.replace("noise = 0.1", "").replace("noise *", "0.1 *"), encoding="utf-8")
     with pytest.raises(DesignError, match=r"--hold-out .*other.py:steeper: --set noise: Design: the model has no parameter 'noise'"):
         fit.run(1, hold_out={f"{tmp_path / 'other.py'}:steeper": means((10, 20, 30))})
+
+
+@pytest.mark.parametrize(
+    ("change", "says"), [("slope", r"--ablate: must be NAME=VALUE"), ("slop=0", r"--ablate slop=0: --set slop: Design: the model has no")]
+)
+def test_ablated_models_that_cannot_be_are_refused_before_anything_runs(tmp_path: Path, change: str, says: str) -> None:
+    with pytest.raises(Actr3dError, match=says):
+        fit_of(tmp_path, None).run(1, ablate=[change])
 
 
 def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anything_runs(tmp_path: Path, client: Any) -> None:
@@ -220,6 +239,18 @@ def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:
     assert surface.minimum()[0] == pytest.approx(0.4, abs=0.02)
 
 
+def test_as_many_parameters_as_data_have_no_interval() -> None:
+    points = np.random.default_rng(1).uniform(size=(60, 1))
+    squares = [(x - 0.4) ** 2 for (x,) in points]
+    assert QuadraticSurface(points, squares, 1).interval(0) == (None, None)
+    assert None not in QuadraticSurface(points, squares, 2).interval(0)
+
+
+def test_differences_too_large_for_a_float_are_infinite() -> None:
+    assert rmse({(): 1e308, (("x", 1),): 1e308}, {(): -1e308, (("x", 1),): -1e308}) == math.inf
+    assert rmse({(): 3e200}, {(): 0.0}) == 3e200
+
+
 def test_means_of_lists_are_compared_by_number() -> None:
     measure = Measured(name="share", over="block")
     rows = [{"participant": who, "share_1": 0.0, "share_2": high, "share_3": None} for who, high in (("a", 0.5), ("b", 1.0))]
@@ -230,7 +261,7 @@ def test_means_of_lists_are_compared_by_number() -> None:
 
 
 def test_targets_are_means_of_human_data(tmp_path: Path) -> None:
-    design = specify("fan_effect").design
+    design = specify("fan_effect")
     means_of_people = load_target("fan_effect", design, "reaction_time")
     assert len(means_of_people) == 18
     assert means_of_people[0].conditions == {"group": "all", "probe": "target", "location_fan": 1, "person_fan": 1}
@@ -238,7 +269,7 @@ def test_targets_are_means_of_human_data(tmp_path: Path) -> None:
     path.write_text("participant,probe,reaction_time\np,target,1\np,target,2\nq,target,3\n")
     (one,) = load_target(str(path), design)
     assert (one.conditions, one.measure, one.mean) == ({"group": "all", "probe": "target"}, "reaction_time", 2.25)
-    by_block = load_target("paired_associates", specify("paired_associates").design, "latency")
+    by_block = load_target("paired_associates", specify("paired_associates"), "latency")
     assert [one.conditions["block"] for one in by_block] == list(range(2, 9))
     with pytest.raises(ExperimentError, match=r"human data 'fan_efect': no such file; did you mean 'fan_effect'"):
         load_target("fan_efect", design)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from actr3d.errors import ExperimentError
 from actr3d.experiment.human_data import SHOWN, Schema, library_human_data, read_human_data
 from actr3d.experiment.specification import library_designs, specify
+from actr3d.parameter_schema import Parameter
 
 SCHEMA = Schema(
     groups=["small", "large"],
@@ -30,6 +32,15 @@ def test_trials_are_read(tmp_path: Path) -> None:
     assert data.rows[0] == {"participant": "1", "group": "small", "aperture": 0.4, "condition": "fast", "wall_angle_deg": 50.5}
     assert data.rows[1]["wall_angle_deg"] is None, "an empty cell is a missing value"
     assert data.rows[1]["aperture"] == 0.45, "people may have been at other apertures than the model"
+
+
+def test_levels_of_people_are_within_the_bounds_of_the_parameter(tmp_path: Path) -> None:
+    aperture = Parameter(name="aperture", takes="number", least=0.3, most=2, unit="m")
+    schema = replace(SCHEMA, parameters={"aperture": aperture})
+    assert len(read(tmp_path, HEAD + "1,small,0.45,fast,50\n", schema).rows) == 1
+    says = r"people.csv:2: column 'aperture': the model's parameter aperture: must be <= 2 \(got 45\) \[m\]"
+    with pytest.raises(ExperimentError, match=says):
+        read(tmp_path, HEAD + "1,small,45,fast,50\n", schema)
 
 
 def test_published_means_are_read_and_may_be_means_over_all_levels(tmp_path: Path) -> None:

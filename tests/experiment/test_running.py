@@ -37,6 +37,8 @@ COMMAND = [sys.executable, "-m", "actr3d", "experiment"]
 UNREPRODUCIBLE = ("wall_s", "worker")
 SLOW_MODEL = COUNTER.replace('if mode == "fail"', 'import time\ntime.sleep(0.03)\nif mode == "fail"')
 """A trial takes long enough that something can be ended meanwhile."""
+KILLS = 20 if os.environ.get("EXPLORE") else 1
+"""How often a test ends processes at random moments; with EXPLORE=1 as often as has been promised, which takes minutes."""
 
 
 @pytest.fixture(scope="module")
@@ -146,14 +148,13 @@ def test_a_scheduler_that_does_not_answer_leaves_no_folder(tmp_path: Path, monke
 
 
 @pytest.mark.slow
-def test_no_row_changes_if_the_command_is_killed_at_any_moment(tmp_path: Path) -> None:
-    kills = 3
-    path = write_experiment(tmp_path, participants=2, trials=12 * kills, model=SLOW_MODEL)
-    expected = reference(path, tmp_path / "whole")
-    dice = random.Random(kills)
+def test_no_row_changes_if_the_command_is_killed_at_any_moment(tmp_path: Path, client: Any) -> None:
+    path = write_experiment(tmp_path, participants=2, trials=12 * KILLS, model=SLOW_MODEL)
+    expected = run_here(client, path, tmp_path / "whole")
+    dice = random.Random(KILLS)
     kept: dict[int, float] = {}
     command = [*COMMAND, str(path), "--out", str(tmp_path / "out"), "--resume"]
-    for _ in range(kills):
+    for _ in range(KILLS):
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             process.wait(dice.uniform(2, 6))
@@ -171,18 +172,17 @@ def test_no_row_changes_if_the_command_is_killed_at_any_moment(tmp_path: Path) -
 
 
 @pytest.mark.slow
-def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path) -> None:
-    kills = 3
-    path = write_experiment(tmp_path, participants=2, trials=20 * kills, model=SLOW_MODEL)
-    dice = random.Random(kills)
+def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, client: Any) -> None:
+    path = write_experiment(tmp_path, participants=2, trials=20 * KILLS, model=SLOW_MODEL)
+    dice = random.Random(KILLS)
     killed: list[int] = []
     with local_cluster(2) as here:
-        client: Any = here
+        own: Any = here
         over = threading.Event()
 
         def kill() -> None:
-            while len(killed) < kills and not over.wait(dice.uniform(0.2, 1.5)):
-                workers = list(client.run(os.getpid, on_error="ignore").values())
+            while len(killed) < KILLS and not over.wait(dice.uniform(0.2, 1.5)):
+                workers = list(own.run(os.getpid, on_error="ignore").values())
                 if workers:
                     killed.append(dice.choice(workers))
                     os.kill(killed[-1], signal.SIGKILL)
@@ -190,30 +190,30 @@ def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path) -> N
         killer = threading.Thread(target=kill)
         killer.start()
         try:
-            found = run_here(client, path, tmp_path / "out")
+            found = run_here(own, path, tmp_path / "out")
         finally:
             over.set()
             killer.join()
     assert killed
-    assert found == reference(path, tmp_path / "whole")
+    assert found == run_here(client, path, tmp_path / "whole")
 
 
 @pytest.mark.slow
-def test_workers_that_the_cluster_has_given_up_are_replaced(tmp_path: Path) -> None:
-    path = write_experiment(tmp_path, participants=2, trials=20, model=SLOW_MODEL)
+def test_workers_that_the_cluster_has_given_up_are_replaced(tmp_path: Path, client: Any) -> None:
+    path = write_experiment(tmp_path, participants=2, trials=5, model=SLOW_MODEL)
     killed: list[int] = []
 
     def kill(progress: Progress) -> None:
         if progress.done and not killed:
-            killed.extend(client.run(os.getpid).values())
+            killed.extend(own.run(os.getpid).values())
             for worker in killed:
                 os.kill(worker, signal.SIGKILL)
 
     with dask.config.set({"distributed.deploy.lost-worker-timeout": "10 ms"}), local_cluster(1) as here:
-        client: Any = here
-        found = run_here(client, path, tmp_path / "out", show=kill)
+        own: Any = here
+        found = run_here(own, path, tmp_path / "out", show=kill)
     assert killed
-    assert found == reference(path, tmp_path / "whole")
+    assert found == run_here(client, path, tmp_path / "whole")
 
 
 @contextmanager
@@ -233,12 +233,11 @@ def a_cluster(port: int) -> Generator[Any]:
 
 
 @pytest.mark.slow
-def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, unused_port: int) -> None:
-    kills = 1
-    path = write_experiment(tmp_path, participants=2, trials=10 + 10 * kills, model=SLOW_MODEL)
-    dice = random.Random(kills)
+def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, client: Any, unused_port: int) -> None:
+    path = write_experiment(tmp_path, participants=2, trials=10 + 10 * KILLS, model=SLOW_MODEL)
+    dice = random.Random(KILLS)
     command = [*COMMAND, str(path), "--out", str(tmp_path / "out"), "--resume", "--scheduler", f"tcp://127.0.0.1:{unused_port}"]
-    for _ in range(kills):
+    for _ in range(KILLS):
         with a_cluster(unused_port) as scheduler:
             process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
             before = _rows(tmp_path / "out")
@@ -253,7 +252,7 @@ def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, unused_port: 
             assert "continue with --resume" in said
     with a_cluster(unused_port):
         assert subprocess.run(command, timeout=120, capture_output=True).returncode == 0
-    assert table(tmp_path / "out") == reference(path, tmp_path / "whole")
+    assert table(tmp_path / "out") == run_here(client, path, tmp_path / "whole")
 
 
 @pytest.mark.parametrize("reports", [1, 2])

@@ -5,18 +5,16 @@ The means of the original ACT-R 3D and the baseline, one line of geometry, are a
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from actr3d.experiment.aperture.constraints import CRITICAL, MARGIN, PASSABLE, SAME, TURNED, WIDE, Constraint, Findings
 from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
+from actr3d.experiment.aperture.original import original_bar_means, original_means
 from actr3d.experiment.aperture.passing import Passing, baseline_angle
-from actr3d.experiment.aperture.trials import original_means
 from actr3d.experiment.report.analyses import analysis
 from actr3d.experiment.report.beside import Beside, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
@@ -578,16 +576,6 @@ def _starts(results: Results) -> Parts:
 
 
 # -- bars
-
-
-def original_bar_means() -> dict[tuple[float, float], float]:
-    """Returns the original ACT-R 3D's mean angles [degrees] by ratio of the aperture to the total width, and bar in body widths.
-
-    Source: its own trials, 360 per cell (docs/human-data.md).
-    """
-    with (Path(__file__).parent / "original_bar_means.csv").open(encoding="utf-8") as file:
-        rows: list[Any] = list(csv.DictReader(file))
-    return {(float(row["APRatio"]), float(row["BarRatio"])): float(row["mean_deg"]) for row in rows}
 
 
 def _bars(bars: dict[float, dict[float, dict[str, float]]]) -> Parts:

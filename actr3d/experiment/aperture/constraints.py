@@ -1,6 +1,6 @@
 """The constraints on a model of people who pass apertures, by their numbers in docs/human-data.md.
 
-Participants, not trials, are the unit of analysis: means of participants are compared. The benchmark and the report both use this.
+Participants, not trials, are the unit of analysis: means of participants are compared.
 """
 
 from __future__ import annotations

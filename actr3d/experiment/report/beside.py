@@ -44,7 +44,7 @@ def factors_of(parts: Sequence[Results]) -> dict[str, list[float] | list[str]]:
 def schema_of(parts: Sequence[Results]) -> Schema:
     """Returns what human data for an experiment may hold."""
     measures = [name for part in parts for name in part.measures]
-    return Schema(groups=parts[0].groups, factors=factors_of(parts), measures=measures)
+    return Schema(groups=parts[0].groups, factors=factors_of(parts), measures=measures, parameters=parts[0].parameters)
 
 
 def human_data_of(design: Design, parts: Sequence[Results], file: Path | str | None) -> tuple[HumanData | None, str]:

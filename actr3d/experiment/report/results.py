@@ -16,6 +16,7 @@ from actr3d.experiment.design import OWN_COLUMNS, Design
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.specification import Experiment, Specification
 from actr3d.experiment.store import CHUNK, Column, Store
+from actr3d.parameter_schema import Parameter
 
 NUMBERS = ("boolean", "integer", "real")
 """The types of columns that are analysed as numbers."""
@@ -51,6 +52,8 @@ class Results:
     """The measures that are numbers; switches count as 1 and 0, so that their means are proportions."""
     outcomes: Sequence[str]
     """The measures that are texts."""
+    parameters: Mapping[str, Parameter] = field(default_factory=dict[str, Parameter])
+    """The parameters of the model that are factors, by the names of the columns of `rows`."""
     numbers: Mapping[str, list[float]] = field(default_factory=dict[str, "list[float]"])
     """What the values of a trial are numbered by, such as `block`, and its numbers: a further factor. See `by_number`."""
 
@@ -172,6 +175,7 @@ def read_results(folder: Path | str) -> Results:
         versions=sorted(frame["versions"].unique()),
         measures=[name for name, kind in kinds.items() if kind in NUMBERS and rows[name].notna().any()],
         outcomes=[name for name, kind in kinds.items() if kind == "text"],
+        parameters={renamed[one.name]: one for one in experiment.parameters if one.name in renamed},
     )
 
 

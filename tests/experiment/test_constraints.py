@@ -1,0 +1,138 @@
+"""Constraints on a model of people: they tell good models from bad ones."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from actr3d.experiment.aperture.constraints import Findings, equivalence
+from actr3d.experiment.aperture.critical_ratio import critical_ratio
+from actr3d.experiment.aperture.original import original_means
+from actr3d.experiment.aperture.passing import Passing
+
+APERTURES = tuple(n / 100 for n in range(40, 75, 5))
+CONDITIONS = ("normal", "fast")
+SHOULDERS = {"small": (0.38, 0.39, 0.404, 0.418, 0.428), "large": (0.475, 0.48, 0.484, 0.488, 0.493)}
+
+
+def test_the_originals_means_are_there() -> None:
+    means = original_means()
+    assert len(means) == 28
+    assert means["small", "normal", 0.40] == 57.69
+    assert means["large", "fast", 0.55] == 39.92
+    assert set(means) == {(group, condition, wide) for group in SHOULDERS for condition in CONDITIONS for wide in APERTURES}
+
+
+def test_turning_points_are_found() -> None:
+    draw = random.Random(1)
+    ratios = [1 + 0.6 * n / 400 for n in range(400)]
+    noisy = [(ratio, draw.random() < 1 / (1 + math.exp(40 * (ratio - 1.28)))) for ratio in ratios]
+    found = critical_ratio(noisy)
+    assert found is not None
+    assert found.value == pytest.approx(1.28, abs=0.02)
+    assert found.low < 1.28 < found.high
+    sharp = critical_ratio((ratio, ratio < 1.3) for ratio in (1.0, 1.1, 1.2, 1.28, 1.32, 1.4, 1.5))
+    assert sharp is not None
+    assert sharp.value == pytest.approx(1.30, abs=0.005)
+    assert critical_ratio([(1.0, True), (1.2, True)]) is None, "nothing is known where nobody walks straight through"
+
+
+def test_equivalence_takes_small_differences_and_small_spread() -> None:
+    near, far, wide = [20.0, 21.0, 22.0, 21.0, 20.5], [28.0, 29.0, 30.0, 29.0, 28.5], [5.0, 40.0, 12.0, 33.0, 16.0]
+    assert equivalence(near, [21.0, 20.0, 21.5, 20.5, 22.0], 5)[1] < 0.01
+    assert equivalence(far, near, 5) == (pytest.approx(8.0), pytest.approx(1, abs=0.01))
+    assert equivalence(wide, near, 5)[1] > 0.05
+
+
+def good(group: str, agent: int, condition: str, aperture: float, number: int) -> Passing:
+    """Returns what a model of people would do: a margin of 0.15 of the shoulders, and some more when it is fast."""
+    shoulders = SHOULDERS[group][agent]
+    need = aperture / 1.3 / shoulders
+    angle = 0.0 if need >= 1 else math.degrees(math.acos(need)) + (4 if condition == "fast" else 0) + 0.1 * number
+    return Passing(
+        participant=f"{group} {agent}",
+        group=group,
+        condition=condition,
+        aperture=aperture,
+        shoulders=shoulders,
+        angle=angle,
+        left=0.069,
+        right=0.071,
+        contacts=0,
+        passed=True,
+    )
+
+
+GOOD = [
+    good(group, agent, condition, aperture, number)
+    for group in SHOULDERS
+    for condition in CONDITIONS
+    for aperture in APERTURES
+    for agent in range(5)
+    for number in range(2)
+]
+
+
+def findings(of: Callable[[Passing], Passing]) -> Findings:
+    return Findings(map(of, GOOD))
+
+
+def unmet(of: Callable[[Passing], Passing], boundary: float = 1.16) -> list[int]:
+    return [constraint.number for constraint in findings(of).all(boundary=boundary) if constraint.met is False]
+
+
+def with_angle(one: Passing, angle: float) -> Passing:
+    return replace(one, angle=angle)
+
+
+def with_margin(one: Passing, room: float) -> Passing:
+    return replace(one, left=room, right=room)
+
+
+def as_it_is(one: Passing) -> Passing:
+    return one
+
+
+def test_a_walker_that_does_not_turn_has_no_margin() -> None:
+    """At wide apertures there is more room than anyone wants, which is no margin."""
+    found = findings(lambda one: with_margin(one, 0.07 if one.angle else 0.14))
+    assert found.margin("large", "fast", 0.45) == pytest.approx(0.07)
+    assert found.margin("small", "normal", 0.7) is None
+    assert found.untouched().met
+
+
+def test_a_model_of_people_meets_all_constraints() -> None:
+    assert unmet(as_it_is) == []
+
+
+BAD: dict[str, tuple[list[int], Callable[[Passing], Passing]]] = {
+    "turns more before a wider one": ([1], lambda one: with_angle(one, 60.0) if one.aperture == 0.45 else one),
+    "turns everywhere": ([7, 4], lambda one: with_angle(one, max(one.angle or 0, 18.0))),
+    "turns by width alone": ([2, 3, 4], lambda one: with_angle(one, max(0.0, 300 * (0.6 - one.aperture)))),
+    "turns at a smaller ratio": ([4], lambda one: one if one.ratio < 1.2 else with_angle(one, 0.0)),
+    "turns less when fast": (
+        [5],
+        lambda one: with_angle(one, max(0.0, (one.angle or 0) - (8 if one.condition == "fast" else 0))),
+    ),
+    "touches once": ([6], lambda one: replace(one, contacts=int(one is GOOD[3]))),
+    "leaves too little": ([6], lambda one: replace(one, left=0.03)),
+    "leaves too little where it is narrowest": ([6], lambda one: with_margin(one, 0.04 if one.aperture == 0.4 else 0.07)),
+    "leaves too much where it turns least": ([6], lambda one: with_margin(one, 0.09 if one.aperture == 0.6 else 0.07)),
+    "stops": ([6], lambda one: replace(one, passed=False) if one.aperture == 0.4 else one),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_each_wrong_model_fails_the_constraints_that_it_should_fail(what: str) -> None:
+    expected, of = BAD[what]
+    assert set(unmet(of)) >= set(expected)
+    assert unmet(of) != unmet(as_it_is)
+
+
+def test_where_it_can_pass_is_one_of_them() -> None:
+    assert unmet(as_it_is, 1.30) == [9]
+    assert unmet(as_it_is, 1.0) == [9]
