@@ -1,4 +1,4 @@
-// The page's use of CodeMirror: one view, which shows one of the open texts at a time.
+// The page's use of CodeMirror: a view, which shows one of the open texts at a time.
 
 import {
   bracketMatching,
@@ -121,24 +121,27 @@ function scrollToRevealed() {
 
 /** Shows a text in an element of the page. */
 export function showText(place, document) {
-  view ??= made(document.state);
-  if (inView !== document) {
-    finishMeasuring();
+  const focused = view?.hasFocus;
+  const isOther = inView !== document;
+  if (isOther) {
     leaveText();
+    view?.destroy();
     inView = document;
-    view.setState(document.state);
-    const name = `Text of ${document.path}. Escape, then Tab, leaves it.`;
-    view.contentDOM.setAttribute("aria-label", name);
-    view.contentDOM.tabIndex = 0;
+    view = made(document);
   }
   if (view.dom.parentNode !== place) place.append(view.dom);
+  if (isOther && focused) view.focus();
   view.requestMeasure();
   view.scrollDOM.scrollTop = document.scroll;
   if (document.revealed !== null) scrollToRevealed();
 }
 
-function made(state) {
-  const editor = new EditorView({ state, dispatchTransactions: taken });
+/** Returns a view of a text. Each text has a new one: what a view has begun, such as to ask for completions, would go on with positions
+ * of the former text in the next one. */
+function made(document) {
+  const editor = new EditorView({ state: document.state, dispatchTransactions: taken });
+  editor.contentDOM.setAttribute("aria-label", `Text of ${document.path}. Escape, then Tab, leaves it.`);
+  editor.contentDOM.tabIndex = 0;
   let height = 0;
   // Where a list of problems appears below, the line that is being written stays in view.
   new ResizeObserver(() => {
@@ -151,20 +154,14 @@ function made(state) {
   return editor;
 }
 
-/** Lets CodeMirror measure what it has put off to the next frame. `setState` keeps such requests, for example to place the list of
- * completions, which then look for positions of the former text in the new one and raise a RangeError. */
-function finishMeasuring() {
-  view.elementAtHeight(0); // any question about the layout does it
-}
-
 /** Stores the scroll position of a text before it is hidden. */
 export function leaveText() {
   if (inView && view?.dom.isConnected) inView.scroll = view.scrollDOM.scrollTop;
 }
 
-function taken(transactions) {
-  view.update(transactions);
-  inView.took(transactions);
+function taken(transactions, by) {
+  by.update(transactions);
+  if (by === view) inView.took(transactions); // else it is a former view, which something late has reached
 }
 
 /** Moves to a line of the text that is shown. */
