@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.experiments import write_experiment
+from tests.helpers.experiments import SLOW_COUNTER, write_experiment
 from tests.helpers.page import open_tab, until
 from tests.helpers.workbench_server import Served
 
@@ -19,7 +19,7 @@ def design(workbench: Served) -> Iterator[str]:
     """A small experiment in a folder among the models."""
     folder = workbench.folder / "course"
     folder.mkdir()
-    yield f"course/{write_experiment(folder).name}:counting"
+    yield f"course/{write_experiment(folder, model=SLOW_COUNTER).name}:counting"
     shutil.rmtree(folder)
 
 
@@ -86,12 +86,12 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
 
 @pytest.mark.slow
 def test_two_pages_see_an_experiment_stop_and_go_on(pages: Callable[..., Page], workbench: Served, design: str) -> None:
-    wanted = {"design": design, "trials": 2000, "workers": 1}
+    wanted = {"design": design, "trials": 1000, "workers": 1}
     name = workbench.post("/api/experiments", wanted).json()["id"]
     first, second = (pages("counting.py", tab="experiments", refusals=True) for _ in range(2))
     for page in (first, second):
         row = page.locator(f"tr[data-experiment='{name}']")
-        expect(row.locator(".name")).to_have_text("countingcourse/counter.pytrials 2000")
+        expect(row.locator(".name")).to_have_text("countingcourse/counter.pytrials 1000")
         row.click()
         expect(page.locator(".point")).not_to_have_count(0)
     first.get_by_role("button", name="Stop", exact=True).click()
@@ -115,7 +115,7 @@ def test_two_pages_see_an_experiment_stop_and_go_on(pages: Callable[..., Page], 
 SLOWLY = """() => { const fetched = window.fetch;
 window.fetch = (what, how) => !String(what).includes("/means?") ? fetched(what, how) : new Promise((done, failed) => {
     how?.signal?.addEventListener("abort", () => failed(new DOMException("aborted", "AbortError")));
-    setTimeout(() => fetched(what, how).then(done, failed), 3000);
+    setTimeout(() => fetched(what, how).then(done, failed), 1500);
 }); }"""
 
 
@@ -123,7 +123,7 @@ window.fetch = (what, how) => !String(what).includes("/means?") ? fetched(what, 
 def test_a_figure_fills_in_although_its_means_take_longer_than_new_trials(
     pages: Callable[..., Page], workbench: Served, design: str
 ) -> None:
-    name = workbench.post("/api/experiments", {"design": design, "trials": 5000, "workers": 1}).json()["id"]
+    name = workbench.post("/api/experiments", {"design": design, "trials": 1000, "workers": 1}).json()["id"]
     page = pages("counting.py", tab="experiments")
     page.evaluate(SLOWLY)
     page.locator(f"tr[data-experiment='{name}']").click()

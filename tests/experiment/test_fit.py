@@ -57,7 +57,7 @@ y = model.value
 @design
 def line():
     '''A line through noise.'''
-    return Design(factors={"x": [1, 2, 3, 4, 5]}, groups={"all": Group(participants=4)}, trials=3, measures=["y"])
+    return Design(factors={"x": [1, 2, 3, 4, 5]}, groups={"all": Group(participants=4)}, measures=["y"])
 
 
 @design
@@ -140,7 +140,7 @@ def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anythin
 def test_known_parameters_are_found_with_intervals(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client)
     held_out = {f"{tmp_path / 'line.py'}:steeper": means((10, 20, 30))}
-    result = fit.run(18, hold_out=held_out, ablate=["slope=0"], recover=2)
+    result = fit.run(STARTING + 6, hold_out=held_out, ablate=["slope=0"], recover=2)
     slope, offset = result.parameters
     assert slope.value == pytest.approx(1.4, abs=0.15)
     assert offset.value == pytest.approx(1.0, abs=0.4)

@@ -28,15 +28,13 @@ from actr3d.experiment.cluster import Progress, cluster_versions, existing_clust
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
-from tests.helpers.experiments import COUNTER, write_experiment
+from tests.helpers.experiments import COUNTER, SLOW_COUNTER, write_experiment
 from tests.helpers.reports import store_rows
 
 pytestmark = pytest.mark.long
 
 COMMAND = [sys.executable, "-m", "actr3d", "experiment"]
 UNREPRODUCIBLE = ("wall_s", "worker")
-SLOW_MODEL = COUNTER.replace('if mode == "fail"', 'import time\ntime.sleep(0.03)\nif mode == "fail"')
-"""A trial takes long enough that something can be ended meanwhile."""
 KILLS = 20 if os.environ.get("EXPLORE") else 1
 """How often a test ends processes at random moments; with EXPLORE=1 as often as has been promised, which takes minutes."""
 
@@ -93,7 +91,7 @@ def test_failures_are_rows_and_the_rest_goes_on(tmp_path: Path, client: Any) -> 
 
 
 def test_a_run_that_is_stopped_continues_where_it_was(tmp_path: Path, client: Any) -> None:
-    path = write_experiment(tmp_path, participants=2, trials=50, model=SLOW_MODEL)
+    path = write_experiment(tmp_path, participants=2, trials=50, model=SLOW_COUNTER)
     experiment, stop = specify(str(path)), threading.Event()
     counts: list[int] = []
 
@@ -149,7 +147,7 @@ def test_a_scheduler_that_does_not_answer_leaves_no_folder(tmp_path: Path, monke
 
 @pytest.mark.slow
 def test_no_row_changes_if_the_command_is_killed_at_any_moment(tmp_path: Path, client: Any) -> None:
-    path = write_experiment(tmp_path, participants=2, trials=12 * KILLS, model=SLOW_MODEL)
+    path = write_experiment(tmp_path, participants=2, trials=12 * KILLS, model=SLOW_COUNTER)
     expected = run_here(client, path, tmp_path / "whole")
     dice = random.Random(KILLS)
     kept: dict[int, float] = {}
@@ -173,7 +171,7 @@ def test_no_row_changes_if_the_command_is_killed_at_any_moment(tmp_path: Path, c
 
 @pytest.mark.slow
 def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, client: Any) -> None:
-    path = write_experiment(tmp_path, participants=2, trials=20 * KILLS, model=SLOW_MODEL)
+    path = write_experiment(tmp_path, participants=2, trials=20 * KILLS, model=SLOW_COUNTER)
     dice = random.Random(KILLS)
     killed: list[int] = []
     with local_cluster(2) as here:
@@ -200,7 +198,7 @@ def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, clie
 
 @pytest.mark.slow
 def test_workers_that_the_cluster_has_given_up_are_replaced(tmp_path: Path, client: Any) -> None:
-    path = write_experiment(tmp_path, participants=2, trials=5, model=SLOW_MODEL)
+    path = write_experiment(tmp_path, participants=2, trials=5, model=SLOW_COUNTER)
     killed: list[int] = []
 
     def kill(progress: Progress) -> None:
@@ -234,7 +232,7 @@ def a_cluster(port: int) -> Generator[Any]:
 
 @pytest.mark.slow
 def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, client: Any, unused_port: int) -> None:
-    path = write_experiment(tmp_path, participants=2, trials=10 + 10 * KILLS, model=SLOW_MODEL)
+    path = write_experiment(tmp_path, participants=2, trials=10 + 10 * KILLS, model=SLOW_COUNTER)
     dice = random.Random(KILLS)
     command = [*COMMAND, str(path), "--out", str(tmp_path / "out"), "--resume", "--scheduler", f"tcp://127.0.0.1:{unused_port}"]
     for _ in range(KILLS):
@@ -289,7 +287,7 @@ def unused_port() -> int:
 
 
 def test_ctrl_c_ends_an_experiment_at_once_and_in_order(tmp_path: Path) -> None:
-    path = write_experiment(tmp_path, participants=2, trials=2000, model=SLOW_MODEL)
+    path = write_experiment(tmp_path, participants=2, trials=2000, model=SLOW_COUNTER)
     command = [*COMMAND, str(path), "--out", str(tmp_path / "out")]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
     deadline = time.monotonic() + 60

@@ -41,6 +41,9 @@ rt = model.now()
 luck = model.random.random()
 '''
 
+SLOW_COUNTER = COUNTER.replace('if mode == "fail"', 'import time\ntime.sleep(0.03)\nif mode == "fail"')
+"""A trial takes long enough that something can happen meanwhile, and little of the processor."""
+
 DESIGN = """
 from actr3d.experiment import Design, Group, Normal, Uniform, design
 
