@@ -21,7 +21,7 @@ from queue import Empty, SimpleQueue
 from typing import Any, NoReturn, cast
 
 import dask.config
-from distributed import Client, KilledWorker, LocalCluster, Status, get_worker
+from distributed import Client, KilledWorker, LocalCluster, get_worker
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Experiment
@@ -41,11 +41,7 @@ PATIENCE = 30.0
 PACKAGES = ("dask", "distributed")
 """Packages whose versions the client and the workers must share; no row depends on them."""
 SETTINGS: dict[str, Any] = {
-    "distributed.scheduler.allowed-failures": 100,  # a worker that was ended says nothing about the trial that it ran
     "distributed.scheduler.worker-saturation": AHEAD,
-    "distributed.worker.daemon": True,
-    # Ctrl-C in a terminal reaches all processes; the client alone decides what it means.
-    "distributed.worker.preload": ["import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"],
     "distributed.comm.timeouts.connect": PATIENCE,
     "distributed.admin.log-length": 0,
     # Dask would measure itself many times a second, for a page that nobody opens.
@@ -79,15 +75,15 @@ class Batch:
 
 @contextmanager
 def local_cluster(workers: int) -> Generator[Any]:
-    """Starts a scheduler and workers on this computer, reachable only from it."""
+    """Starts a scheduler and workers in threads of this process; each worker runs its trials in a process of its own, as everywhere."""
     local: Any = LocalCluster  # its types are incomplete
-    options = {"threads_per_worker": 1, "processes": True, "host": "127.0.0.1", "dashboard_address": "127.0.0.1:0", "memory_limit": 0}
-    with (
-        dask.config.set(SETTINGS),
-        local(n_workers=workers, silence_logs=logging.CRITICAL, **options) as cluster,
-        Client(cluster) as client,
-    ):
-        yield client
+    options = {"threads_per_worker": 1, "processes": False, "dashboard_address": "127.0.0.1:0", "memory_limit": 0}
+    with dask.config.set(SETTINGS), local(n_workers=workers, silence_logs=logging.CRITICAL, **options) as cluster:
+        try:
+            with Client(cluster) as client:
+                yield client
+        finally:
+            end_processes(TrialProcess.close)  # a trial may run that nobody waits for any more
 
 
 @contextmanager
@@ -111,7 +107,7 @@ def existing_cluster(address: str) -> Generator[Any]:
             finally:
                 if client.status == "running":
                     with suppress(Exception):
-                        client.run(end_processes, on_error="ignore")
+                        client.run(end_processes, TrialProcess.end, on_error="ignore")  # others may use the workers, too
 
 
 def run_experiment(
@@ -175,7 +171,6 @@ class _Run:
                 self._take(future, self._waiting.pop(future))
             if self._client.status not in ("running", "connecting"):
                 self._lost()
-            self._replace_workers()
         self._client.cancel(list(self._waiting))
 
     def _workers(self) -> int:
@@ -183,15 +178,6 @@ class _Run:
         if workers is None:  # the client has just been closed
             self._lost()
         return len(workers)
-
-    def _replace_workers(self) -> None:
-        """Starts the workers again that the cluster of this computer has given up, because they took long to come back when they had
-        been ended, or could not be started again; it would wait for ever without any."""
-        cluster = self._client.cluster
-        if cluster is not None and self._workers() < len(cluster.worker_spec):
-            for name in [name for name, worker in list(cluster.workers.items()) if worker.status is Status.failed]:
-                del cluster.workers[name]  # else the cluster keeps it, and starts no other in its place
-            cluster.scale(len(cluster.worker_spec))
 
     def _next_batches(self, numbers: Iterator[int]) -> Iterator[list[int]]:
         """Yields batches until each worker has enough of them; the last ones are small, so that all workers end at about the same time."""
@@ -287,11 +273,11 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
     return Batch(rows=rows, worker=address, about=process.about)
 
 
-def end_processes() -> None:
-    """Ends the processes of a worker that run trials."""
+def end_processes(end: Callable[[TrialProcess], None]) -> None:
+    """Ends the processes that run trials: in the way that is given."""
     with _LOCK:
         while _PROCESSES:
-            _PROCESSES.popitem()[1].end()
+            end(_PROCESSES.popitem()[1])
 
 
 def _worker_name() -> str:

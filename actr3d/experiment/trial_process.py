@@ -41,6 +41,8 @@ class TrialProcess:
     """Runs trials in a process of its own."""
 
     def __init__(self) -> None:
+        self._busy = threading.Lock()
+        self._closed = False
         self._process: subprocess.Popen[bytes] | None = None
         self._folder = ""
         """The folder for the temporary files of the process."""
@@ -57,23 +59,53 @@ class TrialProcess:
             limit: Its maximum wall time [s].
 
         Raises:
-            ExperimentError: If the experiment cannot be loaded.
+            ExperimentError: If the experiment cannot be loaded, or `close` is called meanwhile.
         """
         code = ""
-        for _ in range(ATTEMPTS):
-            self._load(specification)
-            try:
-                answer = self._ask(json.dumps(number), limit)
-            except TimeoutError:
-                self.end()
-                return {"end": TIME_LIMIT, "error": f"the trial took longer than its limit of {limit:g} s, and was ended"}
-            if answer is not None:
-                self.about |= answer["about"]
-                return answer["row"]
-            code = self._code()
-        return {"end": "crash", "error": f"the trial ended its own process {code}"}
+        with self._busy:
+            for _ in range(ATTEMPTS):
+                self._load(specification)
+                try:
+                    answer = self._ask(json.dumps(number), limit)
+                except TimeoutError:
+                    self._end()
+                    return {"end": TIME_LIMIT, "error": f"the trial took longer than its limit of {limit:g} s, and was ended"}
+                if answer is not None:
+                    self.about |= answer["about"]
+                    return answer["row"]
+                code = self._code()
+            return {"end": "crash", "error": f"the trial ended its own process {code}"}
 
     def end(self) -> None:
+        """Ends the process, from any thread; a trial that runs there begins again in another one."""
+        process = self._process
+        if process is not None:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+        if self._busy.acquire(blocking=False):
+            try:
+                self._end()
+            finally:
+                self._busy.release()
+
+    def close(self) -> None:
+        """Ends the process for good, from any thread; a trial that runs there has no row."""
+        self._closed = True
+        self.end()
+        with self._busy:
+            self._end()
+
+    def _check_open(self) -> None:
+        """Ends the process if `close` has been called.
+
+        Raises:
+            ExperimentError: If it has.
+        """
+        if self._closed:
+            self._end()
+            raise ExperimentError("the experiment was stopped")
+
+    def _end(self) -> None:
         """Ends the process, and those that it has started."""
         process, self._process = self._process, None
         if process is not None:
@@ -88,6 +120,7 @@ class TrialProcess:
 
     def _load(self, specification: str) -> None:
         """Starts the process if there is none, and loads an experiment there if it is not the loaded one."""
+        self._check_open()
         if self._process is None:
             # The order of sets of texts is the same in every process.
             self._folder = tempfile.mkdtemp(prefix="actr3d-trials-")
@@ -96,18 +129,19 @@ class TrialProcess:
             self._process = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True, bufsize=0
             )
+            self._check_open()
         elif specification == self._loaded:
             return
         self._loaded, self.about = None, {}
         try:
             answer = self._ask(json.dumps(specification), START)
         except TimeoutError:
-            self.end()
+            self._end()
             raise ExperimentError(f"the experiment did not load within {START:g} s") from None
         if answer is None:
             raise ExperimentError(f"the process that loads the experiment ended {self._code()}")
         if "failed" in answer:
-            self.end()
+            self._end()
             raise ExperimentError(answer["failed"])
         self._loaded = specification
 
@@ -144,9 +178,9 @@ class TrialProcess:
         try:
             code = self._process.wait(5)
         except subprocess.TimeoutExpired:  # it has closed its output and goes on
-            self.end()
+            self._end()
             return "by closing its output"
-        self.end()
+        self._end()
         return f"with exit code {code}" if code >= 0 else f"by the signal {signal.Signals(-code).name}"
 
 

@@ -17,7 +17,6 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import dask.config
 import pytest
 
 from actr3d.cli import main
@@ -28,7 +27,7 @@ from actr3d.experiment.cluster import Progress, cluster_versions, existing_clust
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
-from tests.helpers.experiments import COUNTER, SLOW_COUNTER, write_experiment
+from tests.helpers.experiments import COUNTER, SLOW_COUNTER, trial_processes, write_experiment
 from tests.helpers.reports import store_rows
 
 pytestmark = pytest.mark.long
@@ -169,13 +168,28 @@ def test_no_row_changes_if_the_command_is_killed_at_any_moment(tmp_path: Path, c
     assert table(tmp_path / "out") == expected
 
 
+@contextmanager
+def a_cluster(port: int) -> Generator[Any]:
+    """Starts a scheduler and a worker as on any cluster, and ends them; yields the scheduler."""
+    quiet: Any = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "start_new_session": True}
+    address = ["--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
+    scheduler = subprocess.Popen([sys.executable, "-m", "distributed.cli.dask_scheduler", *address], **quiet)
+    options = ["--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1", "--death-timeout", "30"]
+    worker = subprocess.Popen([sys.executable, "-m", "distributed.cli.dask_worker", f"tcp://127.0.0.1:{port}", *options], **quiet)
+    try:
+        yield scheduler
+    finally:
+        for process in (worker, scheduler):
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+
+
 @pytest.mark.slow
-def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, client: Any) -> None:
+def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, client: Any, unused_port: int) -> None:
     path = write_experiment(tmp_path, participants=2, trials=20 * KILLS, model=SLOW_COUNTER)
     dice = random.Random(KILLS)
     killed: list[int] = []
-    with local_cluster(2) as here:
-        own: Any = here
+    with a_cluster(unused_port), existing_cluster(f"tcp://127.0.0.1:{unused_port}") as own:
         over = threading.Event()
 
         def kill() -> None:
@@ -196,38 +210,16 @@ def test_no_row_changes_if_workers_are_killed_at_any_moment(tmp_path: Path, clie
     assert found == run_here(client, path, tmp_path / "whole")
 
 
-@pytest.mark.slow
-def test_workers_that_the_cluster_has_given_up_are_replaced(tmp_path: Path, client: Any) -> None:
-    path = write_experiment(tmp_path, participants=2, trials=5, model=SLOW_COUNTER)
-    killed: list[int] = []
-
-    def kill(progress: Progress) -> None:
-        if progress.done and not killed:
-            killed.extend(own.run(os.getpid).values())
-            for worker in killed:
-                os.kill(worker, signal.SIGKILL)
-
-    with dask.config.set({"distributed.deploy.lost-worker-timeout": "10 ms"}), local_cluster(1) as here:
-        own: Any = here
-        found = run_here(own, path, tmp_path / "out", show=kill)
-    assert killed
-    assert found == run_here(client, path, tmp_path / "whole")
-
-
-@contextmanager
-def a_cluster(port: int) -> Generator[Any]:
-    """Starts a scheduler and a worker as on any cluster, and ends them; yields the scheduler."""
-    quiet: Any = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "start_new_session": True}
-    address = ["--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
-    scheduler = subprocess.Popen([sys.executable, "-m", "distributed.cli.dask_scheduler", *address], **quiet)
-    options = ["--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1", "--death-timeout", "30"]
-    worker = subprocess.Popen([sys.executable, "-m", "distributed.cli.dask_worker", f"tcp://127.0.0.1:{port}", *options], **quiet)
-    try:
-        yield scheduler
-    finally:
-        for process in (worker, scheduler):
-            os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
+def test_a_run_that_is_stopped_does_not_wait_for_a_trial_that_hangs(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, factors='{"mode": ["hang"]}', participants=1, trials=3, limit=600)
+    before, stop = trial_processes(), threading.Event()
+    threading.Timer(3, stop.set).start()
+    begin = time.monotonic()
+    with local_cluster(2) as own, Store.create(tmp_path / "out", specify(str(path)).specification) as store:
+        run_experiment(specify(str(path)), store, own, stop=stop)
+        assert store.count == 0
+    assert time.monotonic() - begin < 60
+    assert trial_processes() <= before
 
 
 @pytest.mark.slow

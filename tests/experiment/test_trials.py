@@ -11,6 +11,8 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
@@ -24,7 +26,7 @@ from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import run_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
-from tests.helpers.experiments import COUNTER, write_experiment
+from tests.helpers.experiments import COUNTER, trial_processes, write_experiment
 
 
 def rows_of(path: Path | str, **values: Any) -> list[dict[str, Any]]:
@@ -89,15 +91,37 @@ def test_what_a_model_prints_does_not_mix_with_the_rows(tmp_path: Path) -> None:
 
 def test_a_trial_process_that_is_killed_is_started_again(tmp_path: Path) -> None:
     experiment = specify(str(write_experiment(tmp_path)))
-    process, text = TrialProcess(), experiment.specification.to_json()
+    before, process, text = trial_processes(), TrialProcess(), experiment.specification.to_json()
     try:
         first = process.run(text, 0, 60)
-        child = subprocess.run(["pgrep", "-P", str(os.getpid()), "-f", "trial_process"], capture_output=True, text=True).stdout.split()
-        assert len(child) == 1
-        os.kill(int(child[0]), signal.SIGKILL)
+        (child,) = trial_processes() - before
+        os.kill(child, signal.SIGKILL)
         assert process.run(text, 0, 60) == first
     finally:
         process.end()
+
+
+@pytest.mark.parametrize("end", [TrialProcess.close, TrialProcess.end])
+def test_a_process_ends_while_a_trial_runs_which_then_begins_again_or_has_no_row(
+    tmp_path: Path, end: Callable[[TrialProcess], None]
+) -> None:
+    begun = tmp_path / "begun"
+    waiting = f"import time\nwith open({str(begun)!r}, 'a') as file:\n    file.write('x')\ntime.sleep(1)\n"
+    text = specify(str(write_experiment(tmp_path, model=COUNTER.replace("model.run()", f"{waiting}model.run()")))).specification.to_json()
+    before, process = trial_processes(), TrialProcess()
+    with ThreadPoolExecutor(1) as pool:
+        trial = pool.submit(process.run, text, 0, 60)
+        while not begun.exists():
+            time.sleep(0.02)
+        end(process)
+        if end is TrialProcess.close:
+            with pytest.raises(ExperimentError, match="the experiment was stopped"):
+                trial.result(30)
+        else:
+            assert trial.result(30)["end"] == "end"
+    assert begun.read_text() == ("x" if end is TrialProcess.close else "xx")
+    process.close()
+    assert trial_processes() <= before
 
 
 def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:

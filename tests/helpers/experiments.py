@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 from pathlib import Path
 
 COUNTER = '''"""Counts to a number, and says so."""
@@ -70,3 +72,9 @@ def write_experiment(
     path = folder / "counting_design.py"
     path.write_text(DESIGN.format(factors=factors, participants=participants, trials=trials, limit=limit), encoding="utf-8")
     return path
+
+
+def trial_processes() -> set[int]:
+    """Returns the processes of this one that run trials."""
+    found = subprocess.run(["pgrep", "-P", str(os.getpid()), "-f", "trial_process"], capture_output=True, text=True)
+    return {int(one) for one in found.stdout.split()}
