@@ -1,6 +1,7 @@
 """The constraints on a model of people who pass apertures, by their numbers in docs/human-data.md.
 
-Participants, not trials, are the unit of analysis: means of participants are compared.
+Participants, not trials, are the unit of analysis: means of participants are compared. Only the critical ratio of a cell is that of all
+its trials, as the ratios of a single participant are more than 0.1 apart.
 """
 
 from __future__ import annotations
@@ -205,7 +206,7 @@ class Findings:
         return Constraint(number=3, says=says, met=p < 0.05, found=found)
 
     def critical(self) -> Constraint:
-        """4: the critical ratio of each cell."""
+        """4: the critical ratio of each cell, of all its trials."""
         says = f"critical ratio {CRITICAL[0]} to {CRITICAL[1]} in each cell"
         cells = {
             (group, condition): [one for who in self.people(group) for one in self.trials(group, condition, who)]
