@@ -11,6 +11,7 @@ import tempfile
 import threading
 import time
 import tracemalloc
+from collections.abc import Callable
 from itertools import islice
 from pathlib import Path
 from statistics import median
@@ -18,6 +19,7 @@ from typing import Any
 
 import mujoco
 
+from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.benchmark import Figure, benchmark, processor_time_of, ratio, report
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import Store
@@ -63,41 +65,54 @@ def counting():
 
 def _aperture(folder: Path) -> list[Figure]:
     """Returns the cost of trials of the aperture model as multiples of their physics, and of all trials of the paper's design."""
-    plain, recorded, minutes = _costs("descriptive", folder)
-    predictive, *_ = _costs("predictive", folder)
+    plain, count = _Sample("descriptive"), iter(range(1_000_000))
+
+    def recorded() -> None:
+        with printing_to(ModelOutput(lambda _: None)):
+            for trial in plain.trials:
+                record_trial(plain.experiment, trial, folder / f"{next(count)}.rec", plain.helpers)
+
+    costs = [plain.cost(work) for work in (plain.run, recorded)]
+    minutes = processor_time_of(plain.run) / SAMPLE * len(plain.experiment.design) / (os.cpu_count() or 1) / 60
+    predictive = _Sample("predictive")
     return [
-        Figure(name="a trial", value=plain, sense="at most", bar=3, what="processor time of a trial / bare mj_step of its ticks"),
-        Figure(name="a recorded trial", value=recorded, sense="at most", bar=3, what="the same with a recording"),
-        Figure(name="a predictive trial", value=predictive, sense="at most", bar=4, what="the same of the predictive variant"),
+        Figure(name="a trial", value=costs[0], sense="at most", bar=3, what="processor time of a trial / bare mj_step of its ticks"),
+        Figure(name="a recorded trial", value=costs[1], sense="at most", bar=3, what="the same with a recording"),
+        Figure(
+            name="a predictive trial",
+            value=predictive.cost(predictive.run),
+            sense="at most",
+            bar=4,
+            what="the first for the predictive variant",
+        ),
         Figure(name="the paper's design", value=minutes, sense="at most", bar=20, what="minutes for 9,600 trials on all processors"),
     ]
 
 
-def _costs(variant: str, folder: Path) -> tuple[float, float, float]:
-    """Returns the cost of a trial of a variant of the walker, and of a recorded one, as multiples of their physics; and the time that all
-    trials of the paper's design take on all processors [min]."""
-    specification = specify(DESIGN, values={"variant": variant}).specification
-    with specification.sealed() as helpers:
-        experiment = Experiment(specification, helpers)
-        step = len(experiment.design) // SAMPLE
-        trials = [experiment.design.trial(number * step) for number in range(SAMPLE)]
-        steps = [round(run_trial(experiment, trial, helpers)["time_s"] / _timestep(experiment)) for trial in trials]
+class _Sample:
+    """Some trials of the paper's design.
 
-        def plain() -> None:
-            for trial in trials:
-                run_trial(experiment, trial, helpers)
+    Args:
+        variant: The variant of the walker.
+    """
 
-        count = iter(range(1_000_000))
+    def __init__(self, variant: str) -> None:
+        specification = specify(DESIGN, values={"variant": variant}).specification
+        self.helpers = HelperTexts(specification.model.helpers)
+        self.experiment = Experiment(specification, self.helpers)
+        step = len(self.experiment.design) // SAMPLE
+        self.trials = [self.experiment.design.trial(number * step) for number in range(SAMPLE)]
+        ends = [run_trial(self.experiment, trial, self.helpers)["time_s"] for trial in self.trials]
+        self._physics = _physics(self.experiment, sum(round(end / _timestep(self.experiment)) for end in ends))
 
-        def recorded() -> None:
-            with printing_to(ModelOutput(lambda _: None)):
-                for trial in trials:
-                    record_trial(experiment, trial, folder / f"{variant} {next(count)}.rec", helpers)
+    def run(self) -> None:
+        """Runs the trials."""
+        for trial in self.trials:
+            run_trial(self.experiment, trial, self.helpers)
 
-        physics = _physics(experiment, sum(steps))
-        costs = [ratio(lambda work=work: processor_time_of(work), lambda: processor_time_of(physics), 3) for work in (plain, recorded)]
-        seconds = processor_time_of(plain) / SAMPLE * len(experiment.design) / (os.cpu_count() or 1)
-    return costs[0], costs[1], seconds / 60
+    def cost(self, work: Callable[[], object]) -> float:
+        """Returns what it costs to run the trials in some way, as a multiple of their physics."""
+        return ratio(lambda: processor_time_of(work), lambda: processor_time_of(self._physics), 3)
 
 
 def _timestep(experiment: Experiment) -> float:

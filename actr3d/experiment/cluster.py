@@ -10,7 +10,7 @@ import logging
 import os
 import threading
 import time
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence, Set
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
@@ -42,6 +42,7 @@ PACKAGES = ("dask", "distributed")
 """Packages whose versions the client and the workers must share; no row depends on them."""
 SETTINGS: dict[str, Any] = {
     "distributed.scheduler.worker-saturation": AHEAD,
+    "distributed.scheduler.worker-ttl": None,  # the workers here are threads of this process: they are late if all of it was suspended
     "distributed.comm.timeouts.connect": PATIENCE,
     "distributed.admin.log-length": 0,
     # Dask would measure itself many times a second, for a page that nobody opens.
@@ -79,11 +80,14 @@ def local_cluster(workers: int) -> Generator[Any]:
     local: Any = LocalCluster  # its types are incomplete
     options = {"threads_per_worker": 1, "processes": False, "dashboard_address": "127.0.0.1:0", "memory_limit": 0}
     with dask.config.set(SETTINGS), local(n_workers=workers, silence_logs=logging.CRITICAL, **options) as cluster:
+        addresses = {worker.address for worker in cluster.workers.values()}
         try:
             with Client(cluster) as client:
                 yield client
         finally:
-            end_processes(TrialProcess.close)  # a trial may run that nobody waits for any more
+            for process in _processes(addresses):
+                process.close()  # a trial may run that nobody waits for any more
+    _processes(addresses, forget=True)
 
 
 @contextmanager
@@ -107,7 +111,7 @@ def existing_cluster(address: str) -> Generator[Any]:
             finally:
                 if client.status == "running":
                     with suppress(Exception):
-                        client.run(end_processes, TrialProcess.end, on_error="ignore")  # others may use the workers, too
+                        client.run(end_processes, on_error="ignore")
 
 
 def run_experiment(
@@ -238,8 +242,9 @@ def cluster_versions() -> dict[str, str]:
     return {**versions(), **{package: version(package) for package in PACKAGES}}
 
 
-_PROCESSES: dict[int, TrialProcess] = {}
-"""The process of each thread of a worker."""
+_PROCESSES: dict[tuple[str, int], TrialProcess] = {}
+"""The process of each thread of a worker, by the address of the worker, "" for none, and the thread. Several workers may be in this
+process."""
 _LOCK = threading.Lock()
 
 
@@ -255,33 +260,41 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
     Raises:
         ExperimentError: If the worker has other versions, or the experiment cannot be loaded.
     """
-    address = _worker_name()
+    name = _worker("name") or str(os.getpid())
     different = [
         f"{name} {cluster_versions().get(name, 'none')} (the client has {text})"
         for name, text in expected.items()
         if cluster_versions().get(name) != text
     ]
     if different:
-        raise ExperimentError(f"worker {address}: has other versions: {', '.join(different)}; install the same on both")
+        raise ExperimentError(f"worker {name}: has other versions: {', '.join(different)}; install the same on both")
     with _LOCK:
-        process = _PROCESSES.setdefault(threading.get_ident(), TrialProcess())
+        process = _PROCESSES.setdefault((_worker("address"), threading.get_ident()), TrialProcess())
     rows: list[tuple[int, Row, float]] = []
     for number in numbers:
         begin = time.perf_counter()
         row = process.run(specification, number, limit)
         rows.append((number, row, time.perf_counter() - begin))
-    return Batch(rows=rows, worker=address, about=process.about)
+    return Batch(rows=rows, worker=name, about=process.about)
 
 
-def end_processes(end: Callable[[TrialProcess], None]) -> None:
-    """Ends the processes that run trials: in the way that is given."""
+def end_processes() -> None:
+    """Ends all processes of this one that run trials; a trial of another client begins again."""
     with _LOCK:
-        while _PROCESSES:
-            end(_PROCESSES.popitem()[1])
+        for process in _PROCESSES.values():
+            process.end()
 
 
-def _worker_name() -> str:
+def _processes(addresses: Set[str], *, forget: bool = False) -> list[TrialProcess]:
+    """Returns the processes of some workers; the next batch of a worker gets the same one until it is forgotten."""
+    with _LOCK:
+        keys = [key for key in _PROCESSES if key[0] in addresses]
+        return [_PROCESSES.pop(key) if forget else _PROCESSES[key] for key in keys]
+
+
+def _worker(what: str) -> str:
+    """Returns a fact of the worker that runs this thread; "" outside of a cluster."""
     try:
-        return str(get_worker().name)
-    except ValueError:  # not on a cluster
-        return str(os.getpid())
+        return str(getattr(get_worker(), what))
+    except ValueError:
+        return ""

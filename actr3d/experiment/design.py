@@ -26,7 +26,7 @@ FAR = 1e-9
 MAX_TRIALS = 10_000_000
 """Maximum number of trials of an experiment."""
 LONGEST_NAME = 100
-"""Maximum number of characters of the name of a measure."""
+"""Maximum number of bytes of the name of a measure, in UTF-8."""
 OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
 """The columns of every table of trials, whatever the design."""
 
@@ -148,8 +148,8 @@ class Measured(Configuration):
             DesignError: If the name cannot be that of a column and of a file.
         """
         super().__post_init__()
-        if not 0 < len(self.name) <= LONGEST_NAME or "/" in self.name or not self.name.isprintable():
-            right = f"1 to {LONGEST_NAME} printable characters without '/'"
+        if not 0 < len(self.name.encode("utf-8", "surrogatepass")) <= LONGEST_NAME or "/" in self.name or not self.name.isprintable():
+            right = f"1 to {LONGEST_NAME} bytes of printable characters without '/'"
             raise DesignError(f"measure: its name must be {right} (got {self.name[:LONGEST_NAME]!r})", "measures")
 
     def columns(self, value: Any) -> dict[str, Any]:
@@ -207,7 +207,7 @@ class Design(Configuration):
     """The maximum wall time of a trial [s]: a trial that takes longer is ended, and counts as failed. The first one on a computer
     may have to compile the camera, which takes up to a minute."""
     human: str | None = None
-    """The name of the human data that the report shows beside the model's; see `actr3d.experiment.human_data`."""
+    """The name of human data of the library that the report shows beside the model's; see `actr3d.experiment.human_data`."""
     seed: int = 1
     """The seed of all that is drawn, and of all trials."""
 

@@ -208,7 +208,7 @@ class Fit:
             recover: The number of simulated data sets whose parameters are estimated.
 
         Raises:
-            ExperimentError: If no candidate has all means of the target.
+            ExperimentError: If no candidate has all means of the target, or an ablation is not NAME=VALUE.
             DesignError: If a held-out design or an ablated model does not fit the values; before anything runs.
         """
         lowest = {one.name: one.low for one in self._ranges}
@@ -368,7 +368,7 @@ class Fit:
         try:
             return self._experiment({**values, name: value})
         except DesignError as error:
-            raise DesignError(f"--ablate {change}: {error}", error.name) from None
+            raise DesignError(f"--ablate {change}: {str(error).removeprefix(f'--set {name}: ')}", error.name) from None
 
     def _ablated(self, change: str, values: Mapping[str, float]) -> Agreement:
         return self._compared("ablated", self._without(change, values))

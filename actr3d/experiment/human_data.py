@@ -3,8 +3,8 @@
 Both are CSV files (UTF-8, a line of names, then one row a line). Lines that begin with `#` are notes, which the report shows. Factors,
 groups and measures have the names that they have in the design and in the table of trials; `columns.csv` in the folder of an experiment
 lists them with their units. What the values of a measure are numbered by, such as `block`, is one more factor; the measure has its own
-name there, `latency` for `latency_1`, `latency_2`, and so on. A factor whose name is that of another column of published means, such as
-`n`, has an underscore added: `n_`.
+name there, `latency` for `latency_1`, `latency_2`, and so on. A level of a parameter of the model must be within its bounds. A factor
+whose name is that of another column of published means, such as `n`, has an underscore added: `n_`.
 An empty cell is a value that is missing.
 
 **Trials** have the columns
@@ -208,7 +208,8 @@ class _Reader:
         return None
 
     def _level(self, line: int, column: str, text: str, levels: Sequence[float] | Sequence[str]) -> float | str | None:
-        """Returns a level of a factor; a number need not be one of the levels of the design, because people can be drawn between them."""
+        """Returns a level of a factor. A number need not be one of the levels of the design, because people can be drawn between them, but
+        the model's parameter must allow it."""
         texts = [level for level in levels if isinstance(level, str)]
         if texts:
             return self._one_of(line, column, text, texts)

@@ -229,7 +229,8 @@ def specify(
     if human is not None and human not in people:
         with naming_the_line(source, chosen, {}):
             hint = alternatives(human, people, "the library has:")
-            raise DesignError(f"Design.human: the library has no human data '{human}'; give a file with --human{hint}", "human")
+            files = "a file is given to actr3d report --human, or actr3d fit --target"
+            raise DesignError(f"Design.human: must name human data of the library (got '{human}'; {files}){hint}", "human")
     return experiment
 
 

@@ -61,12 +61,12 @@ class TrialProcess:
         Raises:
             ExperimentError: If the experiment cannot be loaded, or `close` is called meanwhile.
         """
-        code = ""
+        loaded, code = False, ""
         with self._busy:
             for _ in range(ATTEMPTS):
-                self._load(specification)
+                loaded = self._load(specification)
                 try:
-                    answer = self._ask(json.dumps(number), limit)
+                    answer = self._ask(json.dumps(number), limit) if loaded else None
                 except TimeoutError:
                     self._end()
                     return {"end": TIME_LIMIT, "error": f"the trial took longer than its limit of {limit:g} s, and was ended"}
@@ -74,10 +74,12 @@ class TrialProcess:
                     self.about |= answer["about"]
                     return answer["row"]
                 code = self._code()
-            return {"end": "crash", "error": f"the trial ended its own process {code}"}
+        if not loaded:
+            raise ExperimentError(f"the process that loads the experiment ended {code}")
+        return {"end": "crash", "error": f"the trial ended its own process {code}"}
 
     def end(self) -> None:
-        """Ends the process, from any thread; a trial that runs there begins again in another one."""
+        """Ends the process, from any thread; what it loads or runs begins again in another one."""
         process = self._process
         if process is not None:
             with suppress(ProcessLookupError):
@@ -118,8 +120,9 @@ class TrialProcess:
                     with suppress(OSError):
                         pipe.close()
 
-    def _load(self, specification: str) -> None:
-        """Starts the process if there is none, and loads an experiment there if it is not the loaded one."""
+    def _load(self, specification: str) -> bool:
+        """Starts the process if there is none, and loads an experiment there if it is not the loaded one; returns whether the process
+        has not ended meanwhile."""
         self._check_open()
         if self._process is None:
             # The order of sets of texts is the same in every process.
@@ -131,7 +134,7 @@ class TrialProcess:
             )
             self._check_open()
         elif specification == self._loaded:
-            return
+            return True
         self._loaded, self.about = None, {}
         try:
             answer = self._ask(json.dumps(specification), START)
@@ -139,11 +142,12 @@ class TrialProcess:
             self._end()
             raise ExperimentError(f"the experiment did not load within {START:g} s") from None
         if answer is None:
-            raise ExperimentError(f"the process that loads the experiment ended {self._code()}")
+            return False
         if "failed" in answer:
             self._end()
             raise ExperimentError(answer["failed"])
         self._loaded = specification
+        return True
 
     def _ask(self, line: str, limit: float) -> Any:
         """Sends a line and returns the answer; None if the process has ended.

@@ -142,10 +142,11 @@ def test_values_are_derived_from_others() -> None:
         ({"settings": {"fixed": math.inf}}, r"Design\.settings\['fixed'\]: must be finite \(got inf\)"),
         ({"factors": {}, "derive": without_value}, r"Design\.derive\['x'\]: must be finite \(got nan\)"),
         ({"groups": {}}, r"Design\.groups: must have at least one group \(got \{\}\)"),
-        ({"measures": ["m/s"]}, r"measure: its name must be 1 to 100 printable characters without '/' \(got 'm/s'\)"),
+        ({"measures": ["m/s"]}, r"measure: its name must be 1 to 100 bytes of printable characters without '/' \(got 'm/s'\)"),
         ({"measures": [""]}, r"measure: its name must be"),
         ({"measures": ["a\0"]}, r"measure: its name must be"),
         ({"measures": ["a" * 101]}, r"measure: its name must be"),
+        ({"measures": ["速" * 40]}, r"measure: its name must be"),
         ({"groups": {"a": 3}}, r"Design\.groups\['a'\]: must be a Group \(got 3\)"),
     ],
 )
@@ -291,7 +292,7 @@ def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_run
         ),
         (
             "from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(measures=['n'],\n    human='fan_efect')\n",
-            r"d\.py:6: Design\.human: the library has no human data 'fan_efect'; give a file with --human; did you mean 'fan_effect'\?",
+            r"d\.py:6: Design\.human: must name human data of the library \(got 'fan_efect'; .*\); did you mean 'fan_effect'\?",
         ),
     ],
 )

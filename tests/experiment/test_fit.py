@@ -122,7 +122,7 @@ def test_held_out_designs_that_the_values_do_not_fit_are_refused_before_anything
 
 
 @pytest.mark.parametrize(
-    ("change", "says"), [("slope", r"--ablate: must be NAME=VALUE"), ("slop=0", r"--ablate slop=0: --set slop: Design: the model has no")]
+    ("change", "says"), [("slope", r"--ablate: must be NAME=VALUE"), ("slop=0", r"--ablate slop=0: Design: the model has no")]
 )
 def test_ablated_models_that_cannot_be_are_refused_before_anything_runs(tmp_path: Path, change: str, says: str) -> None:
     with pytest.raises(Actr3dError, match=says):

@@ -14,6 +14,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -121,7 +122,25 @@ def test_a_process_ends_while_a_trial_runs_which_then_begins_again_or_has_no_row
             assert trial.result(30)["end"] == "end"
     assert begun.read_text() == ("x" if end is TrialProcess.close else "xx")
     process.close()
-    assert trial_processes() <= before
+    assert trial_processes() == before
+
+
+def test_a_process_that_ends_while_it_loads_an_experiment_loads_it_again(tmp_path: Path) -> None:
+    begun = tmp_path / "begun"
+    path = write_experiment(tmp_path)
+    text = path.read_text(encoding="utf-8")
+    path.write_text(f"import os, time\n{text}", encoding="utf-8")
+    specification = specify(str(path)).specification
+    waiting = f"import os, time\nif not os.path.exists({str(begun)!r}):\n    open({str(begun)!r}, 'w').close()\n    time.sleep(60)\n{text}"
+    slow = replace(specification, design=replace(specification.design, text=waiting)).to_json()
+    process = TrialProcess()
+    with ThreadPoolExecutor(1) as pool:
+        trial = pool.submit(process.run, slow, 0, 60)
+        while not begun.exists():
+            time.sleep(0.02)
+        process.end()
+        assert trial.result(30)["end"] == "end"
+    process.close()
 
 
 def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:

@@ -175,7 +175,10 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
 def _constraints(constraints: Sequence[Constraint]) -> Table:
     words = {True: "met", False: "not met", None: "not testable"}
     rows = [{"number": str(one.number), "constraint": one.says, "result": words[one.met], "found": one.found} for one in constraints]
-    note = "As in the manual, «Human data and sources». Participants are the unit; the critical ratio of 4 is that of all trials of a cell."
+    note = (
+        "As in the manual, «Human data and sources». Participants are the unit; for the fourth, the critical ratio of a cell is that of "
+        "all its trials."
+    )
     return Table(name="constraints", title="The nine constraints", frame=pandas().DataFrame(rows), note=note)
 
 
