@@ -65,7 +65,7 @@ def counting():
 
 def _aperture(folder: Path) -> list[Figure]:
     """Returns the cost of trials of the aperture model as multiples of their physics, and of all trials of the paper's design."""
-    plain, count = _Sample("descriptive"), iter(range(1_000_000))
+    plain, count = _Trials("descriptive"), iter(range(1_000_000))
 
     def recorded() -> None:
         with printing_to(ModelOutput(lambda _: None)):
@@ -74,7 +74,7 @@ def _aperture(folder: Path) -> list[Figure]:
 
     costs = [plain.cost(work) for work in (plain.run, recorded)]
     minutes = processor_time_of(plain.run) / SAMPLE * len(plain.experiment.design) / (os.cpu_count() or 1) / 60
-    predictive = _Sample("predictive")
+    predictive = _Trials("predictive")
     return [
         Figure(name="a trial", value=costs[0], sense="at most", bar=3, what="processor time of a trial / bare mj_step of its ticks"),
         Figure(name="a recorded trial", value=costs[1], sense="at most", bar=3, what="the same with a recording"),
@@ -89,7 +89,7 @@ def _aperture(folder: Path) -> list[Figure]:
     ]
 
 
-class _Sample:
+class _Trials:
     """Some trials of the paper's design.
 
     Args:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.page import choose, drawn, open_tab, shows, until
+from tests.helpers.page import becomes_true, choose, drawn, open_tab, shows, until
 from tests.helpers.workbench_server import MODELS, Served
 
 ENDED = """async () => {
@@ -366,7 +366,7 @@ def test_a_value_of_a_parameter_that_has_another_name_now_is_left_out_by_a_resta
     page.get_by_label("width", exact=True).fill("0.9")
     page.get_by_role("button", name="Restart with these").click()
     # The doorway is 90 cm wide at once, as the parameter is live; the file may change only when the restart has read it.
-    page.wait_for_function("async () => (await part('store.js')).session.value.settings.width === 0.9", polling=50)
+    becomes_true(page, "async () => (await part('store.js')).session.value.settings.width === 0.9")
     shows(page, "#status", "at its start")
     version = workbench.get("/api/model?path=renamed.py").json()["version"]
     assert workbench.put("/api/model", {"path": "renamed.py", "text": renamed(source), "version": version}).status_code == 200

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import pytest
 from playwright.sync_api import FloatRect, Page, expect
 
-from tests.helpers.page import drawn, shows, until
+from tests.helpers.page import becomes_true, drawn, shows, until
 from tests.helpers.workbench_server import Served
 
 NAMES = 150
@@ -79,7 +79,7 @@ def ended(pages: Callable[..., Page]) -> Page:
     )
     expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"))
     # Curves come by a request of their own, after the events.
-    page.wait_for_function("async () => (await part('timeline/curves.js')).plots.value.some(({ title }) => title === 'speed')", polling=50)
+    becomes_true(page, "async () => (await part('timeline/curves.js')).plots.value.some(({ title }) => title === 'speed')")
     return page
 
 
@@ -593,7 +593,7 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
     (workbench.folder / "counts.py").write_text(COUNTS, encoding="utf-8")
     page = pages("counts.py", height=1000)
     page.get_by_role("button", name="Run", exact=True).click()
-    page.wait_for_function("async () => (await part('store.js')).state.value?.status === 'ended'", polling=50)
+    becomes_true(page, "async () => (await part('store.js')).state.value?.status === 'ended'")
     page.get_by_role("button", name="Curves …").click()
     choice = page.get_by_role("dialog")
     for name in ("goal.at", "memory latency", "memory busy"):

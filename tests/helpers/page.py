@@ -167,6 +167,11 @@ def until(page: Page, condition: Callable[[], bool]) -> None:
         page.wait_for_timeout(50)
 
 
+def becomes_true(page: Page, question: str) -> None:
+    """Waits until an asynchronous function of JavaScript returns something true: to `wait_for_function`, any promise is true."""
+    until(page, lambda: bool(page.evaluate(question)))
+
+
 def answer_to(route: Route) -> APIResponse:
     """Returns what the server answers to a request of the page.
 
