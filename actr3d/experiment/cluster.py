@@ -10,7 +10,7 @@ import logging
 import os
 import threading
 import time
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
@@ -85,9 +85,10 @@ def local_cluster(workers: int) -> Generator[Any]:
             with Client(cluster) as client:
                 yield client
         finally:
-            for process in _processes(addresses):
+            with _LOCK:
+                own = [process for (address, _), process in _PROCESSES.items() if address in addresses]
+            for process in own:
                 process.close()  # a trial may run that nobody waits for any more
-    _processes(addresses, forget=True)
 
 
 @contextmanager
@@ -244,7 +245,7 @@ def cluster_versions() -> dict[str, str]:
 
 _PROCESSES: dict[tuple[str, int], TrialProcess] = {}
 """The process of each thread of a worker, by the address of the worker, "" for none, and the thread. Several workers may be in this
-process."""
+process. One that is closed stays, so that a batch which is still on its way begins no other."""
 _LOCK = threading.Lock()
 
 
@@ -260,14 +261,14 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
     Raises:
         ExperimentError: If the worker has other versions, or the experiment cannot be loaded.
     """
-    name = _worker("name") or str(os.getpid())
+    worker = _worker("name") or str(os.getpid())
     different = [
         f"{name} {cluster_versions().get(name, 'none')} (the client has {text})"
         for name, text in expected.items()
         if cluster_versions().get(name) != text
     ]
     if different:
-        raise ExperimentError(f"worker {name}: has other versions: {', '.join(different)}; install the same on both")
+        raise ExperimentError(f"worker {worker}: has other versions: {', '.join(different)}; install the same on both")
     with _LOCK:
         process = _PROCESSES.setdefault((_worker("address"), threading.get_ident()), TrialProcess())
     rows: list[tuple[int, Row, float]] = []
@@ -275,7 +276,7 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
         begin = time.perf_counter()
         row = process.run(specification, number, limit)
         rows.append((number, row, time.perf_counter() - begin))
-    return Batch(rows=rows, worker=name, about=process.about)
+    return Batch(rows=rows, worker=worker, about=process.about)
 
 
 def end_processes() -> None:
@@ -283,13 +284,6 @@ def end_processes() -> None:
     with _LOCK:
         for process in _PROCESSES.values():
             process.end()
-
-
-def _processes(addresses: Set[str], *, forget: bool = False) -> list[TrialProcess]:
-    """Returns the processes of some workers; the next batch of a worker gets the same one until it is forgotten."""
-    with _LOCK:
-        keys = [key for key in _PROCESSES if key[0] in addresses]
-        return [_PROCESSES.pop(key) if forget else _PROCESSES[key] for key in keys]
 
 
 def _worker(what: str) -> str:

@@ -231,7 +231,7 @@ class Fit:
             fit=agreement(self._means[best], self.target),
             candidates=candidates,
             held_out={name: self._held_out(name, target, values) for name, target in (hold_out or {}).items()},
-            ablated={change: self._ablated(change, values) for change in ablate},
+            ablated={change: self._compared("ablated", self._without(change, values)) for change in ablate},
             recovered=tuple(self._recover(number) for number in range(recover)),
         )
 
@@ -369,9 +369,6 @@ class Fit:
             return self._experiment({**values, name: value})
         except DesignError as error:
             raise DesignError(f"--ablate {change}: {str(error).removeprefix(f'--set {name}: ')}", error.name) from None
-
-    def _ablated(self, change: str, values: Mapping[str, float]) -> Agreement:
-        return self._compared("ablated", self._without(change, values))
 
     def _recover(self, number: int) -> dict[str, float]:
         """Simulates data with known parameters, and estimates these from the candidates.

@@ -109,7 +109,7 @@ class TrialProcess:
 
     def _end(self) -> None:
         """Ends the process, and those that it has started."""
-        process, self._process = self._process, None
+        process, self._process, self._loaded = self._process, None, None
         if process is not None:
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
