@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Dialog, Page, Route, expect
+from playwright.sync_api import Dialog, Page, expect
 
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.experiment.specification import specify
 from actr3d.experiment.trial import run_trial
-from tests.helpers.page import answer_to, choose, drawn, open_tab, shows, until
+from tests.helpers.page import choose, drawn, holding, open_tab, shows, until
 from tests.helpers.workbench_server import Served, served
 
 CODE = ".code .cm-content"
@@ -360,15 +360,21 @@ def test_files_are_copied_renamed_and_deleted_while_one_runs(
     assert not (workbench.folder / "sub" / "second.py").exists()
 
 
+def long_after_short(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> Page:
+    """Opens a short text and then a long one; from now on, the short one is shown at once."""
+    written("long.py", "production = 1\n" * 300)
+    written("short.py", "y = 2\n")
+    page = pages("counting.py")
+    edit(page, "short.py")
+    edit(page, "long.py")
+    return page
+
+
 @pytest.mark.slow
 def test_another_text_is_shown_while_completions_of_a_longer_one_are_open(
     pages: Callable[..., Page], written: Callable[[str, str], Path]
 ) -> None:
-    written("long.py", "production = 1\n" * 300)
-    written("short.py", "y = 2\n")
-    page = pages("counting.py")
-    edit(page, "short.py")  # from now on it is shown at once
-    edit(page, "long.py")
+    page = long_after_short(pages, written)
     write(page, "produ")
     page.keyboard.press("Control+Space")
     expect(page.locator(".cm-tooltip-autocomplete")).to_be_visible()
@@ -391,30 +397,15 @@ def test_another_text_is_shown_while_completions_of_a_longer_one_are_open(
 def test_completions_that_come_after_another_text_is_shown_are_not_for_that_one(
     pages: Callable[..., Page], written: Callable[[str, str], Path]
 ) -> None:
-    written("long.py", "production = 1\n" * 300)
-    written("short.py", "y = 2\n")
-    page = pages("counting.py")
-    edit(page, "short.py")
-    edit(page, "long.py")
+    page = long_after_short(pages, written)
     with page.expect_response("**/api/language"):
         page.locator(CODE).focus()  # the server loads what it needs, once
-    late: list[Route] = []
-
-    def keep(route: Route) -> None:
-        if '"ask":"complete"' in (route.request.post_data or ""):
-            late.append(route)
-        else:
-            route.fallback()
-
-    page.route("**/api/language", keep)
-    write(page, "produ")
-    page.keyboard.press("Control+Space")
-    until(page, lambda: bool(late))
-    page.get_by_label("File", exact=True).select_option("short.py")
-    expect(page.locator(CODE)).to_have_text("y = 2")
-    for route in late:
-        route.fulfill(response=answer_to(route))
-    late.clear()
+    with holding(page, "**/api/language", lambda request: '"ask":"complete"' in (request.post_data or "")) as held:
+        write(page, "produ")
+        page.keyboard.press("Control+Space")
+        until(page, lambda: bool(held))
+        page.get_by_label("File", exact=True).select_option("short.py")
+        expect(page.locator(CODE)).to_have_text("y = 2")
     page.wait_for_timeout(200)  # it would be shown now
     expect(page.locator(".cm-tooltip-autocomplete")).to_have_count(0)
     write(page, "\nx = 1\n")

@@ -7,12 +7,11 @@ import re
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import pytest
 from playwright.sync_api import Page, Request, Route, WebSocketRoute, expect
 
-from tests.helpers.page import answer_to, choose, drawn, duplicate, open_tab, shows, until
+from tests.helpers.page import choose, drawn, duplicate, holding, open_tab, shows, until
 from tests.helpers.workbench_server import Served
 
 CODE = ".code .cm-content"
@@ -77,25 +76,6 @@ class Requests:
         self._on = False
         for route in self.held:
             route.continue_()
-
-
-@contextmanager
-def holding(page: Page, where: str, wanted: Callable[[Request], bool]) -> Generator[None]:
-    """Holds back what the server answers to such requests; it has done what they ask for."""
-    held: list[tuple[Route, Any]] = []
-
-    def hold(route: Route) -> None:
-        if wanted(route.request):
-            held.append((route, answer_to(route)))
-        else:
-            route.continue_()
-
-    page.route(where, hold)
-    yield
-    until(page, lambda: bool(held))
-    for route, response in held:
-        route.fulfill(response=response)
-    page.unroute(where)
 
 
 def is_put(request: Request) -> bool:

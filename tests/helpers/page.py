@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import pytest
-from playwright.sync_api import APIResponse, Browser, ConsoleMessage, Error, Page, Route, expect, sync_playwright
+from playwright.sync_api import APIResponse, Browser, ConsoleMessage, Error, Page, Request, Route, expect, sync_playwright
 
 PATIENCE = 60_000
 """Maximum time that a test waits [ms]; machines are slow at times."""
@@ -179,6 +179,25 @@ def answer_to(route: Route) -> APIResponse:
     the request again on a new connection; Playwright must be told to.
     """
     return route.fetch(max_retries=1)
+
+
+@contextmanager
+def holding(page: Page, where: str, wanted: Callable[[Request], bool]) -> Generator[list[tuple[Route, APIResponse]]]:
+    """Holds back what the server answers to such requests, which it has done; yields those that are held until now."""
+    held: list[tuple[Route, APIResponse]] = []
+
+    def hold(route: Route) -> None:
+        if wanted(route.request):
+            held.append((route, answer_to(route)))
+        else:
+            route.continue_()
+
+    page.route(where, hold)
+    yield held
+    until(page, lambda: bool(held))
+    for route, response in held:
+        route.fulfill(response=response)
+    page.unroute(where)
 
 
 def drawn(page: Page) -> None:
