@@ -11,7 +11,7 @@ import tempfile
 import threading
 import time
 import tracemalloc
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import islice
 from pathlib import Path
 from statistics import median
@@ -102,8 +102,7 @@ class _Trials:
         self.experiment = Experiment(specification, self.helpers)
         step = len(self.experiment.design) // SAMPLE
         self.trials = [self.experiment.design.trial(number * step) for number in range(SAMPLE)]
-        ends = [run_trial(self.experiment, trial, self.helpers)["time_s"] for trial in self.trials]
-        self._physics = _physics(self.experiment, sum(round(end / _timestep(self.experiment)) for end in ends))
+        self._physics = _physics(self.experiment, [run_trial(self.experiment, trial, self.helpers)["time_s"] for trial in self.trials])
 
     def run(self) -> None:
         """Runs the trials."""
@@ -115,16 +114,11 @@ class _Trials:
         return ratio(lambda: processor_time_of(work), lambda: processor_time_of(self._physics), 3)
 
 
-def _timestep(experiment: Experiment) -> float:
-    """Returns the length of a physics step of the model [s]."""
+def _physics(experiment: Experiment, ends: Sequence[float]) -> Callable[[], None]:
+    """Returns a function that makes as many bare physics steps as trials that end at some times [s]."""
     assert experiment.blueprint is not None
     simulation, _ = experiment.blueprint.build(parameters_for(experiment, experiment.design.trial(0)))
-    return float(simulation.world.mj_model.opt.timestep)
-
-
-def _physics(experiment: Experiment, steps: int) -> Any:
-    assert experiment.blueprint is not None
-    simulation, _ = experiment.blueprint.build(parameters_for(experiment, experiment.design.trial(0)))
+    steps = sum(round(end / simulation.world.mj_model.opt.timestep) for end in ends)
     simulation.run(2)
     model, data = simulation.world.mj_model, simulation.world.mj_data
 
