@@ -1,4 +1,4 @@
-"""Builds the wheel, installs it into an empty environment elsewhere, and starts the workbench there: `uv run python tests/wheel.py`.
+"""Builds the wheel, installs it into an empty environment elsewhere, and starts the workbench there: `uv run python -m tests.wheel`.
 
 Packages come from the user's cache where they are there. Its exit code is 1 where anything is missing.
 """
@@ -16,9 +16,8 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).parents[1]
-SITE = ROOT / "build" / "site"
-"""The built manual."""
+from tests.helpers.manual_site import ROOT, SITE, built_manual
+
 PATIENCE = 300.0
 """Maximum time that a test waits for the workbench to start, or for a model to end [s]: the camera is compiled there for the first time."""
 
@@ -28,7 +27,7 @@ def main() -> int:
     begin = time.monotonic()
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
-        _run(sys.executable, "-m", "mkdocs", "build", "--config-file", str(ROOT / "mkdocs.yml"))
+        built_manual()
         _run("uv", "build", "--quiet", "--wheel", "--out-dir", str(folder / "dist"), str(ROOT))
         (wheel,) = (folder / "dist").glob("*.whl")
         _complete(wheel)

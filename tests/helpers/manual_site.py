@@ -1,0 +1,29 @@
+"""The manual as a site, built once for all who need it."""
+
+from __future__ import annotations
+
+import fcntl
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+SITE = ROOT / "build" / "site"
+SOURCES = ("docs", "actr3d", "models", "workbench", "static", "mkdocs.yml", "CHANGELOG.md")
+"""Folders and files that the manual is made of."""
+
+
+def built_manual() -> Path:
+    """Builds the manual unless it is newer than its sources; a warning, such as of a broken link or a missing docstring, fails.
+
+    Of two processes that want it at once, one builds it and the other waits.
+    """
+    SITE.parent.mkdir(exist_ok=True)
+    with (SITE.parent / "manual.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        made = SITE / "sitemap.xml"  # written last
+        listed = subprocess.run(["git", "ls-files", "-z", *SOURCES], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        changed = max(path.stat().st_mtime for name in listed.split("\0") if name and (path := ROOT / name).exists())
+        if not made.exists() or made.stat().st_mtime <= changed:
+            subprocess.run([sys.executable, "-m", "mkdocs", "build", "--quiet"], cwd=ROOT, check=True, timeout=600)
+    return SITE
