@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits
+from actr3d.actr.lint.checks import unchecked
 from actr3d.actr.loading import run_text
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
@@ -44,7 +45,7 @@ def run_trial(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> Row
         helpers: Provides the helper modules of the model; see `Specification.sealed`.
     """
     try:
-        with printing_to(ModelOutput(lambda _: None)):
+        with printing_to(ModelOutput(lambda _: None)), unchecked():
             end, measures = _run(experiment, trial, helpers)
         return {**_checked(measures, experiment, trial), "end": end, "error": None}
     except KeyboardInterrupt:

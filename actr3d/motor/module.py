@@ -490,11 +490,11 @@ class Motor(WithParameters, Port):
 
     # -- feeling
 
-    def _ask(self) -> None:
-        """Requests a reading of the posture at the end of this tick, once."""
+    def _ask(self, *, by_itself: bool = False) -> None:
+        """Requests a reading of the posture at the end of this tick, once; `by_itself` if no line of the modeller's is running."""
         if not self._asked:
             self._asked = True
-            self._inquire("proprioception")
+            self._inquire("proprioception", by_itself=by_itself)
 
     def _feel(self, reading: Proprioception) -> None:
         """Processes a reading: updates the felt body, ends movements that are over, and stores postures."""
@@ -522,7 +522,7 @@ class Motor(WithParameters, Port):
                 self._halt([key], self._under_way[key].site, dict(over)[key])
         self._remember(limbs, ended)
         if any(movement.begun for movement in self._under_way.values()):
-            self._ask()
+            self._ask(by_itself=True)
 
     def _update(self, limbs: Limbs, reading: Proprioception, felt: Mapping[str, float]) -> None:
         """Updates the felt positions of some joints, and the felt size of the body."""

@@ -461,8 +461,22 @@ class MethodWrapper:
         self.func = func
         self._method = MethodType(func, obj)
         self.__name__ = name
-        self.begins = Trigger(f"{name} begin")
-        self.ends = Trigger(f"{name} end")
+        self._begins: Trigger | None = None
+        self._ends: Trigger | None = None
+
+    @property
+    def begins(self) -> Trigger:
+        """Wakes what waits for the beginning of a call. Few methods are waited for: triggers are made when they are needed."""
+        if self._begins is None:
+            self._begins = Trigger(f"{self.__name__} begin")
+        return self._begins
+
+    @property
+    def ends(self) -> Trigger:
+        """Wakes what waits for the end of a call."""
+        if self._ends is None:
+            self._ends = Trigger(f"{self.__name__} end")
+        return self._ends
 
     @property
     def default_trigger(self) -> Trigger:
@@ -474,12 +488,14 @@ class MethodWrapper:
         return self.obj.__dict__.get("_profile")
 
     def __call__(self, *args: Any, **keys: Any) -> Any:
-        if self.begins.waiting:
-            self.obj.sch.trigger(self.begins)
+        self._wake(self._begins)
         value = self._method(*args, **keys)
-        if self.ends.waiting:
-            self.obj.sch.trigger(self.ends)
+        self._wake(self._ends)
         return value
+
+    def _wake(self, trigger: Trigger | None) -> None:
+        if trigger is not None and trigger.waiting:
+            self.obj.sch.trigger(trigger)
 
     def __repr__(self) -> str:
         return f"<method {self.func.__qualname__}>"
@@ -494,8 +510,7 @@ class GeneratorWrapper(MethodWrapper):
 
     def _steps(self, args: tuple[Any, ...], keys: dict[str, Any], caller: Caller | None, called_us: int) -> Generator[Any, Any, None]:
         """Runs the method and fires its triggers; an error in it names its caller and the time of the call [us]."""
-        if self.begins.waiting:
-            self.obj.sch.trigger(self.begins)
+        self._wake(self._begins)
         try:
             yield from self.func(self.obj, *args, **keys)
         except Exception as error:
@@ -505,8 +520,7 @@ class GeneratorWrapper(MethodWrapper):
                     f"at {seconds(called_us):g} s{hint_for(error, self.func.__globals__)}"
                 )
             raise
-        if self.ends.waiting:
-            self.obj.sch.trigger(self.ends)
+        self._wake(self._ends)
 
 
 # -- the trace of a run

@@ -7,7 +7,9 @@ reads nothing whose reading could.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from weakref import WeakSet
 
 from actr3d.actr.kernel.class_members import is_modellers
@@ -21,6 +23,17 @@ from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
 
 _CHECKED: WeakSet[type] = WeakSet()
 _CHECKED_CLASSES: WeakSet[type] = WeakSet()
+_WANTED: ContextVar[bool] = ContextVar("_WANTED", default=True)
+
+
+@contextmanager
+def unchecked() -> Iterator[None]:
+    """Lets agents begin without checks within the block, where nobody reads warnings."""
+    before = _WANTED.set(False)
+    try:
+        yield
+    finally:
+        _WANTED.reset(before)
 
 
 def check_agent(system: ProductionSystem) -> Callable[[], None] | None:
@@ -28,9 +41,9 @@ def check_agent(system: ProductionSystem) -> Callable[[], None] | None:
 
     Returns:
         The check of names and values in patterns, for when the methods without parameters have run; None if the class has been
-        checked before.
+        checked before, or within `unchecked`.
     """
-    if type(system) in _CHECKED:
+    if type(system) in _CHECKED or not _WANTED.get():
         return None
     _CHECKED.add(type(system))
     rules = rules_of(system)

@@ -110,11 +110,14 @@ class Port(Model):
         self._trace_request("set", word=command, **_given(values, named))
         embodiment.outbox.append(Request(embodiment.body, command, values, named, site or self._call_site(), self))
 
-    def _inquire(self, sensor: str, values: tuple[Any, ...] = (), options: Mapping[str, Any] | None = None, **how: bool) -> Reading:
-        """Asks the body for what it senses."""
+    def _inquire(
+        self, sensor: str, values: tuple[Any, ...] = (), options: Mapping[str, Any] | None = None, *, by_itself: bool = False, **how: bool
+    ) -> Reading:
+        """Asks the body for what it senses; `by_itself` if no line of the modeller's is running."""
         embodiment = self._joined(sensor)
         reading = Reading(sensor)
-        embodiment.outbox.append(Request(embodiment.body, sensor, values, options or {}, self._call_site(), self, reading, **how))
+        site = None if by_itself else self._call_site()
+        embodiment.outbox.append(Request(embodiment.body, sensor, values, options or {}, site, self, reading, **how))
         return reading
 
     def _call_site(self) -> CallSite | None:

@@ -174,11 +174,13 @@ class Passage:
             ago: By how much the joints are ahead of the geometry [s].
         """
         before, angle, logged = posture()(self._axis, *self._shoulders, self._qpos, self._qvel, *self._turning, *self._middle, ago)
-        touches = self._contacts.touches()
-        forces = [touch.force for touch in touches]
-        pairs = frozenset([(touch.part, touch.other) for touch in touches]) if touches else _NONE
         room = self._room(time) if abs(before) < self._reach else None
-        return _Sample(time, before, angle, logged, room, pairs, max(forces, default=0.0), sum(forces) * ago)
+        touches = self._contacts.touches()
+        if not touches:
+            return _Sample(time, before, angle, logged, room, _NONE, 0.0, 0.0)
+        forces = [touch.force for touch in touches]
+        pairs = frozenset([(touch.part, touch.other) for touch in touches])
+        return _Sample(time, before, angle, logged, room, pairs, max(forces), sum(forces) * ago)
 
     def _room(self, time: float) -> tuple[float, float] | None:
         """Returns the distances to the wall on both sides [m]; None if no part of the body is in the doorway, or could be there yet."""
