@@ -7,7 +7,7 @@ reads nothing whose reading could.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from weakref import WeakSet
@@ -27,7 +27,7 @@ _WANTED: ContextVar[bool] = ContextVar("_WANTED", default=True)
 
 
 @contextmanager
-def unchecked() -> Iterator[None]:
+def unchecked() -> Generator[None]:
     """Lets agents begin without checks within the block, where nobody reads warnings."""
     before = _WANTED.set(False)
     try:
