@@ -126,14 +126,16 @@ export async function showModel(model, { run = false } = {}) {
   }
 }
 
-/** Shows a recording: the session that replays it, or a new one. With `trust` its code runs regardless of its origin. */
-export async function showRecording(id, trust = false) {
+/** Shows a recording: the session that replays it, or a new one. With `trust` its code runs regardless of its origin; with `run` it goes on. */
+export async function showRecording(id, { trust = false, run = false } = {}) {
   const wanted = wish();
   const waits = opening.peek() === null && session.peek() === null;
   if (waits) opening.value = { text: `The recording ${id} is being opened …`, slow: false };
   try {
     const found = await call("POST", `/api/recordings/${encodeURIComponent(id)}/open`, { real_time: true, trust });
-    if (wanted()) show(found.id);
+    if (!wanted()) return;
+    show(found.id);
+    if (run) order({ type: "run" });
   } catch (error) {
     if (wanted() && waits) opening.value = null;
     throw error;
@@ -154,7 +156,7 @@ function connect() {
   };
   socket.onmessage = ({ data }) => {
     const message = JSON.parse(data);
-    if (message.type === "refused") complain(message.error);
+    if (message.type === "refused") refused(message);
     if (message.type !== "update" || message.of !== shown) return; // messages of the previously shown session may still arrive
     held.push(message);
     // A pause of the run is shown at once.
@@ -166,6 +168,21 @@ function connect() {
     abandon(() => new Error(reason ? `the workbench ended the connection: ${reason}` : "the connection was lost"));
     setTimeout(connect, AGAIN);
   };
+}
+
+/** Deals with what the server does not do: a session that was ended while there was no connection is opened again. */
+function refused({ error, id, session: asked }) {
+  const { reject } = waiting.get(id) ?? {};
+  waiting.delete(id);
+  if (reject) reject(new Error(error));
+  else if (asked === undefined || asked !== shown || session.peek() === null) complain(error);
+  else {
+    const { model, recorded } = session.peek();
+    leave();
+    const why = `The run of ${model} was ended while this page had no connection`;
+    const opened = recorded === null ? showModel(model) : showRecording(recorded);
+    opened.then(() => complain(`${why}. It is opened again, from its start.`), (problem) => complain(`${why}. It cannot be opened again: ${problem.message}`));
+  }
 }
 
 /** Applies the received updates as soon as drawing is allowed. */

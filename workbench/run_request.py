@@ -57,6 +57,15 @@ def start_of(path: Path, options: RunOptions, **more: Any) -> Start:
     return Start(path=str(path), folder=str(path.parent), settings=options.settings, seed=seed, run=options.run, **more)
 
 
+def version_of(path: Path) -> str | None:
+    """Returns the version of the text that a model's file has now; None if it cannot be read."""
+    try:
+        # Reading something other than a regular file may never end.
+        return digest_of(read_source(path)) if path.is_file() else None
+    except (Actr3dError, OSError):
+        return None
+
+
 class LaunchedRun:
     """Holds a run and its worker, from the moment the run is started, and the versions of the texts that it is made from.
 

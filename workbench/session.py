@@ -18,7 +18,7 @@ from workbench.overlays import ViewSettings
 from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
 from workbench.retention import erase
-from workbench.run_request import LaunchedRun, RunOptions, start_of
+from workbench.run_request import LaunchedRun, RunOptions, start_of, version_of
 from workbench.worker.messages import ENDED, At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import LAST_WORDS, Receiver, WorkerMonitor
@@ -211,16 +211,18 @@ class Session(Broadcast, Receiver):
 
     def _swap(self, launched: LaunchedRun, facts: Facts) -> None:
         """Shows a newly built run in place of the previous one."""
-        before, worker = self._shown, self._worker
+        before, worker, spare = self._shown, self._worker, self.spare_recording
         self._shown, self._loading = launched, None
         useless = None
         if before is not None:
             # A run that waits at its start may not have sent its first state yet.
             waits = self.state is None and not before.start.run
             useless = before.start.record if waits or never_begun(self.state, self.log) else None
-        useless = useless or (None if self.spare_recording is None else str(self.spare_recording))
-        if before is not None and worker is not None:
+        useless = useless or (None if spare is None else str(spare))
+        if worker is not None:
             self._leave(worker, useless)
+        elif useless is not None:
+            erase(Path(useless))
         self.run += 1
         self.epoch += 1
         self.log = EventLog()
@@ -450,6 +452,7 @@ class Session(Broadcast, Receiver):
             "seed": None if facts is None else _exactly(facts.seed),
             "stale": self._shown is not None and self._shown.is_stale(self.path),
             "gone": not self.path.is_file(),
+            "text": version_of(self.path),
             "attempt": self._attempt,
             "shown_attempt": start.attempt if start is not None else None,
             "version": start.version if start is not None else None,

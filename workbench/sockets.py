@@ -125,14 +125,14 @@ class _Page:
                     try:
                         session = self._sessions.get(attach.session)
                     except Actr3dError as error:
-                        await self._refuse(str(error))
+                        await self._refuse(str(error), session=attach.session)
                         continue
                     self._name = attach.page or self._name
                     joined: Feed = session.join(self._name)
                     joined.resume(attach.run, attach.epoch, attach.events)
                     feed, sending = joined, asyncio.create_task(self._send(joined))
                 elif feed is None:
-                    await self._refuse(problem or "say first which session is shown: attach")
+                    await self._refuse(problem or "say first which session is shown: attach", id=_number_of(text))
                 elif request is not None and len(self._tasks) < MAX_AT_ONCE:
                     task = asyncio.create_task(self._carry_out(session, feed, request))
                     self._tasks.add(task)
@@ -154,8 +154,9 @@ class _Page:
         reply = await request.command.submit(session, self._name)
         feed.reply(_reply(request.id, reply.result, reply.error))
 
-    async def _refuse(self, problem: str) -> None:
-        await self._websocket.send_text(msgspec.json.encode({"type": "refused", "error": problem}).decode())
+    async def _refuse(self, problem: str, **what: str | int | None) -> None:
+        """Says why something is not done: the `id` of a request, or the `session` that cannot be shown."""
+        await self._websocket.send_text(msgspec.json.encode({"type": "refused", "error": problem, **what}).decode())
 
 
 def _reply(number: int | None, result: bytes = b"null", error: str | None = None) -> bytes:

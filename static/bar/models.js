@@ -49,10 +49,10 @@ export async function choose(path) {
 }
 
 /** Shows a recording, which has its own address, so that the browser's «back» leads to what was shown before. Returns
- * whether it is shown: the user may decline. */
-export async function chooseRecording(id) {
+ * whether it is shown: the user may decline. With `run` it goes on at once. */
+export async function chooseRecording(id, { run = false } = {}) {
   const left = session.peek();
-  if ((await openRecording(id)) === null) return false;
+  if ((await openRecording(id, run)) === null) return false;
   if (left && left.recorded === null) before.value = { model: left.model, id: left.id };
   goToAddress("run", id);
   return true;
@@ -103,8 +103,8 @@ async function chooseAddressed(id) {
 }
 
 /** Shows a recording, after asking if its code comes from elsewhere; returns null if the user declines. */
-function openRecording(id) {
-  return withTrust(id, "Opening it", (trust) => showRecording(id, trust));
+function openRecording(id, run = false) {
+  return withTrust(id, "Opening it", (trust) => showRecording(id, { trust, run }));
 }
 
 /** What was shown before a recording, for returning to it; null for nothing. */

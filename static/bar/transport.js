@@ -6,8 +6,9 @@ import { keyText, buttonTitle } from "../keys.js";
 import { Icon } from "../parts/icon.js";
 import { optimistic } from "../parts/optimistic_value.js";
 import { order, say } from "../server.js";
+import { chooseRecording } from "./models.js";
 import { isOver } from "../run_status.js";
-import { alive, running, session, state } from "../store.js";
+import { alive, complain, running, session, state } from "../store.js";
 import { orderThere } from "../timeline/seek.js";
 import { embedded } from "../windows.js";
 import { bindFaster, speedIsKnown } from "./pace.js";
@@ -32,15 +33,17 @@ function isRestarting() {
 function toggle() {
   if (isRestarting()) say({ type: "run" }).catch(() => {}); // goes to the new run; a message says why it cannot be made
   else if (running.value) order({ type: "pause" });
-  else if (isDone() && session.value.recorded !== null && session.value.alive) runAgain();
+  else if (isDone() && session.value.recorded !== null) runAgain();
   else if (isDone()) order({ type: "restart", run: true });
   else orderThere({ type: "run" });
 }
 
-/** Runs a recording from its start, as it was recorded; a new run would use the model's current text. */
+/** Runs a recording from its start, as it was recorded; a new run would use the model's current text. One that was stopped is opened again. */
 async function runAgain() {
+  const { alive: lives, recorded } = session.value;
+  if (!lives) return chooseRecording(recorded, { run: true }).catch((error) => complain(error.message));
   await order({ type: "seek", time: 0 });
-  order({ type: "run" });
+  return order({ type: "run" });
 }
 
 const BUTTONS = [

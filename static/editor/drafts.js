@@ -12,19 +12,19 @@ const LARGEST = 2_000_000; // all drafts together [characters]; browsers store a
 /** The files with a draft of this tab. */
 export const drafted = signal([]);
 
-/** Determines which drafts belong to this tab: its own from before a reload, and those of closed tabs. */
+/** Determines which drafts belong to this tab: its own from before a reload, and those of closed tabs, the newest of each file. A draft of a
+ * file that has one here stays where it is, until a tab has none. */
 export const ready = settle();
 
 async function settle() {
   // The lock shows that the tab is open; it is not waited for, as the page before a reload may still have it.
   navigator.locks?.request(LOCK + ownName, () => new Promise(() => {}));
   const held = ((await navigator.locks?.query())?.held ?? []).map(({ name }) => name);
-  for (const { key, draft } of all()) {
+  for (const { key, draft } of all().reverse()) {
     const owner = key.slice(PREFIX.length).split(" ", 1)[0];
-    if (owner === ownName || held.includes(LOCK + owner)) continue;
-    const own = read(draft.path);
+    if (owner === ownName || held.includes(LOCK + owner) || read(draft.path)) continue;
     localStorage.removeItem(key);
-    if (!own || own.at < draft.at) write(keyOf(draft.path), draft);
+    write(keyOf(draft.path), draft);
   }
   refresh();
 }

@@ -65,14 +65,14 @@ function Chunks({ memory, schema }) {
   }, [typed]);
   const size = state.value?.parts[memory]?.state.size ?? 0;
   const live = size <= LIVE;
-  const result = useAnswer({ type: "memory", memory, words: words.slice(0, 200), most: MAX_CHUNKS }, { live });
+  const result = useAnswer({ type: "memory", memory, words: words.slice(0, 200), most: MAX_CHUNKS }, { live, once: true });
   const mine = result.answer?.memory === memory ? result.answer : null;
   const found = schema && mine ? postures(mine.rows) : null;
   return html`<div class="tools">
       <input type="search" aria-label="Search the memory" placeholder="Search" value=${typed} onInput=${(event) => setTyped(event.currentTarget.value)} />
       <${Note} result=${result} schema=${found} />
       ${schema ? null : html`<${AddChunk} memory=${memory} />`}
-      ${running.value && !live ? html`<span class="quiet" role="status">as at the last pause</span>` : null}
+      ${running.value && !live && mine ? html`<span class="quiet" role="status">as at ${valueText(result.time)} s</span>` : null}
     </div>
     <${Waiting} answer=${mine ? { ...result, waiting: false } : result} />
     ${mine && !schema ? html`<${MemoryTable} answer=${mine} words=${words} />` : null}

@@ -2,12 +2,12 @@
 
 import { useEffect, useRef, useState, effect } from "../vendor/preact.js";
 import { say } from "../server.js";
-import { alive, moment, running, session, whichRun } from "../store.js";
+import { alive, moment, running, session, state, whichRun } from "../store.js";
 
 /** The interval between two questions while the run is active [ms]: answering slows the run down. */
 const WHILE_RUNNING = 100;
 
-const NOTHING = { answer: null, error: null, waiting: false, of: null };
+const NOTHING = { answer: null, error: null, waiting: false, of: null, key: null, time: null };
 
 /**
  * Sends a question of `page_commands` now and whenever the run is at another moment; one question at a time.
@@ -15,8 +15,8 @@ const NOTHING = { answer: null, error: null, waiting: false, of: null };
  * @param question The question; null for none.
  * @param live Whether it is also sent while the run is active.
  * @param once Whether it is sent once while the run is active, such as a question about a past moment.
- * @returns {answer, error, waiting}: the newest answer (kept until the next one arrives, but not for another run), or why
- *   there is none.
+ * @returns {answer, error, waiting, time}: the newest answer, or why there is none, and the time [s] of the run when it was asked. That of
+ *   another question is kept until the next one arrives, if one can; never that of another run.
  */
 export function useAnswer(question, { live = false, once = false } = {}) {
   const [result, setResult] = useState(NOTHING);
@@ -34,11 +34,11 @@ export function useAnswer(question, { live = false, once = false } = {}) {
       asked = moment.peek();
       busy = true;
       const run = whichRun();
-      const of = run;
+      const about = { of: run, key, time: state.peek()?.time ?? null };
       setResult((before) => ({ ...before, waiting: true }));
       const news = await say(question).then(
-        (answer) => ({ answer, error: null, of }),
-        (error) => ({ answer: null, error: error.message, of }),
+        (answer) => ({ answer, error: null, ...about }),
+        (error) => ({ answer: null, error: error.message, ...about }),
       );
       if (over || newest.current !== key) return;
       setResult((before) => ({ ...before, ...(run === whichRun() ? news : {}), waiting: false })); // an answer of another run is ignored
@@ -58,5 +58,6 @@ export function useAnswer(question, { live = false, once = false } = {}) {
     };
   }, [key, live, once]);
   const shown = `${session.value?.id} ${session.value?.run}`; // as `whichRun`, but followed
-  return result.of === null || result.of === shown ? result : NOTHING;
+  const isAsked = question !== null && alive.value && (live || once || !running.value);
+  return result.of === null || (result.of === shown && (result.key === key || isAsked)) ? result : NOTHING;
 }

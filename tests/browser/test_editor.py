@@ -303,6 +303,49 @@ def test_a_new_model_runs(page: Page, workbench: Served, choice: str, seen: str)
 
 
 @pytest.mark.slow
+def test_a_tab_keeps_its_own_unsaved_text_though_that_of_a_closed_tab_is_newer(
+    pages: Callable[..., Page], written: Callable[[str, str], Path]
+) -> None:
+    written("two.py", "a = 1\n")
+    page = pages("counting.py")
+    edit(page, "two.py")
+    other = page.context.new_page()
+    other.goto(f"{page.url.partition('?')[0]}?model=counting.py")
+    edit(other, "two.py")
+    drafts = "Object.keys(localStorage).filter((key) => key.startsWith('actr3d.draft.')).length"
+    for tab, text, count in ((page, "b = 2\n", 1), (other, "c = 3\n", 2)):
+        write(tab, text)
+        until(page, lambda count=count: page.evaluate(drafts) == count)
+    other.close()
+    page.on("dialog", lambda dialog: dialog.accept())
+    page.reload()
+    edit(page, "two.py")
+    expect(page.locator(CODE)).to_have_text("a = 1b = 2")
+    page.keyboard.press("Control+s")
+    shows(page, ".file-status", "saved")
+    page.reload()
+    edit(page, "two.py")
+    expect(page.locator(CODE)).to_have_text("a = 1c = 3")  # nor is that of the closed tab lost
+    shows(page, ".strip", "has changed on disk")
+
+
+@pytest.mark.slow
+def test_parameters_are_those_of_the_text_however_often_it_is_saved(
+    pages: Callable[..., Page], written: Callable[[str, str], Path], workbench: Served
+) -> None:
+    source = (MIND.parent / "doorway.py").read_text(encoding="utf-8")
+    written("knobs.py", source)
+    page = pages("knobs.py", tab="parameters")
+    expect(page.get_by_label("width", exact=True)).to_be_visible()
+    for added in ("first", "second"):
+        version = workbench.get("/api/model?path=knobs.py").json()["version"]
+        text = source.replace("    speed: Annotated", f"    {added}: float = 1.0\n    speed: Annotated")
+        assert workbench.put("/api/model", {"path": "knobs.py", "text": text, "version": version}).status_code == 200
+        expect(page.get_by_label(added, exact=True)).to_be_visible()
+    expect(page.get_by_label("first", exact=True)).to_have_count(0)
+
+
+@pytest.mark.slow
 def test_a_design_that_is_inserted_fits_the_new_model_and_can_be_run(page: Page, workbench: Served) -> None:
     shows(page, "#status", "at its start")
     open_tab(page, "Editor")

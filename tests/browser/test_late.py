@@ -34,8 +34,8 @@ class Wire:
         page.reload()
 
     def _join(self, socket: WebSocketRoute) -> None:
-        self._page = socket
-        socket.connect_to_server().on_message(self._pass_on)
+        self._page, self._server = socket, socket.connect_to_server()
+        self._server.on_message(self._pass_on)
 
     def _pass_on(self, message: str | bytes) -> None:
         text = str(message)
@@ -47,6 +47,11 @@ class Wire:
             self._page.send(json.dumps(told))
         else:
             self.held.append(text)
+
+    def cut(self) -> None:
+        """Ends the connection; the page makes another one after a second."""
+        self._server.close()
+        self._page.close()
 
     @contextmanager
     def holding(self, *, only_replies: bool = False) -> Generator[None]:
@@ -455,6 +460,22 @@ def test_the_dialog_of_run_until_stays_open_until_the_server_has_checked(pages: 
         expect(page.get_by_role("dialog").get_by_role("button", name="checking …")).to_be_disabled()
     expect(page.get_by_role("dialog")).to_have_count(0)
     shows(page, "#status", "look fired")
+
+
+@pytest.mark.slow
+def test_a_run_that_was_ended_while_there_was_no_connection_is_opened_again(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("counting.py")
+    wire = Wire(page)
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#time", "0.05 s")
+    (session,) = workbench.get("/api/sessions").json()["sessions"]
+    wire.cut()
+    workbench.post(f"/api/sessions/{session['id']}/close")
+    expect(page.locator(".toast")).to_contain_text("was ended while this page had no connection")
+    shows(page, "#time", "t = 0.00 s")
+    page.click("#run")
+    shows(page, "#status", "ended")
 
 
 @pytest.mark.slow

@@ -95,6 +95,22 @@ class Ordered(ACTR):
 Ordered().run()
 """
 
+MANY = """
+from actr3d.actr import *
+
+class Many(ACTR):
+    goal = Buffer()
+    memory = Memory(Buffer())
+    def init():
+        goal.set('go')
+        for n in range(200):
+            memory.add('number:?n')
+    def again(goal='go'):
+        goal.set('go')
+
+Many().run(1000)
+"""
+
 LOOPS = """
 from actr3d.actr import *
 
@@ -336,6 +352,31 @@ def test_memory_is_searched_and_sorted(pages: Pages, workbench: Served) -> None:
     expect(page.get_by_role("region", name="The chosen chunk")).to_contain_text(re.compile("Activation .* = base level"))
     page.get_by_label("Search the memory").fill("nothing like it")
     expect(page.locator(".memory")).to_contain_text("No chunk has all of these words.")
+
+
+@pytest.mark.slow
+def test_an_answer_is_shown_for_its_own_question_only(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "many.py", MANY)
+    open_tab(page, "Memory")
+    page.click("#cycle")
+    expect(page.locator(".memory .tools")).to_contain_text("200 chunks")
+    page.get_by_label("Speed", exact=True).select_option(label="1 x")
+    page.click("#run")
+    page.get_by_label("Search the memory").fill("nothing like it")
+    expect(page.locator(".memory")).to_contain_text("No chunk has all of these words.")
+    shows(page, "#status", "running")
+    expect(page.locator(".memory .tools")).to_contain_text(re.compile(r"as at \d\S* s"))
+    open_tab(page, "Productions")
+    moment, why = page.get_by_label("Explain the time [s]"), page.locator("#why-text")
+    moment.fill("0.05")
+    moment.press("Enter")
+    expect(why).to_contain_text("again: matches")
+    page.get_by_role("button", name="Stop the model").click()
+    shows(page, "#status", "stopped")
+    expect(why).to_contain_text("again: matches")
+    moment.fill("0.1")
+    moment.press("Enter")
+    expect(why).not_to_contain_text("matches")  # nothing can be asked any more
 
 
 def test_the_chunks_of_a_memory_are_shown_with_their_slots_in_the_order_of_the_model(pages: Pages, workbench: Served) -> None:

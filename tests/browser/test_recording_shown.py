@@ -11,7 +11,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.test_runs_panel import recorded, row
 from tests.helpers.page import drawn, open_tab, shows, until
-from tests.helpers.workbench_server import Served
+from tests.helpers.workbench_server import MODELS, Served
 
 Pages = Callable[..., Page]
 
@@ -199,6 +199,26 @@ def in_frame(page: Page, address: str) -> None:
     """Waits until the 3D view has a picture of the scene of an address."""
     until(page, lambda: any(frame.url.partition("?")[0].endswith(address.partition("?")[0]) for frame in page.frames[1:]))
     expect(page.locator(".scene-cover")).to_have_count(0)
+
+
+@pytest.mark.slow
+def test_a_recording_that_was_stopped_runs_again_as_it_was_recorded(pages: Pages, workbench: Served) -> None:
+    text = next(MODELS.rglob("counting.py")).read_text(encoding="utf-8")
+    (workbench.folder / "told.py").write_text(text, encoding="utf-8")
+    name = recorded(workbench, "told.py")
+    (workbench.folder / "told.py").write_text("print('another text')\n", encoding="utf-8")
+    page = pages("counting.py", tab="console")
+    page.goto(f"{workbench.url}/?run={name}")
+    banner = page.locator(".recording-banner")
+    expect(banner).to_contain_text(name)
+    shows(page, "#time", "t = 0.00 s")
+    page.get_by_role("button", name="Stop the model").click()
+    shows(page, "#status", "stopped")
+    page.get_by_role("button", name="Run again").click()
+    shows(page, "#status", "ended")
+    expect(banner).to_contain_text(name)
+    shows(page, "#panel-console", "5")
+    expect(page.locator("#panel-console")).not_to_contain_text("another text")
 
 
 def test_an_address_of_a_model_that_is_not_there_says_so(browser: Browser, workbench: Served) -> None:

@@ -13,6 +13,7 @@ from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.csv_files import write_states_csv
 
 MODELS = Path(__file__).parents[2] / "models"
+COUNTING = (MODELS / "tutorial" / "counting.py").read_text(encoding="utf-8")
 APERTURE = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
 HELPED = """from helper import WORD
 from actr3d.actr import *
@@ -141,3 +142,18 @@ def test_simulations_of_a_program_are_recorded_once_however_often_it_goes_back(d
     table = (tmp_path / "states.csv").read_text(encoding="utf-8").splitlines()
     assert table[0].startswith("run,tick,state_0,")
     assert [line.split(",")[:2] for line in table[1:]] == [["1", str(tick)] for tick in range(len(moments))]
+
+
+@pytest.mark.parametrize("stopped", [False, True])
+def test_a_recording_that_is_opened_leaves_no_other_recording_when_a_new_run_begins(desk: Desk, tmp_path: Path, stopped: bool) -> None:
+    talk = desk.begin(tmp_path, COUNTING, record=True)
+    ended(talk)
+    path = recording(desk, talk)
+    opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
+    opened.until("paused")
+    if stopped:
+        desk.do(opened.session.stop())
+    desk.do(opened.session.restart(None, None))
+    opened.wait(lambda: opened.session.run == 2)
+    began = opened.facts["recording"]
+    opened.wait(lambda: {file.stem for file in path.parent.glob("*.sqlite")} == {path.stem, began})
