@@ -27,8 +27,12 @@ MAX_TRIALS = 10_000_000
 """Maximum number of trials of an experiment."""
 LONGEST_NAME = 100
 """Maximum number of bytes of the name of a measure, in UTF-8."""
+FINEST = 1e-5
+"""The least standard deviation of a distribution."""
 OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
 """The columns of every table of trials, whatever the design."""
+OWN_NUMBERS = ("seed", "until", "limit")
+"""Numbers of a design that `Design.changed` changes under these names."""
 
 
 @runtime_checkable
@@ -61,6 +65,8 @@ class Normal(Configuration):
         """
         super().__post_init__()
         low, high = self._bounds()
+        if 0 < self.sd < FINEST:
+            raise DesignError(f"Normal.sd: must be 0 or >= {FINEST:g}: values have {DIGITS} decimals (got {self.sd:g}); use a smaller unit")
         if low > high or (self.sd == 0 and not low <= self.mean <= high):
             raise DesignError(f"Normal: no value lies between low {low:g} and high {high:g} (mean {self.mean:g}, sd {self.sd:g})")
         if self.sd > 0 and self._whole.cdf(high) - self._whole.cdf(low) < FEWEST:
@@ -254,8 +260,10 @@ class Design(Configuration):
             if measure.over in {*self.factors, *self.settings, *grouped, *OWN_COLUMNS}:
                 raise DesignError(f"Design.measures: '{measure.name}' is over '{measure.over}', which is another column", measure.name)
         for name in {*self.factors, *self.settings, *grouped}:
-            if name in OWN_COLUMNS and name != "group":
+            if (name in OWN_COLUMNS and name != "group") or (name == "group" and name in self.factors):
                 raise DesignError(f"Design: '{name}' is a column of every table of trials; rename the parameter", name)
+            if name in OWN_NUMBERS:
+                raise DesignError(f"Design: '{name}' is a number of the design itself; rename the parameter", name)
 
     @property
     def kept(self) -> tuple[Measured, ...]:
@@ -354,7 +362,7 @@ class Design(Configuration):
             DesignError: If no trial is left.
         """
         left = dict(values or {})
-        own = {name: left.pop(name) for name in ("seed", "until", "limit") if name in left}
+        own = {name: left.pop(name) for name in OWN_NUMBERS if name in left}
         factors = {name: _levels(left.pop(name), levels) if name in left else levels for name, levels in self.factors.items()}
         grouped = {name for group in self.groups.values() for name in group.parameters}
         groups = {

@@ -30,13 +30,15 @@ import optuna
 from numpy.typing import NDArray
 
 from actr3d.configuration import Configuration
-from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives
+from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean
 from actr3d.experiment.cluster import Progress, run_experiment
-from actr3d.experiment.design import Design, Measured
-from actr3d.experiment.human_data import OF_MEANS, Schema, library_human_data, read_human_data
+from actr3d.experiment.design import OWN_NUMBERS, Design, Measured
+from actr3d.experiment.human_data import Schema, library_human_data, read_human_data
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
 
+NARROWEST = 1e-4
+"""The least width of a range, whose values have 6 decimals."""
 STARTING = 10
 """The number of candidates that are drawn evenly before any are proposed."""
 RISE = NormalDist().inv_cdf(0.975) ** 2
@@ -78,6 +80,13 @@ class Range(Configuration):
         super().__post_init__()
         if self.low >= self.high:
             raise SettingError(f"--parameter {self.name}: must be a range LOW..HIGH with LOW < HIGH (got {self.low:g}..{self.high:g})")
+        if self.high - self.low < NARROWEST:
+            raise SettingError(
+                f"--parameter {self.name}: must be at least {NARROWEST:g} wide: values have 6 decimals (got {self.low:g}..{self.high:g}); "
+                "use a smaller unit"
+            )
+        if self.name in OWN_NUMBERS:
+            raise SettingError(f"--parameter {self.name}: is a number of the design, not a parameter of the model")
 
     @classmethod
     def from_text(cls, text: str) -> Range:
@@ -180,6 +189,9 @@ class Fit:
             raise ExperimentError("--parameter: must be given at least once, as NAME=LOW..HIGH")
         self.target = cells_of_target(target)
         self.measure = target[0].measure
+        if len(named := {tuple(name for name, _ in cell) for cell in self.target}) > 1:
+            these = " and ".join(", ".join(names) or "none" for names in sorted(named))
+            raise ExperimentError(f"--target: all means must be of the same conditions (got {these}): is a cell empty?")
         for ends in itertools.product(*((one.low, one.high) for one in ranges)):
             experiment = self._experiment(dict(zip(self._names, ends, strict=True)))  # checks the bounds of the model's parameters
             _check_conditions(self.target, experiment.design)
@@ -400,14 +412,15 @@ class QuadraticSurface:
         values = np.array(squares)
         order = np.argsort(values, kind="stable")
         order = order[np.isfinite(values[order])]
+        values = np.maximum(values, 1e-12)
         self._axes, self._data = points.shape[1], data
         terms = (self._axes + 1) * (self._axes + 2) // 2
         near = order[: max(2 * terms, len(order) // 2)]
-        self._least = max(float(values[order[0]]) if len(order) else 0.0, 1e-12)
+        self._least = float(values[order[0]]) if len(order) else 1e-12
         design = self._terms(points[near])
-        # The best candidates weigh most: the surface need not be quadratic far from the minimum.
-        weights = self._least / (values[near] + self._least)
-        weighted = design.T * weights
+        # The best candidates weigh most, as many as a surface needs: it need not be quadratic far from the minimum.
+        half = float(values[order[min(terms, len(order)) - 1]]) if len(order) else 1.0
+        weighted = design.T * (half / (values[near] + half))
         self._weights = np.linalg.solve(weighted @ design + 1e-9 * np.eye(design.shape[1]), weighted @ values[near])
 
     def _terms(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -468,7 +481,10 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
         place = head.index("measure")
         measures = [row[place].strip() for row in lines[1:] if len(row) > place]
     else:
-        measures = [column for column in head if column not in {"participant", "group", *OF_MEANS, *levels}]
+        there = [column for column in head if column not in {"participant", "group", *levels}]
+        kept = {one.name for one in design.kept}
+        # Any other column is an error of the reader. A design that keeps all measures does not say which there are.
+        measures = [column for column in there if column == measure or (column in kept if kept else not did_you_mean(column, levels))]
     parameters = {one.name: one for one in experiment.parameters if one.name in design.factors}
     schema = Schema(groups=list(design.groups), factors=levels, measures=list(dict.fromkeys(measures)), parameters=parameters)
     data = read_human_data(path, schema)

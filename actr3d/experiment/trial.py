@@ -94,7 +94,14 @@ def _run(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> tuple[st
     if experiment.blueprint is None:
         module = run_text(with_values(model.text, values), model.file, limits=limits, folder=folder, helpers=helpers)
         end = "limits" if limits.ended else "end"
-        return end, design.results(module) if design.results is not None else vars(module)
+        if design.results is not None:
+            return end, design.results(module)
+        if limits.ended:
+            raise ExperimentError(
+                f"the program was stopped at its limit of {design.until:g} simulated seconds, and its variables may be unfinished: give "
+                "the design more time (until), or a function `results` that knows what they are then"
+            )
+        return end, vars(module)
     with limits, shared_random(limits.program_seed):
         end = "limits"
         simulation, _ = Blueprint(model.text, model.file, folder, helpers).build(values)

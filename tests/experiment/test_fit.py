@@ -199,6 +199,8 @@ def test_a_fit_at_whose_candidates_the_model_always_fails_shows_its_error(tmp_pa
         ("slope=1", r"--parameter: must be NAME=LOW\.\.HIGH"),
         ("slope=a..b", r"--parameter: must be NAME=LOW\.\.HIGH"),
         ("slope=2..1", r"--parameter slope: must be a range LOW\.\.HIGH with LOW < HIGH \(got 2\.\.1\)"),
+        ("slope=0..1e-5", r"--parameter slope: must be at least 0\.0001 wide: values have 6 decimals"),
+        ("limit=1..4", r"--parameter limit: is a number of the design, not a parameter"),
         ("slope=0..inf", r"--parameter slope: Range\.high: must be a finite number"),
         ("slope=nan..1", r"--parameter slope: Range\.low: must be a finite number"),
     ],
@@ -225,6 +227,39 @@ def test_targets_that_do_not_fit_are_refused(tmp_path: Path, client: Any) -> Non
         cells_of_target(means((1, 1)))
     with pytest.raises(ExperimentError, match="no conditions in common"):
         agreement({(("x", 1),): 1.0}, {(("x", 2),): 1.0})
+
+
+@pytest.mark.parametrize(
+    ("lines", "says"),
+    [
+        (["participant,xx,y", "one,1,2.5"], "unknown column 'xx'"),
+        (["x,measure,mean,source", "1,y,2.5,ours", ",y,3,ours"], "all means must be of the same conditions"),
+    ],
+)
+def test_targets_whose_conditions_are_not_clear_are_refused(tmp_path: Path, client: Any, lines: list[str], says: str) -> None:
+    model, people = tmp_path / "line.py", tmp_path / "people.csv"
+    model.write_text(LINE, encoding="utf-8")
+    people.write_text("\n".join(lines), encoding="utf-8")
+    with pytest.raises(ExperimentError, match=says):
+        Fit(
+            f"{model}:line",
+            [Range.from_text("slope=0..3")],
+            load_target(str(people), specify(f"{model}:line"), "y"),
+            tmp_path / "fit",
+            client,
+        )
+
+
+def test_a_model_that_is_determined_exactly_has_a_narrow_interval() -> None:
+    """Of an exponential, which is no parabola but near its minimum."""
+    points = np.concatenate([np.linspace(0.05, 0.95, 10), 0.2 + np.linspace(-0.02, 0.02, 9)])
+    squares = [float(math.exp(5 * point) - math.exp(1)) ** 2 for point in points]
+    surface = QuadraticSurface(points[:, None], squares, 3)
+    assert float(surface.minimum()[0]) == pytest.approx(0.2, abs=0.01)
+    low, high = surface.interval(0)
+    assert low is not None
+    assert high is not None
+    assert 0.15 < low <= high < 0.25
 
 
 def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:

@@ -86,14 +86,41 @@ def test_a_known_effect_of_groups_and_levels_is_found(tmp_path: Path) -> None:
     n = rows["group × n_", "n_"]
     assert (n["df1"], n["df2"]) == (2, 12)
     assert n["p_corrected"] < 0.001
-    assert n["effect_size"] > 0.8
+    assert n["partial_eta_squared"] > 0.8
     assert rows["group × n_", "group × n_"]["p"] > 0.01
     assert rows["group × mode", "mode"]["p"] > 0.01
     assert ("differences fail − count", "mode × n_") in rows
+    effects = tests.anova["effect"].tolist()
+    assert sum("mode" in one and "n_" in one and "group" not in one for one in effects) == 1, effects
     wald = {row["effect"]: row for row in tests.mixed_model.to_dict("records")}
     assert (wald["n_"]["df"], wald["group × n_ × mode"]["df"]) == (2, 2)
     assert wald["n_"]["p"] < 0.001
     assert set(tests.assumptions["test"]) == {"Mauchly", "Shapiro-Wilk", "Levene"}
+
+
+def test_effect_sizes_are_those_of_the_whole_design_and_each_interaction_is_there_once(tmp_path: Path) -> None:
+    """F and sums of squares of a design of two factors within participants are computed here by hand."""
+    path = write_experiment(tmp_path, participants=6, trials=1, factors='{"n": [1, 2, 3], "mode": ["count", "fail", "shout"]}')
+    draw = random.Random(4)
+    values: dict[tuple[str, int, str], float] = {}
+
+    def measures(trial: Any) -> dict[str, Any]:
+        where = trial.participant.name, trial.values["n"], trial.values["mode"]
+        values[where] = 10 * int(where[0].split()[1]) + where[1] * (where[2] == "fail") + draw.gauss(0, 0.5)
+        return {"rt": values[where], "luck": 0.5}
+
+    tests = run_tests(read_results(store_rows(tmp_path / "out", str(path), measures)), "rt")
+    (row,) = [row for row in tests.anova.to_dict("records") if "×" in row["effect"]]
+    y = np.array([[[values[f"all {p}", n, mode] for mode in ("count", "fail", "shout")] for n in (1, 2, 3)] for p in range(1, 7)])
+
+    def about(*axes: int) -> Any:
+        return y.mean(axis=tuple({0, 1, 2} - set(axes)), keepdims=True)
+
+    effect = 6 * np.sum((about(1, 2) - about(1) - about(2) + about()) ** 2)
+    error = np.sum((y - about(0, 1) - about(0, 2) - about(1, 2) + about(0) + about(1) + about(2) - about()) ** 2)
+    assert (row["effect"], row["df1"], row["df2"]) == ("n_ × mode", 4, 20)
+    assert row["partial_eta_squared"] == pytest.approx(effect / (effect + error))
+    assert row["F"] == pytest.approx(effect / 4 / (error / 20))
 
 
 def test_the_analysis_of_variance_is_that_of_the_textbook(tmp_path: Path) -> None:

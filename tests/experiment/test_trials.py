@@ -85,6 +85,18 @@ def test_a_trial_that_ends_its_own_process_is_a_row(tmp_path: Path) -> None:
     assert [row["end"] for row in rows if row["mode"] == "count"] == ["end"]
 
 
+def test_a_program_that_is_cut_off_is_a_failure_unless_results_reads_it(tmp_path: Path) -> None:
+    endless = COUNTER.replace("if int(k) < n:", "if True:")
+    path = write_experiment(tmp_path, model=endless, factors='{"n": [1]}', participants=1, trials=1)
+    (row,) = rows_of(path)
+    assert (row["end"], "rt" in row) == ("error", False)
+    assert "the program was stopped at its limit of 60 simulated seconds" in row["error"]
+    reads = "limit=60,\n        results=lambda module: {'rt': module.model.now(), 'luck': 0.0}"
+    path.write_text(path.read_text(encoding="utf-8").replace("limit=60", reads), encoding="utf-8")
+    (row,) = rows_of(path)
+    assert (row["end"], row["rt"]) == ("limits", 60)
+
+
 def test_what_a_model_prints_does_not_mix_with_the_rows(tmp_path: Path) -> None:
     rows = rows_of(write_experiment(tmp_path, factors='{"mode": ["shout"], "n": [1]}', participants=1))
     assert [row["end"] for row in rows] == ["end"] * 4

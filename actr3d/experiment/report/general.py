@@ -55,6 +55,11 @@ def cautions(results: Results) -> list[Caution]:
         found.append(f"Only {done:,} of {total:,} trials have finished; all numbers are preliminary.")
     if len(results.failures):
         found.append(f"{len(results.failures):,} of {done:,} trials failed. They are in no mean.")
+    if cut := sum(results.rows["end"] == "limits") if len(results.rows) else 0:
+        found.append(
+            f"{cut:,} of {done:,} trials were stopped at their limit of {results.design.until:g} simulated seconds, `until` in the design. "
+            "Their measures are those of that moment."
+        )
     least = min(group.participants for group in results.design.groups.values())
     if least < FEWEST:
         many = "one participant" if least == 1 else f"{least} participants"

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -135,34 +136,40 @@ def run_tests(results: Results, measure: str) -> Tests:
     anova: list[dict[str, Any]] = []
     checks: list[dict[str, Any]] = []
     with noting_warnings() as warned:
-        _analyse_variance(whole, results, anova, checks)
+        _analyse_variance(whole, results, anova, checks, notes)
         _check_assumptions(whole, factors, grouped, checks)
         mixed = _mixed_model(means, factors, grouped, notes) if len(factors) + grouped > 1 else None
     notes += [f"Note of a library: {text}" for text in warned if "etrying" not in text]
     return Tests(anova=pd.DataFrame(anova) if anova else None, mixed_model=mixed, assumptions=pd.DataFrame(checks), notes=notes)
 
 
-def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]], checks: list[dict[str, Any]]) -> None:
+def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]], checks: list[dict[str, Any]], notes: list[str]) -> None:
     """Adds the rows of all analyses of variance: one factor within participants at a time, and pairs of them."""
     pg, factors, grouped = pingouin(), list(results.factors), len(results.groups) > 1
     if not factors:
-        found = pg.anova(data=_over(whole, []), dv="value", between="group", effsize="np2")
+        found = pg.anova(data=_over(whole, []), dv="value", between="group")
         _add(anova, "between participants", found, {})
     for factor in factors:
         data = _over(whole, [factor])
         if grouped:
-            found = pg.mixed_anova(
-                data=data, dv="value", within=factor, subject="participant", between="group", correction=True, effsize="ng2"
-            )
+            found = pg.mixed_anova(data=data, dv="value", within=factor, subject="participant", between="group", correction=True)
             _add(anova, f"group × {factor}", found, {"Interaction": f"group × {factor}"})
         else:
-            found = pg.rm_anova(data=data, dv="value", within=factor, subject="participant", correction=True, effsize="ng2")
+            found = pg.rm_anova(data=data, dv="value", within=factor, subject="participant", correction=True)
             _add(anova, factor, found, {})
         if len(results.factors[factor]) > 2:
             _add_sphericity(checks, factor, found)
-    for one, other in ((a, b) for a in factors for b in factors if a != b):
+    for one, other in combinations(factors, 2):
+        if not grouped:
+            found = pg.rm_anova(data=_over(whole, [one, other]), dv="value", within=[one, other], subject="participant", correction=True)
+            found = found[found["Source"] == f"{one} * {other}"]  # the others are those of the single factors
+            _add(anova, f"{one} × {other}", found, {f"{one} * {other}": f"{one} × {other}"})
+            continue
+        if len(results.factors[one]) != 2:
+            one, other = other, one
         levels = results.factors[one]
         if len(levels) != 2:
+            notes.append(f"The interactions of {one} and {other} are in the mixed model only.")
             continue
         # An interaction with a factor of two levels is an effect on the difference between them.
         wide = _over(whole, [one, other]).pivot(index=["participant", "group", other], columns=one, values="value")
@@ -170,16 +177,9 @@ def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]],
         name = f"{_text(levels[1])} − {_text(levels[0])}"
         if np.std(data["value"]) <= NOTHING:
             continue
-        if grouped:
-            found = pg.mixed_anova(
-                data=data, dv="value", within=other, subject="participant", between="group", correction=True, effsize="ng2"
-            )
-            found = found[found["Source"] != "group"]  # the analysis of this factor has the same test
-            names = {other: f"{one} × {other}", "Interaction": f"group × {one} × {other}"}
-        else:
-            found = pg.rm_anova(data=data, dv="value", within=other, subject="participant", correction=True, effsize="ng2")
-            names = {other: f"{one} × {other}"}
-        _add(anova, f"differences {name}", found, names)
+        found = pg.mixed_anova(data=data, dv="value", within=other, subject="participant", between="group", correction=True)
+        found = found[found["Source"] != "group"]  # the analysis of this factor has the same test
+        _add(anova, f"differences {name}", found, {other: f"{one} × {other}", "Interaction": f"group × {one} × {other}"})
 
 
 def _over(whole: Any, factors: Sequence[str]) -> Any:
@@ -192,19 +192,18 @@ def _add(anova: list[dict[str, Any]], of: str, found: Any, names: dict[str, str]
     for row in found.to_dict("records"):
         if row["Source"] == "Residual" or not np.isfinite(row.get("F", np.nan)):
             continue
-        effect = "ng2" if "ng2" in row else "np2"
         corrected = row.get("p_GG_corr")
+        df1, df2 = row.get("DF1", row.get("ddof1")), row.get("DF2", row.get("ddof2"))
         anova.append(
             {
                 "analysis": of,
                 "effect": names.get(row["Source"], row["Source"]),
-                "df1": row.get("DF1", row.get("ddof1")),
-                "df2": row.get("DF2", row.get("ddof2")),
+                "df1": df1,
+                "df2": df2,
                 "F": row["F"],
                 "p": row["p_unc"],
                 "p_corrected": corrected if corrected is not None else np.nan,
-                "effect_size": row[effect],
-                "effect_size_is": "generalised η²" if effect == "ng2" else "partial η²",
+                "partial_eta_squared": row["F"] * df1 / (row["F"] * df1 + df2),
             }
         )
 
