@@ -33,7 +33,7 @@ from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean
 from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import OWN_NUMBERS, Design, Measured
-from actr3d.experiment.human_data import Schema, library_human_data, read_human_data
+from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
 
@@ -470,10 +470,9 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     path = known.get(name, Path(name))
     if not path.is_file():
         raise ExperimentError(f"human data '{name}': no such file{alternatives(name, known, 'the library has:')}")
-    levels: Any = {
-        factor: [level if isinstance(level, str) else float(level) for level in given] for factor, given in design.factors.items()
-    }
-    levels |= {one.over: () for one in design.kept if one.over is not None}
+    names = {factor_name(name): name for name in (*design.factors, *(one.over for one in design.kept if one.over is not None))}
+    levels: Any = {shown: plain_levels(design.factors.get(name, ())) for shown, name in names.items()}
+    texts = {(shown, plain_text(level)): level for shown, name in names.items() for level in design.factors.get(name, ())}
     with path.open(encoding="utf-8-sig", errors="replace", newline="") as file:
         lines = [row for row in csv.reader(file) if row and not row[0].lstrip().startswith("#")]
     head = [cell.strip() for cell in lines[0]] if lines else []
@@ -485,12 +484,13 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
         kept = {one.name for one in design.kept}
         # Any other column is an error of the reader. A design that keeps all measures does not say which there are.
         measures = [column for column in there if column == measure or (column in kept if kept else not did_you_mean(column, levels))]
-    parameters = {one.name: one for one in experiment.parameters if one.name in design.factors}
+    parameters = {factor_name(one.name): one for one in experiment.parameters if one.name in design.factors}
     schema = Schema(groups=list(design.groups), factors=levels, measures=list(dict.fromkeys(measures)), parameters=parameters)
     data = read_human_data(path, schema)
     people: defaultdict[tuple[str, Cell], defaultdict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
     for number, row in enumerate(data.rows):
-        cell = tuple((column, row[column]) for column in ("group", *levels) if row.get(column) is not None)
+        given = [(column, row[column]) for column in ("group", *levels) if row.get(column) is not None]
+        cell = tuple((names.get(column, column), texts.get((column, level), level)) for column, level in given)
         for one in [row["measure"]] if data.published else data.measures:
             value = row["mean"] if data.published else row[one]
             if value is not None:

@@ -4,7 +4,8 @@ Both are CSV files (UTF-8, a line of names, then one row a line). Lines that beg
 groups and measures have the names that they have in the design and in the table of trials; `columns.csv` in the folder of an experiment
 lists them with their units. What the values of a measure are numbered by, such as `block`, is one more factor; the measure has its own
 name there, `latency` for `latency_1`, `latency_2`, and so on. A level of a parameter of the model must be within its bounds. A factor
-whose name is that of another column of published means, such as `n`, has an underscore added: `n_`.
+whose name is that of another column here or in the tables of a report, such as `n`, has an underscore added: `n_`. Of a factor whose levels
+are not all numbers, they are texts: `True`, `none`, `fast`.
 An empty cell is a value that is missing.
 
 **Trials** have the columns
@@ -28,6 +29,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -43,6 +45,27 @@ SHOWN = 20
 """The maximum number of errors that are named at a time."""
 OF_MEANS = ("measure", "mean", "sd", "n", "source")
 """The columns of published means that are not factors."""
+RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
+"""Names of columns of human data and of the tables of a report; a factor with one of these names has an underscore added there: `n_`."""
+
+
+def factor_name(name: str) -> str:
+    """Returns the name of a factor in human data and in the tables of a report."""
+    return f"{name}_" if name in RESERVED else name
+
+
+def plain_levels(levels: Sequence[Any]) -> list[float] | list[str]:
+    """Returns the levels of a factor as numbers if all of them are numbers, else as texts."""
+    if all(isinstance(level, (int, float)) and not isinstance(level, bool) for level in levels):
+        return [float(level) for level in levels]
+    return [plain_text(level) for level in levels]
+
+
+def plain_text(value: Any) -> str:
+    """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`."""
+    if value is None or isinstance(value, str) or (isinstance(value, float) and math.isnan(value)):
+        return value if isinstance(value, str) and value else "none"
+    return json.dumps(value) if isinstance(value, (list, dict)) else f"{value:g}" if isinstance(value, float) else str(value)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -27,6 +27,7 @@ from actr3d.experiment.fit import (
 )
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
+from tests.helpers.experiments import COUNTER, write_experiment
 
 LINE = """
 x = 1
@@ -304,6 +305,18 @@ def test_targets_are_means_of_human_data(tmp_path: Path) -> None:
     path.write_text("participant,probe,reaction_time\np,target,1\np,target,2\nq,target,3\n")
     (one,) = load_target(str(path), design)
     assert (one.conditions, one.measure, one.mean) == ({"group": "all", "probe": "target"}, "reaction_time", 2.25)
+    own = specify(
+        str(
+            write_experiment(
+                tmp_path, factors='{"n": [1, 2], "loud": [True, False]}', model=COUNTER.replace("n = 3", "n = 3\nloud = False")
+            )
+        )
+    )
+    path.write_text("participant,n_,loud,rt\np,1,True,1\np,2,False,2\n")
+    assert [one.conditions for one in load_target(str(path), own)] == [
+        {"group": "all", "n": 1, "loud": True},
+        {"group": "all", "n": 2, "loud": False},
+    ]
     by_block = load_target("paired_associates", specify("paired_associates"), "latency")
     assert [one.conditions["block"] for one in by_block] == list(range(2, 9))
     with pytest.raises(ExperimentError, match=r"human data 'fan_efect': no such file; did you mean 'fan_effect'"):

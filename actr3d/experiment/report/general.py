@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from actr3d.experiment.human_data import HumanData
+from actr3d.experiment.human_data import HumanData, plain_text
 from actr3d.experiment.report.beside import Beside, factors_of, fit_to, matched, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
-from actr3d.experiment.report.results import Results, plain_text
+from actr3d.experiment.report.results import Results
 from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, participant_means, run_tests
 
 MAX_PANES = 6

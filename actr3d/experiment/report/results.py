@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,6 +11,7 @@ from typing import Any
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment.design import OWN_COLUMNS, Design
+from actr3d.experiment.human_data import factor_name, plain_levels, plain_text
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.specification import Experiment, Specification
 from actr3d.experiment.store import CHUNK, Column, Store
@@ -22,8 +21,6 @@ NUMBERS = ("boolean", "integer", "real")
 """The types of columns that are analysed as numbers."""
 ENDINGS = {"degrees": "_deg", "m/s": "_m_s"}
 """The endings of names of columns by units, where they are not the unit."""
-RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
-"""Names of columns of the tables of a report; a factor with one of these names has an underscore added there: `n_`."""
 SHORT = {"r2": "r²", "rmse": "RMSE", "aic": "AIC", "sd": "SD", "chi2": "χ²"}
 """Names of statistics as they are written."""
 LEFT_OUT = ("seed", "wall_s", "worker", "position")
@@ -115,25 +112,6 @@ def name_with_unit(name: str, unit: str) -> str:
     base = name.removesuffix(ENDINGS.get(unit, f"_{unit.lower()}")) if unit else name
     words = SHORT.get(base, base.replace("_", " ").strip())
     return f"{words} [{unit}]" if unit else words
-
-
-def factor_name(name: str) -> str:
-    """Returns the name of a factor in the tables of a report."""
-    return f"{name}_" if name in RESERVED else name
-
-
-def plain_levels(levels: Sequence[Any]) -> list[float] | list[str]:
-    """Returns the levels of a factor as numbers if all of them are numbers, else as texts."""
-    if all(isinstance(level, (int, float)) and not isinstance(level, bool) for level in levels):
-        return [float(level) for level in levels]
-    return [plain_text(level) for level in levels]
-
-
-def plain_text(value: Any) -> str:
-    """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`."""
-    if value is None or isinstance(value, str) or (isinstance(value, float) and math.isnan(value)):
-        return value if isinstance(value, str) and value else "none"
-    return json.dumps(value) if isinstance(value, (list, dict)) else f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def read_results(folder: Path | str) -> Results:
