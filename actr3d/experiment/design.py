@@ -236,6 +236,9 @@ class Design(Configuration):
             if len({repr(level) for level in levels}) < len(levels):
                 raise DesignError(f"Design.factors['{name}']: must name each level once (got {given!r})", name)
             _check_finite(given, f"Design.factors['{name}']", name)
+        # What `np.arange` gives for 0.3 is the level 0.3, as tables and human data have it.
+        tidy = {name: [float(f"{one:.12g}") if type(one) is float else one for one in levels] for name, levels in self.factors.items()}
+        object.__setattr__(self, "factors", tidy)
         for name, value in self.settings.items():
             _check_finite(value, f"Design.settings['{name}']", name)
         if not self.groups:

@@ -219,6 +219,12 @@ def test_numbers_of_numpy_are_the_same_levels_as_those_of_python() -> None:
         design_of(factors={"a": [0.0, np.float32(math.inf)]})
 
 
+def test_a_level_is_the_number_that_tables_show() -> None:
+    design = Design(factors={"a": np.arange(0.1, 0.45, 0.1), "b": [1, True, "x"]})
+    assert design.factors == {"a": [0.1, 0.2, 0.3, 0.4], "b": [1, True, "x"]}
+    assert [type(level) for level in design.factors["b"]] == [int, bool, str]
+
+
 # -- designs in files
 
 
