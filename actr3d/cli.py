@@ -286,8 +286,8 @@ def _add_fit(commands: Any) -> None:
         "--hold-out",
         action="append",
         default=[],
-        metavar="DESIGN",
-        help="compare another design with its data, not fitted to; --set holds for it, --participants and --trials do not",
+        metavar="DESIGN[=FILE]",
+        help="compare another design with its data, or those of a file, not fitted to; of the options, --set holds for it",
     )
     fit.add_argument("--ablate", action="append", default=[], metavar="NAME=VALUE", help="show the fit with this part changed")
     fit.add_argument("--recover", type=_count, default=0, metavar="N", help="estimate the known parameters of N simulated data sets")

@@ -193,16 +193,16 @@ def fit(
     from actr3d.experiment.cluster import existing_cluster, local_cluster
     from actr3d.experiment.fit import Fit, Range, TargetMean, load_target, to_json
 
-    def means(design: str, of: str | None) -> tuple[TargetMean, ...]:
-        experiment = specify(design)
-        data = of or experiment.design.human
+    def means(experiment: Experiment, data: str | None, give: str) -> tuple[TargetMean, ...]:
+        data = data or experiment.design.human
         if data is None:
-            raise ExperimentError(f"design '{design}': names no human data; give --target FILE")
+            raise ExperimentError(f"design '{experiment.specification.name}': names no human data; give {give}")
         return load_target(data, experiment, measure)
 
     path = Path(folder or f"fit {Path(name).stem}")
-    wanted = means(name, target)
-    held_out = {design: means(design, None) for design in hold_out}
+    wanted = means(specify(name, values=values), target, "--target FILE")
+    named = [given.partition("=") for given in hold_out]
+    held_out = {design: means(specify(design), data, f"--hold-out {design}=FILE") for design, _, data in named}
     options = {"values": values, "participants": participants, "trials": trials}
     with local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler) as client:
         last = [""]

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from actr3d.cli import main
 from actr3d.errors import Actr3dError, DesignError, ExperimentError, SettingError
 from actr3d.experiment.cluster import local_cluster
 from actr3d.experiment.design import Measured
@@ -97,6 +98,20 @@ def test_held_out_designs_are_run_with_the_values_of_each_fit(tmp_path: Path, cl
     better = again.run(8, hold_out=held_out)
     assert better.parameters[0].value != fit.run(2).parameters[0].value
     assert [found.rmse for found in better.held_out.values()] != [one.rmse, other.rmse]
+
+
+def test_the_command_compares_a_held_out_design_with_data_of_a_file(tmp_path: Path, capsys: Any) -> None:
+    model, people, others = (tmp_path / name for name in ("line.py", "people.csv", "others.csv"))
+    model.write_text(LINE, encoding="utf-8")
+    people.write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    others.write_text("x,measure,mean,source\n10,y,15,ours\n", encoding="utf-8")
+    words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit"), "--workers", "1"]
+    assert main([*words, "--hold-out", f"{model}:steeper"]) == 1
+    assert "names no human data; give --hold-out" in capsys.readouterr().err
+    assert main([*words, "--candidates", "2", "--hold-out", f"{model}:steeper={others}"]) == 0
+    told = capsys.readouterr().out
+    assert "fitted to 2 means of y, from 2 candidates" in told
+    assert "steeper: RMSE" in told
 
 
 def test_held_out_designs_are_run_with_the_model_and_their_own_numbers(tmp_path: Path, client: Any) -> None:
