@@ -185,7 +185,7 @@ def test_no_memory_is_lost() -> None:
     tracemalloc.start()
     try:
         growth(4_000)  # Python keeps some small objects in store
-        assert min(growth(4_000) for _ in range(3)) < 4_000  # less than a byte a look, where no other thread has taken some
+        assert min(growth(4_000) for _ in range(3)) < 16_000  # an object a look would be 64,000 bytes or more
     finally:
         tracemalloc.stop()
 

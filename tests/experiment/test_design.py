@@ -220,7 +220,8 @@ def test_numbers_of_numpy_are_the_same_levels_as_those_of_python() -> None:
 
 
 def test_a_level_is_the_number_that_tables_show() -> None:
-    design = Design(factors={"a": np.arange(0.1, 0.45, 0.1), "b": [1, True, "x"]})
+    steps: Any = np.arange(0.1, 0.45, 0.1)
+    design = Design(factors={"a": steps, "b": [1, True, "x"]})
     assert design.factors == {"a": [0.1, 0.2, 0.3, 0.4], "b": [1, True, "x"]}
     assert [type(level) for level in design.factors["b"]] == [int, bool, str]
 
