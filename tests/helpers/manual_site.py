@@ -21,9 +21,10 @@ def built_manual() -> Path:
     SITE.parent.mkdir(exist_ok=True)
     with (SITE.parent / "manual.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        made = SITE / "sitemap.xml"  # written last
+        built = SITE.parent / "manual.built"
         listed = subprocess.run(["git", "ls-files", "-z", *SOURCES], cwd=ROOT, capture_output=True, text=True, check=True).stdout
         changed = max(path.stat().st_mtime for name in listed.split("\0") if name and (path := ROOT / name).exists())
-        if not made.exists() or made.stat().st_mtime <= changed:
+        if not SITE.is_dir() or not built.exists() or built.stat().st_mtime <= changed:
             subprocess.run([sys.executable, "-m", "mkdocs", "build", "--quiet"], cwd=ROOT, check=True, timeout=600)
+            built.touch()
     return SITE
