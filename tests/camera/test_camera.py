@@ -185,7 +185,8 @@ def test_no_memory_is_lost() -> None:
     tracemalloc.start()
     try:
         growth(4_000)  # Python keeps some small objects in store
-        assert min(growth(4_000) for _ in range(3)) < 16_000  # an object a look would be 64,000 bytes or more
+        # Less than a byte a look, where no other thread has taken some; of fewer looks, what Python keeps by itself would count too much.
+        assert any(growth(8_000) < 8_000 for _ in range(3))
     finally:
         tracemalloc.stop()
 
