@@ -57,8 +57,8 @@ def start_of(path: Path, options: RunOptions, **more: Any) -> Start:
     return Start(path=str(path), folder=str(path.parent), settings=options.settings, seed=seed, run=options.run, **more)
 
 
-def version_of(path: Path) -> str | None:
-    """Returns the version of the text that a model's file has now; None if it cannot be read."""
+def digest_of_file(path: Path) -> str | None:
+    """Returns the digest of the text that a file has now; None if it cannot be read."""
     try:
         # Reading something other than a regular file may never end.
         return digest_of(read_source(path)) if path.is_file() else None
@@ -79,6 +79,7 @@ class LaunchedRun:
         self.worker = worker
         self.over = asyncio.Event()
         """Set when the worker has ended and its last messages have been read."""
+        self._digest = digest_of(start.source)
         self._helpers: dict[Path, str] = {}
         for file, text in list(start.helpers.values())[:MAX_HELPERS]:
             self._helpers[(Path(start.folder) / file).resolve()] = digest_of(text)
@@ -93,17 +94,10 @@ class LaunchedRun:
         """Returns whether a file is one of the helper modules."""
         return path.resolve() in self._helpers
 
-    def is_stale(self, path: Path) -> bool:
+    def is_stale(self, digest: str | None) -> bool:
         """Returns whether any of the files has changed.
 
         Args:
-            path: The current path of the model.
+            digest: Of the text that the model's file has now.
         """
-        try:
-            # Reading something other than a regular file may never end.
-            if not all(each.is_file() for each in (path, *self._helpers)):
-                return True
-            is_other = read_source(path) != self.start.source
-            return is_other or any(digest_of(read_source(each)) != then for each, then in self._helpers.items())
-        except (Actr3dError, OSError):
-            return True
+        return digest != self._digest or any(digest_of_file(each) != then for each, then in self._helpers.items())

@@ -18,7 +18,7 @@ from workbench.overlays import ViewSettings
 from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
 from workbench.retention import erase
-from workbench.run_request import LaunchedRun, RunOptions, start_of, version_of
+from workbench.run_request import LaunchedRun, RunOptions, digest_of_file, start_of
 from workbench.worker.messages import ENDED, At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import LAST_WORDS, Receiver, WorkerMonitor
@@ -440,7 +440,7 @@ class Session(Broadcast, Receiver):
     # -- what pages see of it
 
     def facts_json(self) -> bytes:
-        facts, start = self.facts, self.start
+        facts, start, digest = self.facts, self.start, digest_of_file(self.path)
         facts_of_session: dict[str, Any] = {
             **self.summary(),
             "stuck": self._stuck,
@@ -450,9 +450,9 @@ class Session(Broadcast, Receiver):
             "breakpoints": self.breakpoints,
             "settings": start.settings if start is not None else {},
             "seed": None if facts is None else _exactly(facts.seed),
-            "stale": self._shown is not None and self._shown.is_stale(self.path),
+            "stale": self._shown is not None and self._shown.is_stale(digest),
             "gone": not self.path.is_file(),
-            "text": version_of(self.path),
+            "digest": digest,
             "attempt": self._attempt,
             "shown_attempt": start.attempt if start is not None else None,
             "version": start.version if start is not None else None,

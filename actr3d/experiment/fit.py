@@ -32,13 +32,13 @@ from numpy.typing import NDArray
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean
 from actr3d.experiment.cluster import Progress, run_experiment
-from actr3d.experiment.design import OWN_NUMBERS, Design, Measured
+from actr3d.experiment.design import DIGITS, OWN_NUMBERS, Design, Measured
 from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
 
 NARROWEST = 1e-4
-"""The least width of a range, whose values have 6 decimals."""
+"""The least width of a range."""
 STARTING = 10
 """The number of candidates that are drawn evenly before any are proposed."""
 RISE = NormalDist().inv_cdf(0.975) ** 2
@@ -82,8 +82,8 @@ class Range(Configuration):
             raise SettingError(f"--parameter {self.name}: must be a range LOW..HIGH with LOW < HIGH (got {self.low:g}..{self.high:g})")
         if self.high - self.low < NARROWEST:
             raise SettingError(
-                f"--parameter {self.name}: must be at least {NARROWEST:g} wide: values have 6 decimals (got {self.low:g}..{self.high:g}); "
-                "use a smaller unit"
+                f"--parameter {self.name}: must be at least {NARROWEST:g} wide: values have {DIGITS} decimals "
+                f"(got {self.low:g}..{self.high:g}); use a smaller unit"
             )
         if self.name in OWN_NUMBERS:
             raise SettingError(f"--parameter {self.name}: is a number of the design, not a parameter of the model")
@@ -189,9 +189,6 @@ class Fit:
             raise ExperimentError("--parameter: must be given at least once, as NAME=LOW..HIGH")
         self.target = cells_of_target(target)
         self.measure = target[0].measure
-        if len(named := {tuple(name for name, _ in cell) for cell in self.target}) > 1:
-            these = " and ".join(", ".join(names) or "none" for names in sorted(named))
-            raise ExperimentError(f"--target: all means must be of the same conditions (got {these}): is a cell empty?")
         for ends in itertools.product(*((one.low, one.high) for one in ranges)):
             experiment = self._experiment(dict(zip(self._names, ends, strict=True)))  # checks the bounds of the model's parameters
             _check_conditions(self.target, experiment.design)
@@ -224,8 +221,9 @@ class Fit:
             DesignError: If a held-out design or an ablated model does not fit the values; before anything runs.
         """
         lowest = {one.name: one.low for one in self._ranges}
-        for name in hold_out or {}:
+        for name, means in (hold_out or {}).items():
             self._other(name, lowest)
+            cells_of_target(means)
         for change in ablate:
             self._without(change, lowest)
         for number in range(candidates):
@@ -257,7 +255,7 @@ class Fit:
             for one in self._ranges:  # a Latin hypercube: each tenth of each range once
                 order = list(range(STARTING))
                 rng.shuffle(order)
-                columns[one.name] = round(one.low + (order[number] + 0.5) / STARTING * (one.high - one.low), 6)
+                columns[one.name] = round(one.low + (order[number] + 0.5) / STARTING * (one.high - one.low), DIGITS)
             return columns
         if number % 2 == 0:
             minimum = self._values_at(self._surface(self.target).minimum())
@@ -273,7 +271,7 @@ class Fit:
             loss = rmse(means, self.target)
             if math.isfinite(loss):
                 study.add_trial(optuna.trial.create_trial(params=point, distributions=distributions, value=loss))
-        return {name: round(value, 6) for name, value in study.ask(distributions).params.items()}
+        return {name: round(value, DIGITS) for name, value in study.ask(distributions).params.items()}
 
     def _evaluate(self, number: int) -> None:
         point = self._propose(number)
@@ -335,7 +333,7 @@ class Fit:
 
     def _values_at(self, point: NDArray[np.float64]) -> dict[str, float]:
         parts = zip(self._ranges, point.tolist(), strict=True)
-        return {one.name: round(one.low + part * (one.high - one.low), 6) for one, part in parts}
+        return {one.name: round(one.low + part * (one.high - one.low), DIGITS) for one, part in parts}
 
     # -- other designs, other models, other data
 
@@ -391,7 +389,7 @@ class Fit:
         rng = random.Random(f"{self._seed} recover {number}")
         failure = ""
         for _ in range(DRAWS):  # where the model fails, there are no data
-            true = {one.name: round(rng.uniform(one.low, one.high), 6) for one in self._ranges}
+            true = {one.name: round(rng.uniform(one.low, one.high), DIGITS) for one in self._ranges}
             simulated, failure = self._simulate("simulated", self._experiment({**true, "seed": 1_000_000 + number}))
             if math.isfinite(rmse(simulated, self.target)):
                 target = {cell: simulated[cell] for cell in self.target}
@@ -524,7 +522,7 @@ def cells_of_target(target: Sequence[TargetMean]) -> dict[Cell, float]:
     """Returns the means of a target by cell.
 
     Raises:
-        ExperimentError: If there are none, they are of several measures, or two are of the same conditions.
+        ExperimentError: If there are none, they are of several measures, two are of the same conditions, or some of fewer conditions.
     """
     measures = sorted({one.measure for one in target})
     if len(measures) != 1:
@@ -535,6 +533,9 @@ def cells_of_target(target: Sequence[TargetMean]) -> dict[Cell, float]:
         if cell in found:
             raise ExperimentError(f"--target: has two means for {dict(cell)}")
         found[cell] = one.mean
+    if len(named := {tuple(name for name, _ in cell) for cell in found}) > 1:
+        these = " and ".join(", ".join(names) or "none" for names in sorted(named))
+        raise ExperimentError(f"--target: all means must be of the same conditions (got {these}): is a cell empty?")
     return found
 
 
@@ -581,7 +582,7 @@ def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agre
         cells=len(both),
         rmse=float(np.sqrt(np.mean((wanted - got) ** 2))),
         r2=float(np.corrcoef(wanted, got)[0, 1] ** 2) if varied else None,
-        rows=tuple({**dict(cell), "target": mean, "model": round(found, 6)} for cell, (mean, found) in both.items()),
+        rows=tuple({**dict(cell), "target": mean, "model": round(found, DIGITS)} for cell, (mean, found) in both.items()),
     )
 
 
@@ -592,7 +593,7 @@ def to_json(result: FitResult) -> str:
 
 def _fitted(one: Range, value: float, low: float | None, high: float | None) -> Fitted:
     """Returns a fitted parameter with its interval, which contains the best candidate even if the surface has its minimum elsewhere."""
-    bounds = [None if part is None else round(one.low + part * (one.high - one.low), 6) for part in (low, high)]
+    bounds = [None if part is None else round(one.low + part * (one.high - one.low), DIGITS) for part in (low, high)]
     return Fitted(
         name=one.name,
         value=value,

@@ -15,10 +15,10 @@ let of = {};
 
 /** Reads the model's parameters again if the model, the run or the text has changed. Entered values stay, except those
  * that are now in effect. */
-async function follow({ id, model, run, text }) {
-  if (of.id === id && of.run === run && of.text === text) return;
+async function follow({ id, model, run, digest }) {
+  if (of.id === id && of.run === run && of.digest === digest) return;
   const other = of.id !== id;
-  const asked = { id, run, text };
+  const asked = { id, run, digest };
   of = asked;
   if (other) {
     listing.value = null;

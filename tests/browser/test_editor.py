@@ -18,6 +18,8 @@ from tests.helpers.workbench_server import Served, served
 
 CODE = ".code .cm-content"
 MIND = Path(__file__).parents[2] / "models" / "counting.py"
+DRAFTS = "Object.keys(localStorage).filter((key) => key.startsWith('actr3d.draft.')).length"
+"""Returns how many unsaved texts the browser keeps."""
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +39,13 @@ def written(workbench: Served) -> Callable[[str, str], Path]:
         return path
 
     return write
+
+
+def another_tab(page: Page) -> Page:
+    """Opens a second tab of the same user."""
+    other = page.context.new_page()
+    other.goto(f"{page.url.partition('?')[0]}?model=counting.py")
+    return other
 
 
 def edit(page: Page, model: str) -> None:
@@ -234,13 +243,11 @@ def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page],
     path = written("draft.py", "a = 1\n")
     page = pages("counting.py")
     edit(page, "draft.py")
-    other = page.context.new_page()
-    other.goto(f"{page.url.partition('?')[0]}?model=counting.py")
+    other = another_tab(page)
     edit(other, "draft.py")
     write(page, "b = 2\n")
     write(other, "c = 3\n")
-    drafts = "Object.keys(localStorage).filter((key) => key.startsWith('actr3d.draft.')).length"
-    until(page, lambda: page.evaluate(drafts) == 2)
+    until(page, lambda: page.evaluate(DRAFTS) == 2)
     asked: list[str] = []
 
     def leave(dialog: Dialog) -> None:
@@ -263,8 +270,7 @@ def test_unsaved_work_survives_a_reload_and_two_tabs(pages: Callable[..., Page],
     shows(other, ".conflict", "has changed on disk")
     assert path.read_text(encoding="utf-8") == "a = 1\nb = 2\n"
     other.close()  # with unsaved work, which the next tab takes over
-    third = page.context.new_page()
-    third.goto(f"{page.url.partition('?')[0]}?model=counting.py")
+    third = another_tab(page)
     edit(third, "draft.py")
     expect(third.locator(CODE)).to_have_text("a = 1c = 3")
     shows(third, ".strip", "has changed on disk")
@@ -309,13 +315,11 @@ def test_a_tab_keeps_its_own_unsaved_text_though_that_of_a_closed_tab_is_newer(
     written("two.py", "a = 1\n")
     page = pages("counting.py")
     edit(page, "two.py")
-    other = page.context.new_page()
-    other.goto(f"{page.url.partition('?')[0]}?model=counting.py")
+    other = another_tab(page)
     edit(other, "two.py")
-    drafts = "Object.keys(localStorage).filter((key) => key.startsWith('actr3d.draft.')).length"
     for tab, text, count in ((page, "b = 2\n", 1), (other, "c = 3\n", 2)):
         write(tab, text)
-        until(page, lambda count=count: page.evaluate(drafts) == count)
+        until(page, lambda count=count: page.evaluate(DRAFTS) == count)
     other.close()
     page.on("dialog", lambda dialog: dialog.accept())
     page.reload()
