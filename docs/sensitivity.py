@@ -61,7 +61,7 @@ class Deciding:
         choice, noise = random.Random(1), np.random.default_rng(1)
         time = self.turning / Gait().steps_per_second(speed)
         widths = [shoulders * hypot(cos(radians(turn)), MODEL.CHEST * sin(radians(turn))) for turn in self.turns]
-        efforts = [2 * self.inertia * (radians(turn) / time) ** 2 for turn in self.turns]
+        efforts = [self.inertia * ((radians(turn) / time) ** 2 + (radians(turn) / MODEL.FEELING) ** 2) for turn in self.turns]
         chosen: list[NDArray[Any]] = []
         for _ in range(WALKERS):
             of = choice.sample(range(len(known)), min(self.memories, len(known)))

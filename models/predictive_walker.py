@@ -16,7 +16,7 @@ Four parallel systems:
   something is in it, before it, or as near to it on the other side: for as long as that comes nearer, and then until its patience ends.
   Then it looks for a doorway again, and goes on; if there is none, it gives up.
 - *Planning* imagines one turn after the other, and keeps the cheapest. It goes on until two steps before the doorway.
-- *Walking* turns the shoulders during these two steps, and turns them back behind the doorway.
+- *Walking* turns the shoulders in one of these two steps, about half a step before the doorway, and turns them back behind it.
 
 What to expect
 --------------
@@ -77,13 +77,11 @@ HEADING_NOISE = 0.02
 SLOWEST = 0.01
 """Turns slower than this are not made [rad/s]. Source: chosen for this model."""
 STEPS = 2.0
-"""How many steps before the doorway the shoulders begin to turn. Source: chosen, because people look about two steps ahead (Patla & Vickers
-2003); that they turn then is our assumption."""
+"""How many steps before the doorway it decides. Source: chosen, because people look about two steps ahead (Patla & Vickers 2003); that
+they decide then is our assumption."""
 TURNING = 1.0
-"""In how many steps they turn. With the time that it takes to see and to decide, they are turned about half a step before the doorway.
-Source: chosen for this model."""
-MIN_TURN = 30.0
-"""The shoulders turn as fast as if they turned by this angle, or faster [degrees]. Source: chosen for this model."""
+"""In how many steps the shoulders turn. As seeing and deciding take time, they begin about one and a half steps before the doorway, and
+are turned about half a step before it. Source: chosen for this model."""
 TURNS = tuple(range(0, 81, 10))
 """The turns that it imagines [degrees]. Source: chosen for this model."""
 HEAD = 0.75
@@ -112,7 +110,8 @@ GRAIN, FELT = 0.001, 4.0
 LONGEST = 0.3
 """The longest time that a look at the doorway counts for in steering [s]. Source: chosen for this model."""
 YIELD = 3.0
-"""At how many steps before the doorway it waits if somebody else is nearer to it. Source: chosen for this model."""
+"""At how many steps before the doorway it waits if somebody else is nearer to it; nearer than that, it sets out only with a plan. Source:
+chosen for this model."""
 PATIENCE = (0.5, 3.0)
 """The least and the greatest time that it waits while nobody comes nearer [s]. Source: chosen for this model."""
 PAUSE = 0.4
@@ -123,12 +122,22 @@ ANY = 10.0
 """Cost of any contact where its energy does not count [J]. Source: chosen for this model."""
 DOOR = "feature:opening height:>1.5 depth:>0.5"
 """Openings that one can walk through [m]. Source: chosen for this model."""
+BLOCKED = 0.1
+"""Time without progress after which a movement ends as blocked, and the walk with it [s]. Source: chosen for this model."""
 FIELD = 2.6
 """The width of the field of view [rad]. Source: chosen for this model."""
 BEHIND = 0.8
 """How far behind the doorway it turns back [m]. Source: chosen for this model."""
 HEIGHT, CHEST = 1 / 0.259, 0.563
 """Height, and depth of the chest, in shoulder widths. Source: Drillis & Contini (1966); ANSUR II (2012)."""
+BAR = 0.03
+"""The thickness of a bar [m]. Source: chosen for this model."""
+DISTANCE = 7.0
+"""How far before the doorway a walk begins [m]. Source: the original's scene (docs/human-data.md)."""
+PILLAR = 4.0, 0.3
+"""The distance of the pillar from the start, and its width [m]. Source: chosen for this model."""
+COLOUR = (0.62, 0.43, 0.35, 1.0)
+"""The clothes of the other person. Source: chosen for this model."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -329,7 +338,7 @@ class Person(ACTR):
     vision = Vision(b_visual, delay=CYCLE, horizontal_fov=FIELD)
     b_obstacle = Buffer()
     periphery = Vision(b_obstacle, delay=CYCLE, horizontal_fov=FIELD)
-    motor = Motor(memory=DM, size_grid=GRAIN, extreme_step=FELT)
+    motor = Motor(memory=DM, size_grid=GRAIN, extreme_step=FELT, patience=BLOCKED)
     way = Wait()
     pause = Wait()
     pace = Pace()
@@ -365,8 +374,8 @@ class Person(ACTR):
 
     def turn_shoulders(self, angle, seconds):
         """Turns the shoulders to an angle [degrees], in a time [s]; head and eyes keep their direction."""
-        rate = max(abs(angle - self.turned), MIN_TURN) / seconds
-        for part, share in SHARES.items():
+        rate = abs(angle - self.turned) / seconds
+        for part, share in SHARES.items() if rate else ():
             self.motor.rotate(part, "yaw", self.side * share * angle, abs(share) * rate)
         self.turned = angle
 
@@ -413,7 +422,15 @@ class Person(ACTR):
         b_course.set("steer:yes")
         b_goal.set("do:walk")
         self.seen_at = self.now() + CYCLE  # when it will look again
-        motor.walk(self.speed)
+        if float(far) > YIELD * self.step:
+            motor.walk(self.speed)
+
+    def go(b_goal="do:walk", b_plan="passed:?passed", motor="walking:False legs_end:!blocked"):
+        """Sets out near the doorway, once it expects to pass it."""
+        if float(passed) > LIKELY:
+            motor.walk(self.speed)
+        else:
+            b_goal.set("do:decline")
 
     def change_pace(pace="wanted:?wanted kept:!?wanted"):
         """Walks at another speed from now on."""
@@ -453,7 +470,7 @@ class Person(ACTR):
             self.nearest = inf
         if comes:
             self.nearest, self.patient_until = deep, now + self.random.uniform(*PATIENCE)
-        free = now > min(self.patient_until, self.taken + FORGET) if waits else far < self.step or not comes
+        free = now > min(self.patient_until, self.taken + FORGET) if waits else far < self.step or not (comes and self.motor.walking)
         elapsed, self.seen_at = min(now - self.seen_at, LONGEST), now
         self.b_door.modify(far=far, direction=left, near=far < STEPS * self.step, free=free)
         if waits:
@@ -483,8 +500,8 @@ class Person(ACTR):
         self.motor.turn(speed=degrees(rate) if abs(rate) > SLOWEST else 0)
 
     def effort(self, turn):
-        """Returns the work of turning the shoulders by an angle [degrees], there and back [J]: each time they start and stop."""
-        return 2 * INERTIA * (radians(turn) / self.turning_time) ** 2
+        """Returns the work of turning the shoulders by an angle [degrees], as `turn` and back as `leave` [J]: each starts and stops."""
+        return INERTIA * sum((radians(turn) / seconds) ** 2 for seconds in (self.turning_time, FEELING))
 
     def wait(b_goal="do:!wait", b_door="free:False"):
         """Stops for somebody or something at the doorway."""
@@ -495,9 +512,10 @@ class Person(ACTR):
         b_goal.set("do:wait")
 
     def go_on(b_goal="do:wait", b_door="free:True"):
-        """Looks for a doorway again: the way is free, or its patience is over."""
-        b_course.clear()
-        b_door.clear()
+        """Looks for a doorway again, and plans anew: the way is free, or its patience is over."""
+        for buffer in (b_course, b_door, b_plan, b_imagined, b_DM, b_experience):
+            buffer.clear()
+        self.costs = {}
         b_goal.set("do:look")
 
     def commit(b_goal="do:walk", b_door="width:?wide near:True free:True", b_plan="turn:?turn width:?width passed:?passed"):
@@ -547,7 +565,7 @@ def person(parameters: Parameters, name: str = "walker") -> Person:
 
 
 def build(parameters: Parameters) -> Simulation:
-    """Puts a walker 7 m before a doorway, or before two; with a pillar between; or another walker on the other side."""
+    """Puts a walker before a doorway, or before two; with a pillar between; or another walker on the other side."""
     p = parameters
     width = p.shoulder_width
     walker = Mannequin(
@@ -557,20 +575,21 @@ def build(parameters: Parameters) -> Simulation:
         depth=CHEST * width,
         sideways=True,
         gait=Gait() if p.gait else None,
-        load=None if p.bar is None else Load(shape="bar", size=(p.bar, 0.03)),
+        load=None if p.bar is None else Load(shape="bar", size=(p.bar, BAR)),
         position=(0.0, p.start_aside),
         heading=radians(p.start_heading),
     )
-    parts = [walker, Aperture(width=p.aperture, closing=p.closing)]
+    parts = [walker, Aperture(width=p.aperture, position=(DISTANCE, 0.0), closing=p.closing)]
     if p.scene == "pillar":
-        parts.append(Wall(name="pillar", start=(4.0, -0.15), end=(4.0, 0.15), thickness=0.3))
+        at, wide = PILLAR
+        parts.append(Wall(name="pillar", start=(at, -wide / 2), end=(at, wide / 2), thickness=wide))
     elif p.scene == "two people":
-        parts.append(replace(walker, name="other", position=(14.0, 0.0), heading=pi, colour=(0.62, 0.43, 0.35, 1.0)))
+        parts.append(replace(walker, name="other", position=(2 * DISTANCE, 0.0), heading=pi, colour=COLOUR))
     elif p.scene == "two doorways":
         beside = BETWEEN / 2
         shared = {"width": p.aperture, "closing": p.closing, "segment": beside - p.aperture / 2}
         doorways = {"aperture": beside, "second": -beside}
-        parts = [walker, *(Aperture(name=name, position=(7.0, y), **shared) for name, y in doorways.items())]
+        parts = [walker, *(Aperture(name=name, position=(DISTANCE, y), **shared) for name, y in doorways.items())]
     agents = {part.name: partial(person, p, part.name) for part in parts if isinstance(part, Mannequin)}
     simulation = Simulation(Scene(parts=(Floor(), *parts)), agents)
     if p.scene != "two doorways":

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from statistics import NormalDist
 from typing import Annotated, Any
 
 import numpy as np
@@ -143,13 +144,14 @@ class GaitCycle:
         names = [name for name in (*OWN, *SHARED) if name in rows]
         self.rows: NDArray[np.intp] = np.array([rows[name] for name in names], dtype=np.intp)
         """The rows that it moves."""
+        self._index = {row: number for number, row in enumerate(self.rows.tolist())}
         self._gait = gait
         self._legs = legs
         self._seed = seed
         self._columns = np.array([(*OWN, *SHARED).index(name) for name in names], dtype=np.intp)
         self._fastest = np.array([FASTEST.get(name, FASTEST_HINGE) for name in names])
         self._pattern: tuple[float, Row] | None = None
-        self._drawn: dict[int, tuple[float, float]] = {}
+        self._drawn: dict[int, tuple[float, float, float]] = {}
         self._added = np.zeros(len(names))
         """What it has added to each joint's place [rad] [m]."""
         self._changes = np.zeros(len(names))
@@ -208,17 +210,30 @@ class GaitCycle:
         ease = into * into * (3 - 2 * into)
         return gait.wander * ((1 - ease) * self._random(self._steps)[1] + ease * self._random(self._steps + 1)[1])
 
-    def _start(self) -> None:
-        """Begins to walk with either foot."""
-        self._steps += self._steps % 2
-        foot = int(self._random(self._steps)[0] > 0)
-        self._steps, self._phase = self._steps + foot, foot / 2
+    def moves(self, row: int | None) -> bool:
+        """Returns whether it moves the joint of a row."""
+        return row in self._index
 
-    def _random(self, step: int) -> tuple[float, float]:
-        """Returns the two standard normal numbers of a step."""
+    def added(self, row: int) -> float:
+        """Returns what it has added to the place of the joint of a row, one that it moves [rad] or [m]."""
+        return self._added.item(self._index[row])
+
+    def _start(self) -> None:
+        """Begins to walk at a random phase of the stride.
+
+        The steps of one person differ in length from those of another, so that some metres farther everybody is in another phase. All
+        bodies here have the same walk ratio; with a fixed phase at the start, all walks would reach a place in the same phase.
+        """
+        self._steps += self._steps % 2
+        self._phase = NormalDist().cdf(self._random(self._steps)[2])
+        self._steps += int(self._phase >= 0.5)
+
+    def _random(self, step: int) -> tuple[float, float, float]:
+        """Returns the three standard normal numbers of a step: of its duration, its place, and the phase if a walk begins with it."""
         if step not in self._drawn:
-            one, other = Generator(PCG64(SeedSequence([*self._seed, step]))).standard_normal(2).tolist()
-            self._drawn = {number: self._drawn[number] for number in self._drawn if abs(number - step) == 1} | {step: (one, other)}
+            duration, place, phase = Generator(PCG64(SeedSequence([*self._seed, step]))).standard_normal(3).tolist()
+            kept = {number: self._drawn[number] for number in self._drawn if abs(number - step) == 1}
+            self._drawn = kept | {step: (duration, place, phase)}
         return self._drawn[step]
 
     def state(self) -> tuple[Any, ...]:

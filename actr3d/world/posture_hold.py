@@ -126,6 +126,19 @@ class PostureHold:
         """Returns the row of a joint; None if it has no servo that this class controls."""
         return self._dofs.joints.get(joint)
 
+    def gait_moves(self, joint: str) -> bool:
+        """Returns whether gait moves a joint about the place where it was commanded to stand."""
+        return self._gait is not None and self._gait.moves(self._dofs.joints.get(joint))
+
+    def added_by_gait(self, joint: str) -> float:
+        """Returns how far gait has moved a joint from the place where it was commanded to stand [rad] or [m].
+
+        Args:
+            joint: A joint for which `gait_moves` is True.
+        """
+        assert self._gait is not None
+        return self._gait.added(self._dofs.joints[joint])
+
     # -- commands
 
     def joint_speed(self, joint: Joint) -> float:

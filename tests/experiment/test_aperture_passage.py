@@ -356,7 +356,7 @@ def test_it_is_recorded_and_replayed(variant: str, tmp_path: Path, capsys: Any) 
 
 RESULT = [
     *("event", "outcome", "peak_angle_deg", "wall_angle_deg", "logged_angle_deg", "onset_distance_m", "onset_time_s", "contacts"),
-    *("max_force_n", "impulse_n_s", "clearance_left_m", "clearance_right_m", "speed_m_s", "time_s"),
+    *("max_force_n", "impulse_n_s", "impact_j", "clearance_left_m", "clearance_right_m", "speed_m_s", "time_s"),
 ]
 
 

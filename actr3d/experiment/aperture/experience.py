@@ -9,18 +9,19 @@ from pathlib import Path
 from typing import Literal
 
 from actr3d.experiment.aperture.passage import PassageResult
+from actr3d.world import Mannequin
 
 FILE = Path(__file__).with_name("experience.csv")
 SLOTS = ("room", "speed", "energy", "free", "passed")
 COLUMNS = ("gait", "hands", *SLOTS)
-MASS = 75.0
-"""Of the walker [kg]. Source: the mannequin's."""
+MASS: float = Mannequin.mass
+"""Of the walker [kg]."""
 
 
 def passage_remembered(committed: Mapping[str, float] | None, result: PassageResult) -> dict[str, float]:
     """Returns the memory of a passage.
 
-    The energy of an impact is that of a body which the impulse of all contacts could stop, J² / 2m, and at most that of the walk.
+    Its energy is that of all contacts (`PassageResult.impact_j`), and at most that of the walk.
 
     Args:
         committed: What the walker saw and did: `room` [m] and `speed` [m/s]; None if it came to no decision.
@@ -29,7 +30,7 @@ def passage_remembered(committed: Mapping[str, float] | None, result: PassageRes
     if committed is None:
         raise ValueError("the walker did not come to the doorway")
     moving = MASS * committed["speed"] ** 2 / 2
-    energy = min(result.impulse_n_s**2 / (2 * MASS), moving)
+    energy = min(result.impact_j, moving)
     passed = result.outcome == "passed"
     return {"room": committed["room"], "energy": round(energy, 2), "free": float(passed and result.contacts == 0), "passed": float(passed)}
 

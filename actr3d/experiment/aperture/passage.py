@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -25,7 +26,7 @@ FASTEST = 20.0
 TINY = 1e-9
 """Less than any physics step [s]."""
 TURNED = math.radians(1)
-"""Angle of the shoulder line at which a turn begins [rad]. Source: chosen for this library."""
+"""Turn of the shoulders at which a turn begins [rad]. Source: chosen for this library."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,8 +43,8 @@ class PassageResult:
     """The sum of the joint angles of torso and clavicle at that moment [degrees], logged by the original model (docs/human-data.md); plus
     that of the stance, if the body has one."""
     onset_distance_m: float | None
-    """Distance from the wall at which the shoulders began to turn to their greatest angle [m]; None if they did not. Before that, they may
-    have turned to and fro, as in walking."""
+    """Distance from the wall at which the shoulders began to turn to their greatest angle [m]; None if they did not. How they turn to and
+    fro with each step does not count."""
     onset_time_s: float | None
     """The time at which they began to turn [s]; None if they did not."""
     contacts: int
@@ -51,7 +52,10 @@ class PassageResult:
     max_force_n: float
     """Greatest force of a contact [N]."""
     impulse_n_s: float
-    """The forces of all contacts, summed over time [N s]: how much of a movement they took."""
+    """The forces of all contacts, summed over time [N s]."""
+    impact_j: float
+    """How hard the contacts were [J]: the sum of J² / 2m, for the impulse J of each contact from its begin to its end, and the mass m of
+    the body. Each is the energy of the body at a speed that this impulse could stop."""
     clearance_left_m: float | None
     """Smallest distance between any part of the body and the left segment of the wall, while a part of the body was between its
     faces [m]; None if none was."""
@@ -74,12 +78,13 @@ class PassageResult:
         if self.speed_m_s is not None:
             lines.append(f"  walked at {self.speed_m_s:.2f} m/s")
         if self.contacts:
-            lines.append(f"  touched something {self.contacts} times, with up to {self.max_force_n:.0f} N")
+            lines.append(f"  touched something {self.contacts} times, with up to {self.max_force_n:.0f} N, {self.impact_j:.1f} J in all")
         return "\n".join(lines)
 
 
-_NONE = frozenset[tuple[str, str]]()
-"""No touches."""
+Forces = Mapping[tuple[str, str], float]
+"""By part of the body and touched object, the force between them [N]."""
+_NONE: Forces = {}
 
 
 class _Sample(NamedTuple):
@@ -93,13 +98,14 @@ class _Sample(NamedTuple):
     """Between shoulder line and wall [rad]."""
     logged: float
     """Torso plus clavicle, and the stance [rad]."""
+    turned: float
+    """The same without what gait adds to it [rad]."""
     room: tuple[float, float] | None
     """To the left and right segment [m], while in the doorway."""
-    touches: frozenset[tuple[str, str]]
-    force: float
-    """Greatest force of a contact [N]."""
-    impulse: float
-    """Of all contacts in this step [N s]."""
+    duration: float
+    """Of the physics step [s]."""
+    forces: Forces
+    """Of its contacts."""
 
 
 @measure
@@ -143,6 +149,8 @@ class Passage:
         hinges = {"stance_yaw": 1.0, "torso_yaw": 1.0, "left_shoulder_yaw": 0.5, "right_shoulder_yaw": 0.5}
         turning = [(joint.q, joint.v, hinges[name]) for name, joint in self._body.joints.items() if name in hinges]
         self._turning = np.array([row[:2] for row in turning], dtype=np.intp).reshape(-1, 2), np.array([row[2] for row in turning])
+        self._stepping = [(name, share) for name, share in hinges.items() if self._body.hold.gait_moves(name)]
+        self._mass = float(model.body_subtreemass[self._body.root])
         x, y, _ = self._axis.tolist()
         self._start = x, y
         self._slide = self._body.base.v
@@ -174,13 +182,13 @@ class Passage:
             ago: By how much the joints are ahead of the geometry [s].
         """
         before, angle, logged = posture()(self._axis, *self._shoulders, self._qpos, self._qvel, *self._turning, *self._middle, ago)
+        turned = logged
+        for name, share in self._stepping:
+            turned -= share * self._body.hold.added_by_gait(name)
         room = self._room(time) if abs(before) < self._reach else None
         touches = self._contacts.touches()
-        if not touches:
-            return _Sample(time, before, angle, logged, room, _NONE, 0.0, 0.0)
-        forces = [touch.force for touch in touches]
-        pairs = frozenset([(touch.part, touch.other) for touch in touches])
-        return _Sample(time, before, angle, logged, room, pairs, max(forces), sum(forces) * ago)
+        forces = {(touch.part, touch.other): touch.force for touch in touches} if touches else _NONE
+        return _Sample(time, before, angle, logged, turned, room, ago, forces)
 
     def _room(self, time: float) -> tuple[float, float] | None:
         """Returns the distances to the wall on both sides [m]; None if no part of the body is in the doorway, or could be there yet."""
@@ -201,10 +209,7 @@ class Passage:
         at_wall = next((sample for sample in samples if sample.before <= 0), None)
         onset = _onset(samples)
         rooms = [sample.room for sample in samples if sample.room is not None]
-        touches, before = 0, frozenset[tuple[str, str]]()
-        for sample in samples:
-            touches += len(sample.touches - before)
-            before = sample.touches
+        impulses = _impulses(samples)
         last = at_wall or (samples[-1] if samples else None)
         way = samples[0].before - last.before if last is not None else 0.0
         walked = last.time - samples[0].time if last is not None else 0.0
@@ -215,9 +220,10 @@ class Passage:
             logged_angle_deg=_degrees(abs(at_wall.logged)) if at_wall else None,
             onset_distance_m=round(onset.before, 4) if onset else None,
             onset_time_s=round(onset.time, 3) if onset else None,
-            contacts=touches,
-            max_force_n=round(max((sample.force for sample in samples), default=0.0), 1),
-            impulse_n_s=round(math.fsum(sample.impulse for sample in samples), 2),
+            contacts=len(impulses),
+            max_force_n=round(max((force for sample in samples for force in sample.forces.values()), default=0.0), 1),
+            impulse_n_s=round(math.fsum(impulses), 2),
+            impact_j=round(math.fsum(impulse**2 for impulse in impulses) / (2 * self._mass), 3),
             clearance_left_m=round(min(left for left, _ in rooms), 4) if rooms else None,
             clearance_right_m=round(min(right for _, right in rooms), 4) if rooms else None,
             speed_m_s=round(way / walked, 3) if walked else None,
@@ -226,14 +232,25 @@ class Passage:
 
 
 def _onset(samples: list[_Sample]) -> _Sample | None:
-    """Returns the sample from which on the shoulders are turned until their greatest angle; None if they never are."""
-    angles = [sample.angle for sample in samples]
+    """Returns the sample from which on the shoulders are turned until they are most; None if they never are."""
+    angles = [abs(sample.turned) for sample in samples]
     number = angles.index(max(angles)) if angles else -1
     if number < 0 or angles[number] < TURNED:
         return None
     while number and angles[number - 1] >= TURNED:
         number -= 1
     return samples[number]
+
+
+def _impulses(samples: list[_Sample]) -> list[float]:
+    """Returns the impulse of each contact, from its begin to its end [N s]."""
+    ended: list[float] = []
+    present: dict[tuple[str, str], float] = {}
+    for sample in samples:
+        if sample.forces or present:
+            ended += [impulse for pair, impulse in present.items() if pair not in sample.forces]
+            present = {pair: present.get(pair, 0.0) + force * sample.duration for pair, force in sample.forces.items()}
+    return [*ended, *present.values()]
 
 
 def _outcome(last: _Sample | None, over: bool) -> Literal["passed", "declined", "stopped"]:

@@ -25,7 +25,7 @@ def doorway_practice() -> Design:
         results=remembered,
         measures=[
             Measured(name="room", unit="m", meaning="Seen width of the doorway minus felt width of the turned body, with what it holds."),
-            Measured(name="energy", unit="J", meaning="Energy of all impacts together."),
+            Measured(name="energy", unit="J", meaning="Energy of all contacts, at most that of the walk."),
             Measured(name="free", meaning="Whether it passed and touched nothing."),
             Measured(name="passed", meaning="Whether it passed."),
         ],
