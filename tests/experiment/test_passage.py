@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -105,6 +106,25 @@ def test_a_walk_into_the_wall_touches_it_and_stops() -> None:
     assert result.contacts >= 2
     assert result.max_force_n > 100
     assert (result.wall_angle_deg, result.clearance_left_m) == (None, pytest.approx(0, abs=2e-3)) or result.clearance_left_m is None
+
+
+def test_the_energy_of_contacts_is_summed_by_contact() -> None:
+    """Of two brushes of the same impulse it is twice that of one, not four times."""
+    simulation = walked(0.4)
+    body, option = simulation.world.bodies["walker"], simulation.world.mj_model.opt
+    seen: list[dict[tuple[str, str], float]] = []
+    simulation.world.watchers.append(
+        lambda: seen.append({(touch.part, touch.other): touch.force * option.timestep for touch in body.contacts.touches()})
+    )
+    result = result_of(simulation)
+    energy, number = 0.0, 0
+    for pair in {pair for step in seen for pair in step}:
+        for touching, steps in groupby([*seen, {}], lambda step, pair=pair: pair in step):
+            if touching:
+                energy, number = energy + sum(step[pair] for step in steps) ** 2 / (2 * 75.0), number + 1
+    assert number == result.contacts > 3
+    assert result.impact_j == pytest.approx(energy, rel=0.01)
+    assert 0 < result.impact_j < 0.8 * result.impulse_n_s**2 / (2 * 75.0)
 
 
 def test_a_walker_that_never_starts_declines_unless_it_was_cut_short() -> None:

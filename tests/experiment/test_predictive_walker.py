@@ -229,6 +229,33 @@ def test_a_turn_that_is_given_is_made(model: Any) -> None:
     assert walker.committed["room"] == pytest.approx(0.9 - 0.34, abs=0.08)
 
 
+@pytest.mark.daily(2)
+@pytest.mark.parametrize("seed", range(1, 7))
+def test_the_onset_of_a_turn_is_when_it_was_commanded_however_the_body_sways(model: Any, capsys: Any, seed: int) -> None:
+    result, _ = walked(model, seed, aperture=0.9, turn=40.0)
+    commanded = float(capsys.readouterr().out.split(" s: turns by")[0])
+    assert result.onset_time_s == pytest.approx(commanded, abs=0.11)
+    for given in ({}, {"start_aside": 0.5, "start_heading": 10.0}):
+        straight, _ = walked(model, seed, aperture=0.9, turn=0.0, **given)
+        assert (straight.outcome, straight.onset_time_s, straight.onset_distance_m) == ("passed", None, None)
+
+
+@pytest.mark.slow
+def test_walks_reach_the_doorway_in_all_phases_of_the_stride(model: Any) -> None:
+    """With the same start, the body is over the left foot at the doorway as often as over the right one, and between both."""
+    places: list[float] = []
+    for seed in range(16):
+        with RunLimits(seed=seed, until=60):
+            simulation: Simulation = model.build(model.Parameters(aperture=0.9, turn=0.0))
+            data, body = simulation.world.mj_data, simulation.world.bodies["walker"]
+            sway = simulation.world.mj_model.joint("walker_stance_sway").qposadr[0]
+            simulation.run(until=lambda _, body=body: body.base.place[0] >= 7)
+        places.append(float(data.qpos[sway]))
+    assert min(places) < -0.015
+    assert max(places) > 0.015
+    assert sum(abs(place) < 0.015 for place in places) >= 3
+
+
 def test_it_shows_its_plan_with_the_costs_that_it_expects_of_each_turn(model: Any) -> None:
     with RunLimits(seed=1):
         simulation: Simulation = model.build(model.Parameters(aperture=0.45))
