@@ -28,6 +28,12 @@ RATIOS = np.arange(0.9, 1.9, 0.01)
 """Doorways [shoulder widths]."""
 CELLS = (("small", 0.404, 1.29, 1.61), ("large", 0.484, 1.28, 1.77))
 """Groups with their shoulder width [m], and their normal and fast speed [m/s]. Source: Warren & Whang (1987)."""
+FITTED = 1.30
+"""The ratio of the fitted cell [shoulder widths]."""
+COSTS = np.geomspace(1.0, 40.0, 60)
+"""The costs of contacts among which a fit of simulated data chooses."""
+REPETITIONS = 40
+"""Number of simulated sets of data for each cost."""
 BELOW = 1.25
 """People turn before doorways below this many shoulder widths."""
 
@@ -47,7 +53,9 @@ class Deciding:
     turns: tuple[int, ...] = MODEL.TURNS
     walks: bool = True
 
-    def turns_before(self, shoulders: float, ratios: NDArray[Any], *, speed: float, pace: float | None = None) -> NDArray[Any]:
+    def turns_before(
+        self, shoulders: float, ratios: NDArray[Any], *, speed: float, pace: float | None = None, seed: int = 1
+    ) -> NDArray[Any]:
         """Returns the turns that walkers choose [degrees] `(WALKERS, n)`.
 
         Args:
@@ -55,10 +63,11 @@ class Deciding:
             ratios: The doorways [shoulder widths] `(n,)`.
             speed: The walking speed, which the effort follows from [m/s].
             pace: The speed at which they remember passages [m/s]; None for the same.
+            seed: The seed of their memories and of all noise.
         """
         known = experiences(walks=self.walks)
         room, fast, energy = (np.array([one[slot] for one in known]) for slot in ("room", "speed", "energy"))
-        choice, noise = random.Random(1), np.random.default_rng(1)
+        choice, noise = random.Random(seed), np.random.default_rng(seed)
         time = self.turning / Gait().steps_per_second(speed)
         widths = [shoulders * hypot(cos(radians(turn)), MODEL.CHEST * sin(radians(turn))) for turn in self.turns]
         efforts = [self.inertia * ((radians(turn) / time) ** 2 + (radians(turn) / MODEL.FEELING) ** 2) for turn in self.turns]
@@ -92,6 +101,25 @@ def effect_of_speed(shoulders: float, normal: float, fast: float) -> tuple[float
     return mean[fast, fast] - base, mean[fast, normal] - base, mean[normal, fast] - base
 
 
+def share_turned(cost: float, *, trials: int, seed: int) -> float:
+    """Returns the share of passages that are turned in the fitted cell, at a cost of contacts, of `WALKERS` with some trials each."""
+    name, shoulders, normal, _ = CELLS[0]
+    assert name == "small"
+    return float((Deciding(contact_cost=cost).turns_before(shoulders, np.full(trials, FITTED), speed=normal, seed=seed) > 0).mean())
+
+
+def found_again(cost: float) -> tuple[float, float, float]:
+    """Returns what fits to simulated data find if `cost` is put in: the median, and the range of the middle 80 % of `REPETITIONS`.
+
+    Data and fit have as many passages as the fit of the walks: 200. A fit finds the cost whose share of turned passages is nearest.
+    """
+    shares = np.array([share_turned(other, trials=25, seed=0) for other in COSTS])
+    data = [share_turned(cost, trials=5, seed=seed) for seed in range(1, REPETITIONS + 1)]
+    found = [COSTS[np.argmin(np.abs(shares - share))] for share in data]
+    low, middle, high = np.quantile(found, (0.1, 0.5, 0.9))
+    return float(middle), float(low), float(high)
+
+
 def report() -> str:
     """Returns the critical ratio with each number halved and doubled, with and without gait, and the effect of speed."""
     usual, lines = Deciding(), list[str]()
@@ -107,6 +135,8 @@ def report() -> str:
     for name, shoulders, normal, fast in CELLS:
         both, effort, impact = effect_of_speed(shoulders, normal, fast)
         lines.append(f"{name}, fast minus normal: {both:+.1f} degrees; by effort alone {effort:+.1f}, by impact alone {impact:+.1f}")
+    for cost in (3.0, 5.0, 8.0, 13.0):
+        lines.append("contact_cost {:g} put in: found {:.1f}, from {:.1f} to {:.1f}".format(cost, *found_again(cost)))
     return "\n".join(lines) + "\n"
 
 

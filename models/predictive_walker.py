@@ -53,7 +53,7 @@ from actr3d.simulation import Simulation
 from actr3d.vision import Vision
 from actr3d.world import Aperture, Floor, Gait, Load, Mannequin, Scene, Wall
 
-CONTACT_COST = 6.77
+CONTACT_COST = 5.5
 """The one free parameter: fitted with `actr3d fit critical_ratio`, so that half of the passages at 1.30 shoulder widths are turned."""
 PERCEPTUAL_NOISE, MEMORY_NOISE = 1.0, 0.1
 """The factor of the noise of what it sees and feels, and the noise of the activation of memories. Source: chosen for this model, before

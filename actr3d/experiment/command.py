@@ -221,7 +221,7 @@ def fit(
     out.line(("\nfitted", "bold"), f" to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
     for one in result.parameters:
         low, high = ("not determined" if bound is None else f"{bound:g}" for bound in (one.low, one.high))
-        out.line(f"  {one.name} = {one.value:g}   95 % interval: {low} to {high}")
+        out.line(f"  {one.name} = {one.value:g}   95 % interval: {low if low == high else f'{low} to {high}'}")
     for title, agreements in (("the fit", {"": result.fit}), ("held out", result.held_out), ("changed", result.ablated)):
         for what, found in agreements.items():
             r2 = "none" if found.r2 is None else f"{found.r2:.3f}"
