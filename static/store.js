@@ -88,9 +88,32 @@ function addNotices(added) {
   notices.value = [...notices.value, ...added].slice(-MAX_NOTICES);
 }
 
-/** Whether a notice belongs to the newest run, or to the page itself, and not to an earlier run. */
-export function isPresent({ attempt }) {
-  return attempt === undefined || attempt === session.value?.attempt;
+/** Whether a notice is of the run that is shown. */
+function isOfShown({ attempt }) {
+  return attempt !== undefined && attempt === session.value?.shown_attempt;
+}
+
+/** Whether a notice is of what the run that is shown has left, because a user has changed something before it. */
+function isCut(notice) {
+  const cuts = session.value?.cuts ?? [];
+  return isOfShown(notice) && cuts.some(([next, kept]) => notice.number < next && notice.events > kept);
+}
+
+/** Whether a notice is of a later moment of the run than the one that is shown. */
+export function isAhead(notice) {
+  return isOfShown(notice) && !isCut(notice) && state.value !== null && notice.events > state.value.events;
+}
+
+/** Whether the run that is shown has given a notice, up to the moment that is shown. */
+export function isGiven(notice) {
+  return isOfShown(notice) && !isCut(notice) && !isAhead(notice);
+}
+
+/** Whether a notice is of the newest run, which may have failed before it could be shown, or of the page itself: not of an earlier run,
+ * nor of what the run that is shown has not given. */
+export function isPresent(notice) {
+  const { attempt } = notice;
+  return attempt === undefined || (attempt === session.value?.attempt && (!isOfShown(notice) || isGiven(notice)));
 }
 
 let ownNotices = 0;
@@ -120,9 +143,9 @@ export function isSettled({ number }, kind) {
   return number < 0 ? number >= (ownSettled.value[kind] ?? 0) : number <= (settled.value[settledKey()]?.[kind] ?? -1);
 }
 
-/** Marks all current messages as settled in a way. */
-export function settle(kind) {
-  const numbers = notices.peek().map(({ number }) => number);
+/** Marks messages, and all before them, as settled in a way. */
+export function settle(kind, messages) {
+  const numbers = messages.map(({ number }) => number);
   const [least, most] = [Math.min(0, ...numbers), Math.max(-1, ...numbers)];
   if (least < (ownSettled.peek()[kind] ?? 0)) ownSettled.value = { ...ownSettled.peek(), [kind]: least };
   const known = settled.peek()[settledKey()] ?? {};

@@ -75,6 +75,8 @@ class Session(Broadcast, Receiver):
 
         Earlier notices about later events belong to a past that no longer exists.
         """
+        self._given: dict[Notice, None] = {}
+        """The latest notices of the run on screen, in order. A run that goes a stretch again gives them again."""
         self._controlled_by = ""
         self._ending = ""
         self._after_end = "the worker has ended"
@@ -179,6 +181,7 @@ class Session(Broadcast, Receiver):
                 self.epoch += 1
                 self.log.cut(message.events)
                 self._cuts.append((self._notice_number, message.events))
+                self._given = {notice: None for notice in self._given if (notice.events or 0) <= message.events}
                 self.changed(facts=True)
                 for feed in self.feeds:
                     feed.cut(message.events)
@@ -188,7 +191,7 @@ class Session(Broadcast, Receiver):
             case Loaded():
                 launched.add_helper(message)
                 self.changed(facts=shown)
-            case Notice():
+            case Notice() if not shown or not self._was_given(message):
                 self.add_notice(message, start)
             case At():
                 self._stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
@@ -196,6 +199,16 @@ class Session(Broadcast, Receiver):
             case _:
                 pass
         self.changed()
+
+    def _was_given(self, notice: Notice) -> bool:
+        """Returns whether the run on screen gives a notice again, on a stretch that it had gone before; otherwise remembers it."""
+        before = notice.events is not None and (notice.events < self.log.next or notice.level == "error")  # a run fails only once
+        if before and notice in self._given:
+            return True
+        self._given[notice] = None
+        if len(self._given) > MAX_NOTICES:
+            del self._given[next(iter(self._given))]
+        return False
 
     def _take_state(self, state: State) -> None:
         if self._stuck is not None:
@@ -228,6 +241,7 @@ class Session(Broadcast, Receiver):
         self.log = EventLog()
         self.facts, self.state, self._stuck, self.branched = facts, None, None, None
         self._cuts.clear()
+        self._given.clear()
         if self._drawn:
             launched.worker.send(Draw(kinds=self._drawn))
         self._notify_watchers(facts)
@@ -540,7 +554,8 @@ class Session(Broadcast, Receiver):
         shown: dict[str, Any] = {"number": self._notice_number, "level": notice.level, "text": notice.text, "detail": notice.detail}
         shown |= {"file": self._shown_file(notice.file, start), "line": notice.line}
         is_shown = self._shown is not None and (self._attempt if start is None else start.attempt) == self._shown.start.attempt
-        shown["events"] = notice.events if notice.events is not None else self.log.next if is_shown else 0
+        now = self.log.next if self.state is None else self.state.events
+        shown["events"] = notice.events if notice.events is not None else now if is_shown else 0
         shown |= {"attempt": self._attempt if start is None else start.attempt, "version": start and start.version}
         self.notices.append((self._notice_number, msgspec.json.encode(shown)))
         self._notice_number += 1

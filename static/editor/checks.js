@@ -3,7 +3,7 @@
 import { effect, untracked } from "../vendor/preact.js";
 import { folder } from "../bar/models.js";
 import { call } from "../server.js";
-import { complain, notices, session } from "../store.js";
+import { complain, isPresent, notices, session } from "../store.js";
 import { reveal } from "./code.js";
 import { documents, LARGEST, watching } from "./documents.js";
 import { markAt, marking, withMarks } from "./marks.js";
@@ -56,41 +56,36 @@ function mark(document, doc, problems, { reveals = false } = {}) {
 
 // -- notices of a run
 
-/** The last notice, and its attempt, for which the open texts have been marked. */
-let upTo = { session: null, attempt: null };
+/** By text: the keys of the notices for which it has been marked. */
 const taken = new WeakMap();
 
-/** Marks the notices of the newest run in the open texts; removes those of the previous run. */
+/** Marks the present notices in the open texts; removes the marks of others. */
 export const ending = effect(() => {
-  const { id = null, attempt = null } = session.value ?? {};
-  const all = notices.value;
+  const { id } = session.value ?? {};
+  const present = new Map(notices.value.filter(isPresent).map((notice) => [`${id} ${notice.number}`, notice]));
   const open = [...documents.value.values()];
   untracked(() => {
-    if (upTo.session !== id || upTo.attempt !== attempt) {
-      upTo = { session: id, attempt };
-      for (const document of open) {
-        taken.delete(document);
-        if (document.marks.value.some(({ origin }) => origin === "run")) document.change(withMarks(document.state, "run", []));
-      }
-    }
-    for (const document of open) take(document, all, attempt);
+    for (const document of open) take(document, present);
   });
 });
 
-function take(document, all, attempt) {
-  const after = taken.get(document) ?? -1;
-  const fresh = all.filter((notice) => notice.attempt === attempt && notice.number > after);
-  if (fresh.length === 0) return;
-  taken.set(document, fresh.at(-1).number);
-  const marks = document.state.field(marking).filter(({ origin }) => origin === "run");
-  const known = marks.length;
-  for (const notice of fresh) {
+function take(document, present) {
+  const before = taken.get(document) ?? new Set();
+  const fresh = [...present].filter(([key]) => !before.has(key));
+  if (fresh.length === 0 && before.size === present.size) return;
+  taken.set(document, new Set(present.keys()));
+  const old = document.state.field(marking).filter(({ origin }) => origin === "run");
+  const marks = old.map((mark) => ({ ...mark, keys: mark.keys.filter((key) => present.has(key)) })).filter(({ keys }) => keys.length > 0);
+  const kept = marks.length;
+  for (const [key, notice] of fresh) {
     const found = markOf(document, notice);
-    if (found && !marks.some((other) => other.from === found.from && other.message === found.message)) marks.push(found);
+    const same = found && marks.find(({ from, message }) => from === found.from && message === found.message);
+    if (same) same.keys.push(key);
+    else if (found) marks.push({ ...found, keys: [key] });
   }
-  if (marks.length === known) return;
+  if (old.length === 0 && marks.length === 0) return;
   document.change(withMarks(document.state, "run", marks));
-  revealFirst(document, marks.slice(known));
+  revealFirst(document, marks.slice(kept));
 }
 
 /** Scrolls the first error of some marks into view. */

@@ -7,7 +7,8 @@ const MAX_RUN = 100; // marks of a run in one text
 /** Replaces the marks of one origin ("check" or "run"): {origin, marks}. */
 const putMarks = StateEffect.define();
 
-/** The marks of a text: {origin, level, message, detail, from, to}; `from` is null for marks without a line. */
+/** The marks of a text: {origin, level, message, detail, from, to}; `from` is null for marks without a line. Those of a run have the
+ * `keys` of their notices. */
 const marksField = StateField.define({
   create: () => [],
   update(marks, transaction) {

@@ -1,11 +1,29 @@
 // What flows between the productions, buffers and modules of a run, as its events show it.
 
+import { agentOf, agentsOf } from "../inspector/agents.js";
 import { events, state, way } from "../store.js";
 
 const ENDS = new Set(["conflict", "fire", "initialize"]); // what follows is no longer the work of the production that has fired
 const OWN = new Set(["buffer", "state", "request", "productions", "select", "add", "output"]); // these say nothing of where a buffer's content comes from
 
 export const keyOf = (system, production) => `${system}\n${production}`;
+
+/** What an agent does at a moment. */
+class Doing {
+  /** The production that has just fired, as [key, time]. */
+  fired = null;
+  /** Whether it is being initialised. */
+  begins = false;
+
+  constructor() {
+    this.group(-1);
+  }
+
+  /** Begins another group of events that belong together: the modules that are at work at a time, and the buffers filled then. */
+  group(time) {
+    Object.assign(this, { time, modules: new Set(), buffers: new Set() });
+  }
+}
 
 /** What is known of a run. */
 class Known {
@@ -14,33 +32,33 @@ class Known {
   /** By module: the paths of the buffers that it has filled. */
   feeds = new Map();
   #next = 0;
-  #fired = null; // the production that has just fired, as [key, time]
-  #group = { time: -1, modules: new Set(), buffers: new Set() };
-  #begins = false; // whether agents are being initialised
+  #doing = new Map(); // by agent
 
   /** Takes in the new events of a list. */
-  take({ list, first }) {
-    for (let n = Math.max(0, this.#next - first); n < list.length; n += 1) this.#one(list[n]);
+  take({ list, first }, agents) {
+    for (let n = Math.max(0, this.#next - first); n < list.length; n += 1) this.#one(list[n], agentOf(list[n][1], agents));
     this.#next = first + list.length;
   }
 
-  #one([time, source, kind, data]) {
-    if (this.#fired && time !== this.#fired[1]) this.#fired = null;
+  #one([time, source, kind, data], agent) {
+    if (!this.#doing.has(agent)) this.#doing.set(agent, new Doing());
+    const doing = this.#doing.get(agent);
+    if (doing.fired && time !== doing.fired[1]) doing.fired = null;
     if (ENDS.has(kind)) {
-      this.#begins = kind === "initialize";
-      this.#fired = kind === "fire" ? [keyOf(source, data.production), time] : null;
-      this.#group = { time, modules: new Set(), buffers: new Set() };
+      doing.begins = kind === "initialize";
+      doing.fired = kind === "fire" ? [keyOf(source, data.production), time] : null;
+      doing.group(time);
       return;
     }
-    if (this.#begins) return;
-    if (this.#fired) {
-      if (kind === "request" || kind === "buffer") add(kind === "buffer" && data.chunk === null ? this.#clears : this.#writes, this.#fired[0], source);
+    if (doing.begins) return;
+    if (doing.fired) {
+      if (kind === "request" || kind === "buffer") add(kind === "buffer" && data.chunk === null ? this.#clears : this.#writes, doing.fired[0], source);
       return;
     }
-    if (time !== this.#group.time) this.#group = { time, modules: new Set(), buffers: new Set() };
-    if (kind === "buffer" && data.chunk !== null) this.#group.buffers.add(source);
-    else if (!OWN.has(kind)) this.#group.modules.add(source);
-    if (this.#group.modules.size === 1) for (const buffer of this.#group.buffers) add(this.feeds, [...this.#group.modules][0], buffer);
+    if (time !== doing.time) doing.group(time);
+    if (kind === "buffer" && data.chunk !== null) doing.buffers.add(source);
+    else if (!OWN.has(kind)) doing.modules.add(source);
+    if (doing.modules.size === 1) for (const buffer of doing.buffers) add(this.feeds, [...doing.modules][0], buffer);
   }
 
   /** Returns the paths of the buffers that a production (`keyOf`) has changed, and of the modules that it has asked. A module that is
@@ -66,7 +84,7 @@ export function flows() {
     known = new Known();
     of = way.value;
   }
-  known.take(events.value);
+  known.take(events.value, agentsOf(state.value?.parts));
   return known;
 }
 

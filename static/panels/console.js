@@ -12,7 +12,7 @@ import { Place } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
 import { openTab } from "../open_tab.js";
 import { nothingYet } from "../run_status.js";
-import { alive, moment, notices, session, state } from "../store.js";
+import { alive, isGiven, moment, notices, session, state } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 import { inThePast } from "../timeline/seek.js";
 
@@ -46,11 +46,9 @@ function Written({ text }) {
   return html`${parts}${more > 0 ? html`<span class="control"> … ${more.toLocaleString("en")} more characters; a copy has them</span>` : null}`;
 }
 
-/** Returns the notices of the shown run that came after a notice and before an event, in order. */
-function noticesOf(after, now) {
-  const { shown_attempt: attempt, cuts = [] } = session.value ?? {};
-  const isGone = ({ number, events }) => cuts.some(([before, cut]) => number < before && events > cut);
-  return notices.value.filter((notice) => notice.attempt === attempt && notice.number > after && notice.events <= now && !isGone(notice)).toSorted((one, other) => one.events - other.events);
+/** Returns the notices that the shown run has given after another one, in order. */
+function noticesAfter(number) {
+  return notices.value.filter((notice) => notice.number > number && isGiven(notice)).toSorted((one, other) => one.events - other.events);
 }
 
 /** Returns the rows of a notice, broken between words: {notice, text}; `head` is true for the first, which also has the level and place. */
@@ -103,7 +101,7 @@ function listing(memo = (make) => make()) {
   const { lines, gaps, dropped, cleared, of } = printed();
   const present = firstWhere(lines, ({ number }) => number >= now);
   const first = Math.min(present, firstWhere(lines, ({ number }) => number >= cleared.events));
-  const messages = noticesOf(cleared.notice, now);
+  const messages = noticesAfter(cleared.notice);
   const shown = memo(() => {
     const past = first === 0 && present === lines.length ? lines : lines.slice(first, present);
     return wanted ? past.filter(({ text }) => has(text)) : past;

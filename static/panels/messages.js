@@ -2,16 +2,19 @@
 
 import { computed, html, useEffect } from "../vendor/preact.js";
 import { hasMore } from "../editor/marks.js";
+import { counted } from "../parts/count.js";
 import { Place, Traceback } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
-import { isPresent, isSettled, notices, settle } from "../store.js";
+import { isAhead, isPresent, isSettled, notices, settle } from "../store.js";
 
 const LEVELS = { error: "Errors", warning: "Warnings", info: "Other" };
 const MAX_DRAWN = 300; // the maximum number drawn
 
 const hidden = remembered("messages hidden", []);
-/** The messages that the user has not cleared. */
-const kept = computed(() => notices.value.filter((notice) => !isSettled(notice, "cleared")));
+/** The messages that the user has not cleared, also those after the moment that is shown. */
+const uncleared = computed(() => notices.value.filter((notice) => !isSettled(notice, "cleared")));
+/** Those of them up to the moment that is shown. */
+const kept = computed(() => uncleared.value.filter((notice) => !isAhead(notice)));
 
 /** The errors of the newest run since the tab was last open. */
 function unseen() {
@@ -19,7 +22,7 @@ function unseen() {
 }
 
 function clear() {
-  settle("cleared");
+  settle("cleared", kept.peek());
 }
 
 function toggle(level) {
@@ -50,14 +53,16 @@ function Message({ notice }) {
 }
 
 function Messages() {
-  useEffect(() => settle("seen"), [notices.value]);
   const all = kept.value;
+  const ahead = uncleared.value.length - all.length;
+  useEffect(() => settle("seen", all), [all]);
   const chosen = all.filter(({ level }) => !hidden.value.includes(level)).toReversed();
   const present = chosen.filter(isPresent);
   const list = [...present, ...chosen.filter((notice) => !isPresent(notice))];
   const none = all.length === 0 ? "No messages. Errors and warnings of the model appear here, with their lines." : "All messages are filtered out.";
   return html`<div class="messages">
     <${Filter} />
+    ${ahead > 0 ? html`<p class="note" role="status">${counted(ahead, "message")} from after this moment ${ahead === 1 ? "is" : "are"} not shown.</p>` : null}
     ${list.length === 0 ? html`<p class="empty">${none}</p>` : null}
     <ol id="log" class="log" aria-live="polite" hidden=${list.length === 0}>
       ${list.slice(0, MAX_DRAWN).map(

@@ -2,11 +2,23 @@
 
 import { valueAt } from "./curve.js";
 
-/** Returns curves as the text of a CSV file: a column of times, and one for each curve, with units. */
-export function csvText(curves) {
+/**
+ * Returns curves as the text of a CSV file: a column of times, and one for each curve, with units. Where a curve has no value, the cell
+ * is empty: one that neither holds nor goes on (without `slope`, see `drawCurves`) has values only at its own moments.
+ *
+ * @param until The end of curves that go on [s].
+ */
+export function csvText(curves, until = 0) {
   const quoted = (text) => `"${text.replaceAll('"', '""')}"`;
-  const times = [...new Set(curves.flatMap((curve) => curve.times))].sort((one, other) => one - other);
+  const goesOn = ({ times, values, slope }) => slope !== undefined && (values.at(-1) ?? null) !== null && until > times.at(-1);
+  const moments = new Set(curves.flatMap((curve) => curve.times));
+  if (curves.some(goesOn)) moments.add(until);
+  const times = [...moments].sort((one, other) => one - other);
   const heads = ["time [s]", ...curves.map(({ name, unit }) => (unit ? `${name} [${unit}]` : name))];
-  const rows = times.map((time) => [time, ...curves.map((curve) => valueAt(curve.times, curve.values, time) ?? "")].join(","));
+  const columns = curves.map((curve) => {
+    const own = new Set(curve.times);
+    return times.map((time) => (curve.slope === undefined && !own.has(time) ? "" : (valueAt(curve, time) ?? "")));
+  });
+  const rows = times.map((time, n) => [time, ...columns.map((column) => column[n])].join(","));
   return `${[heads.map(quoted).join(","), ...rows].join("\n")}\n`;
 }

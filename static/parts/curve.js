@@ -6,6 +6,7 @@ import { cut, widthOf } from "./surface.js";
 export const COLOURS = 6;
 const MIN_RANGE = 0.01; // smaller differences are drawn as a straight line, not as amplified numerical noise
 const BETWEEN = 4; // the minimum distance between two labels of an axis [px]
+const SAME = 1e-6; // times that are no farther apart are the same [s]
 const EDGE = 6; // the distance of the first and last text from the ends of an axis [px]
 
 /** Returns the name of the colour of the nth curve. */
@@ -24,10 +25,23 @@ export function firstFrom(times, time) {
   return low;
 }
 
-/** Returns the value of a curve at a time: that of the last known moment until then, or null. */
-export function valueAt(times, values, time) {
-  const at = firstFrom(times, time + 1e-6) - 1;
-  return at < 0 ? null : values[at];
+/**
+ * Returns the value of a curve at a time [s], as `drawCurves` draws it: null where no line is drawn.
+ *
+ * @param near The distance up to which a moment counts that no line leads to [s].
+ */
+export function valueAt({ times, values, steps, slope }, time, near = 0) {
+  const at = firstFrom(times, time + SAME) - 1;
+  const [before, after] = [values[at] ?? null, values[at + 1] ?? null];
+  const since = time - times[at];
+  if (before !== null) {
+    if (since <= SAME) return before;
+    if (slope !== undefined && at === times.length - 1) return before + slope * since;
+    if (steps && at < times.length - 1) return before;
+    if (after !== null) return before + ((after - before) * since) / (times[at + 1] - times[at]);
+    if (since <= near) return before;
+  }
+  return after !== null && times[at + 1] - time <= near ? after : null;
 }
 
 /** Returns a round range that contains the values of some curves. */

@@ -91,8 +91,8 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
     <figcaption>
       <b>${title}</b>${unit ? html` <span class="quiet">[${unit}]</span>` : null}
       <span class="plot-names">
-        ${series.map(({ name, values, times: mine, colour, dash }, n) => {
-          const value = at === null ? "" : numberText(valueAt(mine ?? times, values, at));
+        ${series.map(({ name, colour, dash, ...curve }, n) => {
+          const value = at === null ? "" : numberText(valueAt({ times, ...curve }, at));
           return html`<span key=${n} class="plot-name" title=${name}>
             <svg width="14" height="8" aria-hidden="true"><line x1="0" y1="4" x2="14" y2="4" stroke="var(--${colour ?? seriesColour(n)})" stroke-width="2" stroke-dasharray=${(dash ?? []).join(" ")} /></svg>
             <span class="plot-of">${name}</span> <output>${value}</output>

@@ -1,7 +1,7 @@
 // The latest problem, shown for a while over the page; all problems stay in the tab Messages.
 
 import { html, signal, useEffect } from "../vendor/preact.js";
-import { isPresent, isSettled, notices, settle } from "../store.js";
+import { isAhead, isPresent, isSettled, notices, settle } from "../store.js";
 import { openTab } from "../open_tab.js";
 import { Place } from "./place.js";
 
@@ -9,13 +9,14 @@ const SHOWN = 8000; // [ms]
 const toast = signal(null);
 
 export function Toasts() {
-  const list = notices.value;
+  const list = notices.value.filter((notice) => !isAhead(notice));
+  const latest = list.at(-1);
   useEffect(() => {
     if (list.length === 0) return;
     const fresh = list.filter((notice) => notice.level === "error" && isPresent(notice) && !isSettled(notice, "shown"));
-    settle("shown");
+    settle("shown", list);
     if (fresh.length > 0 && openTab.peek() !== "messages") toast.value = fresh.at(-1);
-  }, [list]);
+  }, [latest]);
   const shown = toast.value;
   useEffect(() => {
     if (!shown) return undefined;

@@ -87,7 +87,7 @@ const plotsOfBodies = computed(() => {
 const plotsOfNumbers = computed(() => {
   lanesVersion.value;
   const until = furthest.value;
-  return plotsOf(lanes.numbers.curves.values(), (curve) => ({ ...curve, range: curve.rangeUntil(until) }));
+  return plotsOf(lanes.numbers.curves.values(), (curve) => ({ ...curve, name: curve.title, range: curve.rangeUntil(until) }));
 });
 
 /** Returns one plot for each group and unit of chosen curves. */

@@ -95,12 +95,13 @@ export class Lanes {
     this.clear();
   }
 
-  clear() {
+  /** Removes everything; `whole` if the events that follow begin with the first of the run. */
+  clear(whole = true) {
     this.lanes = new Map();
     this.tones = new Map();
     this.asked = new Map();
     this.former = new Former();
-    this.numbers = new Numbers();
+    this.numbers = new Numbers(whole);
     this.now = 0;
     this.begin = null;
   }

@@ -3,6 +3,7 @@
 
 import { partName } from "../inspector/part_names.js";
 import { firstFrom } from "../parts/curve.js";
+import { timeText } from "../parts/ticks.js";
 
 const MAX_CURVES = 5000; // the maximum number of curves
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
@@ -13,10 +14,11 @@ function numberOf(value) {
   return typeof value === "string" && NUMBER.test(value) ? Number(value) : null;
 }
 
-/** One curve, as `drawCurves` draws it: with `steps`, each value holds until the next one; with `slope`, the last one goes on. */
+/** One curve, as `drawCurves` draws it: with `steps`, each value holds until the next one; with `slope`, the last one goes on. `since` is
+ * when its sum begins [s], if it is not the sum of the whole run. */
 class NumberCurve {
   constructor(name, unit, group, of) {
-    Object.assign(this, { name, unit, group, of, times: [], values: [], least: Infinity, most: -Infinity, steps: false, slope: undefined });
+    Object.assign(this, { name, unit, group, of, times: [], values: [], least: Infinity, most: -Infinity, steps: false, slope: undefined, since: null });
   }
 
   /** Adds a value; null if there is none from now on. Of several at one moment, the last one counts. */
@@ -32,6 +34,11 @@ class NumberCurve {
     this.most = Math.max(this.most, value);
   }
 
+  /** The name with the time at which its sum begins, if that is not the beginning of the run. */
+  get title() {
+    return this.since === null ? this.name : `${this.name} since ${timeText(this.since, 0.001)}`;
+  }
+
   /** Returns the least and the greatest value until a time [s]. */
   rangeUntil(time) {
     const grown = this.slope && this.values.length ? this.values.at(-1) + this.slope * (time - this.times.at(-1)) : this.most;
@@ -39,13 +46,10 @@ class NumberCurve {
   }
 }
 
-/** All curves of numbers of a run. */
+/** All curves of numbers of a run; `whole` if its events are known from the first one on. */
 export class Numbers {
-  constructor() {
-    this.clear();
-  }
-
-  clear() {
+  constructor(whole) {
+    this.whole = whole;
     this.curves = new Map();
     this.slots = new Map(); // by buffer: its slots with numbers
     this.firsts = new Map(); // by attribute: its first number
@@ -72,13 +76,14 @@ export class Numbers {
     if (curve.values.at(-1) !== value) curve.add(time, value);
   }
 
-  /** Adds up how long something lasts. */
+  /** Adds up how long something lasts: from the first event about it, as what was before is not known unless the run is `whole`. */
   last(time, on, ...what) {
     const curve = this.curve(...what);
-    if (!curve || (!on && curve.slope === undefined) || on === (curve.slope === 1)) return;
+    if (!curve || curve.slope === Number(on)) return;
+    if (curve.slope === undefined && !this.whole) curve.since = time;
     const before = curve.slope === 1 ? curve.values.at(-1) + time - curve.times.at(-1) : (curve.values.at(-1) ?? 0);
     curve.add(time, before);
-    curve.slope = on ? 1 : 0;
+    curve.slope = Number(on);
   }
 
   /** Removes what was before a time [s], except the values that still hold then. */
@@ -124,22 +129,27 @@ function state(numbers, time, source, data) {
   if (typeof data.busy === "boolean") numbers.last(time, data.busy, `${source} busy`, "s", "time busy");
 }
 
-function conflict(numbers, time, _source, { utilities }) {
-  for (const [production, value] of Object.entries(utilities)) numbers.point(time, value, `${production} utility`, "", "utility");
+/** Returns the path of a production: like the paths of parts, without the name of the model if it is the first `top`. */
+function pathOf(system, production) {
+  return system === "top" ? production : `${system}.${production}`;
 }
 
-function utility(numbers, time, _source, { production, part, value }) {
+function conflict(numbers, time, source, { utilities }) {
+  for (const [production, value] of Object.entries(utilities)) numbers.point(time, value, `${pathOf(source, production)} utility`, "", "utility");
+}
+
+function utility(numbers, time, source, { production, part, value }) {
   const number = numberOf(value);
-  if (number !== null) numbers.hold(time, number, `${production} learned ${part}`, "", `learned ${part}`);
+  if (number !== null) numbers.hold(time, number, `${pathOf(source, production)} learned ${part}`, "", `learned ${part}`);
 }
 
 /** What a memory has found: the activations of the candidates with their parts, and how long the retrieval takes. */
 function request(numbers, time, source, { candidates, modules, latency }) {
   if (!candidates) return;
   for (const [chunk, parts, , activation] of candidates) {
-    numbers.point(time, activation, `${chunk} activation`, "", "activation");
+    numbers.point(time, activation, `${source}: ${chunk} activation`, "", "activation");
     if (modules.length !== parts.length) continue;
-    parts.forEach((part, n) => numbers.point(time, part, `${chunk} ${partName(modules[n])}`, "", partName(modules[n])));
+    parts.forEach((part, n) => numbers.point(time, part, `${source}: ${chunk} ${partName(modules[n])}`, "", partName(modules[n])));
   }
   numbers.point(time, latency, `${source} latency`, "s", "retrieval latency");
 }

@@ -9,6 +9,7 @@ import { session } from "../store.js";
 import { headingOf, plots } from "./curves.js";
 import { drawTimeline } from "./draw.js";
 import { scene } from "./canvas.js";
+import { furthest } from "./seek.js";
 
 const [WIDE, HIGH, LEFT] = [900, 260, 46]; // of a plot [px]
 const which = signal("");
@@ -52,6 +53,6 @@ export async function savePictures() {
   if (!kind) return;
   const plot = which.peek() === "" ? null : offered[Number(which.peek())];
   const name = pictureName(session.peek(), plot ? plot.title : "timeline");
-  if (kind === "csv") saveFile(`${name}.csv`, new Blob([csvText((plot ? [plot] : offered).flatMap(({ series }) => series))], { type: "text/csv" }));
+  if (kind === "csv") saveFile(`${name}.csv`, new Blob([csvText((plot ? [plot] : offered).flatMap(({ series }) => series), furthest.peek())], { type: "text/csv" }));
   else savePicture({ ...(plot ? ofPlot(plot) : ofTimeline()), name }, kind);
 }

@@ -10,9 +10,10 @@ const NEAR = 4; // the maximum distance of a mark from the pointer [px]
 const AWAY = 14; // from the pointer [px]
 const MAX_CHARACTERS = 1200; // the maximum number of characters
 
-/** Returns what is at a position: {row, time, band}. */
+/** Returns what is at a position: {row, time, near, band}. */
 export function found(row, time, secondsPerPixel) {
-  return row ? { row, time, band: row.lane?.at(time, NEAR * secondsPerPixel) ?? null } : null;
+  const near = NEAR * secondsPerPixel;
+  return row ? { row, time, near, band: row.lane?.at(time, near) ?? null } : null;
 }
 
 function Times({ band }) {
@@ -30,14 +31,15 @@ function OfBand({ row, band }) {
 }
 
 function OfRow({ at }) {
-  if (at.row.plot) return html`<${OfPlot} plot=${at.row.plot} time=${at.time} />`;
+  if (at.row.plot) return html`<${OfPlot} plot=${at.row.plot} time=${at.time} near=${at.near} />`;
   return at.named ? html`<p><b>${at.row.lane.label}</b></p>` : html`<${OfBand} row=${at.row} band=${at.band} />`;
 }
 
-function OfPlot({ plot, time }) {
+function OfPlot({ plot, time, near }) {
   return html`<p><b>${plot.title}</b> <span class="number quiet">at ${timeText(time)}</span></p>
-    ${plot.series.map(({ name, unit, times, values }, n) => {
-      const value = numberText(time > furthest.value ? null : valueAt(times, values, time));
+    ${plot.series.map((curve, n) => {
+      const { name, unit } = curve;
+      const value = numberText(time > furthest.value ? null : valueAt(curve, time, near));
       return html`<p key=${name} class="number"><span class="swatch" style=${{ background: `var(--${seriesColour(n)})` }}></span>${name} ${value} ${unit}</p>`;
     })}`;
 }

@@ -226,3 +226,59 @@ def test_things_in_the_scene_are_moved_and_pushed_by_numbers(pages: Callable[...
     say(page, type="command", word="move", values=["walker", 2.0, 1.0, 0.5])
     say(page, type="command", word="aperture", values=[0.4])
     assert commands(page) == ["move walker to (1, 1.5) m, 90°", "move walker to (2, 1) m, 29°", "aperture 50 -> 40 cm"]
+
+
+WARNS = """import warnings
+from actr3d.actr import *
+
+class Talker(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("count 0")
+    def count(goal="count ?n!50"):
+        print(n)
+        if int(n) == 3:
+            warnings.warn("three is odd")
+        goal.modify(_1=int(n) + 1)
+
+Talker().run(0.3)
+"""
+
+
+def test_a_warning_is_shown_where_the_run_has_given_it_and_nowhere_else(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "warns.py").write_text(WARNS, encoding="utf-8")
+    page = pages("warns.py", tab="editor")
+    shows(page, "#status", "at its start")
+    say(page, type="run")
+    shows(page, "#status", "ended")
+    shows(page, ".problems", "1 warning.*line 11three is odd")
+    open_tab(page, "Messages")
+    present, earlier = page.locator("#log li:not(.earlier, .heading)"), page.locator("#log li.earlier")
+    expect(present).to_have_text([re.compile("three is odd")])
+
+    def says(there: bool) -> None:
+        """Waits until console, messages and editor agree."""
+        expect(present).to_have_count(int(there))
+        open_tab(page, "Console")
+        expect(page.locator(".console .warning")).to_have_count(int(there))
+        open_tab(page, "Editor")
+        shows(page, ".problems", "1 warning.*line 11three is odd" if there else "No problems")
+        open_tab(page, "Messages")
+
+    say(page, type="seek", time=0.15)
+    shows(page, "#status", "went to this time")
+    says(False)
+    shows(page, ".messages", "1 message from after this moment is not shown")
+    say(page, type="seek", time=0.25)
+    says(True)
+    expect(page.locator(".messages")).not_to_contain_text("after this moment")
+    say(page, type="seek", time=0.15)
+    says(False)
+    say(page, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "count 48"})
+    say(page, type="run")
+    shows(page, "#status", "ended")
+    says(False)
+    expect(page.locator(".messages")).not_to_contain_text("after this moment")
+    expect(earlier).to_have_text([re.compile("three is odd")])
+    page.reload()
+    says(False)

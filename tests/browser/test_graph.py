@@ -9,6 +9,7 @@ from typing import Any
 from playwright.sync_api import Locator, Page, expect
 
 from tests.helpers.page import open_tab, shows
+from tests.helpers.workbench_server import Served
 
 
 def edges(page: Page, kind: str, more: str = "") -> Locator:
@@ -61,3 +62,37 @@ def test_the_graph_shows_what_is_read_written_asked_and_filled(pages: Callable[.
     shows(page, "#status", "went to this time")
     open_tab(page, "Graph")
     expect(edges(page, "fills")).to_have_count(1)
+
+
+TWINS = """
+from actr3d.actr import *
+
+class Twin(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval, latency=0.1)
+    def init():
+        memory.add("fact 1 2")
+        goal.set("step 0")
+    def go(goal="step ?n!6"):
+        memory.request("fact ?a ?b")
+        goal.modify(_1=int(n) + 1)
+
+class Both(Model):
+    left = Twin()
+    right = Twin()
+
+Both().run(1)
+"""
+"""Two agents that do the same at the same moments."""
+
+
+def test_each_of_two_agents_has_its_own_edges(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "twins.py").write_text(TWINS, encoding="utf-8")
+    page = pages("twins.py", tab="graph")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    for agent in ("left", "right"):
+        graph = page.get_by_role("region", name=agent, exact=True)
+        for kind, count in {"reads": 1, "writes": 1, "asks": 1, "fills": 1}.items():
+            expect(graph.locator(f".edge.{kind}")).to_have_count(count)

@@ -275,9 +275,15 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     assert "doorway.py" in picture
     with page.expect_download() as taken:
         plot.get_by_role("button", name="CSV").click()
-    head, values = Path(taken.value.path()).read_text().splitlines()[:2]
+    head, *values = Path(taken.value.path()).read_text().splitlines()
     assert re.fullmatch(r'"time \[s\]","walker_torso_yaw speed first: .*","walker_torso_yaw speed second: .*"', head)
-    assert values.startswith("0,")
+    assert values[0].startswith("0,")
+    assert "" in values[-1].split(",")  # the shorter run has no values after its end
+    canvas = plot.locator("canvas")
+    area = canvas.bounding_box()
+    assert area is not None
+    canvas.hover(position={"x": area["width"] - 9, "y": 20})
+    assert plot.locator("output").all_text_contents().count("–") == 1
     written = "async () => (await part('runs/wording.js')).measureText('x_n_s', 0)"
     assert page.evaluate(written) == "0 N s"
     page.keyboard.press("Escape")

@@ -617,3 +617,136 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
     tips = list(told(page, 0.95))
     assert any("goal.at 4" in text for text in tips), tips
     assert any("memory latency" in text and " s" in text for text in tips), tips
+
+
+LINES = """async () => {
+  const { csvText } = await part("parts/csv.js");
+  const { valueAt } = await part("parts/curve.js");
+  const long = { name: "long", unit: "m", times: [0, 1, 2, 4], values: [0, 10, null, 40] };
+  const short = { name: "short", unit: "m", times: [0, 1], values: [5, 6] };
+  const once = { name: "once", unit: "", times: [1.5], values: [7] };
+  const held = { name: "held", unit: "", times: [1, 2], values: [3, 4], steps: true, slope: 0 };
+  const busy = { name: "busy", unit: "s", times: [0, 1, 2], values: [0, 1, 1], slope: 1 };
+  const gone = { name: "gone", unit: "", times: [0, 1], values: [8, null], steps: true, slope: 0 };
+  const moments = [-0.5, 0, 0.5, 1, 1.5, 2, 3, 5];
+  const all = [long, short, once, held, busy, gone];
+  const values = Object.fromEntries(all.map((curve) => [curve.name, moments.map((time) => valueAt(curve, time))]));
+  const near = [1.4, 1.6, 2].map((time) => valueAt(once, time, 0.2));
+  return { values, near, compared: csvText([long, short]), csv: csvText([long, once, held, busy, gone], 5) };
+}"""
+"""Values of curves at -0.5, 0, 0.5, 1, 1.5, 2, 3 and 5 s, and those curves as CSV."""
+
+
+def test_the_value_of_a_curve_is_where_its_line_is_and_nowhere_else(page: Page) -> None:
+    found = page.evaluate(LINES)
+    assert found["values"] == {
+        "long": [None, 0, 5, 10, None, None, None, None],
+        "short": [None, 5, 5.5, 6, None, None, None, None],
+        "once": [None, None, None, None, 7, None, None, None],
+        "held": [None, None, None, 3, 3, 4, 4, 4],
+        "busy": [None, 0, 0.5, 1, 1, 1, 2, 4],
+        "gone": [None, 8, 8, None, None, None, None, None],
+    }
+    assert found["near"] == [7, 7, None]
+    assert found["compared"].splitlines() == ['"time [s]","long [m]","short [m]"', "0,0,5", "1,10,6", "2,,", "4,40,"]
+    assert found["csv"].splitlines()[1:] == ["0,0,,,0,8", "1,10,,3,1,", "1.5,,7,3,1,", "2,,,4,1,", "4,40,,4,3,", "5,,,4,4,"]
+
+
+TWINS = """
+from actr3d.actr import *
+
+class Twin(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval, latency=0.1)
+    base = DMBaseLevel(memory)
+    learning = PMNew(alpha=0.2)
+    gain = 1
+    def init():
+        memory.add("fact 1 2")
+        goal.set("step 0")
+    def go(goal="step ?n!6"):
+        memory.request("fact ?a ?b")
+        goal.modify(_1=int(n) + 1)
+        self.reward(self.gain)
+
+class Other(Twin):
+    gain = -3
+
+class Both(Model):
+    left = Twin()
+    right = Other()
+
+Both().run(1)
+"""
+"""Two agents with productions and chunks of the same names; their last conflict is at 0.25 s."""
+
+
+def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callable[..., Page], workbench: Served, tmp_path: Path) -> None:
+    (workbench.folder / "twins.py").write_text(TWINS, encoding="utf-8")
+    page = pages("twins.py", height=1000)
+    page.evaluate("localStorage.setItem('actr3d.timeline height', '620')")
+    page.reload()
+    page.get_by_role("button", name="Run", exact=True).click()
+    becomes_true(page, "async () => (await part('store.js')).state.value?.status === 'ended'")
+    curves = page.evaluate(
+        """async () => {
+          const { lanes } = await part("timeline/record.js");
+          return Object.fromEntries([...lanes.numbers.curves].map(([name, { values }]) => [name, values.at(-1)]));
+        }"""
+    )
+    assert (curves["left.go utility"], curves["right.go utility"]) == pytest.approx((0.638704, -2.050576))
+    assert (curves["left.go learned learning"], curves["right.go learned learning"]) == pytest.approx((0.7009632, -2.2504608))
+    assert {f"{one}.memory: fact 1 2 {part}" for one in ("left", "right") for part in ("activation", "base level")} < set(curves)
+    assert not {"go utility", "go learned learning", "fact 1 2 activation"} & set(curves)
+    page.evaluate(
+        """async () => {
+          const { plot } = await part("timeline/curves.js");
+          for (const name of ["left.goal full", "left.memory busy", "left.go utility"]) plot(name, true);
+        }"""
+    )
+    tips = {share: "\n".join(told(page, share)) for share in (0.15, 0.4, 0.7)}
+    for text in tips.values():
+        full = re.search(r"time full at ([\d.]+) s\s+left\.goal full ([\d.]+) s", text)
+        assert full is not None, text
+        assert float(full[2]) == pytest.approx(float(full[1]), abs=0.01)
+    assert re.search(r"left\.go utility 0\.\d+", tips[0.15])
+    assert "left.go utility –\n" in tips[0.4]
+    page.get_by_role("button", name="Keep a picture").click()
+    with page.expect_download() as taken:
+        page.get_by_role("dialog").get_by_role("button", name="CSV").click()
+    rows = list(csv.DictReader(Path(taken.value.path()).read_text().splitlines()))
+    for row in rows:
+        assert float(row["left.goal full [s]"]) == pytest.approx(float(row["time [s]"]))
+    assert float(rows[-1]["time [s]"]) == 1
+    assert rows[-1]["left.go utility"] == ""
+    assert 0.1 < float(rows[-1]["left.memory busy [s]"]) < 0.5
+
+
+LATE = """async () => {
+  const { known, session, take } = await part("store.js");
+  const { lanes } = await part("timeline/record.js");
+  const { names, plot, plots } = await part("timeline/curves.js");
+  const of = (time, busy) => [time * 1e6, "memory", "state", { busy }];
+  const seen = async (first, list) => {
+    take([{ run: known.run + 1, epoch: 1, events: { first, list, ...(first > 0 && { missing: first }) } }]);
+    plot("memory busy", true);
+    await new Promise((done) => setTimeout(done));
+    const { name, times, values } = plots.value.find(({ title }) => title === "time busy").series[0];
+    return { name, times: [...times], values: [...values] };
+  };
+  const events = [of(1, true), of(3, false), of(5, true), of(6, false)];
+  const whole = await seen(0, events);
+  const late = await seen(2, events.slice(2));
+  const idle = await seen(1, events.slice(1));
+  return { whole, late, idle };
+}"""
+"""The time that a memory was busy: of a run whose first event is known, and of others of which the page was sent only the last ones."""
+
+
+def test_a_sum_of_a_run_whose_beginning_is_not_known_says_from_when_on_it_counts(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    found = page.evaluate(LATE)
+    assert found["whole"] == {"name": "memory busy", "times": [1, 3, 5, 6], "values": [0, 2, 2, 3]}
+    assert found["late"] == {"name": "memory busy since 5.000 s", "times": [5, 6], "values": [0, 1]}
+    assert found["idle"] == {"name": "memory busy since 3.000 s", "times": [3, 5, 6], "values": [0, 0, 1]}

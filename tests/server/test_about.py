@@ -142,6 +142,44 @@ def test_notices_of_a_run_have_the_number_of_events_before_them(desk: Desk, tmp_
     assert {notice["text"]: notice["events"] for notice in talk.notices} == {"beware": 2, "ValueError: no": 3}
 
 
+WARNS = """import warnings
+from actr3d.actr import *
+
+class Talker(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("count 0")
+    def count(goal="count ?n!9"):
+        if int(n) == 3:
+            for _ in range(2):
+                warnings.warn(f"{n} is odd")
+        if int(n) == 5:
+            raise ValueError("no")
+        goal.modify(_1=int(n) + 1)
+
+Talker().run()
+"""
+
+
+def test_a_notice_is_given_once_however_often_the_run_goes_there_again(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, WARNS, run=True, wait="failed")
+    texts = ["3 is odd", "ValueError: no"]
+
+    def given() -> list[str]:
+        return [notice["text"].partition("\n")[0] for notice in talk.notices]
+
+    for time in (0.1, 0.25, 0.0, talk.state["furthest"]):
+        talk.say("seek", time=time)
+    talk.wait(lambda: talk.state["status"] == "failed")
+    assert given() == texts
+    talk.say("seek", time=0.1)
+    talk.say("command", word="set_buffer", named={"buffer": "goal", "chunk": "count 2"}, drop=True)
+    talk.say("run")
+    talk.wait(lambda: talk.state["status"] == "failed")
+    talk.wait(lambda: len(talk.notices) == 4)
+    assert given() == texts * 2  # another way, on which it happens at other moments
+
+
 def test_the_largest_seed_is_shown_without_loss(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, "print(1)\n", seed=2**63 - 1)
     assert talk.facts["seed"] == str(2**63 - 1)
