@@ -97,10 +97,9 @@ def _written(value: Any, name: str) -> Any:
         return {_written(key, name): _written(item, name) for key, item in cast("dict[Any, Any]", value).items()}
     for kind in (list, tuple, set, frozenset):
         if isinstance(value, kind):
-            return kind(_written(part, name) for part in cast("Iterable[Any]", value))
-    for kind in (str, bytes):
-        if isinstance(value, kind):
-            return kind(value)
+            return cast("Any", kind)(_written(part, name) for part in cast("Iterable[Any]", value))
+    if isinstance(value, (str, bytes)):
+        return str(value) if isinstance(value, str) else bytes(value)
     raise ParameterError(
         f"parameter '{name}': {value!r} cannot be written in the model's text; use numbers, texts, lists, tuples, sets and dicts"
     )

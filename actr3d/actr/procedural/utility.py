@@ -103,11 +103,9 @@ class PMNoise(ProceduralSubModule):
     """
 
     _decisive = frozenset({"noise"})
-    noise: NotNegative
-    baseNoise: NotNegative  # noqa: N815 - Python ACT-R's name
 
     @named_parameters
-    def __init__(self, noise: float = 0, baseNoise: float = 0.0) -> None:  # noqa: N803 - Python ACT-R's name
+    def __init__(self, noise: NotNegative = 0, baseNoise: NotNegative = 0.0) -> None:  # noqa: N803 - Python ACT-R's name
         self.noise = noise
         self.baseNoise = baseNoise
 
