@@ -68,6 +68,8 @@ def test_act_r_7_moves_it_to_its_first_parents_each_time_it_is_made_again(times:
 def test_a_profile_without_learning_modules() -> None:
     class NoLearning(library.ACTR):
         profile = "act-r-7"
+        goal, retrieval = library.Buffer(), library.Buffer()
+        memory = library.Memory(retrieval)
         compiling = library.PMCompile(keep="goal", request="memory.request", retrieve="retrieval")
 
     agent: Any = NoLearning()
