@@ -16,7 +16,7 @@ from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, settable_of, slip_hint
 from actr3d.actr.kernel.source_code import SOURCE, source_of, syntax_tree
 from actr3d.actr.procedural.rebinding import stored_names
-from actr3d.actr.procedural.utility import names_given_to, utility_modules
+from actr3d.actr.procedural.utility import utility_modules
 from actr3d.errors import ModelWarning, did_you_mean
 from actr3d.warnings import warn_at
 
@@ -94,7 +94,7 @@ def check_parameters(system: WithParameters) -> None:
 def check_names_in_modules(system: Model, context: Mapping[str, Any]) -> None:
     """Warns about names that an agent's utility modules were given and that its productions do not see."""
     for module in utility_modules(system):
-        for parameter, name in names_given_to(module):
+        for parameter, name in module.names_in_productions:
             if name not in context:
                 klass = next((klass for klass in type(system).__mro__ if module.name in vars(klass)), type(system))
                 filename, line = _place_of_attribute(klass, module.name)

@@ -117,7 +117,8 @@ class PMCompile(ProceduralSubModule):
         self._previous: tuple[Production, Bindings] | None = None
         self.compiled: dict[Any, CompiledProduction] = {}
 
-    def _names_in_productions(self) -> list[tuple[str, str]]:
+    @property
+    def names_in_productions(self) -> list[tuple[str, str]]:
         given = [("request", self.request), ("retrieve", self.retrieve), *(("keep", name) for name in self.keep)]
         return [(parameter, name.split(".")[0]) for parameter, name in given]
 

@@ -41,8 +41,9 @@ class ProceduralSubModule(WithParameters, Model):
     def below_threshold(self) -> None:
         """Is called when no production's utility has reached the threshold."""
 
-    def _names_in_productions(self) -> list[tuple[str, str]]:
-        """Returns the names in productions that the module was given, each after the name of its parameter."""
+    @property
+    def names_in_productions(self) -> list[tuple[str, str]]:
+        """The names in productions that the module was given, each after the name of its parameter."""
         return []
 
     _decisive: ClassVar[frozenset[str]] = frozenset()
@@ -57,11 +58,6 @@ class ProceduralSubModule(WithParameters, Model):
     def _learned(self, prod: Any) -> None:
         """Records a production's utility after learning."""
         trace_learned(self, prod)
-
-
-def names_given_to(module: ProceduralSubModule) -> list[tuple[str, str]]:
-    """Returns the names in productions that a module was given, each after the name of its parameter."""
-    return module._names_in_productions()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def utility_modules(agent: Model | None) -> list[ProceduralSubModule]:
