@@ -179,6 +179,16 @@ def _seconds(text: str) -> float:
     return value
 
 
+def _seed(text: str) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = -1
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"must be a whole number >= 0 (got {text})")
+    return value
+
+
 def _count(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"must be a whole number >= 1 (got {text})")
@@ -207,7 +217,7 @@ def _add_run(commands: Any) -> None:
     run.add_argument("file", metavar="FILE", nargs="?", help="the model file")
     general = [
         run.add_argument("-h", "--help", action="store_true", help="show this, and the options of the model file"),
-        run.add_argument("--seed", type=int, metavar="N", help="seed of all random choices (default: a new one)"),
+        run.add_argument("--seed", type=_seed, metavar="N", help="seed of all random choices (default: a new one)"),
         run.add_argument("--until", type=_seconds, metavar="SECONDS", help="end at this simulated time at the latest"),
         run.add_argument("--trace", choices=LEVELS, help="which events to print (none; with --json all)"),
         run.add_argument("--json", action="store_true", help="print events as JSON, one a line; what the model prints becomes events too"),

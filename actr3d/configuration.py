@@ -36,12 +36,17 @@ class Live:
         return f"Live({', '.join(map(repr, (self.word, *self.before)))}{f', body={self.body!r}' if self.body else ''})"
 
 
+class Infinite:
+    """Marks the type of a number that may be infinite: `Annotated[float, Infinite()]`."""
+
+
 class Configuration:
     """Checks the fields of a frozen dataclass against their declared types and bounds.
 
     A subclass is a `@dataclass(frozen=True, kw_only=True)`. A field's bounds are part of its type, such as
     `Annotated[float, Gt(0)]` (from `annotated_types`: `Gt`, `Ge`, `Lt`, `Le`, `MultipleOf`); its unit and source are in the
-    docstring below it. Whole numbers are accepted for `float`; NaN and infinities are rejected unless bounds are `None`.
+    docstring below it. Whole numbers are accepted for `float`; NaN is rejected, and infinities are, unless
+    the type is marked `Infinite()`.
     """
 
     def __post_init__(self) -> None:
@@ -90,7 +95,8 @@ def checked(value: Any, declared: Any, where: str) -> Any:
     origin = get_origin(declared)
     if origin is Annotated:
         inner, *bounds = get_args(declared)
-        found = checked(value, inner, where)
+        endless = isinstance(value, float) and math.isinf(value) and any(isinstance(bound, Infinite) for bound in bounds)
+        found = value if endless else checked(value, inner, where)
         for bound in bounds:
             hold(bound, found, where)
         return found
@@ -108,7 +114,7 @@ def checked(value: Any, declared: Any, where: str) -> Any:
 
 
 def _plain(value: Any, declared: Any, where: str) -> Any:
-    if declared is Any:
+    if declared is Any or getattr(declared, "_is_protocol", False):  # it says what an object can do, which is not checked
         return value
     if declared is float:
         if isinstance(value, (int, float)) and not isinstance(value, bool):

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 import pytest
 from annotated_types import Ge, Gt, Le, Lt, MinLen
 
-from actr3d.configuration import Configuration
+from actr3d.configuration import Configuration, Infinite
 from actr3d.errors import ConfigurationError
 
 
@@ -22,6 +22,7 @@ class Lamp(Configuration):
     hours: tuple[Annotated[float, Ge(0)], ...] = ()
     limit: Annotated[float, Gt(0)] | None = None
     lit: bool = False
+    life: Annotated[float, Infinite(), Ge(0)] = 1000.0
 
 
 def test_valid_values_are_accepted_and_converted_to_their_types() -> None:
@@ -29,6 +30,7 @@ def test_valid_values_are_accepted_and_converted_to_their_types() -> None:
     assert lamp == Lamp(power=40.0, position=(1.0, 2.0), hours=(3.0,), limit=5.0)
     assert type(lamp.power) is float
     assert Lamp(limit=None).limit is None
+    assert Lamp(life=float("inf")).life == float("inf")
 
 
 def test_it_is_frozen() -> None:
@@ -56,6 +58,8 @@ def test_it_is_frozen() -> None:
         ("position", (1, "a"), r"Lamp\.position\[1\]: must be a number"),
         ("hours", (1, -1), r"Lamp\.hours\[1\]: must be >= 0"),
         ("limit", -1, r"Lamp\.limit: must be > 0"),
+        ("life", float("nan"), r"Lamp\.life: must be a finite number"),
+        ("life", -float("inf"), r"Lamp\.life: must be >= 0 \(got -inf\)"),
         ("lit", 1, r"Lamp\.lit: must be True or False"),
     ],
 )

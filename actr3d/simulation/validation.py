@@ -33,11 +33,15 @@ def seed_of(seed: Any) -> int | str:
     """Returns a seed as a whole number or a text.
 
     Raises:
-        SimulationError: If it is neither.
+        SimulationError: If it is neither, or a negative number.
     """
     if isinstance(seed, str) and seed.isprintable():
         return str(seed)
-    return _whole(seed, "Simulation.seed: must be a whole number or a text of printable characters")
+    message = "Simulation.seed: must be a whole number >= 0 or a text of printable characters"
+    number = _whole(seed, message)
+    if number < 0:
+        raise SimulationError(f"{message} (got {seed!r})")
+    return number
 
 
 def count_of(n: Any, what: str) -> int:

@@ -30,6 +30,13 @@ def test_set_and_read() -> None:
     assert goal != Chunk("hello")
 
 
+def test_a_buffer_as_contents_is_its_chunk() -> None:
+    goal, other = goal_of("hello color:red"), goal_of("old")
+    other.set(goal)
+    goal.modify(color="blue")
+    assert other.chunk == {0: "hello", "color": "red"}
+
+
 def test_an_empty_buffer() -> None:
     goal = goal_of()
     assert goal.isEmpty()

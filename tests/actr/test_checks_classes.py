@@ -89,6 +89,23 @@ def test_parameters_that_are_set_under_a_misspelt_name_are_said(body: str, messa
     assert said[0][1] == line
 
 
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        (
+            "keep='goal', request='memory.request', retrieve='retreival'",
+            "retrieve: class Agent has no 'retreival'; did you mean 'retrieval'?",
+        ),
+        ("keep='goal', request='memroy.request', retrieve='retrieval'", "request: class Agent has no 'memroy'; did you mean 'memory'?"),
+        ("keep=['goal', 'gaol'], request='memory', retrieve='retrieval'", "keep: class Agent has no 'gaol'; did you mean 'goal'?"),
+        ("keep=['goal'], request='self.memory.request', retrieve='retrieval'", None),
+    ],
+)
+def test_names_given_to_compilation_are_those_that_productions_see(names: str, message: str | None) -> None:
+    said = warned(f"\ncompiling = PMCompile({names})", 1)
+    assert said == ([] if message is None else [(f"PMCompile.{message}", 11)])
+
+
 def memory() -> Memory:
     return Memory(Buffer())
 

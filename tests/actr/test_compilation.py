@@ -8,6 +8,7 @@ import pytest
 
 import actr3d.actr as library
 from actr3d.actr.kernel.model import is_converted
+from actr3d.actr.loading import load_text
 from tests.helpers.python_actr_reference import model_file
 from tests.helpers.small_agents import near
 
@@ -68,8 +69,38 @@ def test_act_r_7_moves_it_to_its_first_parents_each_time_it_is_made_again(times:
 def test_a_profile_without_learning_modules() -> None:
     class NoLearning(library.ACTR):
         profile = "act-r-7"
+        goal, retrieval = library.Buffer(), library.Buffer()
+        memory = library.Memory(retrieval)
         compiling = library.PMCompile(keep="goal", request="memory.request", retrieve="retrieval")
 
     agent: Any = NoLearning()
     agent.run(0.1)
     assert agent.compiling.compiled == {}
+
+
+def test_compiled_rules_match_what_only_the_second_production_matches_and_their_first_may_only_request() -> None:
+    agent: Any = load_text(
+        """
+from actr3d.actr import *
+class Agent(ACTR):
+    goal, context, retrieval = Buffer(), Buffer(), Buffer()
+    memory = Memory(retrieval)
+    compiling = PMCompile(keep=['goal', 'context'], request='memory.request', retrieve='retrieval')
+    def init():
+        memory.add('n 0 1')
+        goal.set('ask 0')
+        context.set('k:1')
+    def ask(goal='ask ?n'):
+        memory.request('n ?n ?')
+    def use(goal='ask ?n', retrieval='n ?n ?m', context='k:?k', utility=1):
+        goal.set('done ?m')
+""",
+        "asking.py",
+    ).Agent()
+    agent.run(0.3)
+    (made,) = agent.compiling.compiled.values()
+    assert made.pattern_specs == {"goal": "ask 0", "context": "k:1"}
+    made.base_utility = 2
+    agent.goal.set("ask 0")
+    agent.run(0.05)
+    assert agent.goal.chunk == library.Chunk("done 1")

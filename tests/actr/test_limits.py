@@ -16,6 +16,7 @@ import pytest
 from actr3d.actr import Model
 from actr3d.actr.kernel.run_limits import MAX_REFUSALS, EndOfRun, RunLimits
 from actr3d.actr.loading import run_text
+from actr3d.errors import ParameterError
 from actr3d.runner.run import run_model
 from actr3d.simulation import Simulation
 from actr3d.trace import Trace
@@ -49,6 +50,12 @@ def test_the_first_run_that_is_cut_short_is_the_last() -> None:
         again: Any = Clock()
         again.run()
         assert again.now() == 2
+
+
+def test_a_seed_is_not_negative() -> None:
+    with pytest.raises(ParameterError, match=r"RunLimits\.seed: must be >= 0 \(got -1\)"):
+        RunLimits(seed=-1)
+    assert RunLimits(seed="-1").program_seed == "-1"
 
 
 def test_a_run_that_has_come_to_the_end_by_itself_gets_no_more_time() -> None:

@@ -6,11 +6,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf, nan
 from typing import Any
 
+import numpy as np
 import pytest
 
-from actr3d.actr import ACTR, Buffer, DMNoise, ImaginalModule, Memory, Motor, Partial, PMNew, SOSVision, Timer
+from actr3d.actr import (
+    ACTR,
+    Buffer,
+    DMBaseLevel,
+    DMNoise,
+    DMSpreading,
+    ImaginalModule,
+    Memory,
+    Motor,
+    Partial,
+    PMCompile,
+    PMNew,
+    SOSVision,
+    Timer,
+)
 from actr3d.errors import ParameterError
 
 made: Any = None
@@ -21,7 +37,26 @@ made: Any = None
     [
         (lambda: Memory(Buffer(), latancy=0.1), "Memory has no parameter 'latancy'; did you mean 'latency'? It has: buffer, latency"),
         (lambda: Memory(), r"Memory\(buffer, latency, .*missing a required argument: 'buffer'"),
-        (lambda: Memory(Buffer(), latency="quick"), r"Memory.latency: must be a number or None \(got 'quick'\)"),
+        (lambda: Memory(Buffer(), latency="quick"), r"Memory.latency: must be a number \(got 'quick'\)"),
+        (lambda: Memory(Buffer(), latency=-1), r"Memory.latency: must be >= 0 \(got -1"),
+        (lambda: Memory(Buffer(), latency=nan), r"Memory.latency: must be a finite number \(got nan\)"),
+        (lambda: Memory(Buffer(), latency=inf), r"Memory.latency: must be a finite number \(got inf\)"),
+        (lambda: Memory(Buffer(), threshold=nan), r"Memory.threshold: must be a finite number \(got nan\)"),
+        (lambda: Memory(Buffer(), maximum_time=-inf), r"Memory.maximum_time: must be >= 0 \(got -inf\)"),
+        (lambda: Memory(Buffer(), finst_size=-1), r"Memory.finst_size: must be >= 0 \(got -1\)"),
+        (lambda: Memory(Buffer(), finst_size=1.5), r"Memory.finst_size: must be a whole number \(got 1.5\)"),
+        (lambda: Memory("ret"), r"Memory.buffer: must be Buffer \(got 'ret'\)"),
+        (lambda: Memory(None), r"Memory.buffer: must be Buffer \(got None\)"),
+        (lambda: DMNoise(Memory(Buffer()), noise=-1), r"DMNoise.noise: must be >= 0 \(got -1"),
+        (lambda: DMNoise("memory"), r"DMNoise.memory: must be a Memory \(got 'memory'\)"),
+        (lambda: Partial("memory"), r"Partial.memory: must be a Memory \(got 'memory'\)"),
+        (lambda: DMBaseLevel(Memory(Buffer()), decay=-1), r"DMBaseLevel.decay: must be >= 0 \(got -1"),
+        (lambda: DMBaseLevel(Memory(Buffer()), limit=-1), r"DMBaseLevel.limit: must be >= 0 \(got -1\)"),
+        (lambda: DMBaseLevel(Memory(Buffer()), limit=2.5), r"DMBaseLevel.limit: must be a whole number \(got 2.5\)"),
+        (lambda: DMSpreading(Memory(Buffer()), Buffer(), "goal"), r"DMSpreading.buffers: must be Buffer \(got 'goal'\)"),
+        (lambda: PMNew(alpha=inf), r"PMNew.alpha: must be a finite number \(got inf\)"),
+        (lambda: PMCompile(keep=3, request="mem.request", retrieve="ret"), r"PMCompile.keep: must be text \(got 3\)"),
+        (lambda: ImaginalModule(Buffer(), delay=-3), r"ImaginalModule.delay: must be >= 0 \(got -3"),
         (lambda: Memory(Buffer(), maximum_time=None), r"Memory.maximum_time: must be a number \(got None\)"),
         (lambda: DMNoise(Memory(Buffer()), noize=1), "DMNoise has no parameter 'noize'; did you mean 'noise'"),
         (lambda: PMNew(alfa=1), "PMNew has no parameter 'alfa'; did you mean 'alpha'"),
@@ -42,6 +77,32 @@ def test_what_is_wrong_is_named(make: Callable[[], Any], message: str) -> None:
 def test_what_is_right_is_taken() -> None:
     memory = Memory(Buffer(), 0.1, None, finst_size=2)
     assert (memory.latency, memory.threshold) == (0.1, None)
+    memory = Memory(Buffer(), np.float32(0.5), -inf, maximum_time=inf, finst_size=np.int64(0), finst_time=0)
+    assert (memory.latency, memory.threshold, memory.maximum_time) == (0.5, -inf, inf)
+    for one in (DMBaseLevel(memory, None, np.int64(3)), DMBaseLevel(memory, 0), Partial(memory, None, limit=-inf), DMSpreading(memory)):
+        assert one
+    assert ImaginalModule(Buffer(), delay=lambda: 0.1).delay_time() == 0.1
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("production_time", "x", r"must be a number \(got 'x'\)"),
+        ("production_time", -1, r"must be >= 0 \(got -1"),
+        ("production_time_sd", -1, r"must be >= 0 \(got -1"),
+        ("production_match_delay", None, r"must be a number \(got None\)"),
+        ("production_threshold", nan, r"must be a finite number \(got nan\)"),
+    ],
+)
+def test_a_class_sets_what_its_agents_can_have(name: str, value: object, message: str) -> None:
+    agent = type("Agent", (ACTR,), {name: value})
+    with pytest.raises(ParameterError, match=f"Agent.{name}: {message}"):
+        agent().run(0.1)
+
+
+def test_agents_take_functions_and_infinite_thresholds() -> None:
+    members = {"production_time": lambda: 0.1, "production_threshold": -inf, "production_time_sd": None, "style": "x"}
+    type("Agent", (ACTR,), members)().run(0.1)
 
 
 def test_agents_take_any_attribute() -> None:

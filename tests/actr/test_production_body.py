@@ -119,6 +119,17 @@ BODIES: dict[str, tuple[str, list[Any]]] = {
         "try:\n    {}['a']\nexcept KeyError as k:\n    goal.set('k:?k')\n    out.append(type(goal['k']).__name__)",
         ["KeyError"],
     ),
+    "locals": ("out.append('%(n)s %(word)s' % locals())", ["1 cat"]),
+    "locals of a function": ("f = lambda a: sorted(locals())\nout.append(f(1))", [["a"]]),
+    "vars": ("k = 2\nout.append((sorted(vars()), vars(self)['fired']))", [(["k", "n", "word"], 0)]),
+    "dir": ("out.append(dir())", [["n", "word"]]),
+    "eval": ("k = 4\nout.append(eval('k + int(n) + limit + self.fired'))", [15]),
+    "eval in a comprehension": ("out.append([eval('i + 1') for i in eval('range(int(n))')])", [[1]]),
+    "eval of a comprehension": ("out.append(eval('[word for _ in range(2)]'))", [["cat", "cat"]]),
+    "eval with names": ("out.append(eval('n + a', {'a': 'b', 'n': 'x'}))", ["xb"]),
+    "exec": ("exec('goal.set(\"w:?word\")')\nout.append(goal['w'])", ["cat"]),
+    "exec assigns": ("exec('n = k = 5')\ngoal.set('k:?k')\nout.append((n, k, goal['k']))", [(5, 5, 5)]),
+    "builtins are hidden": ("vars = [n]\neval = vars.append\neval(word)\nout.append((lambda: vars)())", [["1", "cat"]]),
     "unicode": ("größe = int(n)\ngoal.set('w:?größe')\nout.append(goal['w'])", [1]),
 }
 
@@ -127,6 +138,10 @@ BODIES: dict[str, tuple[str, list[Any]]] = {
 def test_everything_that_python_allows_in_a_body(name: str) -> None:
     body, expected = BODIES[name]
     assert run_body(body).out == expected
+
+
+def test_an_attribute_hides_a_builtin_that_sees_variables() -> None:
+    assert run_body("out.append((vars, (lambda: vars)()))", members="vars = 'agent'").out == [("agent", "agent")]
 
 
 def test_type_statement() -> None:

@@ -1,8 +1,10 @@
 """Parameter sweeps: a model's first lines, with other values."""
 
+import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from actr3d.actr.kernel.log import LOG
@@ -67,6 +69,35 @@ def test_values_are_exchanged_on_their_own_lines(source: str, chosen: dict[str, 
     space: dict[str, Any] = {}
     exec(text, space)
     assert {name: space[name] for name in chosen} == chosen
+
+
+@pytest.mark.parametrize(
+    ("value", "wanted"),
+    [
+        (math.inf, "float('inf')"),
+        ([-math.inf, {"x": (math.nan,)}], "[float('-inf'), {'x': (float('nan'),)}]"),
+        ([], "[]"),
+        ((1, 2), "(1, 2)"),
+        ((1,), "(1,)"),
+        ({"b"}, "{'b'}"),
+        (set[str](), "set()"),
+        (range(3), "range(0, 3)"),
+        (np.float64(0.5), "0.5"),
+        ([np.int64(3), True, None, b"b"], "[3, True, None, b'b']"),
+    ],
+)
+def test_every_value_is_text_that_runs(value: Any, wanted: str) -> None:
+    text = with_values("a = 1", {"a": value})
+    assert text == f"a = {wanted}"
+    space: dict[str, Any] = {}
+    exec(text, space)
+    assert repr(space["a"]) == repr(eval(wanted))
+
+
+@pytest.mark.parametrize("value", [object(), [1, print], {"x": 1j}])
+def test_a_value_that_no_text_stands_for_is_refused(value: Any) -> None:
+    with pytest.raises(ParameterError, match=r"parameter 'a': .* cannot be written in the model's text; use numbers, texts, lists"):
+        with_values("a = 1", {"a": value})
 
 
 def test_labels_name_what_differs() -> None:

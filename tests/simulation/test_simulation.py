@@ -376,9 +376,10 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: (s.step(2), Simulation(s.world)), r"the world must be at its start, as the agents are \(it has come to 0\.02 s\)"),
     (
         lambda s: Simulation(Scene(), seed=odd(1.5)),
-        r"Simulation\.seed: must be a whole number or a text .*got 1\.5",
+        r"Simulation\.seed: must be a whole number >= 0 or a text .*got 1\.5",
     ),
-    (lambda s: Simulation(Scene(), seed="\ud800"), r"Simulation\.seed: must be a whole number or a text of printable characters"),
+    (lambda s: Simulation(Scene(), seed="\ud800"), r"Simulation\.seed: must be a whole number >= 0 or a text of printable characters"),
+    (lambda s: Simulation(Scene(), seed=-1), r"Simulation\.seed: must be a whole number >= 0 or a text .*got -1"),
     (lambda s: Simulation(Scene(), odd(["walker"])), r"Simulation\.agents: must name what makes each agent, as in"),
     (
         lambda s: Simulation(Scene(), bodiless={"": Driver}),

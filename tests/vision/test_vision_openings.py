@@ -45,7 +45,7 @@ def test_the_width_of_a_doorway_is_exact_from_straight_ahead(width: float, dista
     assert one.left != one.right
 
 
-@pytest.mark.parametrize("thick", [0.1, 0.3])
+@pytest.mark.parametrize("thick", [0.1, 0.3, 0.35])
 @pytest.mark.parametrize("aside", [-4.0, -2.0, -0.5, 0.3, 1.0, 3.0])
 def test_off_the_axis_too_where_one_edge_is_the_front_and_the_other_the_back(aside: float, thick: float) -> None:
     one = only(found("opening", doorway(5.0, 0.4, thick=thick), eye(0, aside, math.degrees(math.atan2(-aside, 5)))))

@@ -12,9 +12,9 @@ from typing import Any, Final, Protocol, cast
 from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.kernel.model import Model, ensure_converted, is_converted
 from actr3d.actr.kernel.noise import logistic_noise
-from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import Count, NotNegative, WithParameters, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
-from actr3d.errors import ChunkError
+from actr3d.errors import ChunkError, ParameterError
 
 
 class ActivatedMemory(Protocol):
@@ -46,9 +46,14 @@ class MemorySubModule(WithParameters):
 
     Args:
         parent: The memory.
+
+    Raises:
+        ParameterError: If it is something else.
     """
 
     def __init__(self, parent: ActivatedMemory | None) -> None:
+        if parent is not None and not hasattr(type(parent), "add_adaptor"):
+            raise ParameterError(f"{type(self).__name__}.memory: must be a Memory (got {parent!r})")
         self.parent = parent
         if parent is not None:
             parent.add_adaptor(self)
@@ -94,7 +99,7 @@ class DMNoise(MemorySubModule):
     """
 
     @named_parameters
-    def __init__(self, memory: ActivatedMemory, noise: float = 0.3, baseNoise: float = 0.0) -> None:  # noqa: N803
+    def __init__(self, memory: ActivatedMemory, noise: NotNegative = 0.3, baseNoise: NotNegative = 0.0) -> None:  # noqa: N803
         MemorySubModule.__init__(self, memory)
         self.noise = noise
         self.baseNoise = baseNoise
@@ -148,7 +153,9 @@ class DMBaseLevel(MemorySubModule):
     """
 
     @named_parameters
-    def __init__(self, memory: ActivatedMemory | None, decay: float | None = 0.5, limit: int | ByProfile | None = BY_PROFILE) -> None:
+    def __init__(
+        self, memory: ActivatedMemory | None, decay: NotNegative | None = 0.5, limit: Count | ByProfile | None = BY_PROFILE
+    ) -> None:
         MemorySubModule.__init__(self, memory)
         self.decay = decay
         self._limit = limit

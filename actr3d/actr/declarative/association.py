@@ -8,7 +8,8 @@ from typing import Any
 from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.declarative.activation import BY_PROFILE, ActivatedMemory, ByProfile, DMBaseLevel, MemorySubModule
 from actr3d.actr.declarative.spreading import countable
-from actr3d.actr.kernel.parameters import named_parameters
+from actr3d.actr.kernel.buffer import Buffer
+from actr3d.actr.kernel.parameters import Count, NotNegative, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR
 from actr3d.errors import ChunkError
 
@@ -30,7 +31,12 @@ class DMAssociate(MemorySubModule):
 
     @named_parameters
     def __init__(
-        self, memory: ActivatedMemory, buffer: Any, weight: float = 1, decay: float | None = 0.5, limit: int | ByProfile | None = BY_PROFILE
+        self,
+        memory: ActivatedMemory,
+        buffer: Buffer,
+        weight: float = 1,
+        decay: NotNegative | None = 0.5,
+        limit: Count | ByProfile | None = BY_PROFILE,
     ) -> None:
         MemorySubModule.__init__(self, memory)
         self._buffer = buffer

@@ -5,7 +5,9 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any
+from typing import Annotated, Any
+
+from annotated_types import Ge
 
 from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.declarative.activation import MemorySubModule
@@ -18,7 +20,7 @@ from actr3d.actr.kernel.buffer import Buffer, Harvester
 from actr3d.actr.kernel.log import dummy
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.noise import pick, total
-from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters, warn_of_slip
+from actr3d.actr.kernel.parameters import Count, Extended, NotNegative, WithParameters, named_parameters, warn_of_slip
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile, find_profile
 from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.actr.kernel.tree import path_of
@@ -46,17 +48,16 @@ class Memory(WithParameters, Model):
     """
 
     latency: NotNegative
-    maximum_time: NotNegative
 
     @named_parameters
     def __init__(
         self,
-        buffer: Any,
-        latency: float | None = None,
-        threshold: float | None = 0,
-        maximum_time: float = 10.0,
-        finst_size: int = 4,
-        finst_time: float = 3.0,
+        buffer: Buffer,
+        latency: NotNegative | None = None,
+        threshold: Extended | None = 0,
+        maximum_time: Annotated[Extended, Ge(0)] = 10.0,
+        finst_size: Count = 4,
+        finst_time: NotNegative = 3.0,
         profile: str | Profile | None = None,
     ) -> None:
         Model.__init__(self)

@@ -6,8 +6,9 @@ from collections.abc import Collection
 from typing import Any, Protocol
 
 from actr3d.actr.chunks.chunk import Slot, as_text
-from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import Extended, WithParameters, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
+from actr3d.errors import ParameterError
 from actr3d.warnings import warn_modeller
 
 
@@ -35,11 +36,16 @@ class Partial(WithParameters):
             requested values match.
         limit: The similarity of values for which none was declared.
 
+    Raises:
+        ParameterError: If the memory is something else.
+
     Source: P = sum MP M_l (Anderson & Lebiere 1998, equation 3.7).
     """
 
     @named_parameters
-    def __init__(self, memory: PartialMemory, strength: float | None = 1.0, limit: float = -1.0) -> None:
+    def __init__(self, memory: PartialMemory, strength: float | None = 1.0, limit: Extended = -1.0) -> None:
+        if not hasattr(memory, "partials"):
+            raise ParameterError(f"Partial.memory: must be a Memory (got {memory!r})")
         self._memory = memory
         self.limit = limit
         self.strength = strength

@@ -10,6 +10,7 @@ from typing import Any
 from actr3d.actr.chunks.chunk import Chunk, as_text
 from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.declarative.activation import ActivatedMemory, MemorySubModule
+from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.parameters import named_parameters
 from actr3d.errors import ChunkError
 from actr3d.warnings import warn_modeller
@@ -30,7 +31,7 @@ class DMSpreading(MemorySubModule):
     """
 
     @named_parameters
-    def __init__(self, memory: ActivatedMemory, *buffers: Any) -> None:
+    def __init__(self, memory: ActivatedMemory, *buffers: Buffer) -> None:
         MemorySubModule.__init__(self, memory)
         self.strength: float = 1
         self.buffers = buffers

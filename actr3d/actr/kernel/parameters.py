@@ -5,33 +5,40 @@ from __future__ import annotations
 import inspect
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from functools import wraps
-from numbers import Real
+from functools import cache, wraps
+from itertools import islice
+from numbers import Integral, Real
 from typing import Annotated, Any, Concatenate, ParamSpec, TypeVar, cast
 from weakref import WeakKeyDictionary
 
 from annotated_types import Ge
 
-from actr3d.configuration import checked
+from actr3d.configuration import Infinite, checked
 from actr3d.errors import ConfigurationError, ParameterError, alternatives, did_you_mean
 from actr3d.warnings import warn_modeller
 
 P = ParamSpec("P")
 Self = TypeVar("Self")
 NotNegative = Annotated[float, Ge(0)]
-"""A time [s], or the scale of noise. A class declares the bounds of a parameter in its body: `latency: NotNegative`."""
+"""A time [s], or the scale of noise."""
+Count = Annotated[int, Ge(0)]
+"""How many there are of something."""
+Extended = Annotated[float, Infinite()]
+"""A number that may be infinite, such as a threshold."""
 
 
 def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Concatenate[Self, P], None]:
-    """Makes an `__init__` check its parameters and explain what is wrong.
+    """Makes an `__init__` check its parameters and explain what is wrong: their names, and the types and bounds of their annotations.
 
     Raises:
-        ParameterError: If a parameter is unknown or missing, or is not a number where one is required.
+        ParameterError: If a parameter is unknown or missing, of another type, or out of bounds.
     """
     signature = inspect.signature(init)
     names = [name for name in signature.parameters if name != "self"]
-    numeric = ("float", "float | None", "int", "int | None")
-    numbers = {name: p.annotation for name, p in signature.parameters.items() if str(p.annotation) in numeric}
+
+    @cache
+    def declared() -> dict[str, Any]:
+        return {name: kind for name in names for kind in _declared_by(init, name)}
 
     @wraps(init)
     def with_checks(self: Self, *args: P.args, **keys: P.kwargs) -> None:
@@ -43,10 +50,11 @@ def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Con
             given: dict[str, Any] = signature.bind(self, *args, **keys).arguments
         except TypeError as error:
             raise ParameterError(f"{kind}({', '.join(names)}): {error}") from None
-        for name in numbers.keys() & given.keys():
-            value = given[name]
-            if not isinstance(value, Real) and not (value is None and "None" in str(numbers[name])):
-                raise ParameterError(f"{kind}.{name}: must be a number{' or None' if 'None' in str(numbers[name]) else ''} (got {value!r})")
+        for name, wanted in declared().items():
+            if name in given:
+                several = signature.parameters[name].kind is inspect.Parameter.VAR_POSITIONAL
+                for value in given[name] if several else (given[name],):
+                    _check(value, wanted, f"{kind}.{name}")
         init(self, *args, **keys)
 
     return with_checks
@@ -123,12 +131,33 @@ def check_parameter(part: Any, name: str, value: Any, where: str) -> None:
         ParameterError: If it cannot have that value.
     """
     kind = cast("type[Any]", type(part))
-    try:
-        checked(value, next(_declared(kind, name), _kind_of(vars(part)[name])), where)
-    except ConfigurationError as error:
-        raise ParameterError(str(error)) from None
+    _check(value, next(_declared(kind, name), _kind_of(vars(part)[name])), where)
     if isinstance(part, WithParameters):
         part._check_parameters({**vars(part), name: value})  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
+
+
+def check_attribute(kind: type, name: str, value: Any) -> None:
+    """Checks a value that a class sets for a parameter against the type that the class, or one that it inherits from, declares.
+
+    Raises:
+        ParameterError: If it cannot have that value.
+    """
+    for declared in islice(_declared(kind, name), 1):
+        _check(value, declared, f"{kind.__name__}.{name}")
+
+
+def _check(value: Any, declared: Any, where: str) -> None:
+    """Checks a value against a type with bounds; the numbers of other libraries count as Python's.
+
+    Raises:
+        ParameterError: If it is of another type, or out of bounds.
+    """
+    if isinstance(value, Real) and not isinstance(value, (int, float)):
+        value = int(value) if isinstance(value, Integral) else float(value)
+    try:
+        checked(value, declared, where)
+    except ConfigurationError as error:
+        raise ParameterError(str(error)) from None
 
 
 def _kind_of(value: Any) -> Any:
@@ -144,11 +173,16 @@ def _declared(kind: type, name: str) -> Iterator[Any]:
     inits = [inspect.unwrap(vars(base)["__init__"]) for base in kind.__mro__ if "__init__" in vars(base)]
     holders: list[Any] = [*kind.__mro__, *inits]
     for holder in holders:
-        written = inspect.get_annotations(holder).get(name)
-        if isinstance(written, str):
-            try:
-                yield eval(written, vars(sys.modules[holder.__module__]))
-            except Exception:  # noqa: BLE001 - a name that only type checkers know
-                continue
-        elif written is not None:
-            yield written
+        yield from _declared_by(holder, name)
+
+
+def _declared_by(holder: Any, name: str) -> Iterator[Any]:
+    """Yields the type that a class's body or a function declares for a name, if it declares one."""
+    written = inspect.get_annotations(holder).get(name)
+    if isinstance(written, str):
+        try:
+            written = eval(written, vars(sys.modules[holder.__module__]))
+        except Exception:  # noqa: BLE001 - a name that only type checkers know
+            return
+    if written is not None:
+        yield written

@@ -13,6 +13,7 @@ from typing import Any, NoReturn, Protocol, Self
 from weakref import WeakSet
 
 from actr3d.clock import microseconds
+from actr3d.errors import ParameterError
 from actr3d.trace import Trace
 
 
@@ -52,7 +53,7 @@ class RunLimits:
     """The seed, end and trace of every top model made inside a `with RunLimits(...)` block, also by threads started in it."""
 
     seed: int | str | None = None
-    """The seed of all random choices; None draws a seed for each block, which its runs record."""
+    """The seed of all random choices, a whole number >= 0 or a text; None draws a seed for each block, which its runs record."""
     until: float | None = None
     """The end of every run [s of its own simulated time]; the program ends with the first run that is cut short there. A run that ends
     by itself is never cut, so a program that makes one short run after another without end continues until it is interrupted.
@@ -79,6 +80,15 @@ class RunLimits:
     _models: int = field(default=0, init=False, repr=False)
     _tokens: list[Token[RunLimits | None]] = field(default_factory=list[Token["RunLimits | None"]], init=False, repr=False)
     _threads: WeakSet[threading.Thread] = field(default_factory=WeakSet[threading.Thread], init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Checks the seed.
+
+        Raises:
+            ParameterError: If it is negative: Python's random numbers would be those of the positive number.
+        """
+        if isinstance(self.seed, int) and self.seed < 0:
+            raise ParameterError(f"RunLimits.seed: must be >= 0 (got {self.seed})")
 
     @staticmethod
     def current() -> RunLimits | None:

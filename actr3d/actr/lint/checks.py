@@ -15,7 +15,7 @@ from weakref import WeakSet
 from actr3d.actr.kernel.class_members import is_modellers
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import subtree, top_of
-from actr3d.actr.lint.classes import check_names_of_methods, check_parameters
+from actr3d.actr.lint.classes import check_names_in_modules, check_names_of_methods, check_parameters
 from actr3d.actr.lint.contradictions import check_contradictions
 from actr3d.actr.lint.method_calls import check_actions, check_modeller_method
 from actr3d.actr.lint.patterns import check_patterns, check_slots, check_variables
@@ -55,6 +55,7 @@ def check_agent(system: ProductionSystem) -> Callable[[], None] | None:
         check_actions(production, rules.productions)
     check_classes(top_of(system))
     check_parameters(system)
+    check_names_in_modules(system, rules.context)
 
     def check_names() -> None:
         for production in rules.productions:

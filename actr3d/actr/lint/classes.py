@@ -1,4 +1,4 @@
-"""Checks the modeller's classes: names of methods, and attributes that look like misspelt parameters."""
+"""Checks the modeller's classes: names of methods, attributes that look like misspelt parameters, and names given to modules."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import inspect
 import linecache
 import sys
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -16,7 +16,8 @@ from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, settable_of, slip_hint
 from actr3d.actr.kernel.source_code import SOURCE, source_of, syntax_tree
 from actr3d.actr.procedural.rebinding import stored_names
-from actr3d.errors import ModelWarning
+from actr3d.actr.procedural.utility import utility_modules
+from actr3d.errors import ModelWarning, did_you_mean
 from actr3d.warnings import warn_at
 
 
@@ -88,6 +89,17 @@ def check_parameters(system: WithParameters) -> None:
                 filename, line = _place_of_attribute(klass, name)
                 message = f"class {klass.__name__} has an attribute '{name}', which is not a parameter{hint}"
                 warnings.warn_explicit(message, ModelWarning, filename, line, registry={})
+
+
+def check_names_in_modules(system: Model, context: Mapping[str, Any]) -> None:
+    """Warns about names that an agent's utility modules were given and that its productions do not see."""
+    for module in utility_modules(system):
+        for parameter, name in module.names_in_productions:
+            if name not in context:
+                klass = next((klass for klass in type(system).__mro__ if module.name in vars(klass)), type(system))
+                filename, line = _place_of_attribute(klass, module.name)
+                what = f"{type(module).__name__}.{parameter}: class {type(system).__name__} has no '{name}'"
+                warnings.warn_explicit(f"{what}{did_you_mean(name, context)}", ModelWarning, filename, line, registry={})
 
 
 def _place_of_attribute(klass: type, attribute: str) -> tuple[str, int]:

@@ -36,13 +36,13 @@ def check_actions(production: Production, productions: Sequence[Production]) -> 
     where = f"production '{production.name}': "
     _check_brackets(node, func, context)
     known = {*production.variables, *production.assigned}
-    if not production.more_bound:
+    if not production.any_bound:
         _check_names(production, known, where)
     for call, owner, method in _calls(node, context):
         _check_slots(call, owner, method, func, where, context)
         if method == "modify":
             _check_values(call, production, productions)
-        elif not production.more_bound:  # a function among the patterns may bind any variable
+        elif not production.any_bound:
             check = _check_variables if method in GIVERS else _check_wildcards if method in READERS else None
             if check is not None:
                 check(call, func, where, known)

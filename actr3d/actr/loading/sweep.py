@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import ast
+import math
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
+from numbers import Integral, Real
 from pathlib import Path
 from typing import Any, cast
 
@@ -47,7 +49,7 @@ def with_values(source: str, chosen: Mapping[str, Any]) -> str:
     """Returns a model's text with new values for its parameters, on the same lines.
 
     Raises:
-        ParameterError: If the model has no such parameter.
+        ParameterError: If the model has no such parameter, or a value cannot be written in a text.
     """
     known = parameters(source)
     text = source.encode()  # Python counts columns in bytes
@@ -61,16 +63,52 @@ def with_values(source: str, chosen: Mapping[str, Any]) -> str:
         old = known[name].value
         last = old.end_lineno or old.lineno
         start, end = starts[old.lineno - 1] + old.col_offset, starts[last - 1] + (old.end_col_offset or 0)
-        values.append((start, end, f"({value!r}{chr(10) * (last - old.lineno)})" if last > old.lineno else repr(value)))
+        new = repr(_written(value, name))
+        values.append((start, end, f"({new}{chr(10) * (last - old.lineno)})" if last > old.lineno else new))
     for start, end, new in sorted(values, reverse=True):
         text = text[:start] + new.encode() + text[end:]
     return text.decode()
 
 
+class _Text:
+    """A value that is shown as a text."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+
+    def __repr__(self) -> str:
+        return self._text
+
+
+def _written(value: Any, name: str) -> Any:
+    """Returns a parameter's value in a form whose `repr` is Python text.
+
+    Raises:
+        ParameterError: If it, or something in it, is not a number, text, list, tuple, set, dict, range, True, False or None.
+    """
+    if value is None or isinstance(value, (bool, range)):
+        return value
+    if isinstance(value, Integral):
+        return int(value)
+    if isinstance(value, Real):
+        number = float(value)
+        return number if math.isfinite(number) else _Text(f"float('{number}')")
+    if isinstance(value, dict):
+        return {_written(key, name): _written(item, name) for key, item in cast("dict[Any, Any]", value).items()}
+    for kind in (list, tuple, set, frozenset):
+        if isinstance(value, kind):
+            return cast("Any", kind)(_written(part, name) for part in cast("Iterable[Any]", value))
+    if isinstance(value, (str, bytes)):
+        return str(value) if isinstance(value, str) else bytes(value)
+    raise ParameterError(
+        f"parameter '{name}': {value!r} cannot be written in the model's text; use numbers, texts, lists, tuples, sets and dicts"
+    )
+
+
 def label(source: str, chosen: Mapping[str, Any]) -> str:
     """Returns the name of a setting, used for the folder of its data: `a(3) b(x)`, or `default`."""
     known = parameters(source)
-    words = [f"{name}({value})" for name, value in chosen.items() if ast.unparse(known[name].value) != repr(value)]
+    words = [f"{name}({value})" for name, value in chosen.items() if ast.unparse(known[name].value) != repr(_written(value, name))]
     return " ".join(words) or "default"
 
 

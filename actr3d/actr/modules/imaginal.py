@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, cast
 
 from actr3d.actr.chunks.chunk import Chunk
+from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.modules.registry import module
@@ -23,11 +24,8 @@ class ImaginalModule(WithParameters, Model):
     Source: 0.2 s, ACT-R's imaginal delay.
     """
 
-    delay: NotNegative | Callable[[], float]
-    delay_sd: NotNegative | None
-
     @named_parameters
-    def __init__(self, buffer: Any, delay: Any = 0.2, delay_sd: float | None = None) -> None:
+    def __init__(self, buffer: Buffer, delay: NotNegative | Callable[[], float] = 0.2, delay_sd: NotNegative | None = None) -> None:
         Model.__init__(self)
         self._buffer = buffer
         self.busy = False

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from actr3d.actr.chunks.pattern import Pattern
+from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.modules.registry import module
@@ -27,11 +28,8 @@ class SOSVision(WithParameters, Model):
     Source: SOS Vision (West & Emond 2002).
     """
 
-    delay: NotNegative
-    delay_sd: NotNegative | None
-
     @named_parameters
-    def __init__(self, buffer: Any, delay: float = 0.0, log: Any = None, delay_sd: float | None = None) -> None:
+    def __init__(self, buffer: Buffer, delay: NotNegative = 0.0, log: Any = None, delay_sd: NotNegative | None = None) -> None:
         self._buffer = buffer
         self.delay = delay
         self.delay_sd = delay_sd

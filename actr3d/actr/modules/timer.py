@@ -22,12 +22,8 @@ class Timer(WithParameters, Model):
     Source: Taatgen, van Rijn & Anderson (2007), Psychological Review 114; ACT-R's temporal module.
     """
 
-    startpulse: NotNegative
-    a: NotNegative
-    b: NotNegative
-
     @named_parameters
-    def __init__(self, startpulse: float = 0.011, a: float = 1.1, b: float = 0.015) -> None:
+    def __init__(self, startpulse: NotNegative = 0.011, a: NotNegative = 1.1, b: NotNegative = 0.015) -> None:
         Model.__init__(self)
         self.startpulse = startpulse
         self.a = a

@@ -8,6 +8,7 @@ from typing import Any
 from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.declarative.finst import Finst
+from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.log import log_line
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
@@ -31,7 +32,7 @@ class Vision(WithParameters, Model):
     """
 
     @named_parameters
-    def __init__(self, visual: Any, location: Any) -> None:
+    def __init__(self, visual: Buffer, location: Buffer) -> None:
         Model.__init__(self)
         self._visual = visual
         self._location = location

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from actr3d.actr.kernel.class_members import Method
 from actr3d.actr.kernel.events import AGAIN, Event
 from actr3d.actr.kernel.noise import pick
-from actr3d.actr.kernel.parameters import NotNegative
+from actr3d.actr.kernel.parameters import Extended, NotNegative
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_system import ProductionSystem, trace_utility_parts
@@ -41,7 +41,7 @@ class ACTR(ProductionSystem):
     _by_utility = True
     production_time_sd: NotNegative | None = None
     """The standard deviation of the firing time [s]; None for no noise."""
-    production_threshold: float | Callable[[], float] | None = None
+    production_threshold: Extended | Callable[[], float] | None = None
     """The minimum utility for firing: a number, a function without arguments, or None for no minimum."""
 
     @property

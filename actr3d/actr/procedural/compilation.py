@@ -117,6 +117,11 @@ class PMCompile(ProceduralSubModule):
         self._previous: tuple[Production, Bindings] | None = None
         self.compiled: dict[Any, CompiledProduction] = {}
 
+    @property
+    def names_in_productions(self) -> list[tuple[str, str]]:
+        given = [("request", self.request), ("retrieve", self.retrieve), *(("keep", name) for name in self.keep)]
+        return [(parameter, name.split(".")[0]) for parameter, name in given]
+
     def create(self, prod: Production, parents: list[Production] | None = None) -> None:
         if self.retrieve in prod.keys and all(name in self.keep or name == self.retrieve for name in prod.keys):
             self.post.append(prod)

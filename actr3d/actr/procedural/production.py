@@ -12,13 +12,18 @@ from actr3d.actr.chunks.pattern import Bindings, conditions
 from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.kernel.source_code import assigned_globals, function_node, has_file, location, place
 from actr3d.actr.procedural.production_body import MAX_CODES, Body, Scope, compile_body
-from actr3d.actr.procedural.rebinding import stored_names
+from actr3d.actr.procedural.rebinding import sees_variables, stored_names
 from actr3d.errors import PatternException, ProductionException, hint_for
 
 
 @lru_cache(maxsize=MAX_CODES)
 def _assigned_in(statements: tuple[ast.stmt, ...]) -> frozenset[str]:
     return frozenset(stored_names(statements))
+
+
+@lru_cache(maxsize=MAX_CODES)
+def _sees_variables(statements: tuple[ast.stmt, ...]) -> bool:
+    return sees_variables(statements)
 
 
 class ProductionOwner(Protocol):
@@ -103,9 +108,14 @@ class Production:
         return any(condition.op == "call" for condition in self.conditions)
 
     @cached_property
+    def any_bound(self) -> bool:
+        """Whether any name in the body may be a bound variable."""
+        return self.more_bound or _sees_variables(tuple(self.node.body))
+
+    @cached_property
     def _looks_up(self) -> bool:
         """Whether the body looks names up while it runs."""
-        return self.more_bound or bool(self.assigned)
+        return self.any_bound or bool(self.assigned)
 
     @cached_property
     def assigned(self) -> frozenset[str]:
@@ -120,7 +130,7 @@ class Production:
             func=self.original_func,
             bound=self.variables,
             context=self.context,
-            more_bound=self.more_bound,
+            any_bound=self.any_bound,
         )
 
     @cached_property

@@ -17,7 +17,7 @@ from types import CellType, CodeType, FunctionType
 from typing import Any
 
 from actr3d.actr.kernel.source_code import for_python_actr, source_of, with_filename
-from actr3d.actr.procedural.rebinding import BOUND, Names, Rebinder, stored_names, used_names
+from actr3d.actr.procedural.rebinding import BOUND, SEEING, Names, Rebinder, stored_names, used_names
 from actr3d.errors import ProductionException
 
 Body = Callable[[dict[str, Any]], None]
@@ -48,13 +48,27 @@ class Scope(dict[str, Any]):
         layers = (BUILTINS, func.__globals__) if for_python_actr(func.__globals__) else (func.__globals__, BUILTINS)
         for names in layers:
             if key in names:
-                return names[key]
+                return self._seeing(key) if names is BUILTINS and key in SEEING else names[key]
         raise NameError(f"name '{key}' is not defined", name=key)
 
     def __delitem__(self, key: str) -> None:
         if key not in self:
             raise NameError(f"name '{key}' is not defined", name=key)
         super().__delitem__(key)
+
+    def _seeing(self, name: str) -> Callable[..., Any]:
+        """Returns a builtin that sees these variables as those around its call."""
+        builtin = BUILTINS[name]
+        if name in ("locals", "vars", "dir"):
+            return lambda *args: builtin(*args) if args else sorted(self) if name == "dir" else self
+
+        def run(source: Any, globals: Any = None, locals: Any = None, **keys: Any) -> Any:
+            if globals is None:
+                context, func = self.__dict__["outer"]
+                globals, locals = {**func.__globals__, **context, **self}, self if locals is None else locals
+            return builtin(source, globals, locals, **keys)
+
+        return run
 
     def bind(self, key: str, value: Any) -> Any:
         """Binds a name, and returns its value."""
@@ -79,7 +93,7 @@ def compile_body(
     name: str,
     bound: Iterable[str],
     context: Mapping[str, Any],
-    more_bound: bool = False,
+    any_bound: bool = False,
 ) -> Body:
     """Compiles a body's statements to a function.
 
@@ -89,10 +103,10 @@ def compile_body(
         name: The production's name, which tracebacks show.
         bound: The variables that the patterns bind.
         context: The attributes of the agent and its ancestors by name; fixed from now on.
-        more_bound: Whether a function among the patterns may bind more variables, so that any name may be one.
+        any_bound: Whether any name may be a bound variable: a function among the patterns may bind some, or the body's `exec`.
 
     Returns:
-        A function that takes the bound variables. If the body assigns names, or with `more_bound`, they must be a `Scope`.
+        A function that takes the bound variables. If the body assigns names, or with `any_bound`, they must be a `Scope`.
 
     Raises:
         ProductionException: If the body contains `yield`, or cannot be compiled.
@@ -103,7 +117,7 @@ def compile_body(
         # There, a body does not see its file's globals: a builtin's name means the builtin, whatever the file assigns to it.
         context = {**{n: BUILTINS[n] for n in names if n in BUILTINS}, **context}
     seen = frozenset(n for n in names if n in context or n in around)
-    code, given = _code_of(statements, func, name, tuple(bound), seen, more_bound)
+    code, given = _code_of(statements, func, name, tuple(bound), seen, any_bound)
     space: dict[str, Any] = {}
     exec(code, func.__globals__, space)
     body: FunctionType = space["__make__"](*(context.get(n) for n in given))
@@ -124,38 +138,39 @@ def _names_of(statements: tuple[ast.stmt, ...]) -> set[str]:
 
 
 def _code_of(
-    statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: tuple[str, ...], seen: frozenset[str], more_bound: bool
+    statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: tuple[str, ...], seen: frozenset[str], any_bound: bool
 ) -> tuple[CodeType, Sequence[str]]:
     """Returns the result of `_compile`, once for all agents that are loaded from a text, also if it is loaded again: their names have
     different values, but their code is equal except for the file's name."""
     places = tuple((statement.lineno, statement.col_offset) for statement in statements)
     filename = func.__code__.co_filename
-    key = (source_of(func), func.__code__, func.__qualname__, name, places, bound, seen, more_bound)
+    key = (source_of(func), func.__code__, func.__qualname__, name, places, bound, seen, any_bound)
     made = _CODES.get(key)
     if made is None:
         _refuse_waiting(statements, name, filename)
         if len(_CODES) >= MAX_CODES:
             _CODES.clear()
-        made = _CODES[key] = _compile(statements, func, name, bound, seen, more_bound)
+        made = _CODES[key] = _compile(statements, func, name, bound, seen, any_bound)
     code, given = made
     return with_filename(code, filename), given
 
 
 def _compile(
-    statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: Iterable[str], seen: Iterable[str], more_bound: bool
+    statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: Iterable[str], seen: Iterable[str], any_bound: bool
 ) -> tuple[CodeType, Sequence[str]]:
     """Compiles a function that takes objects by name and returns the body as a function; returns its code, and these names."""
     filename = func.__code__.co_filename
-    stored = stored_names(statements)
+    assigned = stored = stored_names(statements)
     used = used_names(statements)
     mangler = _Mangler(func)
     body = [mangler.visit(copy.deepcopy(node)) for node in statements]
-    if more_bound:
-        stored |= used - Names(statements).declared_global
+    if any_bound:
+        stored = assigned | used - Names(statements).declared_global
+    own = SEEING - assigned
     if stored:
-        body = Rebinder(stored).body(body)
-    taken = [n for n in bound if n in used and n not in stored]
-    given = sorted(n for n in seen if n not in stored and n not in taken)
+        body = Rebinder(stored, own).body(body)
+    taken = [n for n in bound if n in used and n not in stored - own]
+    given = sorted(n for n in seen if n not in stored - own and n not in taken)
     first = statements[0]
     items = {n: ast.Subscript(ast.Name(BOUND, ast.Load()), ast.Constant(n), ast.Load()) for n in taken}
     prologue = [ast.Assign([ast.Name(n, ast.Store())], item) for n, item in items.items()]

@@ -10,7 +10,7 @@ from actr3d.actr.kernel.class_members import Method
 from actr3d.actr.kernel.log import dummy
 from actr3d.actr.kernel.model import MethodWrapper, Model
 from actr3d.actr.kernel.noise import pick
-from actr3d.actr.kernel.parameters import NotNegative, WithParameters
+from actr3d.actr.kernel.parameters import NotNegative, WithParameters, check_attribute
 from actr3d.actr.kernel.profile import find_profile
 from actr3d.actr.kernel.source_code import location
 from actr3d.actr.kernel.tracing import traceable
@@ -119,6 +119,8 @@ class ProductionSystem(WithParameters, Model):
         for name in sorted(FUNCTION_PARAMETERS & methods.keys()):
             if defaults_of(methods[name]) is not None:  # a plain function: it computes the parameter
                 objects[name] = methods.pop(name)
+        for name in sorted(objects.keys() & self._settable()):
+            check_attribute(type(self), name, objects[name])
         for name, func in methods.items():
             patterns = defaults_of(func)
             if patterns is not None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Sequence
+from collections.abc import Set as AbstractSet
 from typing import Any, cast
 
 BOUND = "__bound__"
@@ -15,6 +16,8 @@ BOUND = "__bound__"
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 _SCOPES = (*_FUNCTIONS, ast.Lambda, ast.ClassDef)
 _COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+SEEING = frozenset({"dir", "eval", "exec", "locals", "vars"})
+"""The builtins that see the variables around their call."""
 
 
 class Names:
@@ -93,17 +96,33 @@ def used_names(nodes: Iterable[ast.AST]) -> set[str]:
     return {part.id for node in nodes for part in ast.walk(node) if isinstance(part, ast.Name)}
 
 
+def sees_variables(nodes: Iterable[ast.AST]) -> bool:
+    """Returns whether statements mention, in their own scope, a builtin that sees the variables there."""
+    return any(
+        (isinstance(node, ast.Name) and node.id in SEEING)
+        or sees_variables(
+            outside(node)
+            if isinstance(node, _SCOPES)
+            else [node.generators[0].iter]  # the rest of a comprehension is a scope of its own
+            if isinstance(node, _COMPREHENSIONS)
+            else ast.iter_child_nodes(node)
+        )
+        for node in nodes
+    )
+
+
 class Rebinder(ast.NodeTransformer):
     """Replaces every use of an assigned name by a use of the bound variables, so that they always contain its current value.
 
     Args:
         stored: The names the body assigns.
+        own: Those among them that only the body's own scope sees.
     """
 
-    def __init__(self, stored: set[str]) -> None:
+    def __init__(self, stored: set[str], own: AbstractSet[str] = frozenset()) -> None:
         self.stored = stored
-        self._seen_by_functions = stored
-        """The names that inner functions see; they differ from `stored` only inside a class."""
+        self._seen_by_functions = stored - own
+        """The names that inner functions see; inside a class they differ from `stored` too."""
 
     def body(self, statements: Iterable[ast.stmt]) -> list[ast.stmt]:
         """Rewrites statements (in place) and returns them."""

@@ -41,6 +41,11 @@ class ProceduralSubModule(WithParameters, Model):
     def below_threshold(self) -> None:
         """Is called when no production's utility has reached the threshold."""
 
+    @property
+    def names_in_productions(self) -> list[tuple[str, str]]:
+        """The names in productions that the module was given, each after the name of its parameter."""
+        return []
+
     _decisive: ClassVar[frozenset[str]] = frozenset()
     """The attributes of the module that the utilities of all productions depend on."""
 
@@ -103,11 +108,9 @@ class PMNoise(ProceduralSubModule):
     """
 
     _decisive = frozenset({"noise"})
-    noise: NotNegative
-    baseNoise: NotNegative  # noqa: N815 - Python ACT-R's name
 
     @named_parameters
-    def __init__(self, noise: float = 0, baseNoise: float = 0.0) -> None:  # noqa: N803 - Python ACT-R's name
+    def __init__(self, noise: NotNegative = 0, baseNoise: NotNegative = 0.0) -> None:  # noqa: N803 - Python ACT-R's name
         self.noise = noise
         self.baseNoise = baseNoise
 

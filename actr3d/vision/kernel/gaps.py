@@ -12,9 +12,10 @@ from actr3d.jit import compiled
 
 NARROWEST = 1e-6
 """Fraction of the screen's width below which there is no gap: edges that touch."""
-IN_LINE = 0.35
-"""Greatest distance of a gap's edges from the line through the far ends of its boundary, for a gap in that line: the jambs of one
-wall of this thickness [m]. Source: chosen; walls of buildings are 0.1 to 0.3 m thick."""
+THICKEST = 0.35 + 1e-6
+"""The thickness of a wall up to which its jambs bound one gap, with a margin for rounding [m]: the greatest distance of a gap's
+edges from the line through the far ends of its boundary, for a gap in that line. Source: chosen; walls of buildings are 0.1 to
+0.3 m thick."""
 
 GAP = np.dtype(
     [
@@ -86,7 +87,7 @@ def measure(points: Array, gaps: Records, number: int) -> None:
             length = math.sqrt(x * x + y * y)
             along = (x * ahead + y * aside) / length
             off = max(abs(_beyond(left, start, end)), abs(_beyond(right, start, end))) / length
-            if off <= IN_LINE and 0.0 < along < width:
+            if off <= THICKEST and 0.0 < along < width:
                 ahead, aside, width = x / length * along, y / length * along, along
     if width > 0.0:
         ahead, aside = ahead / width, aside / width
@@ -154,7 +155,7 @@ def link_gaps(extents: Records, points: Array, gaps: Records, count: int, apart:
                     and extents[left].x2 < extents[gaps[k].right].x1
                     and extents[right].x1 > extents[gaps[k].left].x2
                 )
-                if way <= (IN_LINE if same else apart) and way < best and not _taken(gaps, first, i, k):
+                if way <= (THICKEST if same else apart) and way < best and not _taken(gaps, first, i, k):
                     best, before = way, k
             gaps[i].before = before
             if before < 0:

@@ -8,9 +8,7 @@ import numpy as np
 
 from actr3d.camera.kernel.dtypes import Array, Record, Records
 from actr3d.jit import compiled
-
-BESIDE = 0.35
-"""Greatest distance behind a gap's edges of an object above or below that bounds it there [m]. Source: chosen, a wall's thickness."""
+from actr3d.vision.kernel.gaps import THICKEST
 
 OPENING = np.dtype(
     [
@@ -91,7 +89,7 @@ def _finish(extents: Records, points: Array, gaps: Records, rows: int, opening: 
 
 @compiled
 def _bound(extents: Records, gap: Record, row: int) -> int:
-    """Returns the label of what is seen on another row over most of a gap, as near as its edges; 0 for nothing."""
+    """Returns the label of what is seen on another row over most of a gap, within a wall's thickness of its edges; 0 for nothing."""
     low, high = extents[gap.left].x2, extents[gap.right].x1
     most, label = 0.0, 0
     at = gap.left
@@ -100,7 +98,7 @@ def _bound(extents: Records, gap: Record, row: int) -> int:
             at -= 1
     while at < len(extents) and extents[at].row <= row:
         extent = extents[at]
-        if extent.row == row and min(extent.d1, extent.d2) <= gap.far + BESIDE:
+        if extent.row == row and min(extent.d1, extent.d2) <= gap.far + THICKEST:
             shared = min(high, extent.x2) - max(low, extent.x1)
             if shared > most:
                 most, label = shared, extent.label
