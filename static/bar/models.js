@@ -68,7 +68,7 @@ async function holderOf(id, time) {
   return since.toSorted((one, other) => one.kept - other.kept)[0]?.id ?? id;
 }
 
-/** Shows the run that a model's session writes as a recording, as it is now. Returns whether it is open, and that with which the model is shown. */
+/** Shows the open session of a model that writes a recording, where it is, if the model's address leads to that session. Returns whether it does. */
 export async function chooseLive(id) {
   const { sessions } = await call("GET", "/api/sessions");
   const live = sessions.find((one) => one.recording === id && one.alive && one === sessionOf(one.model, sessions));
