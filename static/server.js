@@ -108,12 +108,17 @@ function abandon(reason) {
   for (const { reject } of all) reject(reason());
 }
 
+/** Returns the session that is shown with a model: the newest that is not of a recording; undefined for none. */
+export function sessionOf(model, sessions) {
+  return sessions.findLast((session) => session.model === model && session.recorded === null);
+}
+
 /** Shows a model: its open session, or a new one. With `run` it runs from its start, with the file's current text. */
 export async function showModel(model, { run = false } = {}) {
   const wanted = wish();
   if (model !== session.peek()?.model || session.peek().recorded !== null) leave();
   const { sessions, ready } = await call("GET", "/api/sessions");
-  const there = sessions.filter((session) => session.model === model && session.recorded === null).at(-1);
+  const there = sessionOf(model, sessions);
   if (!wanted() && !run) return;
   if (wanted()) opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
   try {

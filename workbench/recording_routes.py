@@ -149,9 +149,10 @@ async def recorded_curves(
 
 @router.post("/recordings/{recording}/open", status_code=201)
 async def open_recording(request: Request, recording: Id, body: Opening | None = None) -> dict[str, Any]:
-    """Starts a session that repeats a recorded run, or returns the session that already does.
+    """Starts a session that repeats a recorded run, or returns the session that is known by the recording, its `recorded`.
 
-    The whole recorded run is available at once: the session can go to any time of it. Opening runs the code in the recording: 403 if
+    The whole recorded run is available at once: the session can go to any time of it. Once a user changes the run, the session is known by
+    the branch that it writes then, and the recording can be opened again, unchanged. Opening runs the code in the recording: 403 if
     this installation did not make it, unless `trust` is true.
     """
     said = body or Opening()

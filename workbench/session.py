@@ -426,9 +426,14 @@ class Session(Broadcast, Receiver):
 
     @property
     def recorded(self) -> Path | None:
-        """The recording that the run on screen, or the one being built, repeats; None for a new run."""
+        """The recording by which a run that was opened from one is known, on screen or being built; None for a new run.
+
+        It is the opened recording, until a user changes the run; from then on, it is the recording that the run itself writes.
+        """
         start = self._shown.start if self._shown is not None else None if self._loading is None else self._loading.start
-        return None if start is None or start.recorded is None else Path(start.recorded)
+        if start is None or start.recorded is None:
+            return None
+        return Path(start.recorded if self.branched is None or start.record is None else start.record)
 
     @property
     def spare_recording(self) -> Path | None:
@@ -481,13 +486,17 @@ class Session(Broadcast, Receiver):
         return msgspec.json.encode(facts_of_session)
 
     def _branched_json(self) -> dict[str, Any] | None:
-        """Returns what was kept when a user last changed the past, and whether its recording is still there; None if nothing was kept."""
+        """Returns what was kept when a user last changed the past; None if nothing was kept.
+
+        `opened` says whether it is the recording that was opened, `kept` whether it is still there.
+        """
         branched, start = self.branched, self.start
         written = None if start is None else start.record or start.recorded
         if branched is None or written is None:
             return None
         path = Path(written).with_name(f"{branched.recording}.sqlite")
-        there = {"made": begun(path), "kept": path.is_file()}
+        opened = start is not None and start.recorded is not None and Path(start.recorded) == path
+        there = {"opened": opened, "made": begun(path), "kept": path.is_file()}
         return {"recording": branched.recording, "at": branched.at, "until": branched.until, **there}
 
     @property

@@ -149,7 +149,9 @@ class Sessions:
         return began
 
     async def reopen(self, recording: str, *, trust: bool = False, real_time: bool = False) -> Session:
-        """Starts a session that repeats a recorded run with all commands of users; or returns the session that already does.
+        """Starts a session that repeats a recorded run with all commands of users; or returns the session that is known by it.
+
+        A session that is open stays so if its recording is deleted.
 
         Args:
             recording: The name of the recording.
@@ -161,8 +163,7 @@ class Sessions:
             OSError: If no worker can be started.
         """
         async with self._reopening:  # two simultaneous requests get the same session
-            where = self.recordings.path(recording)
-            open_already = [one for one in self.all() if one.recorded == where and not one.is_over]
+            open_already = [one for one in self.all() if one.recorded is not None and one.recorded.stem == recording and not one.is_over]
             if open_already:
                 return open_already[-1]
             began = await self.trusted(recording, trust)

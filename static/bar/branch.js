@@ -4,7 +4,7 @@ import { html, signal, useEffect } from "../vendor/preact.js";
 import { confirmed } from "../parts/dialog.js";
 import { remembered } from "../local_storage.js";
 import { isLeft, say } from "../server.js";
-import { complain, session } from "../store.js";
+import { complain, session, shownRecording } from "../store.js";
 import { openRun } from "../runs/actions.js";
 import { furthest, inThePast, present } from "../timeline/seek.js";
 
@@ -13,9 +13,7 @@ const seconds = (time) => `${time.toFixed(2)} s`;
 /** Sends a command that changes the run; if the run is in its past and is not recorded, asks first. Returns whether it was
  * sent; throws an Error with the reason if it cannot be done. */
 export async function change(what) {
-  const { recording, recorded, branched } = session.peek() ?? {};
-  const isKept = recording || (recorded && !branched); // the run itself, or the recording that is replayed
-  if (!inThePast.peek() || isKept) return say(what).then(() => true);
+  if (!inThePast.peek() || shownRecording.peek() !== null) return say(what).then(() => true);
   const [here, end] = [seconds(present.peek()), seconds(furthest.peek())];
   const text = `The run is at ${here} and has reached ${end}. It is not recorded: if it is changed here, what came after ${here} is lost.`;
   if (!(await confirmed("Change the past?", text, "Change it, and lose the rest"))) return false;
@@ -47,17 +45,19 @@ function Notice({ which, title, children }) {
 
 /** Shows in the status line what was kept when the run was changed in its past. */
 export function Branch() {
-  const { id, born, branched, model, recorded } = session.value ?? {};
+  const { id, born, branched, model } = session.value ?? {};
   if (!branched) return null;
-  const { recording, at, until, made, kept } = branched;
+  const { recording, opened, at, until, made, kept } = branched;
   const which = `${id} ${born} ${recording}`;
   if (!kept || closed.value.includes(which)) return null;
   const where = `the recording ${recording}, which is listed in Runs`;
-  if (recording === recorded) {
-    const title = `Changed at ${seconds(at)}; the original continuation is still in ${where}. What follows is recorded as a branch of it.`;
-    return html`<${Notice} key=${which} which=${which} title=${title}>The recording keeps the run up to ${seconds(until)}<//>`;
-  }
   const open = () => openRun({ id: recording, model, made });
+  if (opened) {
+    const title = `Changed at ${seconds(at)}; the original continuation is still in ${where}. What follows is recorded as a branch of it.`;
+    return html`<${Notice} key=${which} which=${which} title=${title}>
+      <button class="link" onClick=${open}>The recording</button> keeps the run up to ${seconds(until)}
+    <//>`;
+  }
   return html`<${Notice} key=${which} which=${which} title="Changed at ${seconds(at)}; the original continuation is kept as ${where}">
     The run up to ${seconds(until)} is kept as <button class="link" onClick=${open}>a branch</button>
   <//>`;

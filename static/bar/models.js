@@ -3,9 +3,9 @@
 import { effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
-import { call, say, showModel, showRecording, sinceNow } from "../server.js";
+import { call, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
 import { withTrust } from "../runs/trust.js";
-import { alive, complain, connected, me, running, session } from "../store.js";
+import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
 import { travel } from "../timeline/seek.js";
 
 /** The model files of the folder: {path, title, kind}. */
@@ -68,23 +68,27 @@ async function holderOf(id, time) {
   return since.toSorted((one, other) => one.kept - other.kept)[0]?.id ?? id;
 }
 
+/** Shows the open session of a model that writes a recording, where it is, if the model's address leads to that session. Returns whether it does. */
+export async function chooseLive(id) {
+  const { sessions } = await call("GET", "/api/sessions");
+  const live = sessions.find((one) => one.recording === id && one.alive && one === sessionOf(one.model, sessions));
+  if (live) await choose(live.model);
+  return live !== undefined;
+}
+
 /** Shows a moment [s] of a recorded run, as a link asks for it: the run itself if it is still open, or else its recording. Returns whether it
  * is shown. */
 async function chooseMoment(run, time) {
   const id = await holderOf(run, time);
-  const { sessions } = await call("GET", "/api/sessions");
-  const open = sessions.find(({ recording, alive: lives }) => recording === id && lives);
-  if (open) await choose(open.model);
-  else if (!(await chooseRecording(id))) return false;
+  if (!(await chooseLive(id)) && !(await chooseRecording(id))) return false;
   leaveMoment();
   const wanted = sinceNow();
   const end = effect(() => {
-    const { recording, recorded, watching = [] } = session.value ?? {};
-    if (!alive.value || (open ? recording : recorded) !== id) return;
+    if (!alive.value || shownRecording.value !== id) return;
     queueMicrotask(() => {
       end();
       if (!wanted()) return;
-      const why = running.peek() ? "It goes on now: pause it, and go there" : watching.some((name) => name !== me.peek()) ? "Another page shows it, too: go there" : null;
+      const why = running.peek() ? "It goes on now: pause it, and go there" : isShared.peek() ? "Another page shows it, too: go there" : null;
       if (why) complain(`The link leads to ${time} s of this run. ${why} on the timeline.`);
       else travel(time);
     });
@@ -142,13 +146,15 @@ function follow() {
 
 addEventListener("popstate", follow);
 
-/** A recording that was started as a new run is no longer a recording: the address becomes the model's. */
+/** A recording that is changed becomes another one: the address becomes that of the branch. One that is started as a new run is no longer a
+ * recording: the address becomes the model's. */
 let shown = { id: null, recorded: null };
 effect(() => {
   const { id = null, recorded = null, model: path } = session.value ?? {};
-  const isNew = id !== null && id === shown.id && shown.recorded !== null && recorded === null;
+  const isOther = id !== null && id === shown.id && shown.recorded !== null && recorded !== shown.recorded;
   shown = { id, recorded };
-  if (isNew) note(path);
+  if (isOther && recorded === null) note(path);
+  else if (isOther) goToAddress("run", recorded);
 });
 
 commandsOf(() => models.value.map(({ path, title }) => ({ text: `Model: ${path}`, group: title, work: () => choose(path) })));

@@ -44,9 +44,9 @@ function Others({ id, model }) {
 }
 
 export function RecordingBanner() {
-  const { id, recorded = null, made, model, cuts = [] } = session.value ?? {};
+  const { id, recorded = null, recording, made, model } = session.value ?? {};
   if (recorded === null) return null;
-  const changed = cuts.length > 0;
+  const changed = recording !== null;
   const name = runs.value?.find((run) => run.id === recorded)?.label?.name;
   const when = `made ${whenInFull(made)}`;
   return html`<div class="recording-banner" role="status">

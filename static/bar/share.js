@@ -6,26 +6,20 @@ import { command, run } from "../commands.js";
 import { buttonTitle } from "../keys.js";
 import { copyText } from "../parts/copy.js";
 import { Icon } from "../parts/icon.js";
-import { session } from "../store.js";
+import { session, shownRecording } from "../store.js";
 import { present } from "../timeline/seek.js";
 
 const SHOWN = 2000; // how long the confirmation is shown [ms]
 const copied = signal(0); // how many confirmations are shown
 
-/** Returns the recording that has the run that is shown; null for none. */
-function recordingOf(facts) {
-  const { recording, recorded, branched } = facts ?? {};
-  return recording ?? (branched ? null : recorded) ?? null;
-}
-
 async function copyLink() {
-  const link = addressOf(recordingOf(session.peek()), present.peek());
+  const link = addressOf(shownRecording.peek(), present.peek());
   if (!(await copyText(link, "The link was not copied"))) return;
   copied.value += 1;
   setTimeout(() => (copied.value -= 1), SHOWN);
 }
 
-const sharing = command({ text: "Copy a link to this moment of the run", group: "Run", work: copyLink, ready: () => recordingOf(session.value) !== null });
+const sharing = command({ text: "Copy a link to this moment of the run", group: "Run", work: copyLink, ready: () => shownRecording.value !== null });
 
 export function Share() {
   const ready = sharing.ready();

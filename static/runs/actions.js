@@ -19,12 +19,12 @@ export const busy = signal(null);
 const LOOK = 300; // the interval between two requests for the progress of a replay [ms]
 const cancels = new Map();
 
-/** Starts a session that replays a recording, and shows it; closes the session of one that was only viewed. */
+/** Shows a recording, in a session that replays it; closes the sessions of others that nobody views any more. */
 export async function openRun(run) {
   if (busy.value || run.problem) return;
   busy.value = { text: "Opening …" };
   try {
-    await leaveUnwatched();
+    await leaveOthers(run.id);
     await chooseRecording(run.id);
   } catch (error) {
     complain(`${run.model} of ${whenText(run.made)} cannot be opened: ${error.message}`);
@@ -32,10 +32,11 @@ export async function openRun(run) {
   busy.value = null;
 }
 
-/** Closes the sessions of recordings that nobody views any more: they can be opened again. */
-async function leaveUnwatched() {
+/** Closes the sessions of other recordings that nobody views any more and that do not run: they can be opened again. */
+async function leaveOthers(wanted) {
   const { sessions } = await call("GET", "/api/sessions");
-  const left = sessions.filter(({ id, recorded, watching }) => recorded !== null && id !== session.value?.id && watching.length === 0);
+  const isLeft = ({ recorded, status, watching }) => ![null, wanted].includes(recorded) && status !== "running" && watching.length === 0;
+  const left = sessions.filter((one) => isLeft(one) && one.id !== session.value?.id);
   for (const { id } of left) {
     await call("POST", `/api/sessions/${id}/close`, {}).catch(() => null); // another page may have closed it
   }
@@ -76,7 +77,7 @@ export async function deleteRuns(all) {
   const open = all.filter((run) => run.session);
   if (open.length > 0) {
     const names = open.map((run) => `${run.model || run.id}, ${whenText(run.made)}`).join("; ");
-    complain(`Not deleted, for a run that is open still writes it: ${names}. Show that model and restart it, and delete this then.`);
+    complain(`Not deleted, for a run that is open still writes it: ${names}. Show that run and restart it, and delete this then.`);
   }
   if (list.length === 0) return;
   const one = list.length === 1 ? `the recording «${nameOf(list[0])}»` : counted(list.length, "recording");

@@ -81,7 +81,7 @@ function Row({ run, list, number, now, toggle, open }) {
         ${name ? html`<b>${name}</b>` : null}<span class=${name ? "path quiet" : "path"}><bdi>${run.model || run.id}</bdi></span>
         ${tags.map((tag) => html`<span key=${tag} class="tag">${tag}</span>`)}
       </span>
-      <small>${run.session ? html`<b class="present-mark" title=${own ? "The run that is shown" : "Its session is still there: choose its model above to show it"}>${own ? "present" : "open"}</b> · ` : null}${run.problem ? "" : html`${run.branched === null ? null : html`<b title="branch ${originText(run, list)}">${branchText(run)}</b> · `}${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
+      <small>${run.session ? html`<b class="present-mark" title=${own ? "The run that is shown" : "A session that is open still writes it"}>${own ? "present" : "open"}</b> · ` : null}${run.problem ? "" : html`${run.branched === null ? null : html`<b title="branch ${originText(run, list)}">${branchText(run)}</b> · `}${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
     </td>
     <td class="outcome ${run.problem || run.failed ? "bad" : ""}" title=${endedText(run)}>
       <span>${outcomeText(run)} <span class="number">${resultText(run)}</span></span><small>${endedText(run)}</small>

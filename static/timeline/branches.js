@@ -8,12 +8,11 @@ import { openTab } from "../open_tab.js";
 import { Icon } from "../parts/icon.js";
 import { deleteRuns, openRun } from "../runs/actions.js";
 import { labelRun } from "../runs/label.js";
-import { follow, present, runs } from "../runs/list.js";
+import { follow, runs } from "../runs/list.js";
 import { outcomeText, whenText } from "../runs/wording.js";
 import { counted } from "../parts/count.js";
-import { choose } from "../bar/models.js";
-import { call } from "../server.js";
-import { alive, complain, session, state } from "../store.js";
+import { chooseLive } from "../bar/models.js";
+import { alive, complain, isShared, session, shownRecording as shown, state } from "../store.js";
 import { computed, effect, html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { placeOf } from "./draw.js";
 import { column } from "./rows.js";
@@ -21,9 +20,6 @@ import { furthest, seek } from "./seek.js";
 import { span } from "./view.js";
 
 const open = remembered("branches open", true);
-
-/** The recording of the shown run: its own, or that which it repeats. */
-const shown = computed(() => present.value ?? session.value?.recorded ?? null);
 
 /** Returns a function from a run of the list to the run from which it branches; undefined for one that is no branch.
  *
@@ -74,23 +70,20 @@ export function sameUntil(list, one, other) {
 
 const tree = computed(() => treeOf(runs.value ?? [], shown.value));
 
-/** Shows another branch: the open session that writes it, or its recording. */
+/** Shows another branch: the open session that writes it, where it is, or its recording. */
 async function show(run) {
-  if (!run.session) {
-    const moment = sameUntil(runs.value ?? [], run.id, shown.value);
-    await openRun(run);
-    return beginAt(run, moment);
-  }
+  const moment = run.session ? null : sameUntil(runs.value ?? [], run.id, shown.value);
   try {
-    const { session: found } = await call("GET", `/api/sessions/${run.session}`);
-    if (found.recorded === null) return choose(found.model);
-    return openRun({ ...run, id: found.recorded });
+    if (run.session && (await chooseLive(run.id))) return;
   } catch (error) {
-    return complain(error.message);
+    complain(error.message);
+    return;
   }
+  await openRun(run);
+  beginAt(run, moment);
 }
 
-/** Goes to the moment from which an opened branch differs from the run that was shown, once its run is known. */
+/** Goes to the moment from which an opened branch differs from the run that was shown, once its run is known; not if other pages show it. */
 function beginAt({ id }, moment) {
   if (moment === null) return;
   const end = effect(() => {
@@ -99,7 +92,7 @@ function beginAt({ id }, moment) {
     if (!here || !alive.value || furthest.value < moment - 1e-6) return;
     queueMicrotask(() => {
       end();
-      seek(moment);
+      if (!isShared.peek()) seek(moment);
     });
   });
 }

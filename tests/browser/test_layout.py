@@ -141,6 +141,20 @@ def test_a_link_leads_to_a_moment_of_a_run(pages: Pages, workbench: Served) -> N
     until(page, lambda: page.evaluate("navigator.clipboard.readText()").partition("&copied")[0] == same)
 
 
+@pytest.mark.slow
+def test_a_link_leads_to_its_run_although_another_run_of_the_model_is_newer(pages: Pages, workbench: Served) -> None:
+    older, _ = [workbench.post("/api/sessions", {"model": "counting.py", "seed": 1}).json()["id"] for _ in range(2)]
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    page.evaluate("async (id) => (await part('server.js')).show(id)", older)
+    page.click("#cycle")
+    shows(page, "#time", r"0\.05 s")
+    name = workbench.get(f"/api/sessions/{older}").json()["session"]["recording"]
+    page.goto(f"{workbench.url}/?run={name}&t=0.03")
+    expect(page.locator(".recording-banner")).to_contain_text(name)
+    shows(page, "#time", r"0\.03 s")
+
+
 def test_a_link_to_a_moment_leads_to_its_branch_once_the_run_was_changed_before_it(pages: Pages) -> None:
     page = pages("counting.py")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -195,6 +196,109 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     until(page, lambda: page.locator("#width").inner_text() == other.locator("#width").inner_text() != width)
     for one in (page, other):
         expect(one.get_by_role("dialog")).to_have_count(0)
+
+
+def say(page: Page, **command: Any) -> None:
+    """Sends a command to the run."""
+    page.evaluate("async (command) => void (await (await part('server.js')).say(command))", command)
+
+
+def at(page: Page, time: float) -> None:
+    """Goes to a time of the run."""
+    say(page, type="seek", time=time)
+    shows(page, "#time", rf"t = {time:.2f} s")
+
+
+def changed_at(page: Page, time: float, before: str) -> str:
+    """Changes a recording at a time of it; returns the recording that it is from then on."""
+    at(page, time)
+    say(page, type="command", word="clear_buffer", named={"buffer": "goal"})
+    expect(page.locator(".recording-banner")).to_contain_text("Changed: recorded as a branch")
+    expect(page).not_to_have_url(re.compile(f"run={before}$"))
+    return page.url.partition("run=")[2]
+
+
+def test_a_changed_recording_has_the_address_and_the_link_of_the_branch_that_it_is_then(pages: Pages, workbench: Served) -> None:
+    name = recorded(workbench, "counting.py")
+    page, other = pages("counting.py"), pages("doorway.py")  # a run of the same model is open, too
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    shows(page, "#status", "at its start")
+    page.goto(f"{workbench.url}/?run={name}")
+    banner = page.locator(".recording-banner")
+    expect(banner).to_contain_text("3.35 s are known")
+    branch = changed_at(page, 0.2, name)
+    expect(banner).to_contain_text(branch)
+    say(page, type="step", ticks=2)
+    shows(page, "#time", r"t = 0\.22 s")
+    page.get_by_role("button", name="Copy a link").click()
+    expect(page.locator(".status-line")).to_contain_text("The link is copied")
+    link = page.evaluate("navigator.clipboard.readText()")
+    other.goto(link)
+    expect(other.locator(".recording-banner")).to_contain_text(branch)
+    shows(other, "#time", r"t = 0\.22 s")
+    expect(other).to_have_url(f"{workbench.url}/?run={branch}")
+    other.goto(f"{workbench.url}/?run={name}&t=0.3")  # the recording, as it was
+    expect(other.locator(".recording-banner")).to_contain_text("3.35 s are known")
+    shows(other, "#time", r"t = 0\.30 s")
+    shows(page, "#time", r"t = 0\.22 s")
+    page.reload()
+    expect(banner).to_contain_text(branch)
+    shows(page, "#time", r"t = 0\.22 s")
+    page.go_back()
+    expect(banner).to_contain_text("3.35 s are known")
+    page.go_forward()
+    expect(banner).to_contain_text(branch)
+    shows(page, "#time", r"t = 0\.22 s")
+
+
+@pytest.mark.slow
+def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_deleted_without_the_other(
+    pages: Pages, workbench: Served
+) -> None:
+    page, other = pages("counting.py", tab="runs"), pages("counting.py")
+    shows(page, "#status", "at its start")
+    say(page, type="restart")
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.3)
+    shows(page, "#time", r"t = 0\.30 s")
+    at(page, 0.1)
+    say(page, type="command", word="clear_buffer", named={"buffer": "goal"})
+    first = page.locator(".branch-name", has_text="at 0.10 s")
+    first.click()
+    banner, time = page.locator(".recording-banner"), page.locator("#time")
+    expect(banner).to_contain_text("0.30 s are known")
+    name = page.url.partition("run=")[2]
+    branch = changed_at(page, 0.2, name)
+    other.goto(page.url)
+    expect(other.locator(".recording-banner")).to_contain_text("Changed")
+    first.click()
+    expect(banner).to_contain_text("0.30 s are known")
+    expect(page).to_have_url(f"{workbench.url}/?run={name}")
+    expect(time).to_contain_text("t = 0.20 s")  # from where it differs
+    at(page, 0.25)
+    expect(other.locator(".recording-banner")).to_contain_text("Changed")
+    shows(other, "#time", r"t = 0\.20 s")
+    page.locator(".branch-name", has_text="at 0.20 s").click()
+    expect(banner).to_contain_text("Changed")
+    expect(page).to_have_url(f"{workbench.url}/?run={branch}")
+    row(page, name).click()
+    page.get_by_role("button", name="Open", exact=True).click()
+    expect(banner).to_contain_text("0.30 s are known")
+    row(page, branch).click()
+    page.get_by_role("button", name="Open", exact=True).click()
+    expect(banner).to_contain_text("Changed")
+    shows(page, "#time", r"t = 0\.20 s")
+    page.get_by_role("button", name="Delete at 0.10 s").click()
+    page.get_by_role("dialog").get_by_role("button", name="Delete").click()
+    expect(row(page, name)).to_have_count(0)
+    page.reload()
+    expect(banner).to_contain_text(branch)
+    expect(banner).to_contain_text("Changed")
+    page.get_by_label("Model", exact=True).select_option("doorway.py")
+    expect(banner).to_have_count(0)
+    page.go_back()
+    expect(banner).to_contain_text(branch)
+    shows(page, "#time", r"t = 0\.20 s")
 
 
 def in_frame(page: Page, address: str) -> None:

@@ -157,6 +157,52 @@ def test_who_opens_a_recording_twice_gets_one_session(desk: Desk, tmp_path: Path
     assert desk.do(talk.sessions.reopen(name)) is not again.session
 
 
+def test_a_changed_recording_goes_by_what_it_writes_and_the_recording_is_opened_as_it_was(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, BUILT, record=True, run=True, wait="ended")
+    again = reopened(talk)
+    name = again.facts["recorded"]
+    assert again.facts["recording"] is None
+    again.say("seek", time=0.2)
+    again.until("paused", time=0.2)
+    again.say("command", word="aperture", values=[0.5])
+    again.until("paused", furthest=0.2)
+    branch = again.session.recording
+    assert branch is not None
+    assert again.facts["recorded"] == branch != name
+    assert desk.do(talk.sessions.reopen(branch)) is again.session
+    unchanged = desk.do(talk.sessions.reopen(name))
+    assert unchanged is not again.session
+    assert Talk(desk, unchanged, talk.sessions).until("paused")["furthest"] == talk.state["furthest"]
+    assert again.state["furthest"] == 0.2
+    assert talk.summary(branch).origin == name
+
+
+@pytest.mark.parametrize("ahead", [False, True], ids=["at its end", "in its past"])
+def test_a_recording_that_is_deleted_while_it_is_open_is_open_still_and_a_change_of_it_is_kept(
+    desk: Desk, tmp_path: Path, ahead: bool
+) -> None:
+    talk = desk.begin(tmp_path, BUILT, record=True)
+    talk.say("until", time=0.3)
+    talk.until("paused", time=0.3)
+    again = reopened(talk)
+    name = again.facts["recorded"]
+    talk.sessions.recordings.delete(name)
+    assert desk.do(talk.sessions.reopen(name)) is again.session
+    again.say("seek", time=0.2 if ahead else 0.3)
+    again.until("paused", time=0.2 if ahead else 0.3)
+    again.say("command", word="aperture", values=[0.5], drop=ahead)
+    again.wait(lambda: again.facts["recording"] is not None)
+    branch = again.session.recording
+    assert branch is not None
+    assert again.facts["recorded"] == branch != name
+    assert again.facts["branched"]["kept"] is False
+    assert desk.do(talk.sessions.reopen(branch)) is again.session
+    desk.do(talk.sessions.close(again.session.name))
+    assert talk.summary(branch).branched == (0.2 if ahead else 0.3)
+    with pytest.raises(Actr3dError, match="there is no such recording"):
+        desk.do(talk.sessions.reopen(name))
+
+
 def test_a_damaged_recording_is_not_opened(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, COUNTING, record=True, run=True, wait="ended")
     name = talk.facts["recording"]

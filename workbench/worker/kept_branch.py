@@ -34,10 +34,9 @@ class KeptBranch:
         self._ahead = furthest > clock
         self._branch: Path | None = None
         # A run that repeats a recording is kept by that recording.
-        repeated = Path(start.recorded) if start.recorded is not None and controller.repeats_recording else None
-        self._is_gone = repeated is not None and not repeated.is_file()
-        self._repeated = None if self._is_gone else repeated
-        if self._ahead and self._repeated is None:
+        self._repeated = Path(start.recorded) if start.recorded is not None and controller.repeats_recording else None
+        self._is_gone = self._repeated is not None and not self._repeated.is_file()
+        if self._ahead and (self._repeated is None or self._is_gone):
             self._branch = self._copy(recording, drop=drop)
 
     def _copy(self, recording: Recording | None, *, drop: bool) -> Path | None:
@@ -77,5 +76,6 @@ class KeptBranch:
         if kept is not None:
             self._controller.run.flush()  # pages list recordings again when they hear of the branch
             self._controller.channel.post(Branched(recording=kept.stem, at=self._at, until=self._until))
-        kept_as = "the rest was lost" if kept is None else "a branch was kept" if self._branch else "the recording keeps the rest"
+        is_in_recording = self._repeated is not None and not self._is_gone
+        kept_as = "a branch was kept" if self._branch else "the recording keeps the rest" if is_in_recording else "the rest was lost"
         self._controller.goes_another_way(events, f"changed at {self._at:.2f} s; {kept_as}" if self._ahead else None)
