@@ -127,8 +127,9 @@ def _plain(value: Any, declared: Any, where: str) -> Any:
     elif isinstance(declared, type) and isinstance(value, declared):
         return value
     names = {float: "a number", int: "a whole number", str: "text", bool: "True or False"}
-    name = names.get(declared) or getattr(declared, "__name__", str(declared))
-    raise ConfigurationError(f"{where}: must be {name} (got {value!r})")
+    name = getattr(declared, "__name__", str(declared))
+    wanted = names.get(declared) or f"{'an' if name[0] in 'AEIOU' else 'a'} {name}"
+    raise ConfigurationError(f"{where}: must be {wanted} (got {value!r})")
 
 
 def is_finite(value: Any) -> bool:
