@@ -354,10 +354,20 @@ def test_the_room_that_it_wants_follows_from_what_counts_as_similar_more_than_fr
     assert replace(usual, walks=False).critical_ratio() < usual.critical_ratio() - 0.02
 
 
-def test_the_effort_of_turning_makes_fast_walkers_turn_less_and_the_impact_would_make_them_turn_more(sensitivity: Any) -> None:
+def test_effort_and_impact_each_make_fast_walkers_turn_less(sensitivity: Any) -> None:
+    """People turn more when they walk fast. A turn in one step takes less time then; and a brush at a higher speed is shorter."""
     for _, *cell in sensitivity.CELLS:
         both, effort, impact = sensitivity.effect_of_speed(*cell)
-        assert effort < both < 0 < impact
+        assert both < min(effort, impact)
+        assert max(effort, impact) < 0
+
+
+@pytest.mark.slow
+def test_simulated_data_determine_the_cost_that_was_put_in(sensitivity: Any) -> None:
+    for cost in (3.0, 8.0):
+        middle, low, high = sensitivity.found_again(cost)
+        assert low < cost < high
+        assert middle == pytest.approx(cost, rel=0.1)
 
 
 @pytest.mark.slow

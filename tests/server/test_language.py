@@ -204,7 +204,7 @@ def test_nothing_is_known_where_there_is_nothing(ask: Asked) -> None:
 
 def test_how_a_function_is_called(ask: Asked) -> None:
     (found,) = ask("signature", COUNTING.replace("Memory(retrieval)", "Memory(retrieval, latency=|)"))
-    assert (found["name"], found["active"], found["parameters"][0]) == ("Memory", 1, "buffer: Any")
+    assert (found["name"], found["active"], found["parameters"][0]) == ("Memory", 1, "buffer: Buffer")
     assert found["text"].startswith("F in the retrieval time")
     (field,) = ask("signature", "from actr3d.world import Aperture\nAperture(closing=|)")
     assert field["text"].startswith("How fast")
