@@ -355,7 +355,8 @@ def test_the_room_that_it_wants_follows_from_what_counts_as_similar_more_than_fr
 
 
 def test_effort_and_impact_each_make_fast_walkers_turn_less(sensitivity: Any) -> None:
-    """People turn more when they walk fast. A turn in one step takes less time then; and a brush at a higher speed is shorter."""
+    """People turn more when they walk fast. A turn in one step takes less time then, and the body sways less: with a little room, it is
+    free more often."""
     for _, *cell in sensitivity.CELLS:
         both, effort, impact = sensitivity.effect_of_speed(*cell)
         assert both < min(effort, impact)
