@@ -512,7 +512,7 @@ class Person(ACTR):
         b_goal.set("do:wait")
 
     def go_on(b_goal="do:wait", b_door="free:True"):
-        """Looks for a doorway again, and plans anew: the way is free, or its patience is over."""
+        """Looks for a doorway again, and plans again: the way is free, or its patience is over."""
         for buffer in (b_course, b_door, b_plan, b_imagined, b_DM, b_experience):
             buffer.clear()
         self.costs = {}
