@@ -109,7 +109,7 @@ def test_help_while_writing(opened: Callable[[str], Page]) -> None:
     page.keyboard.press("ArrowLeft")
     page.evaluate(SLOW)
     page.keyboard.type(", latency=", delay=50)
-    expect(page.locator(".documentation b")).to_have_text("latency: float | None=None")
+    expect(page.locator(".documentation b")).to_have_text("latency: NotNegative | None=None")
     page.keyboard.press("Escape")
     expect(page.locator(".documentation")).to_have_count(0)
     expect(page.locator(CODE)).to_be_focused()
