@@ -20,7 +20,7 @@ Four parallel systems:
 
 What to expect
 --------------
-- `aperture = 0.5`: turns by 20 to 50 degrees.
+- `aperture = 0.5`: turns by 10 to 40 degrees, or not at all.
 - `aperture = 0.8`: walks straight through.
 - `aperture = 0.2`: declines.
 
