@@ -9,6 +9,7 @@ from __future__ import annotations
 import random
 import sys
 from dataclasses import dataclass, replace
+from functools import cache
 from math import cos, hypot, radians, sin
 from pathlib import Path
 from typing import Any
@@ -103,19 +104,23 @@ def effect_of_speed(shoulders: float, normal: float, fast: float) -> tuple[float
 
 def share_turned(cost: float, *, trials: int, seed: int) -> float:
     """Returns the share of passages that are turned in the fitted cell, at a cost of contacts, of `WALKERS` with some trials each."""
-    name, shoulders, normal, _ = CELLS[0]
-    assert name == "small"
+    _, shoulders, normal, _ = CELLS[0]
     return float((Deciding(contact_cost=cost).turns_before(shoulders, np.full(trials, FITTED), speed=normal, seed=seed) > 0).mean())
+
+
+@cache
+def shares_turned() -> NDArray[Any]:
+    """Returns the share of turned passages at each of `COSTS`."""
+    return np.array([share_turned(cost, trials=25, seed=0) for cost in COSTS])
 
 
 def found_again(cost: float) -> tuple[float, float, float]:
     """Returns what fits to simulated data find if `cost` is put in: the median, and the range of the middle 80 % of `REPETITIONS`.
 
-    Data and fit have as many passages as the fit of the walks: 200. A fit finds the cost whose share of turned passages is nearest.
+    Data have as many passages as the fit of the walks: 200. A fit finds the cost whose share of turned passages is nearest.
     """
-    shares = np.array([share_turned(other, trials=25, seed=0) for other in COSTS])
     data = [share_turned(cost, trials=5, seed=seed) for seed in range(1, REPETITIONS + 1)]
-    found = [COSTS[np.argmin(np.abs(shares - share))] for share in data]
+    found = [COSTS[np.argmin(np.abs(shares_turned() - share))] for share in data]
     low, middle, high = np.quantile(found, (0.1, 0.5, 0.9))
     return float(middle), float(low), float(high)
 

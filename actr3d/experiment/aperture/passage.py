@@ -54,7 +54,7 @@ class PassageResult:
     impulse_n_s: float
     """The forces of all contacts, summed over time [N s]."""
     impact_j: float
-    """How hard the contacts were [J]: the sum of J² / 2m, for the impulse J of each contact from its begin to its end, and the mass m of
+    """How hard the contacts were [J]: the sum of J² / 2m, for the impulse J of each contact from its start to its end, and the mass m of
     the body. Each is the energy of the body at a speed that this impulse could stop."""
     clearance_left_m: float | None
     """Smallest distance between any part of the body and the left segment of the wall, while a part of the body was between its
@@ -85,6 +85,7 @@ class PassageResult:
 Forces = Mapping[tuple[str, str], float]
 """By part of the body and touched object, the force between them [N]."""
 _NONE: Forces = {}
+"""No contacts."""
 
 
 class _Sample(NamedTuple):
@@ -232,7 +233,7 @@ class Passage:
 
 
 def _onset(samples: list[_Sample]) -> _Sample | None:
-    """Returns the sample from which on the shoulders are turned until they are most; None if they never are."""
+    """Returns the sample from which on the shoulders are turned until they are turned most; None if they never are."""
     angles = [abs(sample.turned) for sample in samples]
     number = angles.index(max(angles)) if angles else -1
     if number < 0 or angles[number] < TURNED:
@@ -243,7 +244,7 @@ def _onset(samples: list[_Sample]) -> _Sample | None:
 
 
 def _impulses(samples: list[_Sample]) -> list[float]:
-    """Returns the impulse of each contact, from its begin to its end [N s]."""
+    """Returns the impulse of each contact, from its start to its end [N s]."""
     ended: list[float] = []
     present: dict[tuple[str, str], float] = {}
     for sample in samples:
