@@ -46,7 +46,7 @@ function Others({ id, model }) {
 export function RecordingBanner() {
   const { id, recorded = null, recording, made, model } = session.value ?? {};
   if (recorded === null) return null;
-  const changed = recording !== null;
+  const branched = recording !== null;
   const name = runs.value?.find((run) => run.id === recorded)?.label?.name;
   const when = `made ${whenInFull(made)}`;
   return html`<div class="recording-banner" role="status">
@@ -56,8 +56,8 @@ export function RecordingBanner() {
       <div class="facts quiet">
         <span class="path" title=${model}><bdi>${model}</bdi></span>
         <span class="when" title=${when}>${when}</span>
-        <span title=${changed ? "You have changed its course: what follows is new, and is recorded as a branch of it." : "Running it shows again what happened."}>
-          ${changed ? "Changed: recorded as a branch" : `${(state.value?.furthest ?? 0).toFixed(2)} s are known`}
+        <span title=${branched ? "It goes another way than the recording that was opened, or further: it is recorded as a branch of it." : "Running it shows again what happened."}>
+          ${branched ? "Recorded as a branch" : `${(state.value?.furthest ?? 0).toFixed(2)} s are known`}
         </span>
       </div>
     </div>

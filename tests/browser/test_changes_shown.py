@@ -173,7 +173,7 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
     shows(page, "#time", r"0\.12 s")  # from where it differs
     say(page, type="seek", time=0.2)
     say(page, type="command", word="clear_buffer", named={"buffer": "goal"})
-    shows(page, ".recording-banner", "Changed: recorded as a branch")
+    shows(page, ".recording-banner", "Recorded as a branch")
     expect(rows).to_have_count(3)
     expect(page.locator(".branches li.mine")).to_contain_text("at 0.20 s")
     page.keyboard.press("Control+k")

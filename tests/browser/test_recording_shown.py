@@ -168,7 +168,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     order("seek", 1)
     drag("End")
     shows(page, "#status", r"paused: changed at 1\.00 s; the recording keeps the rest")  # without a question
-    expect(page.locator(".recording-banner")).to_contain_text("Changed: recorded as a branch")
+    expect(page.locator(".recording-banner")).to_contain_text("Recorded as a branch")
     width = page.locator("#width").inner_text()
     order("until", 2)
     order("seek", 1.5)
@@ -213,7 +213,7 @@ def changed_at(page: Page, time: float, before: str) -> str:
     """Changes a recording at a time of it; returns the recording that it is from then on."""
     at(page, time)
     say(page, type="command", word="clear_buffer", named={"buffer": "goal"})
-    expect(page.locator(".recording-banner")).to_contain_text("Changed: recorded as a branch")
+    expect(page.locator(".recording-banner")).to_contain_text("Recorded as a branch")
     expect(page).not_to_have_url(re.compile(f"run={before}$"))
     return page.url.partition("run=")[2]
 
@@ -251,6 +251,31 @@ def test_a_changed_recording_has_the_address_and_the_link_of_the_branch_that_it_
     shows(page, "#time", r"t = 0\.22 s")
 
 
+def test_a_link_to_a_moment_past_the_end_of_a_recording_leads_to_the_branch_that_has_it(pages: Pages, workbench: Served) -> None:
+    page, other = pages("counting.py"), pages("counting.py")
+    shows(page, "#status", "at its start")
+    say(page, type="restart")
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.3)
+    shows(page, "#time", r"t = 0\.30 s")
+    name = page.evaluate("async () => (await part('store.js')).session.value.recording")
+    say(page, type="restart")
+    shows(page, "#status", "at its start")
+    page.goto(f"{workbench.url}/?run={name}")
+    banner = page.locator(".recording-banner")
+    expect(banner).to_contain_text("0.30 s are known")
+    say(page, type="until", time=0.5)
+    expect(banner).to_contain_text("Recorded as a branch")
+    shows(page, "#time", r"t = 0\.50 s")
+    expect(page).not_to_have_url(re.compile(f"run={name}$"))
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.get_by_role("button", name="Copy a link").click()
+    expect(page.locator(".status-line")).to_contain_text("The link is copied")
+    other.goto(page.evaluate("navigator.clipboard.readText()"))
+    shows(other, "#time", r"t = 0\.50 s")
+    expect(other.locator(".branch-name", has_text="at 0.30 s")).to_be_visible()
+
+
 @pytest.mark.slow
 def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_deleted_without_the_other(
     pages: Pages, workbench: Served
@@ -270,30 +295,30 @@ def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_dele
     name = page.url.partition("run=")[2]
     branch = changed_at(page, 0.2, name)
     other.goto(page.url)
-    expect(other.locator(".recording-banner")).to_contain_text("Changed")
+    expect(other.locator(".recording-banner")).to_contain_text("Recorded as a branch")
     first.click()
     expect(banner).to_contain_text("0.30 s are known")
     expect(page).to_have_url(f"{workbench.url}/?run={name}")
     expect(time).to_contain_text("t = 0.20 s")  # from where it differs
     at(page, 0.25)
-    expect(other.locator(".recording-banner")).to_contain_text("Changed")
+    expect(other.locator(".recording-banner")).to_contain_text("Recorded as a branch")
     shows(other, "#time", r"t = 0\.20 s")
     page.locator(".branch-name", has_text="at 0.20 s").click()
-    expect(banner).to_contain_text("Changed")
+    expect(banner).to_contain_text("Recorded as a branch")
     expect(page).to_have_url(f"{workbench.url}/?run={branch}")
     row(page, name).click()
     page.get_by_role("button", name="Open", exact=True).click()
     expect(banner).to_contain_text("0.30 s are known")
     row(page, branch).click()
     page.get_by_role("button", name="Open", exact=True).click()
-    expect(banner).to_contain_text("Changed")
+    expect(banner).to_contain_text("Recorded as a branch")
     shows(page, "#time", r"t = 0\.20 s")
     page.get_by_role("button", name="Delete at 0.10 s").click()
     page.get_by_role("dialog").get_by_role("button", name="Delete").click()
     expect(row(page, name)).to_have_count(0)
     page.reload()
     expect(banner).to_contain_text(branch)
-    expect(banner).to_contain_text("Changed")
+    expect(banner).to_contain_text("Recorded as a branch")
     page.get_by_label("Model", exact=True).select_option("doorway.py")
     expect(banner).to_have_count(0)
     page.go_back()

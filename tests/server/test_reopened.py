@@ -129,6 +129,10 @@ def test_a_run_that_differs_from_its_recording_says_from_when_on(desk: Desk, tmp
     again.until("ended")
     assert "differs from its recording" in again.wait_for_notice("differs")["text"]
     assert [event[3]["text"] for event in whole(again) if event[2] == "output"] == ["one", "another", "three"]
+    branch = again.session.recording
+    assert branch is not None
+    assert again.facts["recorded"] == branch != name  # what happens now is kept
+    assert talk.summary(branch).origin == name
 
 
 def test_a_run_that_ends_before_its_recording_says_so(desk: Desk, tmp_path: Path) -> None:
@@ -175,6 +179,30 @@ def test_a_changed_recording_goes_by_what_it_writes_and_the_recording_is_opened_
     assert Talk(desk, unchanged, talk.sessions).until("paused")["furthest"] == talk.state["furthest"]
     assert again.state["furthest"] == 0.2
     assert talk.summary(branch).origin == name
+
+
+@pytest.mark.parametrize("source", [BUILT, COUNTING], ids=["built", "program"])
+def test_what_runs_past_the_end_of_a_recording_is_kept_as_a_branch_of_it(desk: Desk, tmp_path: Path, source: str) -> None:
+    talk = desk.begin(tmp_path, source, record=True)
+    talk.say("until", time=0.3)
+    talk.until("paused", time=0.3)
+    again = reopened(talk)
+    name = again.facts["recorded"]
+    again.say("until", time=0.3)
+    again.until("paused", time=0.3)
+    assert (again.facts["recorded"], again.facts["recording"]) == (name, None)
+    again.say("until", time=0.5)
+    again.until("paused", time=0.5)
+    branch = again.session.recording
+    assert branch is not None
+    assert again.facts["recorded"] == branch != name
+    assert {key: again.facts["branched"][key] for key in ("recording", "at", "until")} == {"recording": name, "at": 0.3, "until": 0.3}
+    events = whole(again)
+    unchanged = Talk(desk, desk.do(talk.sessions.reopen(name)), talk.sessions)
+    assert unchanged.until("paused")["furthest"] == 0.3
+    further = reopened(again, branch)
+    assert (further.state["furthest"], whole(further)) == (0.5, events)
+    assert (talk.summary(branch).branched, talk.summary(branch).origin) == (0.3, name)
 
 
 @pytest.mark.parametrize("ahead", [False, True], ids=["at its end", "in its past"])

@@ -148,6 +148,11 @@ class ControlledRun(ABC):
         if self._recording is not None:
             self._recording.flush()
 
+    def become_branch(self, recording: str, time: float) -> None:
+        """Records that the run has repeated another recording up to a time [s], and is a branch of it from then on."""
+        self._record(branched=time, origin=recording)
+        self.flush()
+
     def _record(self, **facts: Any) -> None:
         """Records facts, if the run is recorded."""
         for name, value in facts.items():

@@ -28,7 +28,6 @@ class KeptBranch:
 
     def __init__(self, controller: RunController, recording: Recording | None, clock: int, furthest: int, *, drop: bool) -> None:
         self._controller = controller
-        self._recording = recording
         self._start = start = controller.channel.start
         self._at, self._until = seconds(clock), seconds(furthest)
         self._ahead = furthest > clock
@@ -66,16 +65,13 @@ class KeptBranch:
         Args:
             events: Number of events up to the change.
         """
-        kept = self._branch or self._repeated
-        if self._repeated is not None and self._recording is not None:
-            self._recording.fact("branched", self._at)
-            self._recording.fact("origin", self._repeated.stem)
-        if self._branch is not None:
+        if self._repeated is not None:
+            self._controller.leave_recording(self._at, self._until)
+        elif self._branch is not None:
             for old in superfluous_branches(Path(self._start.record or "")):
                 old.unlink(missing_ok=True)
-        if kept is not None:
             self._controller.run.flush()  # pages list recordings again when they hear of the branch
-            self._controller.channel.post(Branched(recording=kept.stem, at=self._at, until=self._until))
+            self._controller.channel.post(Branched(recording=self._branch.stem, at=self._at, until=self._until))
         is_in_recording = self._repeated is not None and not self._is_gone
         kept_as = "a branch was kept" if self._branch else "the recording keeps the rest" if is_in_recording else "the rest was lost"
         self._controller.goes_another_way(events, f"changed at {self._at:.2f} s; {kept_as}" if self._ahead else None)

@@ -46,7 +46,7 @@ class KnownRun:
             if keep is not None:
                 for state in recorded.states():
                     keep(state.tick, state.data, state.contacts)
-        self.time = max(time, microseconds(self.facts.get(REACHED, 0)))
+        self.time = max(time, microseconds(self.facts.get(REACHED, 0)), self.ticks * self.facts.get("period_us", 0))
         """The duration of the recording, summed over all its runs [us]."""
 
     @property

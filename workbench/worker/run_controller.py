@@ -6,6 +6,7 @@ import pickle
 import threading
 from collections.abc import Mapping
 from contextlib import suppress
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -21,7 +22,7 @@ from workbench.worker.channel import Channel
 from workbench.worker.controlled_run import ControlledRun
 from workbench.worker.error_report import describe_error
 from workbench.worker.known_run import KnownRun, difference_notice
-from workbench.worker.messages import ENDED, Cut, Do, Draw, Leave, Reply, State, Status, shortened
+from workbench.worker.messages import ENDED, Branched, Cut, Do, Draw, Leave, Reply, State, Status, shortened
 from workbench.worker.names import lost_breakpoints
 from workbench.worker.pacer import Pacer
 from workbench.worker.stop_conditions import Watch
@@ -207,6 +208,17 @@ class RunController:
                 self._sent = min(self._sent, events)
                 self.channel.cut(Cut(events=events), events)
 
+    def leave_recording(self, at: float, until: float) -> None:
+        """Makes the run, which has repeated a recording, a branch of it: what follows is kept in the run's own recording.
+
+        Args:
+            at: From when on the run goes another way than the recording, or further [s].
+            until: The furthest time that was known of it [s].
+        """
+        recording = Path(self.channel.start.recorded or "").stem
+        self.run.become_branch(recording, at)  # first, as pages list recordings again when they hear of the branch
+        self.channel.post(Branched(recording=recording, at=at, until=until))
+
     # -- commands from users
 
     def _hear(self, message: Do | Draw | Leave) -> None:
@@ -360,14 +372,20 @@ class RunController:
         events = trace.since(self._compared)[: max(0, state.events - self._compared)]
         found = known_run.difference(self._compared, events)
         is_over = state.status in ENDED
+        known = seconds(known_run.time)
         if found is None and not (is_over and state.events < known_run.count):
             self._compared = max(self._compared, state.events)
+            if self.run.clock > known_run.time and not is_over:
+                self._known_run = None
+                self.leave_recording(known, known)
             return state
         self._known_run = None
         self.run.forget_ahead()
         self._sent = state.events if found is None else found
         self.channel.cut(Cut(events=self._sent), self._sent)
-        self.channel.post(difference_notice(state.time, None if found is None else self.run.events(found, found + 1)[0]))
+        different = None if found is None else self.run.events(found, found + 1)[0]
+        self.leave_recording(state.time if different is None else min(known, seconds(different.time_us)), known)
+        self.channel.post(difference_notice(state.time, different))
         return msgspec.structs.replace(state, furthest=state.time)
 
     def _halt(self) -> None:
