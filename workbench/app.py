@@ -24,12 +24,12 @@ from workbench.auth import Gate, Guard
 from workbench.experiments import Experiments
 from workbench.files import ModelFolder
 from workbench.language.language_server import LanguageServer
+from workbench.manual import manual, no_manual
 from workbench.page_files import ROUTE, PageFiles
 from workbench.protocol import problem_of
 from workbench.recordings import Recordings
 from workbench.retention import Keeping
 from workbench.sessions import Sessions
-from workbench.shipped import manual
 from workbench.viser_bridge import Bridge
 from workbench.worker.spawn import MEMORY, Zygote
 from workbench.worker.workers import Workers
@@ -94,11 +94,10 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
 
 
 async def _manual(scope: Scope, receive: Receive, send: Send) -> None:
-    """Serves the newest manual; if it is not built, explains how to build it."""
+    """Serves the manual; if there is none, says why."""
     folder = manual()
     if folder is None:
-        how = PlainTextResponse("The manual has not been built. In a copy of the repository: uv run mkdocs build", status_code=404)
-        await how(scope, receive, send)
+        await PlainTextResponse(no_manual(), status_code=404)(scope, receive, send)
     else:
         await _files_of(folder)(scope, receive, send)
 

@@ -16,6 +16,7 @@ from functools import partial
 from pathlib import Path
 
 from workbench.auth import LOOPBACK, Gate, Token
+from workbench.manual import build_manual
 from workbench.retention import MAX_MEGABYTES, MAX_RECORDINGS, Keeping
 from workbench.shipped import models_folder
 from workbench.worker.spawn import MEMORY, spawn
@@ -129,11 +130,12 @@ def _reason(error: OSError, options: argparse.Namespace) -> str:
 
 
 def _announce(folder: Path, url: str, token: Token, browse: bool) -> None:
-    """Prints the address as the last line and opens it in the browser."""
+    """Prints the address as the last line and opens it in the browser, for a user who may want the manual."""
     address = f"{url}/?token={token.reveal()}"
     print(f"models: {folder}")
     print(address, flush=True)
     if browse:
+        build_manual()
         threading.Thread(target=_browse, args=(address,), daemon=True).start()
 
 

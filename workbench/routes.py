@@ -16,10 +16,10 @@ from actr3d.values import escape_surrogates
 from workbench.about import about_of
 from workbench.files import ModelFile
 from workbench.loader import listing_of, outline_of, undefined_in
+from workbench.manual import manual, manual_page
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions
-from workbench.shipped import manual, manual_page
 
 router = APIRouter(prefix="/api")
 

@@ -43,21 +43,6 @@ def models_folder(named: Path | None, present: Path, home: Path) -> Path:
     return folder
 
 
-def manual() -> Path | None:
-    """Returns the folder of the built manual, inside the package or in a copy of the repository; None if it has not been built."""
-    package = Path(__file__).parent
-    return next((folder for folder in (package / "manual", package.parent / "build" / "site") if folder.is_dir()), None)
-
-
-def manual_page(model: str) -> str | None:
-    """Returns the address of a shipped model's page in the manual, by its path in the models folder; None if there is none."""
-    folder = manual()
-    name = model.removesuffix(".py").replace("/", "-")
-    if folder is None or "\0" in name or not (folder / "models" / name / "index.html").is_file():
-        return None
-    return f"/manual/models/{name}/"
-
-
 def static() -> Path:
     """Returns the folder of the page: inside the package if installed, beside it in a copy of the repository."""
     package = Path(__file__).parent

@@ -1,6 +1,6 @@
 // Searches the manual, in the index that its own search uses; it is read when the palette is first used.
 
-import { hasManual } from "../bar/models.js";
+import { hasManual, listModels } from "../bar/models.js";
 import { signal } from "../vendor/preact.js";
 
 const MAX_RESULTS = 6;
@@ -14,9 +14,12 @@ let asked = false;
 
 /** Reads the index, once. */
 export async function readManual() {
-  if (asked || !hasManual.value) return;
+  if (asked) return;
   asked = true;
   try {
+    if (!hasManual.value) await listModels(); // the manual may have been built since
+    asked = hasManual.value;
+    if (!asked) return;
     const { docs } = await (await fetch("/manual/search/search_index.json")).json();
     const titles = new Map(docs.map(({ location, title }) => [location, plainText(title)]));
     sections.value = docs.map(({ location, text }) => {

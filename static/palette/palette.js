@@ -5,6 +5,7 @@ import { KEY_GROUPS, keyText } from "../keys.js";
 import { remembered } from "../local_storage.js";
 import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { match } from "./fuzzy.js";
+import { hasManual } from "../bar/models.js";
 import { inManual, readManual } from "./manual_search.js";
 import { readRecordings } from "./recordings.js";
 
@@ -109,6 +110,7 @@ function Palette({ opening }) {
     event.preventDefault();
   }
 
+  const title = hasManual.value ? "Search commands and the manual" : "Search commands";
   const groups = [...Map.groupBy(entries.map((entry, n) => ({ entry, n })), ({ entry }) => entry.heading)];
   // The event comes a moment after the dialog has closed; by then the palette may have been opened again.
   return html`<dialog class="palette" ref=${box} aria-label="Commands" onClose=${() => shown.value === opening && (shown.value = 0)} onClick=${(event) => event.target === box.current && (shown.value = 0)}>
@@ -118,11 +120,11 @@ function Palette({ opening }) {
       autofocus
       spellcheck=${false}
       autocomplete="off"
-      aria-label="Search commands and the manual"
+      aria-label=${title}
       aria-expanded="true"
       aria-controls="palette-list"
       aria-activedescendant=${at >= 0 ? `palette-${at}` : undefined}
-      placeholder="Search commands and the manual"
+      placeholder=${title}
       value=${search.value}
       onInput=${(event) => ((search.value = event.currentTarget.value), (chosen.value = 0))}
       onKeyDown=${press}

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import pytest
 
 from tests.helpers.asgi_client import COOKIE, GATE, HOST, ask
-from workbench import app, shipped
+from workbench import app, manual
 
 
 def test_the_built_manual_is_served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -26,12 +27,12 @@ def test_a_shipped_model_has_a_page_in_the_built_manual(tmp_path: Path, monkeypa
     page = tmp_path / "models" / "tutorial-counting" / "index.html"
     page.parent.mkdir(parents=True)
     page.write_text("<h1>Counting</h1>", encoding="utf-8")
-    monkeypatch.setattr(shipped, "manual", lambda: tmp_path)
-    assert shipped.manual_page("tutorial/counting.py") == "/manual/models/tutorial-counting/"
-    assert shipped.manual_page("own.py") is None
-    assert shipped.manual_page("\0.py") is None
-    monkeypatch.setattr(shipped, "manual", lambda: None)
-    assert shipped.manual_page("tutorial/counting.py") is None
+    monkeypatch.setattr(manual, "manual", lambda: tmp_path)
+    assert manual.manual_page("tutorial/counting.py") == "/manual/models/tutorial-counting/"
+    assert manual.manual_page("own.py") is None
+    assert manual.manual_page("\0.py") is None
+    monkeypatch.setattr(manual, "manual", lambda: None)
+    assert manual.manual_page("tutorial/counting.py") is None
 
 
 def test_without_a_built_manual_the_answer_says_how_to_build_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -49,3 +50,33 @@ def test_a_manual_that_is_built_while_the_workbench_runs_is_served(tmp_path: Pat
     site.mkdir()
     (site / "index.html").write_text("<h1>Manual</h1>", encoding="utf-8")
     assert ask(made, "/manual/", HOST, COOKIE).body == b"<h1>Manual</h1>"
+
+
+def test_the_manual_of_a_copy_of_the_repository_is_built_in_the_background(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs" / "index.md").write_text("# Manual of a copy", encoding="utf-8")
+    (tmp_path / "mkdocs.yml").write_text("site_name: Copy", encoding="utf-8")
+    site = tmp_path / "build" / "site"
+    monkeypatch.setattr(manual, "PACKAGE", tmp_path / "workbench")
+    monkeypatch.setattr(manual, "SITE", site)
+    made = app.make_app(tmp_path / "models", GATE)
+    manual.build_manual()
+    assert "is being built" in ask(made, "/manual/", HOST, COOKIE).body.decode()
+    end = time.monotonic() + 60
+    while manual.is_being_built():
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    assert b"Manual of a copy" in ask(made, "/manual/", HOST, COOKIE).body
+    assert [one.name for one in site.parent.iterdir()] == ["site"]
+
+
+def test_a_manual_that_cannot_be_built_is_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "mkdocs.yml").write_text("site_name: [", encoding="utf-8")
+    monkeypatch.setattr(manual, "PACKAGE", tmp_path / "workbench")
+    monkeypatch.setattr(manual, "SITE", tmp_path / "build" / "site")
+    manual.build_manual()
+    end = time.monotonic() + 60
+    while manual.is_being_built():
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    assert "uv run mkdocs build" in ask(app.make_app(tmp_path / "models", GATE), "/manual/", HOST, COOKIE).body.decode()
