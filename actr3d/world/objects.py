@@ -34,6 +34,7 @@ class Objects:
     def __init__(self, physics: Physics, bodies: Mapping[str, Body], kept: frozenset[str]) -> None:
         model = physics.mj_model
         self._physics = physics
+        self._all_bodies = bodies
         self._bodies = {name: body for name, body in bodies.items() if body.base.planar or body.base.free}
         names = {int(number): str(model.body(int(number)).name) for number in np.flatnonzero(model.body_parentid == 0)[1:]}
         own = {body.root for body in bodies.values()}
@@ -70,10 +71,12 @@ class Objects:
         """Puts an object at (x, y) [m], with a heading [rad] or its present one; a loose object comes to rest.
 
         Raises:
-            WorldError: If there is no such object, or it would be inside another one; it stays then.
+            WorldError: If there is no such object, a hand holds it, or it, or what it holds, would be inside another one; it stays then.
         """
         number, physics = self._number(name, self.names, "move"), self._physics
-        before, depths = physics.integration_state(), self.depths({number})
+        moved = {number, *self._held(name)}
+        self._check_free(name, moved)
+        before, depths = physics.integration_state(), self.depths(moved)
         held = self._bodies[name].state() if name in self._bodies else None
         if name in self._bodies:
             self._bodies[name].set("teleport", x, y, heading)
@@ -90,13 +93,31 @@ class Objects:
             if heading is not None:
                 _turn(physics.mj_data.qpos[q + 3 : q + 7], heading)
         physics.changed()
-        others = deeper(depths, self.depths({number}))
+        others = deeper(depths, self.depths(moved))
         if others:
             physics.restore(before)
             if held is not None:
                 self._bodies[name].restore(held)
             physics.changed()
             raise WorldError(f"'{name}' cannot be put at ({x:g}, {y:g}) m: it would be inside {', '.join(map(repr, others))}; leave room")
+
+    def _held(self, name: str) -> set[int]:
+        """Returns the MuJoCo bodies that the hands of a body hold; none for another object."""
+        hands = self._bodies[name].hands.values() if name in self._bodies else ()
+        return {hand.held.object for hand in hands if hand.held is not None}
+
+    def _check_free(self, name: str, moved: set[int]) -> None:
+        """Raises an error if a hand of another body holds something that moves with an object: its grip would fling it.
+
+        Raises:
+            WorldError: If one does.
+        """
+        for body in self._all_bodies.values():
+            for side, hand in body.hands.items():
+                if body.name != name and hand.held is not None and hand.held.object in moved:
+                    held = str(self._physics.mj_model.body(hand.held.object).name)
+                    what = "it" if held == name else f"'{held}'"
+                    raise WorldError(f"'{name}' cannot be moved: {what} is in the {side} hand of '{body.name}'; release it first")
 
     def pushed(self, name: str) -> int:
         """Returns the MuJoCo body that a push of an object acts on.
@@ -153,6 +174,8 @@ class Pushes:
         self._objects = objects
         self._pushes: list[tuple[int, float, float, int]] = []
         """The MuJoCo body, the force along x and y [N], and the physics steps left."""
+        self._before: NDArray[np.float64] = np.empty((0, 6))
+        """The forces on these bodies without the pushes, while these act."""
 
     def __bool__(self) -> bool:
         return bool(self._pushes)
@@ -167,17 +190,22 @@ class Pushes:
 
     def begin(self, steps: int) -> None:
         """Applies the forces for the next physics steps; a push that lasts less acts with its mean force, so that its impulse is exact."""
+        self._before = self._physics.mj_data.xfrc_applied[self._numbers()].copy()
         for number, x, y, left in self._pushes:
             share = min(left, steps) / steps
             self._physics.mj_data.xfrc_applied[number, :2] += (share * x, share * y)
             self._objects.strike(number)
 
     def end(self, steps: int) -> None:
-        """Removes the forces after these steps; pushes that are over are forgotten."""
-        for number, *_ in self._pushes:
-            self._physics.mj_data.xfrc_applied[number] = 0
+        """Removes the forces after these steps, but none that carries a held object; pushes that are over are forgotten."""
+        numbers = self._numbers()
+        self._physics.mj_data.xfrc_applied[numbers] = self._before
+        for number in numbers:
             self._objects.strike(number)
         self._pushes = [(number, x, y, left - steps) for number, x, y, left in self._pushes if left > steps]
+
+    def _numbers(self) -> list[int]:
+        return [number for number, *_ in self._pushes]
 
     def state(self) -> tuple[tuple[int, float, float, int], ...]:
         """Returns what is left of all pushes as plain values."""

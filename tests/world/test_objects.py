@@ -59,6 +59,54 @@ def test_nothing_is_put_inside_something_else() -> None:
     assert made.state_bytes() == before.mj_state.tobytes()
 
 
+def holding(*parts: Wall) -> Simulation:
+    """Returns a simulation in which the right hand of `m` holds the box `o`."""
+    box = Loose(name="o", size=(0.1, 0.1, 0.1), position=(0.12, -0.16075, 0.773), mass=0.2)
+    simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="m"), box, *parts)), seed=1)
+    simulation.command("grasp", "o", body="m")
+    simulation.run(0.1)
+    assert simulation.world.bodies["m"].get("grasp")["right"] == "o"
+    return simulation
+
+
+def test_what_a_hand_holds_is_not_moved_by_hand() -> None:
+    simulation = holding()
+    before = simulation.world.state_bytes()
+    with pytest.raises(WorldError, match=r"'o' cannot be moved: it is in the right hand of 'm'; release it first"):
+        simulation.command("move", "o", 0.1, -3.0)
+    assert simulation.world.state_bytes() == before
+    simulation.command("release", body="m")
+    simulation.command("move", "o", 0.1, -3.0)
+    assert simulation.world.objects.pose("o")[:2] == (0.1, -3.0)
+
+
+def test_a_body_is_not_put_where_what_it_holds_would_be_inside_a_wall() -> None:
+    simulation = holding(Wall(name="w", start=(2.4, -1), end=(2.4, 1)))
+    before = simulation.world.state_bytes()
+    with pytest.raises(WorldError, match=r"'m' cannot be put at \(2.2, 0\) m: it would be inside 'w'; leave room"):
+        simulation.command("move", "m", 2.2, 0.0)
+    assert simulation.world.state_bytes() == before
+    simulation.command("move", "m", 1.5, 0.0)
+    assert simulation.world.objects.pose("m")[0] == 1.5
+
+
+def test_a_held_object_is_carried_on_after_a_push() -> None:
+    simulation = holding()
+    carried = simulation.world.mj_data.body("o").xfrc_applied.copy()
+    assert carried[2] > 0
+    simulation.command("push", "o", 1.0, 0.0, 0.105)
+    simulation.command("push", "o", 0.0, 1.0, 0.05)
+    simulation.run(0.07)
+    state = simulation.world.state_bytes()
+    simulation.run(0.13)
+    end = simulation.world.state_bytes()
+    assert simulation.world.mj_data.body("o").xfrc_applied.tolist() == carried.tolist()
+    simulation.seek(0.17)
+    assert simulation.world.state_bytes() == state
+    simulation.run(0.13)
+    assert simulation.world.state_bytes() == end
+
+
 def test_a_push_has_its_impulse_and_the_legs_withstand_a_weak_one() -> None:
     made = world()
     made.mj_model.opt.gravity[:] = 0  # without weight there is no friction
