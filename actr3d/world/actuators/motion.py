@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 from actr3d.errors import WorldError
 from actr3d.world.anatomy import Steering
-from actr3d.world.body import Body, actuator
+from actr3d.world.body import MAX_CONTROL, Body, actuator
 from actr3d.world.command_registry import known, number
 from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import HEADING, TURN
@@ -240,14 +240,15 @@ def control(body: Body, name: str, *values: float) -> None:
     """Sets the control of an actuator that an imported description names, in that actuator's own unit: one number, or all of several.
 
     Raises:
-        WorldError: If there is no such actuator, or it does not take that many numbers.
+        WorldError: If there is no such actuator, it does not take that many numbers, or one is too great for the physics.
     """
     controls = body.control(name)
     count = controls.stop - controls.start
     if len(values) != count:
         takes = "one number" if count == 1 else f"{count} numbers"
         raise WorldError(f"{body.name}: control '{name}' takes {takes} (got {', '.join(map(repr, values)) or 'none'})")
-    body.physics.mj_data.ctrl[controls] = [number(value, f"control {name}") for value in values]
+    what = f"{body.name}: control '{name}'"
+    body.physics.mj_data.ctrl[controls] = [number(value, what, -MAX_CONTROL, MAX_CONTROL) for value in values]
     body.physics.changed()
 
 
