@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
+from typing import Literal
 
 import mujoco
 import numpy as np
@@ -140,12 +141,13 @@ class Objects:
             raise WorldError(f"no object '{name}' to {what}{alternatives(name, names)}")
         return self._bodies[name].root if name in self._bodies else self._obstacles[name] if name in self._obstacles else self._loose[name]
 
-    def depths(self, roots: Collection[int], *, moving: bool = False) -> dict[str, float]:
+    def depths(self, roots: Collection[int], *, others: Literal["all", "fixed", "moving"] = "all") -> dict[str, float]:
         """Returns by name the depth of some objects in each other object [m].
 
         Args:
             roots: The MuJoCo bodies that are the roots of these objects.
-            moving: Whether to leave out other objects that cannot move by themselves.
+            others: Which other objects count: `"fixed"` are those that cannot move by themselves, without planes, which push out gently
+                whatever is in them.
         """
         physics = self._physics
         physics.refresh()
@@ -155,10 +157,16 @@ class Objects:
         for pair, distance in zip(pairs, contacts.dist.tolist(), strict=True):
             mine = [geom >= 0 and int(model.body_rootid[model.geom_bodyid[geom]]) in roots for geom in pair]
             geom = pair[mine[0]]  # of the other object, if one of the two is
-            if mine[0] != mine[1] and geom >= 0 and not (moving and model.body_treeid[model.geom_bodyid[geom]] < 0):
+            if mine[0] != mine[1] and geom >= 0 and (others == "all" or self._kind(geom) == others):
                 other = physics.owners[geom]
                 depths[other] = max(depths.get(other, 0.0), -distance)
         return depths
+
+    def _kind(self, geom: int) -> str:
+        model = self._physics.mj_model
+        if model.body_treeid[model.geom_bodyid[geom]] >= 0:
+            return "moving"
+        return "plane" if int(model.geom_type[geom]) == int(mujoco.mjtGeom.mjGEOM_PLANE) else "fixed"
 
 
 class Pushes:

@@ -57,8 +57,8 @@ class World:
         seed: The seed of sensor noise.
 
     Raises:
-        WorldError: If MuJoCo cannot compile the scene (with MuJoCo's message), if it is not a `Scene`, or if the seed is
-            not a whole number >= 0.
+        WorldError: If MuJoCo cannot compile the scene (with MuJoCo's message), if it is not a `Scene`, if a body stands in a wall or
+            something else that is fixed, or if the seed is not a whole number >= 0.
     """
 
     def __init__(self, scene: Scene, seed: int = 0) -> None:
@@ -82,6 +82,9 @@ class World:
         segments = frozenset(f"{name}_{side}" for name in self._apertures for side in ("left", "right"))
         self.objects = Objects(self.physics, self.bodies, segments)
         """What can be moved by hand."""
+        for name, body in self.bodies.items():
+            if inside := deeper({}, self.objects.depths({body.root}, others="fixed")):
+                raise WorldError(f"'{name}' stands in {', '.join(map(repr, inside))} at the start; leave room")
         self._pushes = Pushes(self.physics, self.objects)
         self._changes = ModelChanges(self.mj_model)
         self._substepping = Substepping(self.physics, list(self.bodies.values()), self._pushes)
@@ -242,10 +245,10 @@ class World:
         """Sets the free width of an aperture, unless objects would be inside its walls: then it returns their names."""
         roots = [int(self.mj_model.body(f"{name}_{side}").id) for side in ("left", "right")]
         sides = self.mj_model.body_mocapid[roots]
-        before, depths = self.mj_data.mocap_pos[sides].copy(), self.objects.depths(roots, moving=True)
+        before, depths = self.mj_data.mocap_pos[sides].copy(), self.objects.depths(roots, others="moving")
         self.mj_data.mocap_pos[sides] = list(self._aperture(name).segment_positions(width).values())
         self.changed()
-        inside = deeper(depths, self.objects.depths(roots, moving=True))
+        inside = deeper(depths, self.objects.depths(roots, others="moving"))
         if inside:
             self.mj_data.mocap_pos[sides] = before
             self.changed()

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from actr3d.errors import Actr3dError, WorldError
-from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Track, Wall, World
+from actr3d.world import Aperture, Floor, ImportedBody, Loose, Mannequin, Scene, Track, Wall, World
 from tests.helpers.small_agents import near
 
 
@@ -196,3 +196,20 @@ def test_a_closing_aperture_is_held_open_by_what_lies_in_it() -> None:
         world.step(5)
         assert np.abs(world.mj_data.qvel).max() < 10
     assert 0.28 < world.aperture_width() < 0.3
+
+
+def test_a_body_that_stands_inside_something_fixed_is_refused_at_the_start() -> None:
+    walls = (Wall(name="w", start=(0, -1), end=(0, 1)), Loose(name="pole", position=(0.2, 0, 0.5), mass=None))
+    with pytest.raises(WorldError, match=r"'m' stands in 'w', 'pole' at the start; leave room"):
+        World(Scene(parts=(Floor(), Mannequin(name="m"), *walls)))
+    with pytest.raises(WorldError, match=r"'m' stands in 'aperture_(left|right)', 'aperture_(left|right)' at the start; leave room"):
+        World(Scene(parts=(Floor(), Mannequin(name="m", position=(7.0, 0.0)), Aperture(width=0.3))))
+
+
+def test_a_body_may_touch_a_wall_and_stand_in_what_yields_at_the_start() -> None:
+    touches, ball = Wall(name="w", start=(0.174, -1), end=(0.174, 1)), Loose(name="ball", position=(-0.2, 0, 0.5))
+    World(Scene(parts=(Floor(), Mannequin(name="m"), touches, ball)))
+    sunk = ImportedBody(name="r", text='<mujoco><worldbody><body name="b"><geom size="0.1"/></body></worldbody></mujoco>', free=True)
+    world = World(Scene(parts=(Floor(), sunk)))
+    world.step(1000)
+    assert world.bodies["r"].get("pose").z > 0.09
