@@ -12,12 +12,25 @@ from numpy.typing import NDArray
 
 from actr3d.errors import WorldError, alternatives
 from actr3d.world.body import Body
+from actr3d.world.command_registry import number
 from actr3d.world.physics import Physics
 from actr3d.world.scene_objects import yaw_quaternion
 
 PRESSED = 0.01
 """Greatest depth of one object in another after it was moved by hand [m]: contacts as stiff as those of walls push that out
 at less than 3 m/s, but fling away, or crush without bounds, what is deeper. Source: chosen for this library."""
+
+FARTHEST = 10_000.0
+"""Greatest coordinate of a place [m]: there, the numbers of 32 bits with which scenes are drawn still distinguish millimetres."""
+
+MAX_TURN = 1_000.0
+"""Greatest heading [rad]: more than a body ever turns. Source: chosen for this library."""
+
+MAX_FORCE = 1e5
+"""Greatest force of a push along an axis [N]. Source: chosen for this library."""
+
+LONGEST = 60.0
+"""Longest push [s]. Source: chosen for this library."""
 
 Pose = tuple[float, float, float]
 """Place and heading of an object: x [m], y [m], heading [rad]."""
@@ -72,9 +85,10 @@ class Objects:
         """Puts an object at (x, y) [m], with a heading [rad] or its present one; a loose object comes to rest.
 
         Raises:
-            WorldError: If there is no such object, a hand holds it, or it, or what it holds, would be inside another one; it stays then.
+            WorldError: If there is no such object, a value is wrong, a hand holds it, or it, or what it holds, would be inside another one; it stays then.
         """
         number, physics = self._number(name, self.names, "move"), self._physics
+        x, y, heading = place("move", x, y, heading)
         moved = {number, *self._held(name)}
         self._check_free(name, moved)
         before, depths = physics.integration_state(), self.depths(moved)
@@ -136,7 +150,7 @@ class Objects:
 
     def _number(self, name: str, names: tuple[str, ...], what: str) -> int:
         if name not in names:
-            if name in self._obstacles:
+            if isinstance(name, str) and name in self._obstacles:  # pyright: ignore[reportUnnecessaryIsInstance]
                 raise WorldError(f"'{name}' is fixed; there are: {', '.join(names) or 'none'}")
             raise WorldError(f"no object '{name}' to {what}{alternatives(name, names)}")
         return self._bodies[name].root if name in self._bodies else self._obstacles[name] if name in self._obstacles else self._loose[name]
@@ -188,13 +202,16 @@ class Pushes:
     def __bool__(self) -> bool:
         return bool(self._pushes)
 
-    def add(self, name: str, x: float, y: float, steps: int) -> None:
-        """Pushes an object with a force (x, y) [N] for a number of physics steps.
+    def add(self, name: str, x: float, y: float, time: float) -> None:
+        """Pushes an object with a force (x, y) [N] for a time [s], in whole physics steps.
 
         Raises:
-            WorldError: If there is no such object, or it cannot be pushed.
+            WorldError: If there is no such object, it cannot be pushed, or a value is wrong.
         """
-        self._pushes.append((self._objects.pushed(name), x, y, steps))
+        pushed = self._objects.pushed(name)
+        x, y = (number(force, f"push: {axis}", -MAX_FORCE, MAX_FORCE) for axis, force in (("x", x), ("y", y)))
+        time = number(time, "push: time", 1e-6, LONGEST)
+        self._pushes.append((pushed, x, y, max(1, round(time / self._physics.timestep))))
 
     def begin(self, steps: int) -> None:
         """Applies the forces for the next physics steps; a push that lasts less acts with its mean force, so that its impulse is exact."""
@@ -222,6 +239,22 @@ class Pushes:
     def restore(self, state: tuple[tuple[int, float, float, int], ...]) -> None:
         """Restores pushes that `state` returned."""
         self._pushes = list(state)
+
+
+def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, float, float | None]:
+    """Returns a place (x, y) [m] and a heading [rad], if any, as numbers within bounds.
+
+    Args:
+        what: What puts something there, for the message.
+        x: [m]
+        y: [m]
+        heading: [rad]
+
+    Raises:
+        WorldError: If a value is not a number, or out of bounds.
+    """
+    x, y = number(x, f"{what}: x", -FARTHEST, FARTHEST), number(y, f"{what}: y", -FARTHEST, FARTHEST)
+    return x, y, None if heading is None else number(heading, f"{what}: heading", -MAX_TURN, MAX_TURN)
 
 
 def deeper(before: Mapping[str, float], after: Mapping[str, float]) -> list[str]:

@@ -183,13 +183,18 @@ class World:
         """Restores a state of this world; continuing from it gives the same bytes as the first time.
 
         Raises:
-            WorldError: If the state is of another scene.
+            WorldError: If it is not a state of this scene, or a number of it is not finite.
         """
+        if not isinstance(state, WorldState):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise WorldError(f"World.restore: must be a WorldState, as state() returns it (got {state!r})")
         size = len(self.physics.integration_state())
         if state.mj_state.shape != (size,):
             raise WorldError(f"a state of this world has {size} numbers (got {state.mj_state.size}): is it of another scene?")
         if state.scene != self.fingerprint:
             raise WorldError(f"the state is of another scene: that one compiles to {state.scene}, this one to {self.fingerprint}")
+        finite = np.isfinite(state.mj_state)
+        if not finite.all():
+            raise WorldError(f"World.restore: the numbers of the state must be finite (got {state.mj_state[~finite][0]:g})")
         self._changes.restore(state.compiled)
         self.physics.restore(state.mj_state)
         self.physics.steps = state.steps
@@ -204,7 +209,8 @@ class World:
         """Puts a body, a wall or another object at (x, y) [m], with a heading [rad] or its present one, at once.
 
         Raises:
-            WorldError: If there is no such object, or it would be inside another one; it stays then.
+            WorldError: If there is no such object, a value is wrong, a hand holds it, or it, or what it holds, would be inside
+                another one; it stays then.
         """
         self.objects.move(name, x, y, heading)
 
@@ -214,9 +220,9 @@ class World:
         The force acts at the centre of the object, or of the base of a body; a body holds its place with the strength that it has.
 
         Raises:
-            WorldError: If there is no such object, or it cannot be pushed.
+            WorldError: If there is no such object, it cannot be pushed, or a value is wrong.
         """
-        self._pushes.add(name, x, y, max(1, round(time / self.scene.timestep)))
+        self._pushes.add(name, x, y, time)
 
     # -- apertures
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -156,6 +158,46 @@ def test_a_wrong_change_names_what_is_wrong(command: tuple[str, ...], problem: s
     simulation = Simulation(Scene(parts=PARTS), seed=1)
     with pytest.raises(Actr3dError, match=problem):
         simulation.command(*command)
+
+
+@pytest.mark.parametrize(
+    ("call", "values", "problem"),
+    [
+        (World.move, ("walker", math.nan, 0), r"move: x: must be a finite number \(got nan\)"),
+        (World.move, ("wall", 0, 1e300), r"move: y: must be <= 10000 \(got 1e\+300\)"),
+        (World.move, ("box", 1, 2, -1e300), r"move: heading: must be >= -1000 \(got -1e\+300\)"),
+        (World.move, ("box", "here", 2), r"move: x: must be a number \(got 'here'\)"),
+        (World.move, ("box", True, 2), r"move: x: must be a number \(got True\)"),
+        (World.move, (["box"], 1, 2), r"no object '\['box'\]' to move; there are: walker, wall, pole, box"),
+        (World.push, ("box", 10**400), r"push: x: must be a finite number"),
+        (World.push, ("box", 0, -1e6), r"push: y: must be >= -100000 \(got -1000000.0\)"),
+        (World.push, ("box", 1, 0, -1), r"push: time: must be >= 1e-06 \(got -1\)"),
+        (World.push, ("box", 1, 0, None), r"push: time: must be a number \(got None\)"),
+        (World.restore, (None,), r"World.restore: must be a WorldState, as state\(\) returns it \(got None\)"),
+    ],
+)
+def test_a_wrong_argument_is_refused_where_it_is_given(call: Callable[..., None], values: tuple[Any, ...], problem: str) -> None:
+    made = world()
+    before = made.state_bytes()
+    with pytest.raises(WorldError, match=problem):
+        call(made, *values)
+    assert made.state_bytes() == before
+    made.step(1)
+
+
+def test_a_body_is_not_teleported_farther_than_scenes_reach() -> None:
+    made = world()
+    for values, problem in (((1e300, 0), r"x: must be <= 10000 "), ((0, -1e5), "y: must be >= -10000 "), ((0, 0, 1e4), "heading: must be <= 1000 ")):
+        with pytest.raises(WorldError, match=f"teleport: {problem}"):
+            made.bodies["walker"].set("teleport", *values)
+
+
+def test_a_state_with_numbers_that_are_not_finite_is_not_restored() -> None:
+    made = world()
+    state = made.state()
+    state.mj_state[3] = math.nan
+    with pytest.raises(WorldError, match=r"World.restore: the numbers of the state must be finite \(got nan\)"):
+        made.restore(state)
 
 
 def test_changes_of_the_world_are_exact_after_going_back_and_in_a_replay(tmp_path: Path) -> None:

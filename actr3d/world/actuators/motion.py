@@ -16,6 +16,7 @@ from actr3d.world.body import MAX_CONTROL, Body, actuator
 from actr3d.world.command_registry import known, number
 from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import HEADING, TURN
+from actr3d.world.objects import place
 
 MODERATE = 2.0
 """Default speed of joints [rad/s]. Source: the order of the original ACT-R 3D's 120 degrees a second (docs/human-data.md)."""
@@ -172,11 +173,9 @@ def teleport(body: Body, x: float, y: float, heading: float | None = None) -> No
     """Puts the body elsewhere at once, (x, y) [m] and heading [rad]; posture and commands stay, held objects move along.
 
     Raises:
-        WorldError: If a value is not a number.
+        WorldError: If a value is not a number, or out of bounds.
     """
-    x, y = number(x, "teleport: x"), number(y, "teleport: y")
-    faces = None if heading is None else number(heading, "teleport: heading")
-    body.base.put(x, y, faces)
+    body.base.put(*place("teleport", x, y, heading))
     body.hold.stand()
     body.physics.changed()
     body.physics.refresh()
