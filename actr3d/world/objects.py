@@ -85,7 +85,8 @@ class Objects:
         """Puts an object at (x, y) [m], with a heading [rad] or its present one; a loose object comes to rest.
 
         Raises:
-            WorldError: If there is no such object, a value is wrong, a hand holds it, or it, or what it holds, would be inside another one; it stays then.
+            WorldError: If there is no such object, a value is wrong, a hand holds it, or it, or what it holds, would be inside another
+                one; it stays then.
         """
         number, physics = self._number(name, self.names, "move"), self._physics
         x, y, heading = place("move", x, y, heading)
@@ -215,22 +216,22 @@ class Pushes:
 
     def begin(self, steps: int) -> None:
         """Applies the forces for the next physics steps; a push that lasts less acts with its mean force, so that its impulse is exact."""
-        self._before = self._physics.mj_data.xfrc_applied[self._numbers()].copy()
-        for number, x, y, left in self._pushes:
+        self._before = self._physics.mj_data.xfrc_applied[self._pushed()].copy()
+        for body, x, y, left in self._pushes:
             share = min(left, steps) / steps
-            self._physics.mj_data.xfrc_applied[number, :2] += (share * x, share * y)
-            self._objects.strike(number)
+            self._physics.mj_data.xfrc_applied[body, :2] += (share * x, share * y)
+            self._objects.strike(body)
 
     def end(self, steps: int) -> None:
         """Removes the forces after these steps, but none that carries a held object; pushes that are over are forgotten."""
-        numbers = self._numbers()
-        self._physics.mj_data.xfrc_applied[numbers] = self._before
-        for number in numbers:
-            self._objects.strike(number)
-        self._pushes = [(number, x, y, left - steps) for number, x, y, left in self._pushes if left > steps]
+        pushed = self._pushed()
+        self._physics.mj_data.xfrc_applied[pushed] = self._before
+        for body in pushed:
+            self._objects.strike(body)
+        self._pushes = [(body, x, y, left - steps) for body, x, y, left in self._pushes if left > steps]
 
-    def _numbers(self) -> list[int]:
-        return [number for number, *_ in self._pushes]
+    def _pushed(self) -> list[int]:
+        return [body for body, *_ in self._pushes]
 
     def state(self) -> tuple[tuple[int, float, float, int], ...]:
         """Returns what is left of all pushes as plain values."""

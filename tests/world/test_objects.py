@@ -186,10 +186,14 @@ def test_a_wrong_argument_is_refused_where_it_is_given(call: Callable[..., None]
 
 
 def test_a_body_is_not_teleported_farther_than_scenes_reach() -> None:
-    made = world()
-    for values, problem in (((1e300, 0), r"x: must be <= 10000 "), ((0, -1e5), "y: must be >= -10000 "), ((0, 0, 1e4), "heading: must be <= 1000 ")):
-        with pytest.raises(WorldError, match=f"teleport: {problem}"):
-            made.bodies["walker"].set("teleport", *values)
+    body = world().bodies["walker"]
+    for values, problem in (
+        ((1e300, 0), "x: must be <= 10000"),
+        ((0, -1e5), "y: must be >= -10000"),
+        ((0, 0, 1e4), "heading: must be <= 1000"),
+    ):
+        with pytest.raises(WorldError, match=f"teleport: {problem} "):
+            body.set("teleport", *values)
 
 
 def test_a_state_with_numbers_that_are_not_finite_is_not_restored() -> None:

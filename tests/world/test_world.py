@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from actr3d.errors import Actr3dError, WorldError
+from actr3d.errors import Actr3dError, ConfigurationError, WorldError
 from actr3d.world import Aperture, Floor, ImportedBody, Loose, Mannequin, Scene, Track, Wall, World
 from tests.helpers.small_agents import near
 
@@ -213,3 +213,34 @@ def test_a_body_may_touch_a_wall_and_stand_in_what_yields_at_the_start() -> None
     world = World(Scene(parts=(Floor(), sunk)))
     world.step(1000)
     assert world.bodies["r"].get("pose").z > 0.09
+
+
+ROBOT = '<mujoco><worldbody><body name="arm"><joint name="elbow"/><geom size="0.1"/></body></worldbody></mujoco>'
+
+
+@pytest.mark.parametrize(
+    ("parts", "problem"),
+    [
+        ((Mannequin(name="a"), Loose(name="a_torso", position=(3, 0, 1))), "the parts 'a' and 'a_torso' both have a body of this name"),
+        (
+            (Aperture(), Wall(name="aperture_left", start=(0, 1), end=(0, 2))),
+            "'aperture' and 'aperture_left' both have a body of",
+        ),
+        ((Loose(name="a_arm"), ImportedBody(name="a", text=ROBOT)), "the parts 'a_arm' and 'a' both have a body of this name"),
+        ((Track(points=((0, 0), (1, 0))), Loose(name="track_0")), "the parts 'track' and 'track_0' both have a geom of this name"),
+        ((Loose(name="a_elbow"), ImportedBody(name="a", text=ROBOT)), "the parts 'a_elbow' and 'a' both have a joint of this name"),
+        ((Loose(name="world"),), "the part 'world' has a body of this name, which is reserved"),
+    ],
+)
+def test_two_parts_with_one_derived_name_are_named(parts: tuple[object, ...], problem: str) -> None:
+    with pytest.raises(WorldError, match=rf"repeated name '.*{problem}.*; rename (it|one of them)"):
+        World(Scene(parts=parts))
+
+
+def test_a_loose_object_has_a_least_size_and_mass() -> None:
+    for shape, sizes in (("box", 3), ("sphere", 1), ("ellipsoid", 3), ("cylinder", 2), ("capsule", 2)):
+        with pytest.raises(ConfigurationError, match=r"Loose 'o'.size: must be >= 0.0001 m \(got \(1e-09,"):
+            Loose(name="o", shape=shape, size=(1e-9,) * sizes)
+        World(Scene(parts=(Loose(name="o", shape=shape, size=(1e-4,) * sizes, mass=1e-6),)))  # the least
+    with pytest.raises(ConfigurationError, match=r"Loose 'o'.mass: must be >= 1e-06 kg \(got 1e-16\)"):
+        Loose(name="o", mass=1e-16)
