@@ -114,6 +114,7 @@ class World:
         """
         if not isinstance(steps, int) or steps < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
             raise WorldError(f"World.step: must be a whole number of steps, >= 0 (got {steps!r})")
+        self._check_unobserved("step")
         for aperture in self._closing:
             closer = self.aperture_width(aperture.name) - aperture.closing * steps * self.scene.timestep
             self._slide(aperture.name, max(0.0, closer))
@@ -147,6 +148,10 @@ class World:
             for watcher in self.watchers:
                 watcher()
             yield
+
+    def _check_unobserved(self, what: str) -> None:
+        if self.physics.observed:
+            raise WorldError(f"World.{what}: an observer cannot change the world; call simulation.command after the run")
 
     def changed(self) -> None:
         """Marks derived quantities as out of date, after positions, speeds or commands have changed."""
@@ -187,6 +192,7 @@ class World:
         """
         if not isinstance(state, WorldState):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise WorldError(f"World.restore: must be a WorldState, as state() returns it (got {state!r})")
+        self._check_unobserved("restore")
         size = len(self.physics.integration_state())
         if state.mj_state.shape != (size,):
             raise WorldError(f"a state of this world has {size} numbers (got {state.mj_state.size}): is it of another scene?")
@@ -212,6 +218,7 @@ class World:
             WorldError: If there is no such object, a value is wrong, a hand holds it, or it, or what it holds, would be inside
                 another one; it stays then.
         """
+        self._check_unobserved("move")
         self.objects.move(name, x, y, heading)
 
     def push(self, name: str, x: float, y: float = 0.0, time: float = 0.1) -> None:
@@ -222,6 +229,7 @@ class World:
         Raises:
             WorldError: If there is no such object, it cannot be pushed, or a value is wrong.
         """
+        self._check_unobserved("push")
         self._pushes.add(name, x, y, time)
 
     # -- apertures
@@ -242,6 +250,7 @@ class World:
             WorldError: If there is no such aperture, or something that can move is in the way of its segments; they stay then.
             ConfigurationError: If the width is not a number of at least 0.
         """
+        self._check_unobserved("set_aperture_width")
         aperture = replace(self._aperture(name), width=width)
         inside = self._slide(name, aperture.width)
         if inside:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
@@ -99,6 +100,23 @@ def test_an_observer_cannot_give_a_body_commands() -> None:
     with pytest.raises(WorldError, match="walker: an observer cannot give commands"):
         simulation.run(0.1)
     simulation.world.bodies["walker"].set("walk", 0.0)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda world: world.step(1),
+        lambda world: world.move("walker", 5.0, 5.0),
+        lambda world: world.push("walker", 10.0),
+        lambda world: world.set_aperture_width(1.0),
+        lambda world: world.restore(world.state()),
+    ],
+)
+def test_an_observer_cannot_change_the_world(change: Callable[[World], None]) -> None:
+    simulation = sensing()
+    simulation.observe(lambda _: change(simulation.world))
+    with pytest.raises(WorldError, match=r"World\.\w+: an observer cannot change the world; call simulation.command after the run"):
+        simulation.run(0.1)
 
 
 def test_the_events_from_a_number_on() -> None:
