@@ -110,9 +110,9 @@ def test_a_control_beyond_what_the_physics_takes_is_refused() -> None:
             body.set("control", "turn", value)
     servo = ARM.replace('<position name="turn" joint="elbow" kp="50"/>', '<velocity name="turn" joint="elbow" kv="50"/>')
     body = World(Scene(parts=(Floor(), ImportedBody(name="arm", text=servo)))).bodies["arm"]
-    for command in (("joint", "elbow", 1.1e10), ("position", "elbow", 1.0, 1e300)):
+    for word, values in (("joint", ("elbow", 1.1e10)), ("position", ("elbow", 1.0, 1e300))):
         with pytest.raises(WorldError, match=r"speed: must be <= 1e\+10 \(got "):
-            body.set(*command)
+            body.set(word, *values)
     body.set("control", "turn", 1e10)
 
 

@@ -11,6 +11,7 @@ import pytest
 
 from actr3d.errors import Actr3dError, ConfigurationError, WorldError
 from actr3d.world import Aperture, Floor, ImportedBody, Loose, Mannequin, Scene, Track, Wall, World
+from actr3d.world.scene_objects import SHAPES
 from tests.helpers.small_agents import near
 
 
@@ -238,9 +239,10 @@ def test_two_parts_with_one_derived_name_are_named(parts: tuple[object, ...], pr
 
 
 def test_a_loose_object_has_a_least_size_and_mass() -> None:
-    for shape, sizes in (("box", 3), ("sphere", 1), ("ellipsoid", 3), ("cylinder", 2), ("capsule", 2)):
+    for shape, (_, sizes, _) in SHAPES.items():
         with pytest.raises(ConfigurationError, match=r"Loose 'o'.size: must be >= 0.0001 m \(got \(1e-09,"):
-            Loose(name="o", shape=shape, size=(1e-9,) * sizes)
-        World(Scene(parts=(Loose(name="o", shape=shape, size=(1e-4,) * sizes, mass=1e-6),)))  # the least
+            Loose.from_mapping({"name": "o", "shape": shape, "size": (1e-9,) * sizes})
+        least = Loose.from_mapping({"name": "o", "shape": shape, "size": (1e-4,) * sizes, "mass": 1e-6})
+        World(Scene(parts=(least,)))
     with pytest.raises(ConfigurationError, match=r"Loose 'o'.mass: must be >= 1e-06 kg \(got 1e-16\)"):
         Loose(name="o", mass=1e-16)
