@@ -78,6 +78,8 @@ class Simulation:
         self._embodied = named_factories(agents, "Simulation.agents")
         self._bodiless = named_factories(bodiless, "Simulation.bodiless")
         self.world = world_of(scene, crc32(str(self.seed).encode()))
+        """The world, to read it. Changes between ticks go through `command`: what `world` or its bodies are made to do directly is neither
+        recorded nor repeated when the run goes back."""
         check_names(self._embodied, self._bodiless, self.world.bodies)
         self._steps = steps_of(period, self.world)
         self._period = self._steps * self.world.scene.timestep_us

@@ -39,6 +39,11 @@ class Folder:
         """The files that were read, in this order."""
         return tuple(self._read.items())
 
+    @property
+    def name(self) -> str:
+        """The name of the folder, for messages; the whole path of one without a name, such as `/`."""
+        return self.root.name or str(self.root)
+
     def put(self, name: str, content: bytes) -> None:
         """Adds a file that is not in the folder, as if it had been read from there."""
         self._read[name] = content
@@ -81,9 +86,9 @@ class Folder:
         try:
             path = (self.root / name).resolve()
             if not path.is_relative_to(self.root):
-                raise self._error(f"{whose}'{name}' lies outside the folder '{self.root.name}': files are read only from inside it")
+                raise self._error(f"{whose}'{name}' lies outside the folder '{self.name}': files are read only from inside it")
             if not path.is_file():
-                raise self._error(f"{whose}no file '{name}' in the folder '{self.root.name}'{self._near(path)}")
+                raise self._error(f"{whose}no file '{name}' in the folder '{self.name}'{self._near(path)}")
             if path.stat().st_size > MAX_BYTES:
                 raise self._error(f"{whose}'{name}' has {path.stat().st_size:,} bytes; the limit is {MAX_BYTES:,}")
             return path.read_bytes()

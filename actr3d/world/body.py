@@ -66,6 +66,9 @@ class Sense(Protocol):
         ...
 
 
+MAX_CONTROL = float(mujoco.mjMAXVAL)
+"""Greatest control of an actuator, in its own unit: beyond it MuJoCo switches all actuators off."""
+
 S = TypeVar("S", bound=Sense)
 P = TypeVar("P")
 
@@ -83,7 +86,7 @@ class Body:
         seed: The seed of sensor noise.
 
     Raises:
-        WorldError: If its root is not in the compiled model.
+        WorldError: If its root, or a joint of a named movement, is not in the compiled model.
     """
 
     def __init__(self, physics: Physics, description: Embodied, seed: int) -> None:
@@ -103,6 +106,9 @@ class Body:
         stepping = OWN if self.anatomy.gait is not None else ()
         self.joints: dict[str, Joint] = {joint.name: joint for joint in self._joints() if joint.name not in stepping}
         """By name, the joints that the agent can feel and move: those that only gait moves are left out."""
+        for movement in self.anatomy.movements:
+            for joint, _ in movement.joints:
+                known(joint, self.joints, f"{self.name}: movement '{movement.name}'", "joint")
         self.controls: dict[str, slice] = self._controls()
         self.eye = self.anatomy.eye
         self.touch_geoms: NDArray[np.intp] = self._touch_geoms()
@@ -197,7 +203,7 @@ class Body:
 
     def fastest(self) -> tuple[float, float, float]:
         """Returns the greatest speeds that it can be commanded to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]."""
-        return self.anatomy.fastest or (np.inf, np.inf, np.inf)
+        return self.anatomy.fastest or (MAX_CONTROL, MAX_CONTROL, MAX_CONTROL)
 
     # -- senses with a state
 

@@ -109,7 +109,7 @@ class Imported(Configuration):
 
     def _read(self) -> Files:
         if (self.path is None) == (self.text is None):
-            raise ConfigurationError(f"Imported '{self.name}': give a path, or a text")
+            raise ConfigurationError(f"Imported '{self.name}': give a path, or a text (got {'neither' if self.text is None else 'both'})")
         if self.text is not None:
             name = f"{self.name}.xml"
             folder = Folder(Path(self.folder), WorldError) if self.folder else Folder(Path(), WorldError, ())
@@ -117,9 +117,10 @@ class Imported(Configuration):
         else:
             path = resolved(Path(str(self.path)), WorldError)
             root = resolved(Path(self.folder), WorldError) if self.folder else _package_folder(path)
+            folder = Folder(root, WorldError)
             if not path.is_relative_to(root):
-                raise WorldError(f"'{path.name}' does not lie in the folder '{root.name}'")
-            name, folder = path.relative_to(root).as_posix(), Folder(root, WorldError)
+                raise WorldError(f"'{path.name}' does not lie in the folder '{folder.name}'")
+            name = path.relative_to(root).as_posix()
         read_imported(folder, name)
         return folder.files
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
+from typing import Literal
 
 import mujoco
 import numpy as np
@@ -11,12 +12,25 @@ from numpy.typing import NDArray
 
 from actr3d.errors import WorldError, alternatives
 from actr3d.world.body import Body
+from actr3d.world.command_registry import number
 from actr3d.world.physics import Physics
 from actr3d.world.scene_objects import yaw_quaternion
 
 PRESSED = 0.01
 """Greatest depth of one object in another after it was moved by hand [m]: contacts as stiff as those of walls push that out
 at less than 3 m/s, but fling away, or crush without bounds, what is deeper. Source: chosen for this library."""
+
+FARTHEST = 10_000.0
+"""Greatest coordinate of a place [m]: there, the numbers of 32 bits with which scenes are drawn still distinguish millimetres."""
+
+MAX_TURN = 1_000.0
+"""Greatest heading [rad]: more than a body ever turns. Source: chosen for this library."""
+
+MAX_FORCE = 1e5
+"""Greatest force of a push along an axis [N]. Source: chosen for this library."""
+
+LONGEST = 60.0
+"""Longest push [s]. Source: chosen for this library."""
 
 Pose = tuple[float, float, float]
 """Place and heading of an object: x [m], y [m], heading [rad]."""
@@ -34,6 +48,7 @@ class Objects:
     def __init__(self, physics: Physics, bodies: Mapping[str, Body], kept: frozenset[str]) -> None:
         model = physics.mj_model
         self._physics = physics
+        self._all_bodies = bodies
         self._bodies = {name: body for name, body in bodies.items() if body.base.planar or body.base.free}
         names = {int(number): str(model.body(int(number)).name) for number in np.flatnonzero(model.body_parentid == 0)[1:]}
         own = {body.root for body in bodies.values()}
@@ -70,10 +85,14 @@ class Objects:
         """Puts an object at (x, y) [m], with a heading [rad] or its present one; a loose object comes to rest.
 
         Raises:
-            WorldError: If there is no such object, or it would be inside another one; it stays then.
+            WorldError: If there is no such object, a value is wrong, a hand holds it, or it, or what it holds, would be inside another
+                one; it stays then.
         """
         number, physics = self._number(name, self.names, "move"), self._physics
-        before, depths = physics.integration_state(), self.depths({number})
+        x, y, heading = place("move", x, y, heading)
+        moved = {number, *self._held(name)}
+        self._check_free(name, moved)
+        before, depths = physics.integration_state(), self.depths(moved)
         held = self._bodies[name].state() if name in self._bodies else None
         if name in self._bodies:
             self._bodies[name].set("teleport", x, y, heading)
@@ -90,13 +109,31 @@ class Objects:
             if heading is not None:
                 _turn(physics.mj_data.qpos[q + 3 : q + 7], heading)
         physics.changed()
-        others = deeper(depths, self.depths({number}))
+        others = deeper(depths, self.depths(moved))
         if others:
             physics.restore(before)
             if held is not None:
                 self._bodies[name].restore(held)
             physics.changed()
             raise WorldError(f"'{name}' cannot be put at ({x:g}, {y:g}) m: it would be inside {', '.join(map(repr, others))}; leave room")
+
+    def _held(self, name: str) -> set[int]:
+        """Returns the MuJoCo bodies that the hands of a body hold; none for another object."""
+        hands = self._bodies[name].hands.values() if name in self._bodies else ()
+        return {hand.held.object for hand in hands if hand.held is not None}
+
+    def _check_free(self, name: str, moved: set[int]) -> None:
+        """Raises an error if a hand of another body holds something that moves with an object: its grip would fling it.
+
+        Raises:
+            WorldError: If one does.
+        """
+        for body in self._all_bodies.values():
+            for side, hand in body.hands.items():
+                if body.name != name and hand.held is not None and hand.held.object in moved:
+                    held = str(self._physics.mj_model.body(hand.held.object).name)
+                    what = "it" if held == name else f"'{held}'"
+                    raise WorldError(f"'{name}' cannot be moved: {what} is in the {side} hand of '{body.name}'; release it first")
 
     def pushed(self, name: str) -> int:
         """Returns the MuJoCo body that a push of an object acts on.
@@ -114,17 +151,18 @@ class Objects:
 
     def _number(self, name: str, names: tuple[str, ...], what: str) -> int:
         if name not in names:
-            if name in self._obstacles:
+            if isinstance(name, str) and name in self._obstacles:  # pyright: ignore[reportUnnecessaryIsInstance]
                 raise WorldError(f"'{name}' is fixed; there are: {', '.join(names) or 'none'}")
             raise WorldError(f"no object '{name}' to {what}{alternatives(name, names)}")
         return self._bodies[name].root if name in self._bodies else self._obstacles[name] if name in self._obstacles else self._loose[name]
 
-    def depths(self, roots: Collection[int], *, moving: bool = False) -> dict[str, float]:
+    def depths(self, roots: Collection[int], *, others: Literal["all", "fixed", "moving"] = "all") -> dict[str, float]:
         """Returns by name the depth of some objects in each other object [m].
 
         Args:
             roots: The MuJoCo bodies that are the roots of these objects.
-            moving: Whether to leave out other objects that cannot move by themselves.
+            others: Which other objects count: `"fixed"` are those that cannot move by themselves, without planes, which push out gently
+                whatever is in them.
         """
         physics = self._physics
         physics.refresh()
@@ -134,10 +172,16 @@ class Objects:
         for pair, distance in zip(pairs, contacts.dist.tolist(), strict=True):
             mine = [geom >= 0 and int(model.body_rootid[model.geom_bodyid[geom]]) in roots for geom in pair]
             geom = pair[mine[0]]  # of the other object, if one of the two is
-            if mine[0] != mine[1] and geom >= 0 and not (moving and model.body_treeid[model.geom_bodyid[geom]] < 0):
+            if mine[0] != mine[1] and geom >= 0 and (others == "all" or self._kind(geom) == others):
                 other = physics.owners[geom]
                 depths[other] = max(depths.get(other, 0.0), -distance)
         return depths
+
+    def _kind(self, geom: int) -> str:
+        model = self._physics.mj_model
+        if model.body_treeid[model.geom_bodyid[geom]] >= 0:
+            return "moving"
+        return "plane" if int(model.geom_type[geom]) == int(mujoco.mjtGeom.mjGEOM_PLANE) else "fixed"
 
 
 class Pushes:
@@ -153,31 +197,41 @@ class Pushes:
         self._objects = objects
         self._pushes: list[tuple[int, float, float, int]] = []
         """The MuJoCo body, the force along x and y [N], and the physics steps left."""
+        self._before: NDArray[np.float64] = np.empty((0, 6))
+        """The forces on these bodies without the pushes, while these act."""
 
     def __bool__(self) -> bool:
         return bool(self._pushes)
 
-    def add(self, name: str, x: float, y: float, steps: int) -> None:
-        """Pushes an object with a force (x, y) [N] for a number of physics steps.
+    def add(self, name: str, x: float, y: float, time: float) -> None:
+        """Pushes an object with a force (x, y) [N] for a time [s], in whole physics steps.
 
         Raises:
-            WorldError: If there is no such object, or it cannot be pushed.
+            WorldError: If there is no such object, it cannot be pushed, or a value is wrong.
         """
-        self._pushes.append((self._objects.pushed(name), x, y, steps))
+        pushed = self._objects.pushed(name)
+        x, y = (number(force, f"push: {axis}", -MAX_FORCE, MAX_FORCE) for axis, force in (("x", x), ("y", y)))
+        time = number(time, "push: time", 1e-6, LONGEST)
+        self._pushes.append((pushed, x, y, max(1, round(time / self._physics.timestep))))
 
     def begin(self, steps: int) -> None:
         """Applies the forces for the next physics steps; a push that lasts less acts with its mean force, so that its impulse is exact."""
-        for number, x, y, left in self._pushes:
+        self._before = self._physics.mj_data.xfrc_applied[self._pushed()].copy()
+        for body, x, y, left in self._pushes:
             share = min(left, steps) / steps
-            self._physics.mj_data.xfrc_applied[number, :2] += (share * x, share * y)
-            self._objects.strike(number)
+            self._physics.mj_data.xfrc_applied[body, :2] += (share * x, share * y)
+            self._objects.strike(body)
 
     def end(self, steps: int) -> None:
-        """Removes the forces after these steps; pushes that are over are forgotten."""
-        for number, *_ in self._pushes:
-            self._physics.mj_data.xfrc_applied[number] = 0
-            self._objects.strike(number)
-        self._pushes = [(number, x, y, left - steps) for number, x, y, left in self._pushes if left > steps]
+        """Removes the forces after these steps, but none that carries a held object; pushes that are over are forgotten."""
+        pushed = self._pushed()
+        self._physics.mj_data.xfrc_applied[pushed] = self._before
+        for body in pushed:
+            self._objects.strike(body)
+        self._pushes = [(body, x, y, left - steps) for body, x, y, left in self._pushes if left > steps]
+
+    def _pushed(self) -> list[int]:
+        return [body for body, *_ in self._pushes]
 
     def state(self) -> tuple[tuple[int, float, float, int], ...]:
         """Returns what is left of all pushes as plain values."""
@@ -186,6 +240,22 @@ class Pushes:
     def restore(self, state: tuple[tuple[int, float, float, int], ...]) -> None:
         """Restores pushes that `state` returned."""
         self._pushes = list(state)
+
+
+def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, float, float | None]:
+    """Returns a place (x, y) [m] and a heading [rad], if any, as numbers within bounds.
+
+    Args:
+        what: What puts something there, for the message.
+        x: [m]
+        y: [m]
+        heading: [rad]
+
+    Raises:
+        WorldError: If a value is not a number, or out of bounds.
+    """
+    x, y = number(x, f"{what}: x", -FARTHEST, FARTHEST), number(y, f"{what}: y", -FARTHEST, FARTHEST)
+    return x, y, None if heading is None else number(heading, f"{what}: heading", -MAX_TURN, MAX_TURN)
 
 
 def deeper(before: Mapping[str, float], after: Mapping[str, float]) -> list[str]:

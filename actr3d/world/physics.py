@@ -30,10 +30,7 @@ class Physics:
     """
 
     def __init__(self, scene: Scene) -> None:
-        try:
-            self.mj_model: MjModel = scene.specification().compile()
-        except ValueError as error:
-            raise WorldError(f"the scene cannot be compiled: {error}") from error
+        self.mj_model: MjModel = scene.compile()
         self.mj_data = MjData(self.mj_model)
         self.timestep = scene.timestep
         """The whole physics step [s]; `mj_model.opt.timestep` is shorter while a step is divided."""

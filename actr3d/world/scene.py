@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import dataclass
 from typing import Annotated, Any, Protocol, runtime_checkable
 
 from annotated_types import Gt, Le
-from mujoco import MjSpec, mjtIntegrator
+from mujoco import MjModel, MjSpec, mjtIntegrator
 
 from actr3d.clock import MICROSECONDS
 from actr3d.configuration import Configuration
@@ -69,6 +70,34 @@ class Scene(Configuration):
     def timestep_us(self) -> int:
         """The physics step [us]."""
         return round(self.timestep * MICROSECONDS)
+
+    def compile(self) -> MjModel:
+        """Compiles the whole scene.
+
+        Raises:
+            WorldError: If MuJoCo cannot compile it; with MuJoCo's message.
+        """
+        try:
+            return self.specification().compile()
+        except ValueError as error:
+            repeated = re.search(r"repeated name '(.*)' in (\w+)", str(error))
+            raise WorldError(f"the scene cannot be compiled: {error}{self._clash(*repeated.groups()) if repeated else ''}") from error
+
+    def _clash(self, name: str, kind: str) -> str:
+        """Returns which parts have elements of a kind with the same name, for a message."""
+        parts: list[str] = []
+        for part in self.parts:
+            mj_spec = MjSpec()
+            try:
+                part.add_to(mj_spec)
+            except ValueError:  # an empty scene has the name already
+                return f": the part '{part.name}' has a {kind} of this name, which is reserved; rename it"
+            elements = mj_spec.bodies if kind == "body" else getattr(mj_spec, f"{kind}s", [])
+            if any(element.name == name for element in elements):
+                parts.append(f"'{part.name}'")
+        if len(parts) < 2:
+            return ""
+        return f": the parts {' and '.join(parts)} both have a {kind} of this name, derived from that of the part; rename one of them"
 
     def specification(self) -> MjSpec:
         """Builds the MuJoCo specification of the whole scene."""

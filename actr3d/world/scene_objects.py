@@ -26,6 +26,9 @@ SHAPES = {
 }
 """By shape: MuJoCo's type, the number of sizes, and their meaning."""
 
+LEAST_SIZE, LEAST_MASS = 1e-4, 1e-6
+"""Least size [m] and mass [kg] of a loose object: MuJoCo needs an inertia of at least 1e-15 kg m^2, which any shape of these has."""
+
 WALL_SOLREF = (5e-4, 1.0)
 """Stiffness of a wall's contacts: (time constant [s], damping ratio). MuJoCo raises the time constant to at least twice the physics
 step, the stiffest that it simulates faithfully, so in effect this is twice any step: 4 ms at 2 ms, which keeps a body that runs into
@@ -255,12 +258,16 @@ class Loose(Configuration):
         """Checks the fields.
 
         Raises:
-            ConfigurationError: If a field is wrong, or the number of sizes is wrong for the shape.
+            ConfigurationError: If a field is wrong, the number of sizes is wrong for the shape, or a size or the mass is too small.
         """
         super().__post_init__()
         _, sizes, meaning = SHAPES[self.shape]
         if len(self.size) != sizes:
             raise ConfigurationError(f"Loose '{self.name}'.size: a {self.shape} takes {meaning} (got {self.size!r})")
+        if min(self.size) < LEAST_SIZE:
+            raise ConfigurationError(f"Loose '{self.name}'.size: must be >= {LEAST_SIZE:g} m (got {self.size!r})")
+        if self.mass is not None and self.mass < LEAST_MASS:
+            raise ConfigurationError(f"Loose '{self.name}'.mass: must be >= {LEAST_MASS:g} kg (got {self.mass!r})")
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds a body with one geom, and a free joint unless it is fixed: then only a user can move it."""

@@ -57,8 +57,8 @@ class World:
         seed: The seed of sensor noise.
 
     Raises:
-        WorldError: If MuJoCo cannot compile the scene (with MuJoCo's message), if it is not a `Scene`, or if the seed is
-            not a whole number >= 0.
+        WorldError: If MuJoCo cannot compile the scene (with MuJoCo's message), if it is not a `Scene`, if a body stands in a wall or
+            something else that is fixed, or if the seed is not a whole number >= 0.
     """
 
     def __init__(self, scene: Scene, seed: int = 0) -> None:
@@ -82,6 +82,9 @@ class World:
         segments = frozenset(f"{name}_{side}" for name in self._apertures for side in ("left", "right"))
         self.objects = Objects(self.physics, self.bodies, segments)
         """What can be moved by hand."""
+        for name, body in self.bodies.items():
+            if inside := deeper({}, self.objects.depths({body.root}, others="fixed")):
+                raise WorldError(f"'{name}' stands in {', '.join(map(repr, inside))} at the start; leave room")
         self._pushes = Pushes(self.physics, self.objects)
         self._changes = ModelChanges(self.mj_model)
         self._substepping = Substepping(self.physics, list(self.bodies.values()), self._pushes)
@@ -111,6 +114,7 @@ class World:
         """
         if not isinstance(steps, int) or steps < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
             raise WorldError(f"World.step: must be a whole number of steps, >= 0 (got {steps!r})")
+        self._check_unobserved("step")
         for aperture in self._closing:
             closer = self.aperture_width(aperture.name) - aperture.closing * steps * self.scene.timestep
             self._slide(aperture.name, max(0.0, closer))
@@ -144,6 +148,10 @@ class World:
             for watcher in self.watchers:
                 watcher()
             yield
+
+    def _check_unobserved(self, what: str) -> None:
+        if self.physics.observed:
+            raise WorldError(f"World.{what}: an observer cannot change the world; call simulation.command after the run")
 
     def changed(self) -> None:
         """Marks derived quantities as out of date, after positions, speeds or commands have changed."""
@@ -180,13 +188,19 @@ class World:
         """Restores a state of this world; continuing from it gives the same bytes as the first time.
 
         Raises:
-            WorldError: If the state is of another scene.
+            WorldError: If it is not a state of this scene, or a number of it is not finite.
         """
+        if not isinstance(state, WorldState):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise WorldError(f"World.restore: must be a WorldState, as state() returns it (got {state!r})")
+        self._check_unobserved("restore")
         size = len(self.physics.integration_state())
         if state.mj_state.shape != (size,):
             raise WorldError(f"a state of this world has {size} numbers (got {state.mj_state.size}): is it of another scene?")
         if state.scene != self.fingerprint:
             raise WorldError(f"the state is of another scene: that one compiles to {state.scene}, this one to {self.fingerprint}")
+        finite = np.isfinite(state.mj_state)
+        if not finite.all():
+            raise WorldError(f"World.restore: the numbers of the state must be finite (got {state.mj_state[~finite][0]:g})")
         self._changes.restore(state.compiled)
         self.physics.restore(state.mj_state)
         self.physics.steps = state.steps
@@ -201,8 +215,10 @@ class World:
         """Puts a body, a wall or another object at (x, y) [m], with a heading [rad] or its present one, at once.
 
         Raises:
-            WorldError: If there is no such object, or it would be inside another one; it stays then.
+            WorldError: If there is no such object, a value is wrong, a hand holds it, or it, or what it holds, would be inside
+                another one; it stays then.
         """
+        self._check_unobserved("move")
         self.objects.move(name, x, y, heading)
 
     def push(self, name: str, x: float, y: float = 0.0, time: float = 0.1) -> None:
@@ -211,9 +227,10 @@ class World:
         The force acts at the centre of the object, or of the base of a body; a body holds its place with the strength that it has.
 
         Raises:
-            WorldError: If there is no such object, or it cannot be pushed.
+            WorldError: If there is no such object, it cannot be pushed, or a value is wrong.
         """
-        self._pushes.add(name, x, y, max(1, round(time / self.scene.timestep)))
+        self._check_unobserved("push")
+        self._pushes.add(name, x, y, time)
 
     # -- apertures
 
@@ -233,6 +250,7 @@ class World:
             WorldError: If there is no such aperture, or something that can move is in the way of its segments; they stay then.
             ConfigurationError: If the width is not a number of at least 0.
         """
+        self._check_unobserved("set_aperture_width")
         aperture = replace(self._aperture(name), width=width)
         inside = self._slide(name, aperture.width)
         if inside:
@@ -242,10 +260,10 @@ class World:
         """Sets the free width of an aperture, unless objects would be inside its walls: then it returns their names."""
         roots = [int(self.mj_model.body(f"{name}_{side}").id) for side in ("left", "right")]
         sides = self.mj_model.body_mocapid[roots]
-        before, depths = self.mj_data.mocap_pos[sides].copy(), self.objects.depths(roots, moving=True)
+        before, depths = self.mj_data.mocap_pos[sides].copy(), self.objects.depths(roots, others="moving")
         self.mj_data.mocap_pos[sides] = list(self._aperture(name).segment_positions(width).values())
         self.changed()
-        inside = deeper(depths, self.objects.depths(roots, moving=True))
+        inside = deeper(depths, self.objects.depths(roots, others="moving"))
         if inside:
             self.mj_data.mocap_pos[sides] = before
             self.changed()

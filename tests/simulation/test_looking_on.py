@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
@@ -99,6 +100,29 @@ def test_an_observer_cannot_give_a_body_commands() -> None:
     with pytest.raises(WorldError, match="walker: an observer cannot give commands"):
         simulation.run(0.1)
     simulation.world.bodies["walker"].set("walk", 0.0)
+
+
+def test_an_observer_cannot_change_the_world() -> None:
+    simulation = sensing()
+    world = simulation.world
+    changes: list[Callable[[], None]] = [
+        world.step,
+        lambda: world.move("walker", 5.0, 5.0),
+        lambda: world.push("walker", 10.0),
+        lambda: world.set_aperture_width(1.0),
+        lambda: world.restore(world.state()),
+    ]
+    refused: list[str] = []
+
+    def look(_: object) -> None:
+        for change in changes:
+            with pytest.raises(WorldError, match=r"an observer cannot change the world; call simulation.command after the run") as error:
+                change()
+            refused.append(str(error.value).partition(":")[0])
+
+    simulation.observe(look)
+    simulation.step()
+    assert refused == ["World.step", "World.move", "World.push", "World.set_aperture_width", "World.restore"]
 
 
 def test_the_events_from_a_number_on() -> None:

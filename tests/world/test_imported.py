@@ -370,8 +370,9 @@ def test_broken_files_are_refused_with_file_and_line(text: str, message: str, tm
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({}, "Imported 'i': give a path, or a text"),
-        ({"path": "a.xml", "text": ARM}, "Imported 'i': give a path, or a text"),
+        ({}, r"Imported 'i': give a path, or a text \(got neither\)"),
+        ({"path": "a.xml", "text": ARM}, r"Imported 'i': give a path, or a text \(got both\)"),
+        ({"path": "/nope.xml"}, "Imported 'i': no file 'nope.xml' in the folder '/'"),
         ({"path": "gone.xml"}, r"no file 'gone\.xml' in the folder 'here'; did you mean 'one\.xml'"),
         ({"path": "one.xml", "folder": "deeper"}, r"'one\.xml' does not lie in the folder 'deeper'"),
         (

@@ -9,6 +9,7 @@ import pytest
 from actr3d.errors import WorldError
 from actr3d.simulation import Simulation
 from actr3d.world import Floor, ImportedBody, Loose, Scene, World
+from actr3d.world.anatomy import NamedMovement
 from tests.helpers.small_agents import near
 
 ARM = """<mujoco>
@@ -99,3 +100,23 @@ def test_an_actuator_with_several_controls_takes_them_all() -> None:
         body.set("control", "turn", 0.5)
     with pytest.raises(WorldError, match=r"r: control 'joint' takes one number \(got 1, 2\)"):
         body.set("control", "joint", 1, 2)
+
+
+def test_a_control_beyond_what_the_physics_takes_is_refused() -> None:
+    world = World(Scene(parts=(Floor(), arm())))
+    body = world.bodies["arm"]
+    for value in (1.1e10, -1e300):
+        with pytest.raises(WorldError, match=r"arm: control 'turn': must be (<= |>= -)1e\+10 \(got "):
+            body.set("control", "turn", value)
+    servo = ARM.replace('<position name="turn" joint="elbow" kp="50"/>', '<velocity name="turn" joint="elbow" kv="50"/>')
+    body = World(Scene(parts=(Floor(), ImportedBody(name="arm", text=servo)))).bodies["arm"]
+    for word, values in (("joint", ("elbow", 1.1e10)), ("position", ("elbow", 1.0, 1e300))):
+        with pytest.raises(WorldError, match=r"speed: must be <= 1e\+10 \(got "):
+            body.set(word, *values)
+    body.set("control", "turn", 1e10)
+
+
+def test_a_movement_of_joints_that_do_not_exist_is_refused() -> None:
+    movement = NamedMovement(name="wave", joints=(("elbow", 1), ("elbw", -1)))
+    with pytest.raises(WorldError, match=r"arm: movement 'wave' has no joint 'elbw'; did you mean 'elbow'\? It has elbow"):
+        World(Scene(parts=(Floor(), ImportedBody(name="arm", text=ARM, movements=(movement,)))))

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -59,6 +61,54 @@ def test_nothing_is_put_inside_something_else() -> None:
     assert made.state_bytes() == before.mj_state.tobytes()
 
 
+def holding(*parts: Wall) -> Simulation:
+    """Returns a simulation in which the right hand of `m` holds the box `o`."""
+    box = Loose(name="o", size=(0.1, 0.1, 0.1), position=(0.12, -0.16075, 0.773), mass=0.2)
+    simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="m"), box, *parts)), seed=1)
+    simulation.command("grasp", "o", body="m")
+    simulation.run(0.1)
+    assert simulation.world.bodies["m"].get("grasp")["right"] == "o"
+    return simulation
+
+
+def test_what_a_hand_holds_is_not_moved_by_hand() -> None:
+    simulation = holding()
+    before = simulation.world.state_bytes()
+    with pytest.raises(WorldError, match=r"'o' cannot be moved: it is in the right hand of 'm'; release it first"):
+        simulation.command("move", "o", 0.1, -3.0)
+    assert simulation.world.state_bytes() == before
+    simulation.command("release", body="m")
+    simulation.command("move", "o", 0.1, -3.0)
+    assert simulation.world.objects.pose("o")[:2] == (0.1, -3.0)
+
+
+def test_a_body_is_not_put_where_what_it_holds_would_be_inside_a_wall() -> None:
+    simulation = holding(Wall(name="w", start=(2.4, -1), end=(2.4, 1)))
+    before = simulation.world.state_bytes()
+    with pytest.raises(WorldError, match=r"'m' cannot be put at \(2.2, 0\) m: it would be inside 'w'; leave room"):
+        simulation.command("move", "m", 2.2, 0.0)
+    assert simulation.world.state_bytes() == before
+    simulation.command("move", "m", 1.5, 0.0)
+    assert simulation.world.objects.pose("m")[0] == 1.5
+
+
+def test_a_held_object_is_carried_on_after_a_push() -> None:
+    simulation = holding()
+    carried = simulation.world.mj_data.body("o").xfrc_applied.copy()
+    assert carried[2] > 0
+    simulation.command("push", "o", 1.0, 0.0, 0.105)
+    simulation.command("push", "o", 0.0, 1.0, 0.05)
+    simulation.run(0.07)
+    state = simulation.world.state_bytes()
+    simulation.run(0.13)
+    end = simulation.world.state_bytes()
+    assert simulation.world.mj_data.body("o").xfrc_applied.tolist() == carried.tolist()
+    simulation.seek(0.17)
+    assert simulation.world.state_bytes() == state
+    simulation.run(0.13)
+    assert simulation.world.state_bytes() == end
+
+
 def test_a_push_has_its_impulse_and_the_legs_withstand_a_weak_one() -> None:
     made = world()
     made.mj_model.opt.gravity[:] = 0  # without weight there is no friction
@@ -108,6 +158,50 @@ def test_a_wrong_change_names_what_is_wrong(command: tuple[str, ...], problem: s
     simulation = Simulation(Scene(parts=PARTS), seed=1)
     with pytest.raises(Actr3dError, match=problem):
         simulation.command(*command)
+
+
+@pytest.mark.parametrize(
+    ("call", "values", "problem"),
+    [
+        (World.move, ("walker", math.nan, 0), r"move: x: must be a finite number \(got nan\)"),
+        (World.move, ("wall", 0, 1e300), r"move: y: must be <= 10000 \(got 1e\+300\)"),
+        (World.move, ("box", 1, 2, -1e300), r"move: heading: must be >= -1000 \(got -1e\+300\)"),
+        (World.move, ("box", "here", 2), r"move: x: must be a number \(got 'here'\)"),
+        (World.move, ("box", True, 2), r"move: x: must be a number \(got True\)"),
+        (World.move, (["box"], 1, 2), r"no object '\['box'\]' to move; there are: walker, wall, pole, box"),
+        (World.push, ("box", 10**400), r"push: x: must be a finite number"),
+        (World.push, ("box", 0, -1e6), r"push: y: must be >= -100000 \(got -1000000.0\)"),
+        (World.push, ("box", 1, 0, -1), r"push: time: must be >= 1e-06 \(got -1\)"),
+        (World.push, ("box", 1, 0, None), r"push: time: must be a number \(got None\)"),
+        (World.restore, (None,), r"World.restore: must be a WorldState, as state\(\) returns it \(got None\)"),
+    ],
+)
+def test_a_wrong_argument_is_refused_where_it_is_given(call: Callable[..., None], values: tuple[Any, ...], problem: str) -> None:
+    made = world()
+    before = made.state_bytes()
+    with pytest.raises(WorldError, match=problem):
+        call(made, *values)
+    assert made.state_bytes() == before
+    made.step(1)
+
+
+def test_a_body_is_not_teleported_farther_than_scenes_reach() -> None:
+    body = world().bodies["walker"]
+    for values, problem in (
+        ((1e300, 0), "x: must be <= 10000"),
+        ((0, -1e5), "y: must be >= -10000"),
+        ((0, 0, 1e4), "heading: must be <= 1000"),
+    ):
+        with pytest.raises(WorldError, match=f"teleport: {problem} "):
+            body.set("teleport", *values)
+
+
+def test_a_state_with_numbers_that_are_not_finite_is_not_restored() -> None:
+    made = world()
+    state = made.state()
+    state.mj_state[3] = math.nan
+    with pytest.raises(WorldError, match=r"World.restore: the numbers of the state must be finite \(got nan\)"):
+        made.restore(state)
 
 
 def test_changes_of_the_world_are_exact_after_going_back_and_in_a_replay(tmp_path: Path) -> None:

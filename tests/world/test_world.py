@@ -9,8 +9,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from actr3d.errors import Actr3dError, WorldError
-from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Track, Wall, World
+from actr3d.errors import Actr3dError, ConfigurationError, WorldError
+from actr3d.world import Aperture, Floor, ImportedBody, Loose, Mannequin, Scene, Track, Wall, World
+from actr3d.world.scene_objects import SHAPES
 from tests.helpers.small_agents import near
 
 
@@ -196,3 +197,52 @@ def test_a_closing_aperture_is_held_open_by_what_lies_in_it() -> None:
         world.step(5)
         assert np.abs(world.mj_data.qvel).max() < 10
     assert 0.28 < world.aperture_width() < 0.3
+
+
+def test_a_body_that_stands_inside_something_fixed_is_refused_at_the_start() -> None:
+    walls = (Wall(name="w", start=(0, -1), end=(0, 1)), Loose(name="pole", position=(0.2, 0, 0.5), mass=None))
+    with pytest.raises(WorldError, match=r"'m' stands in 'w', 'pole' at the start; leave room"):
+        World(Scene(parts=(Floor(), Mannequin(name="m"), *walls)))
+    with pytest.raises(WorldError, match=r"'m' stands in 'aperture_(left|right)', 'aperture_(left|right)' at the start; leave room"):
+        World(Scene(parts=(Floor(), Mannequin(name="m", position=(7.0, 0.0)), Aperture(width=0.3))))
+
+
+def test_a_body_may_touch_a_wall_and_stand_in_what_yields_at_the_start() -> None:
+    touches, ball = Wall(name="w", start=(0.174, -1), end=(0.174, 1)), Loose(name="ball", position=(-0.2, 0, 0.5))
+    World(Scene(parts=(Floor(), Mannequin(name="m"), touches, ball)))
+    sunk = ImportedBody(name="r", text='<mujoco><worldbody><body name="b"><geom size="0.1"/></body></worldbody></mujoco>', free=True)
+    world = World(Scene(parts=(Floor(), sunk)))
+    world.step(1000)
+    assert world.bodies["r"].get("pose").z > 0.09
+
+
+ROBOT = '<mujoco><worldbody><body name="arm"><joint name="elbow"/><geom size="0.1"/></body></worldbody></mujoco>'
+
+
+@pytest.mark.parametrize(
+    ("parts", "problem"),
+    [
+        ((Mannequin(name="a"), Loose(name="a_torso", position=(3, 0, 1))), "the parts 'a' and 'a_torso' both have a body of this name"),
+        (
+            (Aperture(), Wall(name="aperture_left", start=(0, 1), end=(0, 2))),
+            "'aperture' and 'aperture_left' both have a body of",
+        ),
+        ((Loose(name="a_arm"), ImportedBody(name="a", text=ROBOT)), "the parts 'a_arm' and 'a' both have a body of this name"),
+        ((Track(points=((0, 0), (1, 0))), Loose(name="track_0")), "the parts 'track' and 'track_0' both have a geom of this name"),
+        ((Loose(name="a_elbow"), ImportedBody(name="a", text=ROBOT)), "the parts 'a_elbow' and 'a' both have a joint of this name"),
+        ((Loose(name="world"),), "the part 'world' has a body of this name, which is reserved"),
+    ],
+)
+def test_two_parts_with_one_derived_name_are_named(parts: tuple[object, ...], problem: str) -> None:
+    with pytest.raises(WorldError, match=rf"repeated name '.*{problem}.*; rename (it|one of them)"):
+        World(Scene(parts=parts))
+
+
+def test_a_loose_object_has_a_least_size_and_mass() -> None:
+    for shape, (_, sizes, _) in SHAPES.items():
+        with pytest.raises(ConfigurationError, match=r"Loose 'o'.size: must be >= 0.0001 m \(got \(1e-09,"):
+            Loose.from_mapping({"name": "o", "shape": shape, "size": (1e-9,) * sizes})
+        least = Loose.from_mapping({"name": "o", "shape": shape, "size": (1e-4,) * sizes, "mass": 1e-6})
+        World(Scene(parts=(least,)))
+    with pytest.raises(ConfigurationError, match=r"Loose 'o'.mass: must be >= 1e-06 kg \(got 1e-16\)"):
+        Loose(name="o", mass=1e-16)

@@ -12,10 +12,11 @@ from collections.abc import Mapping
 
 from actr3d.errors import WorldError
 from actr3d.world.anatomy import Steering
-from actr3d.world.body import Body, actuator
+from actr3d.world.body import MAX_CONTROL, Body, actuator
 from actr3d.world.command_registry import known, number
 from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import HEADING, TURN
+from actr3d.world.objects import place
 
 MODERATE = 2.0
 """Default speed of joints [rad/s]. Source: the order of the original ACT-R 3D's 120 degrees a second (docs/human-data.md)."""
@@ -172,11 +173,9 @@ def teleport(body: Body, x: float, y: float, heading: float | None = None) -> No
     """Puts the body elsewhere at once, (x, y) [m] and heading [rad]; posture and commands stay, held objects move along.
 
     Raises:
-        WorldError: If a value is not a number.
+        WorldError: If a value is not a number, or out of bounds.
     """
-    x, y = number(x, "teleport: x"), number(y, "teleport: y")
-    faces = None if heading is None else number(heading, "teleport: heading")
-    body.base.put(x, y, faces)
+    body.base.put(*place("teleport", x, y, heading))
     body.hold.stand()
     body.physics.changed()
     body.physics.refresh()
@@ -240,14 +239,15 @@ def control(body: Body, name: str, *values: float) -> None:
     """Sets the control of an actuator that an imported description names, in that actuator's own unit: one number, or all of several.
 
     Raises:
-        WorldError: If there is no such actuator, or it does not take that many numbers.
+        WorldError: If there is no such actuator, it does not take that many numbers, or one is too great for the physics.
     """
     controls = body.control(name)
     count = controls.stop - controls.start
     if len(values) != count:
         takes = "one number" if count == 1 else f"{count} numbers"
         raise WorldError(f"{body.name}: control '{name}' takes {takes} (got {', '.join(map(repr, values)) or 'none'})")
-    body.physics.mj_data.ctrl[controls] = [number(value, f"control {name}") for value in values]
+    what = f"{body.name}: control '{name}'"
+    body.physics.mj_data.ctrl[controls] = [number(value, what, -MAX_CONTROL, MAX_CONTROL) for value in values]
     body.physics.changed()
 
 

@@ -9,12 +9,8 @@ from annotated_types import Ge, Le
 
 from actr3d.change import change
 from actr3d.world.changes.world_change import WorldChange
+from actr3d.world.objects import FARTHEST, MAX_TURN
 from actr3d.world.world import World
-
-FARTHEST = 10_000.0
-"""Greatest coordinate [m]: there, the numbers of 32 bits with which scenes are drawn still distinguish millimetres."""
-MAX_TURN = 1_000.0
-"""Greatest heading [rad]: more than a body ever turns. Chosen here."""
 
 
 @change

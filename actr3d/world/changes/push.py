@@ -10,10 +10,8 @@ from annotated_types import Ge, Gt, Le
 from actr3d.change import change
 from actr3d.errors import ConfigurationError
 from actr3d.world.changes.world_change import WorldChange
+from actr3d.world.objects import LONGEST, MAX_FORCE
 from actr3d.world.world import World
-
-MAX_FORCE = 1e5
-"""Greatest force along an axis [N]."""
 
 
 @change
@@ -32,7 +30,7 @@ class PushObject(WorldChange):
     """Force along the x axis of the world [N]; at a heading of 0, a body faces along this axis."""
     y: Annotated[float, Ge(-MAX_FORCE), Le(MAX_FORCE)] = 0.0
     """Force along the y axis of the world [N]: to the left of the x axis, seen from above."""
-    time: Annotated[float, Gt(0), Le(60)] = 0.1
+    time: Annotated[float, Gt(0), Le(LONGEST)] = 0.1
     """Duration [s]."""
 
     def __post_init__(self) -> None:

@@ -56,9 +56,9 @@ class JointReading:
     """State of a joint."""
 
     position: float
-    """[rad]"""
+    """[rad], of a slide [m]"""
     velocity: float
-    """[rad/s]"""
+    """[rad/s], of a slide [m/s]"""
     limit: Literal["lower", "upper"] | None
     """The limit that it has reached."""
 
@@ -129,7 +129,7 @@ def accelerometer(body: Body, part: str | None = None) -> Vector:
 
 @sensor
 def joints(body: Body) -> dict[str, JointReading]:
-    """Senses positions [rad] and velocities [rad/s] of all joints, and the limits that they have reached, by name."""
+    """Senses positions and velocities of all joints ([rad] [rad/s], of slides [m] [m/s]), and the limits that they have reached."""
     data = body.physics.mj_data
     positions, velocities = data.qpos.tolist(), data.qvel.tolist()
     readings: dict[str, JointReading] = {}
