@@ -324,7 +324,7 @@ class Motor(WithParameters, Port):
     def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, usual: bool, site: CallSite | None) -> None:
         limbs = self._known()
         name = limbs.joint(joint, axis)
-        if usual and limbs.joints[name].kind == "slide":
+        if usual and limbs.joints[name].kind == "slide" and limbs.joints[name].driven:
             raise WorldError(f"{limbs.plan.name}: joint '{name}' slides; give its speed [m/s]: rotate('{name}', speed=…)")
         target = limbs.limit(name, pace) if to is None else to * limbs.unit[name]
         self._turn_joints(name, {name: copysign(INFINITE, pace) if target is None else target}, pace, to is None, site)

@@ -485,6 +485,13 @@ def test_a_joint_that_slides_needs_a_speed() -> None:
         motor.rotate("grip")
 
 
+@pytest.mark.parametrize("speed", [None, 0.1])
+def test_a_joint_that_slides_without_muscles_is_reported_before_its_speed_is_asked_for(speed: float | None) -> None:
+    _, motor = moving(body=ImportedBody(name="arm", text=ARM.replace('<velocity name="c" joint="grip" kv="200"/>', "")))
+    with pytest.raises(WorldError, match="joint 'grip' has no muscles"):
+        motor.rotate("grip", angle=0.05, speed=speed)
+
+
 def test_a_weak_limb_that_comes_as_near_as_it_can_is_done_and_one_that_cannot_is_blocked() -> None:
     text = ARM.replace('gravcomp="1"', "")
     simulation, motor = moving(body=ImportedBody(name="arm", text=text))
