@@ -201,6 +201,7 @@ class Motor(WithParameters, Port):
         self._known().possible("walk", speed, 0, 1.0)
         walk = self._under_way.get("walk")
         if speed == 0:
+            self._accept()
             self._halt(["walk"] if walk else [], site)
         else:
             self._begin_or_change("walk", Walk(speed, site), change=walk is not None and walk.begun)
@@ -210,6 +211,7 @@ class Motor(WithParameters, Port):
         self._known().possible("turn", rate, 1, radians(1))
         turn = self._under_way.get("turn")
         if rate == 0:
+            self._accept()
             self._halt(["turn"] if turn else [], site)
             return
         endless = isinstance(turn, Turn) and turn.begun and turn.rest is None and angle is None
@@ -218,6 +220,7 @@ class Motor(WithParameters, Port):
     def _begin_or_change(self, key: str, movement: Movement, *, change: bool) -> None:
         """Begins a movement of the legs, or replaces the one in progress."""
         if change:
+            self._accept()
             self._under_way[key] = movement
             self._launch(key, movement)
         else:
@@ -227,6 +230,7 @@ class Motor(WithParameters, Port):
         plan = self._known().plan
         for group in groups:
             known(group, self._known().groups, plan.name, "muscle group")
+        self._accept()
         self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], site)
         if not groups and "stop" in plan.actuators:
             self._send_command("stop", site=site)
@@ -318,6 +322,7 @@ class Motor(WithParameters, Port):
         self._command(partial(self._want, name), "feel", name=name)
 
     def _want(self, name: str, site: CallSite | None) -> None:
+        self._accept()
         self._wanted.append(name)
         self._ask()
 
@@ -433,8 +438,7 @@ class Motor(WithParameters, Port):
             if key in self._under_way:
                 self._refuse(movement.name, "busy")
                 return
-        self._become("error", False)
-        self._become("refusal", None)
+        self._accept()
         self._under_way |= movements
         self._show_busy()
         delay = self.preparation + self.initiation
@@ -453,6 +457,11 @@ class Motor(WithParameters, Port):
         self._send(movement.begin() if isinstance(movement, JointMovement) else self._gait(), movement.site)
         self.emit("move", **movement.trace_data())
         self._ask()
+
+    def _accept(self) -> None:
+        """Resets what an earlier command was refused for."""
+        self._become("error", False)
+        self._become("refusal", None)
 
     def _refuse(self, call: str, why: str) -> None:
         """Refuses a command."""

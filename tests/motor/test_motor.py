@@ -271,6 +271,22 @@ def test_a_busy_group_refuses_and_others_do_not() -> None:
     assert told == [{"movement": "compress_shoulder_left", "why": "busy"}]
 
 
+@pytest.mark.parametrize(
+    ("command", "given"),
+    [("walk", (0.5,)), ("walk", (0,)), ("turn", (None, 10)), ("turn", (None, 0)), ("feel", ("x",)), ("stop", ("torso",)), ("stop", ())]
+    + [("rotate_torso", (10,))],
+)
+def test_any_accepted_command_resets_what_an_earlier_one_was_refused_for(command: str, given: tuple[Any, ...]) -> None:
+    simulation, motor = moving()
+    motor.walk(1)
+    motor.turn(speed=20)
+    simulation.step(5)
+    motor.rotate_torso(200)
+    assert (motor.error, motor.refusal) == (True, "limit")
+    getattr(motor, command)(*given)
+    assert (motor.error, motor.refusal) == (False, None)
+
+
 def test_what_would_move_a_busy_group_too_is_refused_as_a_whole() -> None:
     simulation, motor = moving()
     motor.rotate("left_upper_arm", "pitch", angle=-90)
