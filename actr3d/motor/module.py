@@ -69,7 +69,7 @@ class Motor(WithParameters, Port):
         patience: Time without progress after which a movement ends as «blocked» [s]; None for never. Detection takes
             at most three times as long. Source: chosen.
         preparation: Preparation time of a command [s]. Source: 0 as in the original; ACT-R prepares 0.05 s for each feature
-            that is new, 0.25 s for a whole hand movement (Byrne & Anderson, 1998).
+            that is new, 0.25 s for a whole hand movement (Byrne & Anderson, 1998). A change of speed is prepared too; `stop` is not.
         initiation: Time from the end of preparation to the start [s]. Source: 0 as in the original; 0.05 s in ACT-R.
 
     Raises:
@@ -221,8 +221,7 @@ class Motor(WithParameters, Port):
         """Begins a movement of the legs, or replaces the one in progress."""
         if change:
             self._accept()
-            self._under_way[key] = movement
-            self._launch(key, movement)
+            self._after_preparation(self._change, key, movement)
         else:
             self._begin({key: movement})
 
@@ -441,13 +440,22 @@ class Motor(WithParameters, Port):
         self._accept()
         self._under_way |= movements
         self._show_busy()
-        delay = self.preparation + self.initiation
         for key, movement in movements.items():
             self._become(f"{movement.group}_end", "none")
-            if delay > 0:
-                self.sch.call_after(delay, self._launch, (key, movement))
-            else:
-                self._launch(key, movement)
+            self._after_preparation(self._launch, key, movement)
+
+    def _after_preparation(self, act: Callable[[str, Movement], None], key: str, movement: Movement) -> None:
+        delay = self.preparation + self.initiation
+        if delay > 0:
+            self.sch.call_after(delay, act, (key, movement))
+        else:
+            act(key, movement)
+
+    def _change(self, key: str, movement: Movement) -> None:
+        """Replaces a movement of the legs that is in progress, unless that has ended during preparation."""
+        if key in self._under_way and self._under_way[key].begun:
+            self._under_way[key] = movement
+            self._launch(key, movement)
 
     def _launch(self, key: str, movement: Movement) -> None:
         """Commands the body to begin a movement, unless it was stopped during preparation."""

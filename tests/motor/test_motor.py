@@ -255,6 +255,25 @@ def test_a_movement_is_prepared_for_as_long_as_a_parameter_says_and_can_be_stopp
     assert angle(simulation, "torso_yaw") == near(12, abs=0.01)
 
 
+def test_a_change_of_speed_is_prepared_too_and_the_former_speed_goes_on_meanwhile() -> None:
+    simulation, motor = moving(preparation=0.25, initiation=0.05)
+    motor.walk(1.0)
+    motor.turn(speed=20)
+    simulation.step(50)
+    base = simulation.world.bodies["walker"].base
+    motor.walk(0.5)
+    motor.turn(speed=-40)
+    simulation.step(29)
+    assert (base.speed[0], math.degrees(base.speed[2])) == (near(1.0, abs=0.02), near(20, abs=0.5))
+    simulation.step(15)
+    assert (base.speed[0], math.degrees(base.speed[2])) == (near(0.5, abs=0.02), near(-40, abs=0.5))
+    motor.walk(1.5)
+    motor.walk(0)
+    motor.walk(0.8)
+    simulation.step(60)
+    assert base.speed[0] == near(0.8, abs=0.02), "a change that is still prepared is gone with the walk that it changes"
+
+
 # -- what is refused
 
 
