@@ -292,8 +292,16 @@ def test_a_busy_group_refuses_and_others_do_not() -> None:
 
 @pytest.mark.parametrize(
     ("command", "given"),
-    [("walk", (0.5,)), ("walk", (0,)), ("turn", (None, 10)), ("turn", (None, 0)), ("feel", ("x",)), ("stop", ("torso",)), ("stop", ())]
-    + [("rotate_torso", (10,))],
+    [
+        ("walk", (0.5,)),
+        ("walk", (0,)),
+        ("turn", (None, 10)),
+        ("turn", (None, 0)),
+        ("feel", ("x",)),
+        ("stop", ("torso",)),
+        ("stop", ()),
+        ("rotate_torso", (10,)),
+    ],
 )
 def test_any_accepted_command_resets_what_an_earlier_one_was_refused_for(command: str, given: tuple[Any, ...]) -> None:
     simulation, motor = moving()
