@@ -9,7 +9,7 @@ from typing import Any
 from actr3d.actr.explain.module_reasons import outcome_of
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.modules.answers import plain_answer
-from actr3d.actr.modules.port import Request, Searching
+from actr3d.actr.modules.port import RAW_VISION, Request, Searching
 from actr3d.camera import CameraParameters, View
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import ParameterError, VisionError
@@ -63,8 +63,8 @@ class Vision(WithParameters, Searching):
             attention; or `emma`, or an `Emma`, whose time grows with the angle from the line of sight.
         saccades: Whether the eye turns to the feature of a top-down request, within its limits; the chunk then arrives not before.
             Without it, EMMA's times are as if the eye turned there and back.
-        private_view: Whether other ports of the agent are refused the raw view (`body.request("view")`). With False they receive it:
-            the agent then bypasses vision, and the trace shows this.
+        private_view: Whether other ports of the agent are refused the raw view (`body.request("view")`), and the pictures `image`
+            and `depth`. With False they receive them: the agent then bypasses vision, and the trace shows this.
         camera: The fields of `CameraParameters`: `rows=50`, `horizontal_fov=2.0`.
 
     Raises:
@@ -235,7 +235,7 @@ class Vision(WithParameters, Searching):
         return search
 
     def _kept_private(self, sensor: str) -> str | None:
-        return "Vision(private_view=False)" if sensor == "view" and self.private_view else None
+        return "Vision(private_view=False)" if sensor in RAW_VISION and self.private_view else None
 
     def _ask_for_view(self, search: Search) -> None:
         embodiment = self._joined("view")

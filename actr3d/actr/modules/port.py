@@ -16,8 +16,8 @@ from actr3d.actr.modules.answers import answer_slots, plain_answer
 from actr3d.errors import Actr3dError, SimulationError
 from actr3d.warnings import is_library
 
-RAW_VISION = ("view",)
-"""Sensors that only a vision module should ask a body for; any other part of an agent thereby bypasses vision."""
+RAW_VISION = ("view", "image", "depth")
+"""Sensors of the eye, that only a vision module should ask a body for; any other part of an agent thereby bypasses vision."""
 
 
 class Reading(Event):
@@ -189,8 +189,8 @@ class BodyPort(Port):
     are available when the next tick begins. `busy` is True while answers are outstanding, and `error` after an empty answer to
     `request`.
 
-    `view` is the raw view: an agent that asks for it bypasses vision, which the trace records (`outside_vision`). If the agent
-    has a `Vision`, that keeps the view private, unless it is made with `private_view=False`.
+    `view` is the raw view, `image` and `depth` are pictures: an agent that asks for one of them bypasses vision, which the trace
+    records (`outside_vision`). If the agent has a `Vision`, that keeps them private, unless it is made with `private_view=False`.
 
     Args:
         buffer: The buffer for the answers to `request`; None for a port without `request`.
