@@ -209,6 +209,24 @@ def test_words_that_requests_could_not_reach_are_refused(text: str, says: str) -
         lives(text)
 
 
+POLE = """
+@dataclass(frozen=True, kw_only=True)
+class Pole(Feature):
+    w: FIELD
+@detector(Pole)
+def poles(view, *, most: MOST = 1): return ()
+"""
+
+
+@pytest.mark.parametrize(
+    ("field", "most", "place"),
+    [("'Meters'", "Metres", "Pole.w"), ("Metres", "'Meters'", r"poles\(most\)"), ("'list[Meters]'", "int", "Pole.w")],
+)
+def test_an_unknown_type_is_named_with_its_place_in_the_detector(field: str, most: str, place: str) -> None:
+    with pytest.raises(VisionError, match=rf"^detector: {place}: name 'Meters' is not defined; did you mean 'Metres'\?"):
+        lives(f"{POLE.replace('FIELD', field).replace('MOST', most)}{LOOK}vision.request('feature:pole', most=2)")
+
+
 def test_salience_and_encoding_set_later_count_and_are_checked() -> None:
     def seven(feature: Any) -> float:
         return 7.0
