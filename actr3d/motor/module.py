@@ -14,7 +14,7 @@ from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.modules.port import CallSite, Port, Request, note_request
 from actr3d.clock import seconds
-from actr3d.errors import Actr3dError, ParameterError, SimulationError, WorldError
+from actr3d.errors import ParameterError, SimulationError, WorldError
 from actr3d.motor.checks import check_patterns
 from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, Freedom, Limbs
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Order, Step, Turn, Walk, gait
@@ -424,7 +424,7 @@ class Motor(WithParameters, Port):
         for act, site in waiting:
             try:
                 act(site)
-            except Actr3dError as error:
+            except Exception as error:
                 note_request(error, self, site)
                 raise
         self._show_busy()
