@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from actr3d.vision import DETECTORS, Opening
+from actr3d.vision import Opening
 from actr3d.vision.detectors.opening import opening as openings_of
 from actr3d.world import Aperture, Floor, Mannequin, Scene, World
 from tests.helpers.small_agents import near
@@ -130,7 +130,7 @@ def test_the_height_of_a_doorway_is_exact_to_one_scan_line_from_any_side(aside: 
     x, y = 7 - distance * math.cos(bearing), distance * math.sin(bearing)
     person = Mannequin(name="m", position=(x, y), heading=math.atan2(-y, 7 - x))
     world = World(Scene(parts=(Floor(), person, Aperture(width=width, thickness=thick))))
-    openings = DETECTORS["opening"](world.bodies["m"].get("view"))
+    openings = openings_of(world.bodies["m"].get("view"))
     one = max((one for one in openings if not one.cut), key=lambda one: one.height)
     line = 2 * math.tan(math.pi / 6) / 100 * (distance + width / 2 + thick)  # one scan line where the farther side is
     assert one.height == near(2.5, abs=line)
