@@ -261,7 +261,7 @@ trace_kind(
     source="module",
     data="...",
     meaning="a request to a module (`call`). For a memory, with all candidates; if it was made before the trace, also "
-    "`made` [s] and `outcome`. `outside_vision`: the agent asks for the raw view",
+    "`made` [s] and `outcome`. `outside_vision`: the agent asks for the raw view or a picture of it",
     group="request",
 )
 trace_kind(

@@ -22,7 +22,8 @@ def is_library(filename: str) -> bool:
     return filename.startswith(LIBRARY) and not filename.startswith(MODELS)
 
 
-def _of_library(code: CodeType) -> bool:
+def of_library(code: CodeType) -> bool:
+    """Checks whether code belongs to the library."""
     # A dataclass's generated `__init__`, between a configuration's checks and its caller, has no file.
     return is_library(code.co_filename) or (code.co_filename == "<string>" and code.co_name == "__init__")
 
@@ -30,7 +31,7 @@ def _of_library(code: CodeType) -> bool:
 def warn_modeller(message: str) -> None:
     """Warns (`ModelWarning`) at the innermost running line that is not the library's: the modeller's."""
     frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage] # Python documents it
-    while frame.f_back is not None and _of_library(frame.f_code):
+    while frame.f_back is not None and of_library(frame.f_code):
         frame = frame.f_back
     warn_at_frame(message, frame)
 

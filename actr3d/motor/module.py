@@ -14,7 +14,7 @@ from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.modules.port import CallSite, Port, Request, note_request
 from actr3d.clock import seconds
-from actr3d.errors import Actr3dError, ParameterError, SimulationError, WorldError
+from actr3d.errors import ParameterError, SimulationError, WorldError
 from actr3d.motor.checks import check_patterns
 from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, Freedom, Limbs
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Order, Step, Turn, Walk, gait
@@ -69,7 +69,7 @@ class Motor(WithParameters, Port):
         patience: Time without progress after which a movement ends as «blocked» [s]; None for never. Detection takes
             at most three times as long. Source: chosen.
         preparation: Preparation time of a command [s]. Source: 0 as in the original; ACT-R prepares 0.05 s for each feature
-            that is new, 0.25 s for a whole hand movement (Byrne & Anderson, 1998).
+            that is new, 0.25 s for a whole hand movement (Byrne & Anderson, 1998). A change of speed is prepared too; `stop` is not.
         initiation: Time from the end of preparation to the start [s]. Source: 0 as in the original; 0.05 s in ACT-R.
 
     Raises:
@@ -201,6 +201,7 @@ class Motor(WithParameters, Port):
         self._known().possible("walk", speed, 0, 1.0)
         walk = self._under_way.get("walk")
         if speed == 0:
+            self._accept()
             self._halt(["walk"] if walk else [], site)
         else:
             self._begin_or_change("walk", Walk(speed, site), change=walk is not None and walk.begun)
@@ -210,6 +211,7 @@ class Motor(WithParameters, Port):
         self._known().possible("turn", rate, 1, radians(1))
         turn = self._under_way.get("turn")
         if rate == 0:
+            self._accept()
             self._halt(["turn"] if turn else [], site)
             return
         endless = isinstance(turn, Turn) and turn.begun and turn.rest is None and angle is None
@@ -218,8 +220,8 @@ class Motor(WithParameters, Port):
     def _begin_or_change(self, key: str, movement: Movement, *, change: bool) -> None:
         """Begins a movement of the legs, or replaces the one in progress."""
         if change:
-            self._under_way[key] = movement
-            self._launch(key, movement)
+            self._accept()
+            self._after_preparation(self._change, key, movement)
         else:
             self._begin({key: movement})
 
@@ -227,6 +229,7 @@ class Motor(WithParameters, Port):
         plan = self._known().plan
         for group in groups:
             known(group, self._known().groups, plan.name, "muscle group")
+        self._accept()
         self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], site)
         if not groups and "stop" in plan.actuators:
             self._send_command("stop", site=site)
@@ -318,13 +321,14 @@ class Motor(WithParameters, Port):
         self._command(partial(self._want, name), "feel", name=name)
 
     def _want(self, name: str, site: CallSite | None) -> None:
+        self._accept()
         self._wanted.append(name)
         self._ask()
 
     def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, usual: bool, site: CallSite | None) -> None:
         limbs = self._known()
         name = limbs.joint(joint, axis)
-        if usual and limbs.joints[name].kind == "slide":
+        if usual and limbs.joints[name].kind == "slide" and limbs.joints[name].driven:
             raise WorldError(f"{limbs.plan.name}: joint '{name}' slides; give its speed [m/s]: rotate('{name}', speed=…)")
         target = limbs.limit(name, pace) if to is None else to * limbs.unit[name]
         self._turn_joints(name, {name: copysign(INFINITE, pace) if target is None else target}, pace, to is None, site)
@@ -420,7 +424,7 @@ class Motor(WithParameters, Port):
         for act, site in waiting:
             try:
                 act(site)
-            except Actr3dError as error:
+            except Exception as error:
                 note_request(error, self, site)
                 raise
         self._show_busy()
@@ -433,17 +437,25 @@ class Motor(WithParameters, Port):
             if key in self._under_way:
                 self._refuse(movement.name, "busy")
                 return
-        self._become("error", False)
-        self._become("refusal", None)
+        self._accept()
         self._under_way |= movements
         self._show_busy()
-        delay = self.preparation + self.initiation
         for key, movement in movements.items():
             self._become(f"{movement.group}_end", "none")
-            if delay > 0:
-                self.sch.call_after(delay, self._launch, (key, movement))
-            else:
-                self._launch(key, movement)
+            self._after_preparation(self._launch, key, movement)
+
+    def _after_preparation(self, act: Callable[[str, Movement], None], key: str, movement: Movement) -> None:
+        delay = self.preparation + self.initiation
+        if delay > 0:
+            self.sch.call_after(delay, act, (key, movement))
+        else:
+            act(key, movement)
+
+    def _change(self, key: str, movement: Movement) -> None:
+        """Replaces a movement of the legs that is in progress, unless that has ended during preparation."""
+        if key in self._under_way and self._under_way[key].begun:
+            self._under_way[key] = movement
+            self._launch(key, movement)
 
     def _launch(self, key: str, movement: Movement) -> None:
         """Commands the body to begin a movement, unless it was stopped during preparation."""
@@ -453,6 +465,11 @@ class Motor(WithParameters, Port):
         self._send(movement.begin() if isinstance(movement, JointMovement) else self._gait(), movement.site)
         self.emit("move", **movement.trace_data())
         self._ask()
+
+    def _accept(self) -> None:
+        """Resets what an earlier command was refused for."""
+        self._become("error", False)
+        self._become("refusal", None)
 
     def _refuse(self, call: str, why: str) -> None:
         """Refuses a command."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Self, cast
 
 from actr3d.actr.kernel.run_limits import Contacts
 from actr3d.clock import MICROSECONDS
@@ -35,7 +35,9 @@ class Recording:
 
     Args:
         path: The file; it must not exist.
-        facts: What is known about the run before it begins: the model's source, its parameters, the seed; plain values.
+        facts: What is known about the run before it begins: the model's source, its parameters, the seed. Plain values: numbers
+            (also infinite ones and nan), texts, True, False, None, and lists and dicts of these; the keys of dicts are texts, and
+            tuples are recorded as lists.
 
     Raises:
         RecordingError: If the file exists already, or cannot be created, or a fact is not plain.
@@ -201,6 +203,20 @@ class Recording:
 def _plain(name: str, value: Any) -> str:
     check_fact(name, value)
     try:
-        return json.dumps(value)
+        text = json.dumps(value)
+        _check_keys(value)
     except (TypeError, ValueError, RecursionError) as error:
         raise RecordingError(f"the fact '{name}' cannot be recorded, only numbers, texts, and lists and dicts of these: {error}") from None
+    return text
+
+
+def _check_keys(value: Any) -> None:
+    """Checks that all keys of the dicts in a value are texts: JSON would make texts of others."""
+    if isinstance(value, dict):
+        for key, part in cast("dict[Any, Any]", value).items():
+            if not isinstance(key, str):
+                raise TypeError(f"the keys of a dict must be texts (got {key!r})")
+            _check_keys(part)
+    elif isinstance(value, (list, tuple)):
+        for part in cast("list[Any]", value):
+            _check_keys(part)

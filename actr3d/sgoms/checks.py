@@ -20,8 +20,7 @@ def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:
     Raises:
         PlanError: If no production matches a unit task.
     """
-    productions = [p for part in subtree(agent) if isinstance(part, ProductionSystem) for p in rules_of(part).productions]
-    productions = [p for p in productions if not p.name.startswith("sgoms_")]
+    productions = _own_productions(agent)
     tasks = {task: name for name, unit in units.items() for task in unit.unit_tasks}
     taken = {name for production in productions for name in _named(production, "unit_task")}
     if not any(_takes_any(production) for production in productions):
@@ -39,8 +38,19 @@ def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:
                     warn_at(f"production '{production.name}' can never match: {what}{did_you_mean(name, known)}", production.original_func)
 
 
+def matches_state(agent: Any, state: str) -> bool:
+    """Returns whether a production of the modeller's matches a state of planning units or unit tasks by its name."""
+    return any(state in _named(production, "state") for production in _own_productions(agent))
+
+
+def _own_productions(agent: Any) -> list[Production]:
+    """Returns an agent's productions without those that every SGOMS agent has."""
+    productions = [p for part in subtree(agent) if isinstance(part, ProductionSystem) for p in rules_of(part).productions]
+    return [p for p in productions if not p.name.startswith("sgoms_")]
+
+
 def _named(production: Production, key: str) -> Iterator[str]:
-    """Yields the names that a production matches in the buffers of planning units and unit tasks."""
+    """Yields the names that a production matches in a slot of the buffers of planning units and unit tasks."""
     for condition in production.conditions:
         if condition.name in ("b_unit_task", "b_plan_unit") and condition.key == key and condition.op == "is":
             yield condition.value

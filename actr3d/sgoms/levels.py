@@ -8,6 +8,7 @@ from actr3d.actr import Buffer, Chunk
 from actr3d.actr.chunks.chunk import as_text
 from actr3d.actr.lint.slot_names import is_slip
 from actr3d.errors import PlanError, alternatives, did_you_mean, followed
+from actr3d.sgoms.checks import matches_state
 from actr3d.sgoms.units import BEFORE, END, START, plans_of
 from actr3d.trace import Trace
 
@@ -15,6 +16,10 @@ LEVELS = ("b_plan_unit", "b_unit_task", "b_method", "b_operator")
 """The buffers of the four levels, from the top."""
 STATES = ("begin", "retrieving", "choosing", "running", "finished", "resuming", "lost")
 """The states of a planning unit."""
+STEM = "finish"
+"""A state of a unit task that begins with this is a form of «finished», and so is a beginning of this."""
+SHORTEST = 3
+"""The number of letters from which a beginning of the stem counts."""
 
 
 def _agent_of(buffer: Buffer) -> Any:
@@ -199,7 +204,7 @@ class UnitTaskLevel(Level):
         """Begins a unit task, or sets its state.
 
         Raises:
-            PlanError: If no planning unit has such a unit task.
+            PlanError: As for `modify`.
         """
         made = self._made(chunk)
         if "unit_task" not in made:
@@ -218,7 +223,8 @@ class UnitTaskLevel(Level):
         """Changes slots of the present unit task.
 
         Raises:
-            PlanError: If no planning unit has such a unit task, or its state is a misspelt «finished».
+            PlanError: If no planning unit has such a unit task, or its state is a misspelt «finished» or another form of that
+                word, and no production matches it by its name.
         """
         if "unit_task" in args:
             plans_of(_agent_of(self)).check_unit_task(as_text(args["unit_task"]))
@@ -240,8 +246,13 @@ class UnitTaskLevel(Level):
         super().clear()
 
     def _check_state(self, state: object) -> None:
-        if is_slip(as_text(state), END):
-            raise PlanError(f"b_unit_task: state '{as_text(state)}' does not end the unit task; did you mean '{END}'?")
+        name = as_text(state)
+        word = name.casefold()
+        form = name != END and (word.startswith(STEM) or (len(word) >= SHORTEST and STEM.startswith(word)))
+        if (form or is_slip(name, END)) and not matches_state(_agent_of(self), name):
+            raise PlanError(
+                f"b_unit_task: state '{name}' does not end the unit task; did you mean '{END}'? No production matches the state '{name}'"
+            )
 
 
 class Interruption(Buffer):

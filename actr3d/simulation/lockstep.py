@@ -7,7 +7,7 @@ from typing import Any
 
 from actr3d.actr.modules.port import Request, note_request
 from actr3d.clock import seconds
-from actr3d.errors import Actr3dError, SimulationError
+from actr3d.errors import SimulationError
 from actr3d.simulation.agents import Agents, Factory
 from actr3d.simulation.commands import Command
 from actr3d.simulation.event_log import EventLog
@@ -185,6 +185,6 @@ def _ask(request: Request, word: Callable[..., Any]) -> Any:
     """Passes a request to its body; adds the modeller's line to an error."""
     try:
         return word(request.word, *request.values, **request.named)
-    except Actr3dError as error:
+    except Exception as error:
         note_request(error, request.port, request.site)
         raise

@@ -461,7 +461,7 @@ class Simulation:
 
         Args:
             path: The file; it must not exist.
-            facts: More facts of the run: plain values by names that a recording does not use itself.
+            facts: More facts of the run: plain values, as of a `Recording`, by names that a recording does not use itself.
 
         Raises:
             SimulationError: If the run has begun already, or is being recorded.

@@ -9,7 +9,7 @@ from typing import Any
 from actr3d.actr.explain.module_reasons import outcome_of
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.modules.answers import plain_answer
-from actr3d.actr.modules.port import Request, Searching
+from actr3d.actr.modules.port import RAW_VISION, Request, Searching, note_request
 from actr3d.camera import CameraParameters, View
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import ParameterError, VisionError
@@ -63,8 +63,8 @@ class Vision(WithParameters, Searching):
             attention; or `emma`, or an `Emma`, whose time grows with the angle from the line of sight.
         saccades: Whether the eye turns to the feature of a top-down request, within its limits; the chunk then arrives not before.
             Without it, EMMA's times are as if the eye turned there and back.
-        private_view: Whether other ports of the agent are refused the raw view (`body.request("view")`). With False they receive it:
-            the agent then bypasses vision, and the trace shows this.
+        private_view: Whether other ports of the agent are refused the raw view (`body.request("view")`), and the pictures `image`
+            and `depth`. With False they receive them: the agent then bypasses vision, and the trace shows this.
         camera: The fields of `CameraParameters`: `rows=50`, `horizontal_fov=2.0`.
 
     Raises:
@@ -188,7 +188,7 @@ class Vision(WithParameters, Searching):
             self._cancel(self._top_down)
         if self._bottom_up is not None:
             self._waiting, self._bottom_up = self._bottom_up, None
-        self._top_down = search = self._begin(Search(query, bottom_up=False, begun=0, due=0), self.delay)
+        self._top_down = search = self._begin(Search(query, bottom_up=False, site=self._call_site()), self.delay)
         if self.error:
             self.error = False
         if not self.busy:
@@ -215,7 +215,7 @@ class Vision(WithParameters, Searching):
             if earlier is not None:
                 self._cancel(earlier)
         self._bottom_up = self._waiting = None
-        search = Search(query, bottom_up=True, begun=0, due=0)
+        search = Search(query, bottom_up=True, site=self._call_site())
         if self._top_down is not None:
             self._waiting = search
         else:
@@ -235,11 +235,11 @@ class Vision(WithParameters, Searching):
         return search
 
     def _kept_private(self, sensor: str) -> str | None:
-        return "Vision(private_view=False)" if sensor == "view" and self.private_view else None
+        return "Vision(private_view=False)" if sensor in RAW_VISION and self.private_view else None
 
     def _ask_for_view(self, search: Search) -> None:
         embodiment = self._joined("view")
-        embodiment.outbox.append(Request(embodiment.body, "view", (), self._camera, self._call_site(), self, search))
+        embodiment.outbox.append(Request(embodiment.body, "view", (), self._camera, search.site, self, search))
 
     def _cancel(self, search: Search) -> None:
         """Cancels a search; generators that wait for it continue."""
@@ -248,7 +248,14 @@ class Vision(WithParameters, Searching):
     # -- views
 
     def _take(self, request: Request, answer: View) -> None:
-        """Processes a view: searches it, and schedules the end of the search."""
+        try:
+            self._process(request, answer)
+        except Exception as error:
+            note_request(error, self, request.site)
+            raise
+
+    def _process(self, request: Request, answer: View) -> None:
+        """Searches a view, and schedules the end of the search."""
         search = request.reading
         sch = self.sch
         if search is None or (search is not self._top_down and search is not self._bottom_up):

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from random import Random
 from typing import Any
 
-from actr3d.actr.modules.port import Reading
+from actr3d.actr.modules.port import CallSite, Reading
 from actr3d.camera import View
 from actr3d.vision.feature import Feature
 from actr3d.vision.request_parser import Query, Test, refusal
@@ -29,6 +29,7 @@ class Search(Reading):
         "query",
         "refused",
         "seen",
+        "site",
         "view",
         "weights",
         "why",
@@ -54,15 +55,17 @@ class Search(Reading):
     perceived: View | None
     """The view with noise, in which the features were found."""
 
-    def __init__(self, query: Query, *, bottom_up: bool, begun: int, due: int) -> None:
+    def __init__(self, query: Query, *, bottom_up: bool, site: CallSite | None = None) -> None:
         super().__init__("view")
         self.query = query
         self.bottom_up = bottom_up
-        self.begun = begun
+        self.site = site
+        """Where the modeller makes the request."""
+        self.begun = 0
         """Time of its start [us]."""
-        self.due = due
+        self.due = 0
         """Time of its end [us], unless the view comes later."""
-        self.seen = begun
+        self.seen = 0
         """Time of its view [us]."""
         self.clear()
         self._value = None

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from inspect import get_annotations
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
+from actr3d.errors import VisionError, did_you_mean
 from actr3d.weak_cache import weak_cache
 
 
@@ -50,18 +53,35 @@ MetresPerSecond = Annotated[float, SPEED]
 Label = Annotated[int, LABEL]
 """An opaque label of an object in a view; 0 means no object, and is left out of chunks."""
 
+UNITS = ("Metres", "Radians", "Seconds", "MetresPerSecond", "Label")
+"""The names of these types, for hints."""
+
 
 @weak_cache
 def units_of(thing: type | Callable[..., Any]) -> dict[str, Unit]:
     """Returns the units of a feature's fields, or of a detector's parameters, by name."""
-    return {name: _unit_of(hint) for name, hint in get_type_hints(thing, include_extras=True).items()}
+    return {name: _unit_of(hint) for name, hint in types_of(thing).items()}
 
 
 @weak_cache
 def bounds_of(function: Callable[..., Any]) -> dict[str, tuple[Any, ...]]:
     """Returns the bounds in the types of a detector's parameters, such as `Ge(0)`, by name."""
-    hints = get_type_hints(function, include_extras=True)
-    return {name: get_args(hint)[1:] if get_origin(hint) is Annotated else () for name, hint in hints.items()}
+    return {name: get_args(hint)[1:] if get_origin(hint) is Annotated else () for name, hint in types_of(function).items()}
+
+
+def types_of(thing: type | Callable[..., Any]) -> dict[str, Any]:
+    """Returns the types of a feature's fields, or of a detector's parameters, by name.
+
+    Raises:
+        VisionError: If one of them is an unknown name.
+    """
+    try:
+        return get_type_hints(thing, include_extras=True)
+    except NameError as error:
+        unknown = error.name or ""
+        places = [name for name, hint in get_annotations(thing).items() if unknown in re.findall(r"\w+", str(hint))]
+        of = "".join(f".{name}" if isinstance(thing, type) else f"({name})" for name in places[:1])
+        raise VisionError(f"detector: {thing.__name__}{of}: {error}{did_you_mean(unknown, UNITS)}") from None
 
 
 def _unit_of(hint: Any) -> Unit:

@@ -97,6 +97,8 @@ PYTHON_2 = [
     ("try:\n    pass\nexcept (A, B), e:\n    pass", 3),
     ('raise ValueError, "x"', 1),
     ('exec "a" in space', 1),
+    ("if 1: exec 'a=1'", 1),
+    ("x = 2; exec code", 1),
     ("if a <> b:\n    pass", 1),
     ("x = `y`", 1),
     ("x = 0777", 1),

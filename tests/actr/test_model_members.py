@@ -104,6 +104,13 @@ def test_static_class_and_property_members_stay_what_they_are() -> None:
     assert "double" not in vars(thing)
 
 
+@pytest.mark.parametrize("name", ["run", "now", "get_children", "traced", "explain"])
+@pytest.mark.parametrize("value", [3, [], None])
+def test_methods_that_a_model_needs_are_not_replaced_by_values(name: str, value: Any) -> None:
+    with pytest.raises(SchedulerError, match=rf"Odd\.{name}: the name '{name}' is reserved in every model; use another"):
+        type("Odd", (Model,), {name: value})
+
+
 @pytest.mark.parametrize("name", ["name", "log", "random", "changes", "sch", "parent"])
 def test_attributes_named_like_internals_do_not_break_the_tree(name: str) -> None:
     kind = type("Odd", (Model,), {name: "mine"})

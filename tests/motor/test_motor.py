@@ -255,6 +255,25 @@ def test_a_movement_is_prepared_for_as_long_as_a_parameter_says_and_can_be_stopp
     assert angle(simulation, "torso_yaw") == near(12, abs=0.01)
 
 
+def test_a_change_of_speed_is_prepared_too_and_the_former_speed_goes_on_meanwhile() -> None:
+    simulation, motor = moving(preparation=0.25, initiation=0.05)
+    motor.walk(1.0)
+    motor.turn(speed=20)
+    simulation.step(50)
+    base = simulation.world.bodies["walker"].base
+    motor.walk(0.5)
+    motor.turn(speed=-40)
+    simulation.step(29)
+    assert (base.speed[0], math.degrees(base.speed[2])) == (near(1.0, abs=0.02), near(20, abs=0.5))
+    simulation.step(15)
+    assert (base.speed[0], math.degrees(base.speed[2])) == (near(0.5, abs=0.02), near(-40, abs=0.5))
+    motor.walk(1.5)
+    motor.walk(0)
+    motor.walk(0.8)
+    simulation.step(60)
+    assert base.speed[0] == near(0.8, abs=0.02), "a change that is still prepared is gone with the walk that it changes"
+
+
 # -- what is refused
 
 
@@ -269,6 +288,30 @@ def test_a_busy_group_refuses_and_others_do_not() -> None:
     assert angle(simulation, "left_shoulder_yaw") == near(-20, abs=0.01)
     told = [event.data for event in simulation.trace or () if event.kind == "refused"]
     assert told == [{"movement": "compress_shoulder_left", "why": "busy"}]
+
+
+@pytest.mark.parametrize(
+    ("command", "given"),
+    [
+        ("walk", (0.5,)),
+        ("walk", (0,)),
+        ("turn", (None, 10)),
+        ("turn", (None, 0)),
+        ("feel", ("x",)),
+        ("stop", ("torso",)),
+        ("stop", ()),
+        ("rotate_torso", (10,)),
+    ],
+)
+def test_any_accepted_command_resets_what_an_earlier_one_was_refused_for(command: str, given: tuple[Any, ...]) -> None:
+    simulation, motor = moving()
+    motor.walk(1)
+    motor.turn(speed=20)
+    simulation.step(5)
+    motor.rotate_torso(200)
+    assert (motor.error, motor.refusal) == (True, "limit")
+    getattr(motor, command)(*given)
+    assert (motor.error, motor.refusal) == (False, None)
 
 
 def test_what_would_move_a_busy_group_too_is_refused_as_a_whole() -> None:
@@ -483,6 +526,13 @@ def test_a_joint_that_slides_needs_a_speed() -> None:
     _, motor = moving(body=ImportedBody(name="arm", text=ARM))
     with pytest.raises(WorldError, match=r"joint 'grip' slides; give its speed \[m/s\]"):
         motor.rotate("grip")
+
+
+@pytest.mark.parametrize("speed", [None, 0.1])
+def test_a_joint_that_slides_without_muscles_is_reported_before_its_speed_is_asked_for(speed: float | None) -> None:
+    _, motor = moving(body=ImportedBody(name="arm", text=ARM.replace('<velocity name="c" joint="grip" kv="200"/>', "")))
+    with pytest.raises(WorldError, match="joint 'grip' has no muscles"):
+        motor.rotate("grip", angle=0.05, speed=speed)
 
 
 def test_a_weak_limb_that_comes_as_near_as_it_can_is_done_and_one_that_cannot_is_blocked() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import sqlite3
@@ -315,12 +316,21 @@ def test_a_run_is_recorded_once_at_a_time(tmp_path: Path) -> None:
         ({"kind": "program"}, "a recording sets 'kind' itself"),
         ({"form": "mine"}, "a recording sets 'form' itself"),
         ({"subject": object()}, "the fact 'subject' cannot be recorded, only numbers, texts, and lists and dicts of these"),
+        ({"subject": {"a": [{1: 2}]}}, r"the fact 'subject' cannot be recorded, .*: the keys of a dict must be texts \(got 1\)"),
     ],
 )
 def test_facts_that_are_none_of_the_users_are_refused(facts: dict[str, Any], message: str, tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match=message):
         driving().record(tmp_path / "run", **facts)
     assert not (tmp_path / "run").exists()
+
+
+def test_facts_are_read_back_as_they_were_given_and_tuples_as_lists(tmp_path: Path) -> None:
+    given: dict[str, Any] = {"x": {"a": [1, -2.5, math.inf, None, True, {"b": "c"}]}, "y": (2, (3, "z"))}
+    driving().record(tmp_path / "run", **given).close()
+    with Recorded(tmp_path / "run") as recorded:
+        assert recorded.facts["x"] == given["x"]
+        assert recorded.facts["y"] == [2, [3, "z"]]
 
 
 def test_names_that_sqlite_has_a_meaning_for_are_names_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

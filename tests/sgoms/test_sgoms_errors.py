@@ -76,6 +76,10 @@ class Agent(SGOMS):
         ("b_unit_task.modify(unit_task='tlak')", "has a unit task 'tlak'; did you mean 'talk'"),
         ("b_unit_task.set('state:start')", "names no unit task"),
         ("b_unit_task.modify(state='finishd')", "state 'finishd' does not end the unit task; did you mean 'finished'"),
+        ("b_unit_task.modify(state='finish')", "state 'finish' does not end the unit task; did you mean 'finished'"),
+        ("b_unit_task.modify(state='Finishing')", "state 'Finishing' does not end the unit task; did you mean 'finished'"),
+        ("b_unit_task.modify(state='fin')", "state 'fin' does not end the unit task; did you mean 'finished'"),
+        ("b_unit_task.set('unit_task:boil state:finish')", "state 'finish' does not end the unit task; did you mean 'finished'"),
         ("b_unit_task.clear()", "'boil' is cleared, and nothing would follow it; end it with b_unit_task.modify"),
         ("b_interrupt.set('planning_unit:phoen when:now')", "b_interrupt: Agent has no planning unit 'phoen'; did you mean 'phone'"),
         ("b_interrupt.set('planning_unit:phone')", "has no valid 'when'; 'when:now' interrupts"),
@@ -87,6 +91,12 @@ def test_misspelt_names_in_productions(text: str, message: str) -> None:
     with pytest.raises(PlanError, match=message.replace("?", r"\?")) as caught:
         cooking(body(text))
     assert any("in production 'boil' (planning.py:" in note for note in caught.value.__notes__)
+
+
+def test_a_state_that_resembles_finished_is_one_of_the_agents_own_if_a_production_matches_it() -> None:
+    more = "    def stir(b_unit_task='unit_task:boil state:finishing'):\n        b_unit_task.modify(state='finished')\n"
+    agent = cooking(body("b_unit_task.modify(state='finishing')") + more).agent
+    assert agent.b_plan_unit["state"] == "finished"
 
 
 def test_a_unit_task_that_no_production_takes_on() -> None:

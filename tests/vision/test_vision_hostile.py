@@ -184,6 +184,18 @@ def test_no_text_no_thing_and_no_view_reaches_a_chunk_by_it(returned: str, says:
         lives(text)
 
 
+@pytest.mark.parametrize("bottom_up", [False, True])
+@pytest.mark.parametrize(("code", "kind"), [("(1,)", VisionError), ("1 / 0", ZeroDivisionError), ("things(view, 1)", TypeError)])
+def test_an_error_of_it_names_the_production_and_the_line_that_asked(code: str, kind: type[Exception], bottom_up: bool) -> None:
+    text = f"@detector(Thing)\ndef things(view): return {code}\n{LOOK}vision.request('feature:thing', bottom_up={bottom_up})\n"
+    with pytest.raises(kind) as caught:
+        lives(text)
+    line = (HEAD + text).split("\n").index('        goal.set("done")') + 2
+    assert f"  asked for by 'walker.vision' in production 'look' (looking.py:{line})" in caught.value.__notes__
+    if isinstance(caught.value, Actr3dError):
+        assert caught.value.location == ("looking.py", line)
+
+
 def test_what_numpy_gives_comes_as_plain_rounded_numbers() -> None:
     text = "@detector(Thing)\ndef things(view): return [Thing(distance=np.float32(1.23456), direction=0, flat=np.bool_(True))]\n"
     chunk = dict(lives(text + LOOK + "vision.request('feature:thing')").visual.chunk)
@@ -207,6 +219,24 @@ def test_parameters_need_no_unit() -> None:
 def test_words_that_requests_could_not_reach_are_refused(text: str, says: str) -> None:
     with pytest.raises(VisionError, match=says):
         lives(text)
+
+
+POLE = """
+@dataclass(frozen=True, kw_only=True)
+class Pole(Feature):
+    w: FIELD
+@detector(Pole)
+def poles(view, *, most: MOST = 1): return ()
+"""
+
+
+@pytest.mark.parametrize(
+    ("field", "most", "place"),
+    [("'Meters'", "Metres", "Pole.w"), ("Metres", "'Meters'", r"poles\(most\)"), ("'list[Meters]'", "int", "Pole.w")],
+)
+def test_an_unknown_type_is_named_with_its_place_in_the_detector(field: str, most: str, place: str) -> None:
+    with pytest.raises(VisionError, match=rf"^detector: {place}: name 'Meters' is not defined; did you mean 'Metres'\?"):
+        lives(f"{POLE.replace('FIELD', field).replace('MOST', most)}{LOOK}vision.request('feature:pole', most=2)")
 
 
 def test_salience_and_encoding_set_later_count_and_are_checked() -> None:

@@ -121,6 +121,16 @@ def test_the_option_is_true_or_false() -> None:
         Vision(None, private_view="no")  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("sensor", ["image", "depth"])
+def test_pictures_of_the_eye_are_as_private_as_its_view(sensor: str) -> None:
+    text = SEEING.replace('eye.ASK("view", rows=2)', f'eye.get("{sensor}", width=4, height=3)').replace("Seeing", "Drawing")
+    kinds = {"extra": text.replace("PARTS", PRIVATE), "walker": "Drawing"}
+    with pytest.raises(
+        SimulationError, match=rf"for '{sensor}': agent 'walker' \(Drawing\) keeps it private to its module 'walker.vision'"
+    ):
+        run(PRIVATE, **kinds)
+
+
 @pytest.mark.parametrize("word", [["view"], None, 3])
 def test_what_is_no_word_is_refused_as_before(word: Any) -> None:
     text = "class Odd(ACTR):\n    visual = Buffer()\n    vision = Vision(visual)\n    body = BodyPort()\n"

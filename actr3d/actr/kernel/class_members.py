@@ -81,6 +81,22 @@ def copy_objects(objects: dict[str, Any], living: Callable[[object], bool]) -> d
     return copies
 
 
+def check_methods(kind: type) -> None:
+    """Checks that a class has no values under the names of methods that every model needs.
+
+    Raises:
+        SchedulerError: If it has one.
+    """
+    for name in sorted(RESERVED & vars(kind).keys()):
+        member: object = vars(kind)[name]
+        if not callable(member) and not hasattr(type(member), "__get__"):
+            raise _reserved(kind, name)
+
+
+def _reserved(kind: type, name: str) -> SchedulerError:
+    return SchedulerError(f"{kind.__name__}.{name}: the name '{name}' is reserved in every model; use another")
+
+
 def check_names(kind: type, members: Mapping[str, Any]) -> None:
     """Checks that a class does not use the names that hold the tree together.
 
@@ -93,4 +109,4 @@ def check_names(kind: type, members: Mapping[str, Any]) -> None:
         value = members[name]
         usable = hasattr(value, "choice") if name == "random" else name == "log" and type(value) not in PLAIN_TYPES
         if not usable:
-            raise SchedulerError(f"{kind.__name__}.{name}: the name '{name}' is reserved in every model; use another")
+            raise _reserved(kind, name)

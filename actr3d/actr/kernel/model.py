@@ -11,7 +11,7 @@ from weakref import ref
 
 from actr3d.actr.chunks.chunk import LASTING_TYPES, PLAIN_TYPES, PlaceName
 from actr3d.actr.kernel import log as logs
-from actr3d.actr.kernel.class_members import Method, check_names, class_members, copy_objects, has_setter, minding_properties
+from actr3d.actr.kernel.class_members import Method, check_methods, check_names, class_members, copy_objects, has_setter, minding_properties
 from actr3d.actr.kernel.events import Event, Trigger
 from actr3d.actr.kernel.profile import PROFILES, PYTHON_ACTR, Profile
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
@@ -226,6 +226,7 @@ class Model(TreeNode):
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
+        check_methods(cls)
         setters = {name for name, member in vars(cls).items() if has_setter(member)}
         if setters:
             cls._setters = cls._setters | setters

@@ -72,6 +72,9 @@ def python_2_reason(source: str, error: SyntaxError) -> tuple[int, str] | None:
             for sign, reason in _SIGNS:
                 if sign.search(lines[line - 1]):
                     return line, reason
+    statement = re.match(r"Missing parentheses in call to '(print|exec)'", error.msg)
+    if statement is not None:
+        return number, f"{'an' if statement[1] == 'exec' else 'a'} {statement[1]} statement"
     if isinstance(error, TabError):
         return number, "tabs and spaces mixed in its indentation"
     return None

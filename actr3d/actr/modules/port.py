@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
+from traceback import walk_tb
 from typing import Any, NamedTuple
 
 from actr3d.actr.kernel.events import Event
@@ -14,10 +15,10 @@ from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.kernel.tree import lineage, path_of, subtree
 from actr3d.actr.modules.answers import answer_slots, plain_answer
 from actr3d.errors import Actr3dError, SimulationError
-from actr3d.warnings import is_library
+from actr3d.warnings import is_library, of_library
 
-RAW_VISION = ("view",)
-"""Sensors that only a vision module should ask a body for; any other part of an agent thereby bypasses vision."""
+RAW_VISION = ("view", "image", "depth")
+"""Sensors of the eye, that only a vision module should ask a body for; any other part of an agent thereby bypasses vision."""
 
 
 class Reading(Event):
@@ -189,8 +190,8 @@ class BodyPort(Port):
     are available when the next tick begins. `busy` is True while answers are outstanding, and `error` after an empty answer to
     `request`.
 
-    `view` is the raw view: an agent that asks for it bypasses vision, which the trace records (`outside_vision`). If the agent
-    has a `Vision`, that keeps the view private, unless it is made with `private_view=False`.
+    `view` is the raw view, `image` and `depth` are pictures: an agent that asks for one of them bypasses vision, which the trace
+    records (`outside_vision`). If the agent has a `Vision`, that keeps them private, unless it is made with `private_view=False`.
 
     Args:
         buffer: The buffer for the answers to `request`; None for a port without `request`.
@@ -276,10 +277,14 @@ def _given(values: tuple[Any, ...], named: Mapping[str, Any]) -> dict[str, Any]:
     return {**({"values": values} if values else {}), **({"named": named} if named else {})}
 
 
-def note_request(error: Actr3dError, port: Port, site: CallSite | None) -> None:
-    """Adds to an error which part of an agent made the request that caused it, and where."""
+def note_request(error: Exception, port: Port, site: CallSite | None) -> None:
+    """Adds to an error which part of an agent made the request that caused it, and where.
+
+    That is also the location of an error of the library, unless a line of the modeller's led to it, as in a detector.
+    """
     where = ""
     if site is not None:
         where = f" in {site.describe()}"
-        error.at(site.file, site.line)
+        if isinstance(error, Actr3dError) and all(of_library(frame.f_code) for frame, _ in walk_tb(error.__traceback__)):
+            error.at(site.file, site.line)
     error.add_note(f"  asked for by '{path_of(port)}'{where}")

@@ -5,12 +5,12 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar, TypeVar, get_origin, get_type_hints
+from typing import Any, ClassVar, TypeVar, get_origin
 
 from actr3d.camera import View
 from actr3d.errors import VisionError
 from actr3d.vision.feature import Feature, slot_names, sound
-from actr3d.vision.units import PLAIN, Unit, bounds_of, units_of
+from actr3d.vision.units import PLAIN, Unit, bounds_of, types_of, units_of
 
 Detect = Callable[..., tuple[Feature, ...]]
 """A function of a view, and of parameters by keyword that have defaults; it reads the view and nothing else."""
@@ -82,7 +82,7 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
         raise VisionError(f"detector: takes the class of what it finds, a subclass of Feature (got {finds!r})")
     name = finds.called()
     slots = slot_names(finds)
-    unknown = [field for field, kind in get_type_hints(finds).items() if field not in slots and get_origin(kind) is not ClassVar]
+    unknown = [field for field, kind in types_of(finds).items() if field not in slots and get_origin(kind) is not ClassVar]
     if unknown:
         raise VisionError(f"detector '{name}': '{unknown[0]}' is not a field; write @dataclass(frozen=True, kw_only=True) above the class")
 
