@@ -213,6 +213,13 @@ def test_a_file_that_changes_on_disk_is_never_written_over_unseen(pages: Callabl
     page.get_by_role("button", name="Save it again").click()
     shows(page, ".file-status", "saved")
     assert "again = 1" in path.read_text(encoding="utf-8")
+    path.unlink()
+    shows(page, ".strip", "gone from the folder")
+    unsaved(page).to_have_text("")
+    page.get_by_role("button", name="Save and run").click()
+    shows(page, "#status", "ended")
+    expect(page.locator(".strip")).to_have_count(0)
+    assert "again = 1" in path.read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
