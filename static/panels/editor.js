@@ -39,8 +39,9 @@ async function runShown() {
 
 Object.assign(keys, { run: runShown, save: saveShown });
 const hasText = () => Boolean(shownDocument());
-command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText });
-command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText });
+const noText = () => "No file is open in the editor.";
+command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText, why: noText });
+command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText, why: noText });
 noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor");
 
 const onShown = (work) => () => shownDocument() && work(shownDocument());
@@ -60,7 +61,7 @@ commandsOf(() =>
       openTab.value = "editor";
       requestAnimationFrame(work); // once the text is visible
     };
-    return { text, key, group: "Editor", work: inText, ready };
+    return { text, key, group: "Editor", work: inText, ready, why: noText };
   }),
 );
 noteKey("Mod+Click", "Go to the definition", "Editor");
