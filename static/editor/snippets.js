@@ -48,7 +48,7 @@ def \${walls}(view, *, least: Metres = \${1.0}):
     whole: true,
     source: `@design
 def \${my_design}():
-    """\${Says in a line what is compared.}"""
+    """\${Say in one line what is compared.}"""
     return Design(
         model="\${my_model.py}",
         factors={"\${width}": [\${0.5, 0.8}]},

@@ -35,7 +35,9 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
     expect(options(page).first).to_have_text("Step back by one tick of 10 msRun←")
     expect(options(page).first).to_have_attribute("aria-disabled", "true")
     colour = "(element) => getComputedStyle(element).color"
-    assert options(page).first.locator("b").first.evaluate(colour) == options(page).first.evaluate(colour)  # nothing of it looks as if it can be run
+    assert options(page).first.locator("b").first.evaluate(colour) == options(page).first.evaluate(
+        colour
+    )  # nothing of it looks as if it can be run
     page.keyboard.press("Enter")
     refusal = page.get_by_role("dialog").get_by_role("status")
     expect(refusal).to_have_text("«Step back by one tick of 10 ms» is not possible now. The run is at its start.")
