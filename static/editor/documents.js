@@ -171,7 +171,7 @@ function made(path, file, draft) {
 
 function put(document) {
   documents.value = new Map([...documents.value, [document.path, document]]);
-  document.note.value = document.restored ? "unsaved work of before, brought back" : "";
+  document.note.value = document.restored ? "brought back from an earlier visit" : "";
   watching.changed(document);
 }
 

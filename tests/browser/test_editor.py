@@ -87,13 +87,13 @@ def test_the_last_good_run_stays_until_the_text_loads_again(pages: Callable[...,
     unsaved(page).to_have_text(re.compile("unsaved"))
     assert path.read_text(encoding="utf-8") == MIND.read_text(encoding="utf-8")
     page.keyboard.press("Control+Enter")
-    shows(page, ".strip", "run of the former text; the new one does not load")
+    shows(page, ".strip", "an earlier version of the file; the new one cannot be loaded")
     assert path.read_text(encoding="utf-8").startswith("x = = 1\n")
     shows(page, "#time", "0.05 s")
     page.click("#step")
     shows(page, "#time", "0.06 s")  # the former run goes on
     open_tab(page, "Messages")
-    shows(page, ".former", "former text")
+    shows(page, ".former", "earlier version")
     page.locator("#log .link", has_text="loads.py:1").click()
     expect(page.locator(".cm-activeLine")).to_have_text("x = = 1")
     page.keyboard.press("Control+Shift+k")
@@ -102,7 +102,7 @@ def test_the_last_good_run_stays_until_the_text_loads_again(pages: Callable[...,
     for _ in range(3):
         page.keyboard.press("Control+s")  # one after the other, although nobody waits
     shows(page, ".file-status", "saved$|savedSave")
-    shows(page, ".strip", "What is shown is the run of the former text")
+    shows(page, ".strip", "This run was made from an earlier version of the file")
     shows(page, "#time", "0.06 s")  # saving runs nothing
     page.get_by_role("button", name="Run the new one").click()
     shows(page, "#status", "ended")
