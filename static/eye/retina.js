@@ -12,15 +12,16 @@ export function extentText([row, label, , x1, x2, d1, d2]) {
 
 /**
  * @param view The answer to the question `view`; null if there is none yet.
+ * @param pointed The label of an object to frame; null for that under the pointer.
  */
-export function Retina({ view }) {
+export function Retina({ view, pointed = null }) {
   const canvas = useRef(null);
   const [under, setUnder] = useState(null);
   const isDark = dark.value;
-  const draw = () => drawView(canvas.current, view, isDark, under?.[1]);
+  const draw = () => drawView(canvas.current, view, isDark, pointed ?? under?.[1]);
   const newest = useRef(draw);
   newest.current = draw;
-  useLayoutEffect(draw, [view, isDark, under]);
+  useLayoutEffect(draw, [view, isDark, under, pointed]);
   useLayoutEffect(() => {
     const watcher = new ResizeObserver(() => newest.current());
     watcher.observe(canvas.current);

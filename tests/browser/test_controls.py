@@ -316,6 +316,7 @@ def test_at_150_percent_the_3d_view_s_tools_are_one_row_and_the_hint_is_whole(pa
         expect(tools.get_by_role("button", name=name)).to_be_visible()
     tools.get_by_role("button", name="Overlays").click()
     expect(page.get_by_role("group", name="Overlays")).to_be_visible()
+    assert page.get_by_role("tab", name="Messages").evaluate(right) <= 853
     hint = page.get_by_role("button", name="Real time: press + to go faster")
     assert hint.evaluate("one => one.scrollWidth <= one.clientWidth && one.offsetWidth <= one.parentElement.clientWidth")
     page.keyboard.press("?")

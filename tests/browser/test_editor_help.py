@@ -173,3 +173,4 @@ def test_pieces_are_inserted_where_they_may_stand(opened: Callable[[str], Page],
     compile(written, "written.py", "exec")
     assert len(written) > len(SHORT)
     assert written.count("from actr3d.actr import *") == 1
+    assert "from dataclasses" not in written.partition("from actr3d")[2]  # imports are in the order of the templates
