@@ -96,12 +96,17 @@ def build(parameters: Parameters) -> Simulation:
 `,
 };
 
-/** Returns imports in the order of a file: those of the standard library, of other packages, and of this one, with a line between. */
-function importLines(imports) {
-  const group = (line) => (/^from (actr3d|workbench)/.test(line) ? 2 : /^from (annotated_types|numpy)/.test(line) ? 1 : 0);
-  const groups = [0, 1, 2].map((wanted) => imports.filter((line) => group(line) === wanted).join("\n"));
-  return groups.filter(Boolean).join("\n\n");
+/** Returns the place of an import in a file: 0 among those of the standard library, 1 of other packages, 2 of this one. */
+export const groupOf = (line) => (/^from (actr3d|workbench)/.test(line) ? 2 : /^from (annotated_types|numpy)/.test(line) ? 1 : 0);
+
+/** Returns imports by their groups, as the text of each group. */
+export function importGroups(imports) {
+  const groups = [0, 1, 2].map((group) => ({ group, text: imports.filter((line) => groupOf(line) === group).join("\n") }));
+  return groups.filter(({ text }) => text);
 }
+
+/** Returns imports in the order of a file, with a line between the groups. */
+export const importLines = (imports) => importGroups(imports).map(({ text }) => text).join("\n\n");
 
 const file = (...parts) => `${parts.map((part) => part.trimEnd()).join("\n\n\n")}\n`;
 
