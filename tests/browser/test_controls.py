@@ -322,6 +322,10 @@ def test_at_150_percent_the_3d_view_s_tools_are_one_row_and_the_hint_is_whole(pa
     page.keyboard.press("?")
     manual = page.get_by_role("dialog").get_by_role("link", name="Manual of ACT-R 3D")
     assert manual.evaluate("({ parentElement: line }) => line.scrollHeight <= line.clientHeight")
+    page.emulate_media(media="print")  # the open panel is printed, without what can be pressed
+    expect(page.get_by_role("tabpanel")).to_be_visible()
+    expect(page.get_by_role("tablist")).to_be_hidden()
+    page.emulate_media(media="screen")
 
 
 @pytest.mark.slow
