@@ -8,7 +8,6 @@ from collections.abc import Iterable
 from functools import lru_cache
 from typing import Self
 
-
 SAME_KIND = 0.1
 """How much more similar two names are that end with the same word."""
 

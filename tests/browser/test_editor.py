@@ -524,7 +524,7 @@ def test_failed_opening_or_saving_is_reported(pages: Callable[..., Page], workbe
     edit(page, "loaded.py")
     shows(page, ".problems", "No problems")  # which a check without loading cannot know
     assert not mark.exists()
-    page.get_by_role("button", name=re.compile("^Load it")).click()
+    page.get_by_role("button", name=re.compile("^Check the model")).click()
     shows(page, ".problems", "line 3ValueError: at its top")
     assert mark.is_dir()
     write(page, "#" * 1_000_001)

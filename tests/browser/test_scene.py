@@ -230,7 +230,8 @@ def test_between_slow_pictures_of_a_hurried_run_it_rests(page: Page) -> None:
 
 SHARPENING = """async () => {
     const { Sharpness } = await part("scene/sharpness.js");
-    const clock = performance.now, drawn = [], pixels = { ratio: 1, getPixelRatio: () => pixels.ratio, setPixelRatio: (now) => (pixels.ratio = now) };
+    const clock = performance.now, drawn = [];
+    const pixels = { ratio: 1, getPixelRatio: () => pixels.ratio, setPixelRatio: (now) => (pixels.ratio = now) };
     let now = 1000, isBusy = false;
     performance.now = () => now;
     const draw = () => (sharpness.before(), drawn.push(pixels.ratio / devicePixelRatio));

@@ -104,7 +104,8 @@ def complete_part(text: str, start: int) -> list[Item]:
     for part in scene_parts():
         known = re.search(rf"^from actr3d\.world import (\*|(\([^)]*|[^\n]*)\b{part.word}\b)", text, re.MULTILINE)
         needs = "" if known else f"from actr3d.world import {part.word}"
-        found.append(Item(label=part.word, type="class", detail="part", boost=OWN, text=part.text, apply=f"{part.word}(${{}})", needs=needs))
+        inserted = f"{part.word}(${{}})"
+        found.append(Item(label=part.word, type="class", detail="part", boost=OWN, text=part.text, apply=inserted, needs=needs))
     return found
 
 

@@ -60,7 +60,8 @@ def features() -> tuple[Word, ...]:
 @cache
 def scene_parts() -> tuple[Word, ...]:
     """Returns the kinds of parts of a scene."""
-    kinds = {name: getattr(world, name) for name in world.__all__}
+    names: list[str] = vars(world)["__all__"]
+    kinds = {name: getattr(world, name) for name in names}
     return tuple(Word(word=name, text=(kind.__doc__ or "").split("\n\n")[0]) for name, kind in kinds.items() if hasattr(kind, "add_to"))
 
 
