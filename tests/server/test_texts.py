@@ -74,7 +74,7 @@ def test_a_run_is_outdated_only_while_it_waits_at_its_start_and_its_file_has_ano
     (tmp_path / "model.py").write_text(WALKING + "\n", encoding="utf-8")
     assert talk.session.summary()["outdated"]
     talk.say("step")
-    assert not talk.session.is_outdated  # what it has done is kept
+    talk.wait(lambda: not talk.session.is_outdated)  # what it has done is kept
 
 
 def test_pages_are_notified_when_a_loaded_module_is_saved(desk: Desk, tmp_path: Path) -> None:

@@ -75,13 +75,14 @@ class Python:
     def complete(self, explicit: ExplicitText, path: str, at: int) -> list[Item]:
         """Returns what can be written at a position; nothing in a string or a comment. Private names are left out until one begins."""
         script, (line, column) = self._script(explicit.text, path), explicit.place(at)
-        found = [one for one in script.complete(line, column) if one.type != "path"]
+        *above, current = explicit.text.split("\n")[:line]
+        public = _public_names("\n".join([*above, current[:column]]))
+        named = [one for one in script.complete(line, column) if public is None or one.name in public]
+        found = [one for one in named if one.type != "path"]
         start = column - len(found[0].name_with_symbols) + len(found[0].complete or "") if found else column
         if start == column or _before(explicit, line, start + 1) != "_":
             found = [one for one in found if not one.name.startswith("_")]
-        *above, current = explicit.text.split("\n")[:line]
-        public = _public_names("\n".join([*above, current[:column]]))
-        found = [one for one in found if public is None or one.name in public][:MAX_ITEMS]
+        found = found[:MAX_ITEMS]
         owners = (
             [f"{one.full_name}." for one in script.infer(line, start - 2)] if start > 1 and _before(explicit, line, start) == "." else []
         )
