@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from functools import lru_cache
 from typing import Self
+
+SAME_KIND = 0.1
+"""How much more similar two names are that end with the same word."""
 
 
 class Actr3dError(Exception):
@@ -123,6 +127,10 @@ class ModelWarning(UserWarning):
     """
 
 
+WITHOUT_BODY = "an agent without a body needs neither build nor Simulation: its parameters are plain assignments at the top of the file"
+"""The hint for users who build a simulation without a world."""
+
+
 def did_you_mean(word: str, known: Iterable[object], cutoff: float = 0.6) -> str:
     """Returns `"; did you mean 'x'?"` for the known name nearest to `word`, or an empty string."""
     near = nearest(word, tuple(sorted({str(name) for name in known} - {word})), cutoff)
@@ -150,8 +158,20 @@ def alternatives(word: object, known: Iterable[object], has: str = "there are:",
 
 @lru_cache(maxsize=1024)
 def nearest(word: str, names: tuple[str, ...], cutoff: float) -> str | None:
-    """Returns the name that is most similar to `word`; None if no similarity (0 to 1) is at least `cutoff`."""
-    return next(iter(difflib.get_close_matches(word, names, n=1, cutoff=cutoff)), None)
+    """Returns the name that is most similar to `word`; None if no similarity (0 to 1) is at least `cutoff`.
+
+    The last word of a name says what kind of thing it names: of names about equally similar, one with the same last word is preferred.
+    """
+
+    def similarity(name: str) -> float:
+        return difflib.SequenceMatcher(None, name, word).ratio() + SAME_KIND * (_last_word(name) == _last_word(word))
+
+    return max(sorted(difflib.get_close_matches(word, names, n=5, cutoff=cutoff)), key=similarity, default=None)
+
+
+def _last_word(name: str) -> str:
+    """Returns the last word of a name in CamelCase or snake_case: `Noise` of `DMNoise`."""
+    return re.split(r"_|(?<=[a-zA-Z])(?=[A-Z][a-z])", name)[-1]
 
 
 def hint_for(error: Exception, names: Iterable[object] = ()) -> str:

@@ -10,11 +10,12 @@ const sources = [];
  * @property {string | null} key As in KeyboardEvent, preceded by "Shift+" or "Mod+" (Ctrl, or Cmd on a Mac); null for none.
  * @property {() => void} work Runs it.
  * @property {() => boolean} ready Whether it can be run now.
+ * @property {() => string} why If it cannot be run: the reason, as a sentence, or "" if there is nothing to add.
  */
 
 /** Registers a command, and returns it. */
-export function command({ text, group, key = null, work, ready = () => true }) {
-  const made = { text, group, key, work, ready };
+export function command({ text, group, key = null, work, ready = () => true, why = () => "" }) {
+  const made = { text, group, key, work, ready, why };
   known.push(made);
   return made;
 }
@@ -31,7 +32,7 @@ export function permanent() {
 
 /** Returns the commands that depend on what is shown. */
 export function present() {
-  return sources.flatMap((list) => list().map((one) => ({ key: null, ready: () => true, ...one })));
+  return sources.flatMap((list) => list().map((one) => ({ key: null, ready: () => true, why: () => "", ...one })));
 }
 
 /** Returns the command of a key. */

@@ -14,7 +14,7 @@ const STATUSES = {
   none: { line: () => "no run", text: () => "No model is shown: choose one above." },
   loading: { line: loadingLine, text: () => opening.value?.text ?? "The model is being loaded …" },
   unloadable: { line: () => "the model cannot be loaded", text: () => `This model cannot be loaded: ${FIX}` },
-  ready: { line: withReason, text: ({ kind }) => (kind === "program" ? "Press Run: the program makes its model as it goes." : "Press Run, or step.") },
+  ready: { line: withReason, text: ({ kind }) => (kind === "program" ? "Press Run: the program creates its agent while it runs." : "Press Run, or step.") },
   running: { line: withReason, text: () => "It is shown as soon as the run pauses." },
   busy: { line: ({ status, at }) => `${status ?? "loading"} (busy${at})`, text: ({ at }) => `The model is busy${at}; ${STOP}` },
   halted: { line: ({ signal }) => `stopped by ${signal}`, text: ({ signal }) => `The model's process was stopped by ${signal} and does not continue. Stop ends it.` },

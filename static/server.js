@@ -113,7 +113,8 @@ export function sessionOf(model, sessions) {
   return sessions.findLast((session) => session.model === model && session.recorded === null);
 }
 
-/** Shows a model: its open session, or a new one. With `run` it runs from its start, with the file's current text. */
+/** Shows a model: its open session, or a new one. With `run` it runs from its start, with the file's current text; a run that still waits at
+ * its start is always one of the current text. */
 export async function showModel(model, { run = false } = {}) {
   const wanted = wish();
   if (model !== session.peek()?.model || session.peek().recorded !== null) leave();
@@ -122,7 +123,7 @@ export async function showModel(model, { run = false } = {}) {
   if (!wanted() && !run) return;
   if (wanted()) opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
   try {
-    if (there && run) await call("POST", `/api/sessions/${there.id}/command`, { command: { type: "restart", run } });
+    if (there && (run || there.outdated)) await call("POST", `/api/sessions/${there.id}/command`, { command: { type: "restart", run } });
     const { id } = there ?? (await call("POST", "/api/sessions", { model, run, real_time: true }));
     if (wanted()) show(id);
   } catch (error) {

@@ -62,6 +62,7 @@
   let frameBudget = null;
   let last = 0;
 
+  window.scene.isHurried = () => frameBudget?.hurried ?? false;
   window.useFrameBudget = (given) => (frameBudget = given);
 
   window.requestAnimationFrame = (draw) => {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import hashlib
 import io
@@ -153,7 +154,7 @@ class ModelFolder:
             FileError: If the file cannot be written.
         """
         where = self.locate(path)
-        data = _encoded(text, self._line_end(where))
+        data = _encoded(text, *self._line_end_and_mark(where))
         if len(data) > LARGEST:
             raise FileError(f"the size of a model file: must be <= {LARGEST:,} bytes (got {len(data):,})")
         now = self.version(where) if where.is_file() else None
@@ -171,11 +172,12 @@ class ModelFolder:
             raise FileError(f"cannot write '{path}': {error.strerror}") from None
         return ModelFile(path=path, text=text, version=self.version(where))
 
-    def _line_end(self, where: Path) -> str:
-        """Returns the line ending of a file, so that a file keeps its own."""
+    def _line_end_and_mark(self, where: Path) -> tuple[str, bytes]:
+        """Returns the line ending of a file and the byte order mark at its start, if any, so that a file keeps its own."""
         with contextlib.suppress(OSError), where.open("rb") as file:
-            return "\r\n" if file.readline(LARGEST).endswith(b"\r\n") else "\n"
-        return "\n"
+            first = file.readline(LARGEST)
+            return "\r\n" if first.endswith(b"\r\n") else "\n", codecs.BOM_UTF8 if first.startswith(codecs.BOM_UTF8) else b""
+        return "\n", b""
 
     def copy(self, path: str, to: str) -> ModelFile:
         """Writes a copy of a model file under another name.
@@ -265,15 +267,16 @@ def _writable(where: Path) -> bool:
     return os.access(where, os.W_OK) and bool(where.stat().st_mode & 0o222)
 
 
-def _encoded(text: str, line_end: str) -> bytes:
-    """Returns a text as bytes, in the encoding that its first lines declare.
+def _encoded(text: str, line_end: str, mark: bytes) -> bytes:
+    """Returns a text as bytes, in the encoding that its first lines declare; in UTF-8 after a byte order mark, if there was one.
 
     Raises:
         FileError: If the encoding is unknown, or lacks a character of the text.
     """
     try:
         declared, _ = tokenize.detect_encoding(io.BytesIO(text.encode("utf-8")).readline)
-        return text.replace("\n", line_end).encode(declared)
+        data = text.replace("\n", line_end).encode(declared)
+        return mark + data if declared == "utf-8" else data
     except UnicodeEncodeError as error:
         if 0xD800 <= ord(error.object[error.start]) < 0xE000:
             raise FileError("the text has an unpaired surrogate character, which no file can hold") from None

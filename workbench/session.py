@@ -444,6 +444,12 @@ class Session(Broadcast, Receiver):
         return Path(start.record)
 
     @property
+    def is_outdated(self) -> bool:
+        """Whether the run on screen waits at its start and its file has another text by now: nothing is lost if it is made again."""
+        waits = self._shown is not None and not self.is_loading and never_begun(self.state, self.log) and self.path.is_file()
+        return waits and self._shown is not None and self._shown.is_stale(digest_of_file(self.path))
+
+    @property
     def alive(self) -> bool:
         """Whether the current run still accepts commands."""
         return self._shown is not None and not self._shown.over.is_set()
@@ -514,6 +520,7 @@ class Session(Broadcast, Receiver):
             "model": self.model,
             "run": self.run,
             "alive": self.alive,
+            "outdated": self.is_outdated,
             "loading": self.is_loading,
             "ending": self._ending,
             "status": None if self.state is None else self.state.status,

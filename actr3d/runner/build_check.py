@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 
 from actr3d.actr.kernel.source_code import syntax_tree
-from actr3d.errors import ModelFileError
+from actr3d.errors import WITHOUT_BODY, ModelFileError
 
 RIGHT = "`def build(parameters: Parameters) -> Simulation`, where Parameters is a frozen dataclass, or `def build() -> Simulation`"
 
@@ -54,7 +54,7 @@ def problem_of_build(source: str) -> tuple[int, str] | None:
     return (
         None
         if wrong is None
-        else (node.lineno, f"{wrong}; write {RIGHT}" + ("" if said else "; rename it if it is not to build the model"))
+        else (node.lineno, f"{wrong}; write {RIGHT}" + ("" if said else f"; rename it if it is not to build the model; {WITHOUT_BODY}"))
     )
 
 

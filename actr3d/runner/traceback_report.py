@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from actr3d.actr.loading.python2 import PYTHON_2_NAMES
-from actr3d.errors import Actr3dError, ModelFileError
+from actr3d.errors import Actr3dError, ModelFileError, hint_for
 from actr3d.warnings import is_library
 
 PYTHON = tuple({sysconfig.get_path(kind) for kind in ("stdlib", "platstdlib", "purelib", "platlib")})
@@ -56,7 +56,17 @@ def traceback_report(error: BaseException, hidden: str | None = None) -> Traceba
     message = "".join(report.format_exception_only()).strip()
     if isinstance(error, Actr3dError):
         message = message.removeprefix(_name_of(error))
+    if hint := _hint(error, message):
+        message, text = (words.replace(str(error), f"{error}{hint}") for words in (message, text))
     return TracebackReport(message=message, text=text, file=file, line=line)
+
+
+def _hint(error: BaseException, message: str) -> str:
+    """Returns `"; did you mean 'x'?"` for a name that nothing defines; an empty string if Python has a hint itself, or there is none."""
+    if not isinstance(error, NameError) or not str(error) or error.__traceback__ is None or "id you mean" in message:
+        return ""
+    *_, (frame, _) = traceback.walk_tb(error.__traceback__)
+    return hint_for(error, {**frame.f_builtins, **frame.f_globals, **frame.f_locals})
 
 
 def failure(error: BaseException) -> str:

@@ -8,7 +8,7 @@ from numbers import Real
 from typing import Any, cast
 
 from actr3d.clock import microseconds, seconds
-from actr3d.errors import SimulationError, did_you_mean
+from actr3d.errors import WITHOUT_BODY, SimulationError, did_you_mean
 from actr3d.world import Scene, World
 
 
@@ -25,7 +25,8 @@ def world_of(scene: Any, seed: int) -> World:
             raise SimulationError(f"Simulation.scene: the world must be at its start, as the agents are (it has come to {now:g} s)")
         return scene
     if not isinstance(scene, Scene):
-        raise SimulationError(f"Simulation.scene: must be a Scene or a World (got {scene!r})")
+        hint = f"; {WITHOUT_BODY}" if scene is None else ""
+        raise SimulationError(f"Simulation.scene: must be a Scene or a World (got {scene!r}){hint}")
     return World(scene, seed)
 
 

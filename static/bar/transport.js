@@ -7,7 +7,7 @@ import { Icon } from "../parts/icon.js";
 import { optimistic } from "../parts/optimistic_value.js";
 import { order, say } from "../server.js";
 import { chooseRecording } from "./models.js";
-import { isOver } from "../run_status.js";
+import { isOver, runStatus } from "../run_status.js";
 import { alive, complain, running, session, state } from "../store.js";
 import { orderThere } from "../timeline/seek.js";
 import { embedded } from "../windows.js";
@@ -71,7 +71,7 @@ function isIdle(id) {
 
 /** Registers a command of the run, with the id of its button. */
 function registered(id, text, key, work) {
-  return command({ text, key, group: "Run", work, ready: () => !isIdle(id) });
+  return command({ text, key, group: "Run", work, ready: () => !isIdle(id), why: () => (id === "back" && alive.value ? "The run is at its start." : runStatus.value.text) });
 }
 
 const toggling = registered("run", "Run or pause; in the past, continue from here", " ", toggle);

@@ -23,7 +23,7 @@ export async function define(document) {
   const { doc } = document.state;
   const found = await answered(document, "define");
   if (!found) return say(document, "there is no name here whose definition is known");
-  if (found.path === null) return say(document, `${found.name} is defined in ${found.module}; point at it to read what it is`);
+  if (found.path === null) return say(document, `${found.name} comes from ${found.module}: point at the name to read its documentation`);
   if (found.at === null) return open(found.path, found.line);
   if (document.state.doc === doc) goToPosition(found.at);
 }

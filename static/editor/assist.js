@@ -16,7 +16,7 @@ import {
   syntaxTree,
 } from "../vendor/codemirror.js";
 import { helpWith } from "./language.js";
-import { completionsOf } from "./snippets.js";
+import { completionsOf, insertPiece } from "./snippets.js";
 
 const PAUSE = 150; // after a change, before the parameters of a call are asked for again [ms]
 const HOVER = 350; // [ms]
@@ -59,13 +59,13 @@ function isLineStart(state, at) {
 }
 
 function option(item, state, at) {
-  const { label, type, detail, boost, text } = item;
+  const { label, type, detail, boost, text, needs } = item;
   return {
     label,
     type,
     detail,
     boost,
-    apply: item.apply ? applied(item.apply) : undefined,
+    apply: needs ? (view, _, from, to) => insertPiece(view, { source: item.apply, needs: [needs] }, from, to) : item.apply ? applied(item.apply) : undefined,
     info: async () => {
       const said = text ? { title: "", text } : await helpWith(state, "document item", at, label);
       return said && (said.title || said.text) ? { dom: documentation(said) } : null;

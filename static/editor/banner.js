@@ -1,8 +1,7 @@
 // A banner between the text and its problems for decisions: the file has changed, or the run is one of an earlier text.
 
 import { html } from "../vendor/preact.js";
-import { close } from "./documents.js";
-import { saveAgain } from "./files.js";
+import { close, save } from "./documents.js";
 import { former, runNew } from "./stale_run.js";
 
 /** @param document The text that is shown. @param compare Shows both texts if the file has another one. */
@@ -12,7 +11,7 @@ export function Strip({ document, compare }) {
   if (theirs?.text === null) {
     return html`<div class="strip bad" role="alert">
       <span>The file is gone from the folder.</span>
-      <button onClick=${() => saveAgain(document)}>Save it again</button>
+      <button onClick=${() => save(document)}>Save it again</button>
       <button onClick=${() => close(document.path)}>Close</button>
     </div>`;
   }

@@ -55,6 +55,19 @@ const own = Prec.highest(
   ]),
 );
 
+/** The texts of CodeMirror's panels, in the style of the page. */
+const PHRASES = {
+  next: "Next",
+  previous: "Previous",
+  all: "All",
+  "match case": "Match case",
+  regexp: "Regular expression",
+  "by word": "Whole words",
+  replace: "Replace",
+  "replace all": "Replace all",
+  go: "Go",
+};
+
 const EXTENSIONS = [
   own,
   lineNumbers(),
@@ -77,6 +90,8 @@ const EXTENSIONS = [
   highlightActiveLineGutter(),
   highlightSelectionMatches(),
   search({ top: true }),
+  EditorState.phrases.of(PHRASES),
+  EditorView.lineWrapping,
   look,
   EditorView.contentAttributes.of({ tabindex: "0" }), // what can be scrolled can be reached
   EditorView.clickAddsSelectionRange.of((event) => event.altKey), // Ctrl and click goes to a definition

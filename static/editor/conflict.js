@@ -29,8 +29,8 @@ export function Conflict({ document, choose }) {
   }, [theirs]);
   return html`<div class="conflict" role="group" aria-label="Conflict">
     <p>
-      <b>${document.path}</b> has changed on disk since it was read here. <span class="mine">Green lines</span> are yours,
-      <span class="theirs">red lines</span> are those on disk. Nothing is written until you choose.
+      <b>${document.path}</b> has changed on disk since it was read here. Lines with <span class="mine">+</span> are yours, lines
+      with <span class="theirs">−</span> are those on disk. Nothing is written until you choose.
     </p>
     <div class="code" ref=${place}></div>
     <footer class="tools">

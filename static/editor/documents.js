@@ -1,6 +1,7 @@
 // The open texts: each with its history, the file's text when it was read, and what is known of the file now.
 
 import { signal } from "../vendor/preact.js";
+import { listModels } from "../bar/models.js";
 import { call } from "../server.js";
 import { complain } from "../store.js";
 import { freshState, watchText } from "./code.js";
@@ -170,7 +171,7 @@ function made(path, file, draft) {
 
 function put(document) {
   documents.value = new Map([...documents.value, [document.path, document]]);
-  document.note.value = document.restored ? "unsaved work of before, brought back" : "";
+  document.note.value = document.restored ? "brought back from an earlier visit" : "";
   watching.changed(document);
 }
 
@@ -194,7 +195,8 @@ export function renamed(path, file) {
 
 // -- the file
 
-/** Writes a text to its file; returns whether it was written. If the file has changed meanwhile, reports that and writes nothing.
+/** Writes a text to its file; returns whether it was written. If the file has changed meanwhile, reports that and writes nothing; a file
+ * that is gone is made again.
  * `over` is the version to replace; by default the one that the text was edited from. Only one save at a time: a second save
  * during the first would take the first one's text for somebody else's. */
 export function save(document, over = undefined) {
@@ -211,7 +213,8 @@ async function saveNow(document, over) {
   try {
     if (over !== undefined) return await write(document, over);
     await look(document, true).catch(() => {}); // a conflict should be visible before the save
-    return !document.theirs.value && (await write(document, document.version));
+    const theirs = document.theirs.value;
+    return (theirs === null || theirs.text === null) && (await write(document, theirs ? null : document.version));
   } finally {
     document.saving.value = false;
   }
@@ -229,6 +232,7 @@ async function write(document, over) {
     document.note.value = "saved";
     document.settle();
     keepNow(document);
+    if (over === null) listModels().catch(() => {}); // a new file
     return true;
   } catch (error) {
     document.since = before.compose(document.since);
@@ -251,7 +255,10 @@ export async function look(document, again = false) {
   if (document.version !== known || document.path !== path || (document.saving.value && !again)) return; // saved or renamed meanwhile
   if (file.version === known) document.theirs.value = null;
   else if (file.text !== null && (!document.dirty.value || file.text === document.text)) take(document, file);
-  else document.theirs.value = { text: file.text, version: file.version };
+  else {
+    document.theirs.value = { text: file.text, version: file.version };
+    document.note.value = ""; // it was true of the former file
+  }
 }
 
 /** Replaces the text by the file's; this can be undone. */

@@ -4,7 +4,7 @@ import { choose, listModels, models, note } from "../bar/models.js";
 import { asked, confirmed } from "../parts/dialog.js";
 import { call, sinceNow } from "../server.js";
 import { complain, session } from "../store.js";
-import { close, open, renamed, save, shown } from "./documents.js";
+import { close, open, renamed, shown } from "./documents.js";
 import { TEMPLATES } from "./templates.js";
 
 /** Creates a new model file, and shows its text here and its run in the page, as choosing a model does. */
@@ -55,11 +55,6 @@ export async function remove(path, unsaved) {
   } catch (error) {
     complain(error.message);
   }
-}
-
-/** Saves a text whose file was deleted as a new file. */
-export function saveAgain(document) {
-  return save(document, null).then(listModels);
 }
 
 /** Asks for a name until it is valid or the user cancels; returns the file. */

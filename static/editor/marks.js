@@ -51,8 +51,14 @@ export const marking = marksField;
 /** Whether there are more details than the message. */
 export const hasMore = ({ message, detail }) => detail.trim().includes("\n") && detail.trim() !== message.trim();
 
-/** Returns marks without duplicates of a message at a line; a run's mark, which has more details, is preferred. */
-function distinct(marks) {
+/** Returns the line of a mark and the first name that its message quotes. */
+const subjectOf = ({ from, message }) => `${from} ${/'([^']+)'/.exec(message)?.[1]}`;
+
+/** Returns marks without duplicates of a message at a line; a run's mark, which has more details, is preferred. An error of the run also
+ * replaces what the check says of the same name at its line. */
+function distinct(all) {
+  const failed = new Set(all.filter(({ origin, level }) => origin === "run" && level === "error").map(subjectOf));
+  const marks = all.filter((mark) => mark.origin === "run" || !failed.has(subjectOf(mark)));
   const last = new Map(marks.toSorted((one, other) => (one.origin < other.origin ? -1 : 1)).map((mark) => [`${mark.from} ${mark.message}`, mark]));
   return [...last.values()];
 }

@@ -2,7 +2,7 @@
 
 import { snippet } from "../vendor/codemirror.js";
 import { read } from "./language.js";
-import { AGENT, BODY } from "./templates.js";
+import { AGENT, BODY, groupOf, importGroups, importLines } from "./templates.js";
 
 const ACTR = "from actr3d.actr import *";
 
@@ -48,7 +48,7 @@ def \${walls}(view, *, least: Metres = \${1.0}):
     whole: true,
     source: `@design
 def \${my_design}():
-    """\${Says in a line what is compared.}"""
+    """\${Say in one line what is compared.}"""
     return Design(
         model="\${my_model.py}",
         factors={"\${width}": [\${0.5, 0.8}]},
@@ -73,7 +73,7 @@ export function completionsOf() {
 }
 
 /** Inserts a piece between two positions of the text that is shown, and the imports that it needs. */
-function insertPiece(view, piece, from, to) {
+export function insertPiece(view, piece, from, to) {
   const source = piece.source.replace("my_model.py", (read.path() ?? "my_model.py").split("/").at(-1));
   const missing = piece.needs.filter((line) => !imports(view.state.doc).some(({ text }) => text === line));
   if (missing.length === 0) return snippet(source)(view, null, from, to);
@@ -82,17 +82,38 @@ function insertPiece(view, piece, from, to) {
   return snippet(source)(view, null, changes.mapPos(from, 1), changes.mapPos(to, 1));
 }
 
-/** Returns the lines of a text that are imports at its top level. */
+/** Returns the imports at the top level of a text: {text, number, end}, with the numbers of their first and last lines. */
 function imports(doc) {
-  return Array.from(doc.iterLines(), (text, n) => ({ text, number: n + 1 })).filter(({ text }) => /^(from|import)\s/.test(text));
+  const lines = [...doc.iterLines()];
+  const endOf = (n) => (lines[n].includes("(") ? lines.findIndex((text, at) => at >= n && text.includes(")")) : n);
+  return lines.flatMap((text, n) => (/^(from|import)\s/.test(text) ? { text, number: n + 1, end: Math.max(n, endOf(n)) + 1 } : []));
 }
 
-/** Returns the change that adds imports: after the last one, or otherwise after the docstring. */
+const IMPORT = /^(from [\w.]+ import )([\w, ]+)$/;
+
+/** Returns the changes that add imports: names to the line that imports others from their module; the other imports by their groups, each
+ * where it belongs among those of the text, or all after the docstring. */
 function importing(doc, lines) {
-  const last = imports(doc).at(-1);
-  if (last) return { from: doc.line(last.number).to, insert: `\n${lines.join("\n")}` };
+  const known = imports(doc).map((one) => ({ ...one, group: groupOf(one.text) }));
+  if (known.length > 0) {
+    const joined = [];
+    const others = lines.filter((line) => {
+      const [, module, names] = IMPORT.exec(line) ?? [];
+      const same = module && known.find(({ text }) => text.startsWith(module) && IMPORT.test(text));
+      if (!same) return true;
+      const missing = names.split(", ").filter((name) => !IMPORT.exec(same.text)[2].split(", ").includes(name));
+      if (missing.length > 0) joined.push({ from: doc.line(same.number).to, insert: `, ${missing.join(", ")}` });
+      return false;
+    });
+    const added = importGroups(others).map(({ group, text }) => {
+      const before = known.findLast((one) => one.group <= group);
+      if (!before) return { from: doc.line(known[0].number).from, insert: `${text}\n\n` };
+      return { from: doc.line(before.end).to, insert: `${before.group === group ? "\n" : "\n\n"}${text}` };
+    });
+    return [...joined, ...added];
+  }
   const [docstring = ""] = /^\s*("""[^]*?"""|'''[^]*?''')[^\n]*\n?/.exec(doc.sliceString(0, 20_000)) ?? [];
-  return { from: docstring.length, insert: `${docstring ? "\n" : ""}${lines.join("\n")}\n\n\n` };
+  return { from: docstring.length, insert: `${docstring ? "\n" : ""}${importLines(lines)}\n\n\n` };
 }
 
 /** Inserts a piece at the cursor: in its line if that is empty, otherwise below; what stands outside of classes, below the class or
@@ -101,7 +122,7 @@ export function insertAtCursor(view, piece) {
   const { doc, selection } = view.state;
   let line = doc.lineAt(selection.main.head);
   if (piece.whole) {
-    line = doc.line(Math.max(line.number, imports(doc).at(-1)?.number ?? 1)); // what it imports must come before it
+    line = doc.line(Math.max(line.number, imports(doc).at(-1)?.end ?? 1)); // what it imports must come before it
     while (line.number < doc.lines && !/^\S/.test(doc.line(line.number + 1).text)) line = doc.line(line.number + 1);
     while (line.number > 1 && line.text.trim() === "") line = doc.line(line.number - 1);
   }

@@ -24,7 +24,7 @@ export const former = computed(() => {
   if (!facts.stale) return null;
   // The newest attempt failed if it reported an error and is not the run that is shown.
   const failed = facts.attempt !== facts.shown_attempt && notices.value.some(({ level, attempt }) => level === "error" && attempt === facts.attempt);
-  const text = `What is shown is the run of the former text${failed ? "; the new one does not load" : ""}.`;
+  const text = `This run was made from an earlier version of the file${failed ? "; the new one cannot be loaded" : ""}.`;
   return { text, failed, path: facts.model };
 });
 

@@ -1,15 +1,14 @@
 // The pieces of new models: short and runnable.
 
-const DOCSTRING = '"""Says in a line what this model is about."""';
+const ABOUT = "Say in one line what this model is about.";
 
-/** An agent alone: {imports, source}. */
-export const AGENT = {
-  imports: ["from actr3d.actr import *"],
-  source: `class Agent(ACTR):
+/** Returns an agent that counts; `last` is the text of the number at which it ends. */
+const counting = (last) => `class Agent(ACTR):
     goal = Buffer()
+    last = ${last}
 
     def init():
-        goal.set("count number:1 last:5")
+        goal.set(f"count number:1 last:{last}")
 
     def count_on(goal="count number:?number last:!?number"):
         print(number)
@@ -18,8 +17,20 @@ export const AGENT = {
     def finish(goal="count number:?number last:?number"):
         print(number)
         goal.clear()
-`,
-};
+`;
+
+/** An agent alone: {imports, source}. */
+export const AGENT = { imports: ["from actr3d.actr import *"], source: counting("5") };
+
+/** The beginning of a program: its docstring, and its parameters, which must come before any other code. */
+const WITH_PARAMETERS = `"""${ABOUT}
+
+What to try
+-----------
+- \`last = 9\`: it counts further.
+"""
+
+last = 5`;
 
 const START = `if __name__ == "__main__":
     model = Agent()
@@ -85,17 +96,22 @@ def build(parameters: Parameters) -> Simulation:
 `,
 };
 
-/** Returns imports in the order of a file: those of the standard library, of other packages, and of this one, with a line between. */
-function importLines(imports) {
-  const group = (line) => (/^from (actr3d|workbench)/.test(line) ? 2 : /^from (annotated_types|numpy)/.test(line) ? 1 : 0);
-  const groups = [0, 1, 2].map((wanted) => imports.filter((line) => group(line) === wanted).join("\n"));
-  return groups.filter(Boolean).join("\n\n");
+/** Returns the place of an import in a file: 0 among those of the standard library, 1 of other packages, 2 of this one. */
+export const groupOf = (line) => (/^from (actr3d|workbench)/.test(line) ? 2 : /^from (annotated_types|numpy)/.test(line) ? 1 : 0);
+
+/** Returns imports by their groups, as the text of each group. */
+export function importGroups(imports) {
+  const groups = [0, 1, 2].map((group) => ({ group, text: imports.filter((line) => groupOf(line) === group).join("\n") }));
+  return groups.filter(({ text }) => text);
 }
+
+/** Returns imports in the order of a file, with a line between the groups. */
+export const importLines = (imports) => importGroups(imports).map(({ text }) => text).join("\n\n");
 
 const file = (...parts) => `${parts.map((part) => part.trimEnd()).join("\n\n\n")}\n`;
 
 /** The templates to choose from: {value, text, source}. */
 export const TEMPLATES = [
-  { value: "agent", text: "An agent alone", source: file(`${DOCSTRING}\n\n${importLines(AGENT.imports)}`, AGENT.source, START) },
-  { value: "body", text: "An agent with a body in a world", source: file(`${DOCSTRING}\n\n${importLines(BODY.imports)}`, BODY.source) },
+  { value: "agent", text: "An agent alone", source: file(`${WITH_PARAMETERS}\n\n${importLines(AGENT.imports)}`, counting("last"), START) },
+  { value: "body", text: "An agent with a body in a world", source: file(`"""${ABOUT}"""\n\n${importLines(BODY.imports)}`, BODY.source) },
 ];

@@ -12,15 +12,16 @@ export function extentText([row, label, , x1, x2, d1, d2]) {
 
 /**
  * @param view The answer to the question `view`; null if there is none yet.
+ * @param pointed The label of an object to frame; null for that under the pointer.
  */
-export function Retina({ view }) {
+export function Retina({ view, pointed = null }) {
   const canvas = useRef(null);
   const [under, setUnder] = useState(null);
   const isDark = dark.value;
-  const draw = () => drawView(canvas.current, view, isDark, under?.[1]);
+  const draw = () => drawView(canvas.current, view, isDark, pointed ?? under?.[1]);
   const newest = useRef(draw);
   newest.current = draw;
-  useLayoutEffect(draw, [view, isDark, under]);
+  useLayoutEffect(draw, [view, isDark, under, pointed]);
   useLayoutEffect(() => {
     const watcher = new ResizeObserver(() => newest.current());
     watcher.observe(canvas.current);
@@ -35,6 +36,6 @@ export function Retina({ view }) {
   return html`<div class="retina">
     ${view?.extents.length === 0 ? html`<p class="retina-nothing">Nothing is in view of this eye now.</p>` : null}
     <canvas ref=${canvas} role="img" aria-label="What the eye sees: extents by row" onPointerMove=${point} onPointerLeave=${() => setUnder(null)}></canvas>
-    <output class="mono">${under ? extentText(under) : view ? `${counted(view.extents.length, "extent")} in ${counted(view.rows, "row")}` : ""}</output>
+    <output class="mono">${under ? extentText(under) : view ? `${counted(new Set(view.extents.map(([, label]) => label)).size, "object")} in view` : ""}</output>
   </div>`;
 }

@@ -17,6 +17,8 @@ const shown = signal(0); // which opening of the palette is shown; 0 if none
 let openings = 0;
 const search = signal("");
 const chosen = signal(0);
+/** Why the command that was taken last cannot be run; empty if it can. */
+const refusal = signal("");
 /** The names of the commands used last, the newest first. */
 const recent = remembered("recent commands", []);
 
@@ -57,7 +59,8 @@ function offered() {
 }
 
 function take({ of, heading }) {
-  if (!of.ready()) return;
+  refusal.value = of.ready() ? "" : `«${of.text}» is not possible now. ${of.why()}`;
+  if (refusal.value) return;
   shown.value = 0;
   if (heading !== "Manual") recent.value = [nameOf(of), ...recent.value.filter((name) => name !== nameOf(of))].slice(0, MAX_RECENT);
   setTimeout(() => run(of)); // after the palette has closed and given back the focus
@@ -77,6 +80,7 @@ function Entry({ entry, n }) {
   }, [isChosen]);
   return html`<li
     ref=${line}
+    title=${of.ready() ? undefined : `Not possible now. ${of.why()}`}
     id="palette-${n}"
     role="option"
     aria-selected=${isChosen}
@@ -126,7 +130,7 @@ function Palette({ opening }) {
       aria-activedescendant=${at >= 0 ? `palette-${at}` : undefined}
       placeholder=${title}
       value=${search.value}
-      onInput=${(event) => ((search.value = event.currentTarget.value), (chosen.value = 0))}
+      onInput=${(event) => ((search.value = event.currentTarget.value), (chosen.value = 0), (refusal.value = ""))}
       onKeyDown=${press}
     />
     <ul id="palette-list" role="listbox" aria-label="Found">
@@ -135,7 +139,8 @@ function Palette({ opening }) {
         <ul role="group" aria-labelledby=${`palette-group-${number}`}>${list.map(({ entry, n }) => html`<${Entry} key=${`${entry.of.group} ${entry.of.text}`} entry=${entry} n=${n} />`)}</ul>
       </li>`)}
     </ul>
-    ${entries.length === 0 ? html`<p class="empty">Nothing has this in its name.</p>` : null}
+    <p class="palette-refusal" role="status">${refusal.value}</p>
+    ${entries.length === 0 ? html`<p class="empty">Nothing is found: try other words.</p>` : null}
   </dialog>`;
 }
 
@@ -146,6 +151,7 @@ export const opening = command({
   group: "Page",
   work: () => {
     search.value = "";
+    refusal.value = "";
     chosen.value = 0;
     shown.value = ++openings;
   },

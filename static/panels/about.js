@@ -39,7 +39,7 @@ function About() {
   const { answer, problem } = useDescription();
   if (!shown) return html`<p class="empty">${runStatus.value.text}</p>`;
   const isLost = runStatus.value.is === "unloadable";
-  return html`<div class="about-frame"><article class="about">
+  return html`<article class="about">
     <header>
       <span class="mono">${shown.model}</span>
       <span class="stretch"></span>
@@ -49,7 +49,7 @@ function About() {
     ${isLost ? html`<p class="bad">${runStatus.value.text}</p>` : null}
     ${problem ? html`<p class="bad">The description cannot be read: ${problem}</p>` : null}
     ${answer ? html`<${Description} answer=${answer} />` : null}
-  </article></div>`;
+  </article>`;
 }
 
 function Description({ answer: { title, nodes, cut, readable } }) {

@@ -39,8 +39,9 @@ async function runShown() {
 
 Object.assign(keys, { run: runShown, save: saveShown });
 const hasText = () => Boolean(shownDocument());
-command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText });
-command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText });
+const noText = () => "No file is open in the editor.";
+command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText, why: noText });
+command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText, why: noText });
 noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor");
 
 const onShown = (work) => () => shownDocument() && work(shownDocument());
@@ -60,7 +61,7 @@ commandsOf(() =>
       openTab.value = "editor";
       requestAnimationFrame(work); // once the text is visible
     };
-    return { text, key, group: "Editor", work: inText, ready };
+    return { text, key, group: "Editor", work: inText, ready, why: noText };
   }),
 );
 noteKey("Mod+Click", "Go to the definition", "Editor");
@@ -107,18 +108,20 @@ function Files({ path, document }) {
     </select>
     ${tool("file", "New model", makeNew, false)}${tool("copy", "Duplicate", () => duplicate(path))}
     ${tool("pen", "Rename", () => rename(path))}${tool("trash", "Delete", () => remove(path, document.dirty.value))}
-    ${tool("check", "Load it, begin its run, and list what is wrong (this executes its top level and, of a function build, the first 10 ms)", () => checkByLoading(document))}
+    ${tool("check", "Check the model without a run: a file with a function build is executed for the first 10 ms of the run, any other file is only compiled", () => checkByLoading(document))}
     <${Menu} disabled=${!document} />
   </div>`;
 }
 
 function Standing({ document }) {
   const dirty = document.dirty.value;
+  const note = dirty && document.note.value === "saved" ? "" : document.note.value;
   const full = `${folder.value}/${document.path}`;
   return html`<div class="file-status">
     <span class="path" title=${full}><bdi>${full.slice(0, full.lastIndexOf("/") + 1)}</bdi></span>
-    <span class=${dirty ? "state unsaved" : "state quiet"} role="status">
-      ${document.saving.value ? "saving …" : dirty ? `● unsaved${document.note.value && document.note.value !== "saved" ? `: ${document.note.value}` : ""}` : document.note.value}
+    <span class="state" role="status">
+      ${document.saving.value ? html`<span class="quiet">saving …</span>` : dirty ? html`<span class="unsaved">● unsaved</span>` : null}
+      ${note && !document.saving.value ? html`<span class="quiet" title=${note}>${note}</span>` : null}
     </span>
     <button disabled=${!dirty} title="Save (Ctrl S)" onClick=${saveShown}>Save</button>
     <button class="primary" title="Save, and run from the start (Ctrl Enter)" onClick=${runShown}>Save and run</button>

@@ -38,12 +38,13 @@ function Swatch({ colour, distance }) {
   return html`<span class="swatch" style=${{ background: shadeOf(colour, distance, dark.value) }}></span>`;
 }
 
-function Objects({ view }) {
+/** The objects in view; the one under the pointer is framed in the picture, as several may have one colour. */
+function Objects({ view, pointed }) {
   return html`<table>
-    <thead><tr><th>label</th><th class="number">nearest [m]</th><th class="number">x from</th><th class="number">to</th><th class="number">rows</th><th class="number">extents</th></tr></thead>
+    <thead><tr><th>label</th><th class="number">nearest [m]</th>${["left", "right"].map((edge) => html`<th class="number" key=${edge} title="Where its ${edge} edge is in the picture: 0 at the left, 1 at the right">${edge} edge [0–1]</th>`)}<th class="number">rows</th><th class="number" title="Stretches of a row in which it is seen">extents</th></tr></thead>
     <tbody>
       ${objectsOf(view).map(
-        (one) => html`<tr key=${one.label}>
+        (one) => html`<tr key=${one.label} onPointerEnter=${() => (pointed.value = one.label)} onPointerLeave=${() => (pointed.value = null)}>
           <td><${Swatch} colour=${view.colours[one.label]} distance=${one.nearest} />${one.label}</td>
           <td class="number">${one.nearest.toFixed(2)}</td>
           <td class="number">${one.left.toFixed(3)}</td>
@@ -89,6 +90,7 @@ function Eye() {
   const bodies = seeing();
   const body = useSignal(null);
   const kind = useSignal("objects");
+  const pointed = useSignal(null); // the label under the pointer
   const of = bodies.includes(body.value) ? body.value : bodies[0];
   const result = useAnswer(of === undefined ? null : { type: "view", body: of }, { live: true });
   const { answer } = result;
@@ -102,8 +104,8 @@ function Eye() {
       <${CopyButton} text="Copy as JSON" disabled=${!answer} copied=${() => JSON.stringify(answer)} />
     </div>
     <${Waiting} answer=${result} />
-    ${isGone.value && !answer ? null : html`<${Retina} view=${answer} />`}
-    <div class="eye-table" tabindex="0" role="region" aria-label="What is seen, as a table">${answer?.extents.length ? html`<${Table} view=${answer} />` : null}</div>
+    ${isGone.value && !answer ? null : html`<${Retina} view=${answer} pointed=${pointed.value} />`}
+    <div class="eye-table" tabindex="0" role="region" aria-label="What is seen, as a table">${answer?.extents.length ? html`<${Table} view=${answer} pointed=${pointed} />` : null}</div>
   </div>`;
 }
 

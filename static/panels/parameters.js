@@ -3,7 +3,7 @@
 import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { change } from "../bar/branch.js";
 import { seedProblem } from "../bar/seed.js";
-import { boundsText, rangeOf, read, written } from "../parameters/values.js";
+import { rangeOf, read, valuesText, written } from "../parameters/values.js";
 import { call, isLeft, order } from "../server.js";
 import { runStatus } from "../run_status.js";
 import { complain, session, state } from "../store.js";
@@ -144,7 +144,7 @@ function Field({ parameter }) {
     <span class="control"><${Control} parameter=${parameter} id=${id} text=${text} problem=${problem} /><${Slider} parameter=${parameter} text=${text} />${unit ? html`<span class="quiet">${unit}</span>` : null}</span>
     <span class="mark">${live ? html`<span class="badge" title="Acts on the run that goes on, and is recorded">live</span>` : changed ? html`<span class="badge" title="Used from the next run on">next run</span>` : null}</span>
     <p id="${id}-help" class="help">
-      ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}${help} <span class="bounds">${[boundsText(parameter), parameter.default === null ? "" : `default ${written(parameter.default)}`].filter(Boolean).join(" · ")}</span>
+      ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}${help} <span class="bounds">${valuesText(parameter)}</span>
     </p>
   </div>`;
 }

@@ -120,16 +120,17 @@ async function makeVideo() {
 
 /** Whether there is a scene to look at. */
 const isShown = () => Boolean(session.value?.world);
-command({ text: "Next view: with the body, free, from the side, from above, through the eye", key: "v", group: "3D view", work: nextView, ready: isShown });
-const reset = command({ text: "Reset view", key: "Shift+v", group: "3D view", work: resetView, ready: isShown });
-const keep = command({ text: "Save the 3D view as a picture (PNG)", group: "3D view", work: keepPicture, ready: isShown });
-const film = command({ text: "Make a video of the 3D view (WebM) …", group: "3D view", work: makeVideo, ready: isShown });
+const noView = () => "This model has no 3D view.";
+command({ text: "Next view: with the body, free, from the side, from above, through the eye", key: "v", group: "3D view", work: nextView, ready: isShown, why: noView });
+const reset = command({ text: "Reset view", key: "Shift+v", group: "3D view", work: resetView, ready: isShown, why: noView });
+const keep = command({ text: "Save the 3D view as a picture (PNG)", group: "3D view", work: keepPicture, ready: isShown, why: noView });
+const film = command({ text: "Make a video of the 3D view (WebM) …", group: "3D view", work: makeVideo, ready: isShown, why: noView });
 commandsOf(() => (isShown() ? Object.entries(VIEWS).map(([id, title]) => ({ text: `View: ${title}`, group: "3D view", work: () => (view.value = id) })) : []));
 commandsOf(() => (session.value?.overlays ?? []).map(({ name, title }) => {
   const shown = overlay(name).value.value;
-  return { text: `${shown ? "Hide" : "Show"} overlay: ${title}`, group: "3D view", work: () => overlay(name).set(!shown), ready: isShown };
+  return { text: `${shown ? "Hide" : "Show"} overlay: ${title}`, group: "3D view", work: () => overlay(name).set(!shown), ready: isShown, why: noView };
 }));
-const openScene = command({ text: "Open the 3D view in a window of its own", group: "Page", work: () => openWindow("scene"), ready: isShown });
+const openScene = command({ text: "Open the 3D view in a window of its own", group: "Page", work: () => openWindow("scene"), ready: isShown, why: noView });
 noteKey("W A S D Q E", "Move the camera, where it is free", "3D view");
 
 /** Shows the time of the 3D view if it cannot keep up with the run. */

@@ -5,16 +5,18 @@ export function written(value) {
   return value === null || value === undefined ? "" : String(value);
 }
 
-/** Returns the bounds of a parameter as text: "> 0, <= 3". */
-export function boundsText({ above, least, below, most, optional }) {
-  const parts = [
-    above === null ? null : `> ${above}`,
-    least === null ? null : `>= ${least}`,
-    below === null ? null : `< ${below}`,
-    most === null ? null : `<= ${most}`,
-    optional ? "may be empty" : null,
-  ];
-  return parts.filter(Boolean).join(", ");
+/** Returns the bounds of a parameter as text: "more than 0, at most 3", "0.3 to 0.7". */
+function boundsText({ above, least, below, most }) {
+  if (least !== null && most !== null) return `${least} to ${most}`;
+  const words = { "more than": above, "at least": least, "less than": below, "at most": most };
+  return Object.entries(words).flatMap(([word, bound]) => (bound === null ? [] : `${word} ${bound}`)).join(", ");
+}
+
+/** Returns the values that a parameter takes, and its default, as text: "0.3 to 0.7, or empty; default 0.5". */
+export function valuesText(parameter) {
+  const bounds = boundsText(parameter);
+  const values = parameter.optional ? (bounds ? `${bounds}, or empty` : "may be empty") : bounds;
+  return [values, parameter.default === null ? "" : `default ${written(parameter.default)}`].filter(Boolean).join("; ");
 }
 
 /** Returns the range of a slider for a number with both bounds, {min, max, step}; null for other parameters. */
@@ -38,5 +40,5 @@ export function read(parameter, text) {
   if (takes === "whole number" && !Number.isInteger(value)) return { problem: "a whole number is wanted" };
   const { above, least, below, most } = parameter;
   const held = (above === null || value > above) && (least === null || value >= least) && (below === null || value < below) && (most === null || value <= most);
-  return held ? { value } : { problem: `must be ${boundsText({ ...parameter, optional: false })}` };
+  return held ? { value } : { problem: `must be ${boundsText(parameter)}` };
 }

@@ -1,6 +1,6 @@
 // Tabs: one of several panels is shown, chosen by pointer or by arrow keys, with a link to its page of the manual.
 
-import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
+import { html } from "../vendor/preact.js";
 import { ManualLink } from "./manual.js";
 
 /**
@@ -11,9 +11,7 @@ import { ManualLink } from "./manual.js";
  * @param more What comes after the tabs.
  */
 export function Tabs({ label, tabs, shown, more = null }) {
-  const row = useRef(null);
   const open = tabs.find(({ id }) => id === shown.value) ?? tabs[0];
-  useLayoutEffect(() => row.current.querySelector("[aria-selected=true]").scrollIntoView({ block: "nearest", inline: "nearest" }), [open.id]);
 
   function press(event) {
     if (event.shiftKey || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -26,7 +24,7 @@ export function Tabs({ label, tabs, shown, more = null }) {
   }
 
   return html`
-    <div class="tab-row"><div class="tabs" role="tablist" ref=${row} aria-label=${label} onKeyDown=${press}>
+    <div class="tab-row"><div class="tabs" role="tablist" aria-label=${label} onKeyDown=${press}>
       ${tabs.map(({ id, title, badge }) => {
         const mark = badge?.();
         return html`<button

@@ -6,6 +6,7 @@ import { Cutaway } from "./cutaway.js";
 import { Ground } from "./ground.js";
 import { Captions } from "./captions.js";
 import { pictureOf } from "./picture.js";
+import { Sharpness } from "./sharpness.js";
 import { VIEWS } from "./stage.js";
 
 const { scene: given } = window;
@@ -143,6 +144,7 @@ function isWhole() {
 /** Keeps the last picture of the former scene, or what covers the page's first one, until all shapes of a new one are there. */
 function keepFormer(renderer) {
   const { render } = renderer;
+  const sharpness = new Sharpness(renderer, () => renderer.render(viewer.scene, viewer.camera), given.isHurried);
   renderer.render = (scene, seenBy) => {
     const isView = scene === viewer.scene && seenBy === viewer.camera;
     if (isView && !isWhole()) {
@@ -153,6 +155,7 @@ function keepFormer(renderer) {
       }
     }
     since = null;
+    if (isView && !isTaking) sharpness.before();
     render.call(renderer, scene, seenBy);
     if (isView && !isDrawn) parent.postMessage({ drawn: true }, location.origin);
     isDrawn ||= isView;
@@ -161,6 +164,7 @@ function keepFormer(renderer) {
 
 let isDrawn = false; // whether there has been a picture
 let kept = false;
+let isTaking = false; // whether a picture is taken to be saved
 
 viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   if (seenBy !== viewer.camera) return;
@@ -168,7 +172,14 @@ viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   if (!kept) {
     kept = true;
     keepFormer(renderer);
-    given.picture = (sharpness, canvas) => pictureOf({ renderer, viewer, ground, labels }, sharpness, canvas);
+    given.picture = (sharpness, canvas) => {
+      isTaking = true;
+      try {
+        return pictureOf({ renderer, viewer, ground, labels }, sharpness, canvas);
+      } finally {
+        isTaking = false;
+      }
+    };
     viewer.requestRender();
     return; // this picture has begun without the rest
   }

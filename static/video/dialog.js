@@ -81,7 +81,7 @@ export async function askForVideo() {
   }
 
   const Body = () => html`<div class="video">
-    <p class="quiet">It shows the run in its own time, as the 3D view shows it now. Meanwhile the run goes from picture to picture; afterwards it is paused where it is now.</p>
+    <p class="quiet">The video shows a part of the run, with the camera and overlays of the 3D view now. While it is made, the run goes through this part picture by picture; then it returns to the present moment.</p>
     <${Time} name="begin" label="From" first=${true} />
     <${Time} name="end" label="To" />
     <label class="field">

@@ -88,7 +88,7 @@ def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..
     open_tab(page, "Parameters")
     speed = page.locator("#parameter-speed")
     speed.fill("0")
-    expect(page.get_by_role("alert")).to_have_text(re.compile("must be > 0"))
+    expect(page.get_by_role("alert")).to_have_text(re.compile("must be more than 0, at most 3"))
     expect(page.get_by_role("button", name="Restart with these")).to_be_disabled()
     speed.fill("1.1")
     expect(page.locator(".note")).to_have_text(re.compile("One value is not in force yet"))
@@ -114,7 +114,7 @@ def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..
 def test_the_eye_is_shown_small_and_large(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     inset = page.get_by_role("complementary", name="Retina")
-    expect(inset).to_have_text(re.compile(r"\d+ extents in 100 rows"))
+    expect(inset).to_have_text(re.compile(r"\d+ objects? in view"))
     page.get_by_label("Camera", exact=True).select_option("eye")  # the whole view is what the eye sees
     expect(inset).to_have_count(0)
     page.get_by_role("button", name="Eye", exact=True).click()
@@ -316,11 +316,16 @@ def test_at_150_percent_the_3d_view_s_tools_are_one_row_and_the_hint_is_whole(pa
         expect(tools.get_by_role("button", name=name)).to_be_visible()
     tools.get_by_role("button", name="Overlays").click()
     expect(page.get_by_role("group", name="Overlays")).to_be_visible()
+    assert page.get_by_role("tab", name="Messages").evaluate(right) <= 853
     hint = page.get_by_role("button", name="Real time: press + to go faster")
     assert hint.evaluate("one => one.scrollWidth <= one.clientWidth && one.offsetWidth <= one.parentElement.clientWidth")
     page.keyboard.press("?")
     manual = page.get_by_role("dialog").get_by_role("link", name="Manual of ACT-R 3D")
     assert manual.evaluate("({ parentElement: line }) => line.scrollHeight <= line.clientHeight")
+    page.emulate_media(media="print")  # the open panel is printed, without what can be pressed
+    expect(page.get_by_role("tabpanel")).to_be_visible()
+    expect(page.get_by_role("tablist")).to_be_hidden()
+    page.emulate_media(media="screen")
 
 
 @pytest.mark.slow

@@ -113,6 +113,11 @@ def test_help_while_writing(opened: Callable[[str], Page]) -> None:
     page.keyboard.press("Escape")
     expect(page.locator(".documentation")).to_have_count(0)
     expect(page.locator(CODE)).to_be_focused()
+    page.keyboard.press("Control+End")
+    page.keyboard.type("scene = Scene(parts=(Fl")
+    choose(page, "Floor")
+    has_line(page, "Scene(parts=(Floor()")
+    has_line(page, "from actr3d.actr import *from actr3d.world import Floor")
 
 
 def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[str], Page]) -> None:
@@ -145,11 +150,11 @@ def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[st
     page.keyboard.type("Pole")  # in all places at once
     has_line(page, "@detector(Pole)")
     page.keyboard.press("Control+Home")
-    has_line(page, "from actr3d.actr import *from dataclasses import dataclassfrom actr3d.vision import DETECTORS")
+    has_line(page, "from dataclasses import dataclassfrom actr3d.actr import *from actr3d.vision import DETECTORS")
     shows(page, ".problems", "No problems")
     page.keyboard.press("Control+Alt+g")
     expect(page.locator(".cm-panel input")).to_be_focused()
-    page.keyboard.insert_text("3")
+    page.keyboard.insert_text("4")
     page.keyboard.press("Enter")
     expect(page.locator(".cm-activeLine")).to_have_text(re.compile("^from actr3d.vision import"))
 
@@ -173,3 +178,4 @@ def test_pieces_are_inserted_where_they_may_stand(opened: Callable[[str], Page],
     compile(written, "written.py", "exec")
     assert len(written) > len(SHORT)
     assert written.count("from actr3d.actr import *") == 1
+    assert "from dataclasses" not in written.partition("from actr3d")[2]  # imports are in the order of the templates

@@ -393,7 +393,7 @@ def test_what_loading_says_of_a_text_is_not_taken_back_by_a_glance_at_it(pages: 
         with page.expect_request("**/api/check"):
             write(page, "# more\n")
         with page.expect_response("**/api/check"):
-            page.get_by_role("button", name=re.compile("^Load it")).click()
+            page.get_by_role("button", name=re.compile("^Check the model")).click()
         shows(page, ".problems", "ValueError|NameError")
     drawn(page)
     shows(page, ".problems", "ValueError|NameError")

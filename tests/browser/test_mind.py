@@ -396,7 +396,7 @@ def test_the_chunks_of_a_memory_are_shown_with_their_slots_in_the_order_of_the_m
 
 def test_an_empty_agent_says_so(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "quiet.py", QUIET)
-    expect(page.locator("#panel-buffers")).to_contain_text("These are in its text. Press Run: the program makes its model as it goes.")
+    expect(page.locator("#panel-buffers")).to_contain_text("These are in its text. Press Run: the program creates its agent while it runs.")
     open_tab(page, "Productions")
     expect(page.locator("#panel-productions")).to_contain_text("Nothing has happened yet")
     page.click("#run")

@@ -34,10 +34,16 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
     search(page, "step back")
     expect(options(page).first).to_have_text("Step back by one tick of 10 msRun←")
     expect(options(page).first).to_have_attribute("aria-disabled", "true")
-    page.keyboard.press("Enter")  # which does nothing
-    expect(page.get_by_role("dialog")).to_have_count(1)
+    colour = "(element) => getComputedStyle(element).color"
+    assert options(page).first.locator("b").first.evaluate(colour) == options(page).first.evaluate(
+        colour
+    )  # nothing of it looks as if it can be run
+    page.keyboard.press("Enter")
+    refusal = page.get_by_role("dialog").get_by_role("status")
+    expect(refusal).to_have_text("«Step back by one tick of 10 ms» is not possible now. The run is at its start.")
     page.keyboard.press("Control+a")
     page.keyboard.insert_text("stp tck")
+    expect(refusal).to_be_hidden()
     expect(options(page)).to_have_text(["Step by one tick of 10 msRun→", "Step back by one tick of 10 msRun←"])
     page.keyboard.press("Enter")
     shows(page, "#time", "0.01 s")
@@ -63,7 +69,7 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
     ]
     assert page.evaluate(matches, texts) == [False, False, True, True]
     search(page, "xyzzyq")
-    expect(page.get_by_role("dialog")).to_contain_text("Nothing has this in its name")
+    expect(page.get_by_role("dialog")).to_contain_text("Nothing is found")
     page.keyboard.press("Escape")
     expect(page.get_by_role("dialog")).to_have_count(0)
     search(page, "model counting")
@@ -125,7 +131,7 @@ def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Cal
     page.reload()
     shows(page, "#status", "at its start")
     search(page, "time chunk")
-    expect(page.get_by_role("dialog")).to_contain_text("Nothing has this in its name")
+    expect(page.get_by_role("dialog")).to_contain_text("Nothing is found")
     expect(page.get_by_role("group", name="Manual")).to_have_count(0)
     page.context.route("**/manual/**", lambda route: route.fulfill(body=json.dumps(INDEX), content_type="application/json"))
     page.reload()

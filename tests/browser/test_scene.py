@@ -228,6 +228,35 @@ def test_between_slow_pictures_of_a_hurried_run_it_rests(page: Page) -> None:
     assert page.evaluate(RESTING) == [[True, False, False], [True, True, False], [True, True, True], 0]
 
 
+SHARPENING = """async () => {
+    const { Sharpness } = await part("scene/sharpness.js");
+    const clock = performance.now, drawn = [];
+    const pixels = { ratio: 1, getPixelRatio: () => pixels.ratio, setPixelRatio: (now) => (pixels.ratio = now) };
+    let now = 1000, isBusy = false;
+    performance.now = () => now;
+    const draw = () => (sharpness.before(), drawn.push(pixels.ratio / devicePixelRatio));
+    const sharpness = new Sharpness(pixels, draw, () => isBusy);
+    const after = (time) => ((now += time), draw());
+    after(1000);
+    pixels.ratio = 0.75 * devicePixelRatio; // viser finds the pictures slow
+    after(100);
+    after(100);
+    now += 501;
+    await new Promise((done) => setTimeout(done, 700)); // nobody asks for another picture
+    after(1000);
+    after(100);
+    isBusy = true;
+    after(1000);
+    performance.now = clock;
+    return drawn;
+}"""
+
+
+@pytest.mark.slow
+def test_a_3d_view_that_rests_is_drawn_with_all_pixels(page: Page) -> None:
+    assert page.evaluate(SHARPENING) == [1, 0.75, 0.75, 1, 1, 0.75, 0.75]
+
+
 @pytest.mark.slow
 def test_the_3d_view_draws_when_the_page_does_while_a_run_is_hurried(pages: Callable[..., Page]) -> None:
     page = pages()

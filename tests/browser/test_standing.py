@@ -54,8 +54,8 @@ def test_all_panels_say_the_same_of_the_state_of_the_run_and_what_to_do(pages: C
     timeline = page.locator(".timeline-nothing")
 
     shows(page, "#status", "^paused: at its start$")
-    says(page, "These are in its text. Press Run: the program makes its model as it goes.", ("Buffers",))
-    says(page, "There is nothing to show yet. Press Run: the program makes its model as it goes.", ("Memory", "Eye"))
+    says(page, "These are in its text. Press Run: the program creates its agent while it runs.", ("Buffers",))
+    says(page, "There is nothing to show yet. Press Run: the program creates its agent while it runs.", ("Memory", "Eye"))
     says(page, "Nothing has happened yet. Press Run", ("Productions",))
     expect(timeline).to_contain_text("Nothing has happened yet. Press Run")
 

@@ -417,7 +417,8 @@ def test_wrong_uses_with_a_program_are_reported(tmp_path: Path, capsys: pytest.C
             "def build(): return 3",
             r":2: build must be declared to return a Simulation \(got `def build\(\)`, without a return type\); write "
             r"`def build\(parameters: Parameters\) -> Simulation`, .*, or "
-            r"`def build\(\) -> Simulation`; rename it if it is not to build the model",
+            r"`def build\(\) -> Simulation`; rename it if it is not to build the model; "
+            r"an agent without a body .* plain assignments at the top of the file",
         ),
         ("def build(a, b): return 3", r":2: build must be declared to return a Simulation \(got `def build\(a, b\)`, without"),
         ("def build() -> int: return 3", r":2: build must be declared to return a Simulation \(got `def build\(\) -> int`\); write"),

@@ -84,6 +84,14 @@ def test_a_wrong_request_is_reported_at_the_statement_of_its_production(statemen
     assert "in production 'go' (mine.py:" in report.message
 
 
+def test_an_unknown_name_is_reported_with_a_similar_one_that_names_the_same_kind_of_thing() -> None:
+    with pytest.raises(NameError) as caught:
+        run_text("from actr3d.actr import *\nx = MemoryNoise\n", "mine.py")
+    report = traceback_report(caught.value)
+    assert report.message == "NameError: name 'MemoryNoise' is not defined; did you mean 'DMNoise'?"
+    assert report.text.endswith(f"\n{report.message}\n")
+
+
 def test_a_wrong_request_is_reported_at_its_line_where_no_line_of_a_model_is_running() -> None:
     text = WALKER.format(first="pass", statement='skin.set("walk_to", 3, 1.5)')
     module = load_text(text, "mine.py")

@@ -216,6 +216,10 @@ def test_a_file_keeps_its_encoding_and_its_line_ends(folder: ModelFolder) -> Non
     file = folder.read("old.py")
     folder.save("old.py", file.text + "other = 'ö'\n", file.version)
     assert (folder.root / "old.py").read_bytes() == b"# -*- coding: latin-1 -*-\r\nname = '\xe4'\r\nother = '\xf6'\r\n"
+    (folder.root / "marked.py").write_bytes("name = 'ä'\r\n".encode("utf-8-sig"))
+    read = folder.read("marked.py")
+    folder.save("marked.py", read.text + "x = 1\n", read.version)
+    assert (folder.root / "marked.py").read_bytes() == "name = 'ä'\r\nx = 1\r\n".encode("utf-8-sig")
     with pytest.raises(FileError, match="'€' is not in the encoding"):
         folder.save("new.py", "# coding: latin-1\nprice = '€'\n", None)
     with pytest.raises(FileError, match="cannot be used"):

@@ -131,11 +131,27 @@ class Pole(Feature):
             ["distance", "direction", "motion", "girth"],
         ),
         ("import beside\nbeside.|", ["helps"]),
+        (DOORWAY.replace("parts=(", "parts=(|"), ["Aperture", "Car", "Floor", "Imported", "ImportedBody", "Loose", "Mannequin", "Mesh"]),
         ("x = 'not a chunk |'", []),
     ],
 )
 def test_what_may_stand_at_a_place(ask: Asked, text: str, first: list[str]) -> None:
     assert ask.labels(text)[: len(first)] == first
+
+
+def test_only_public_names_of_the_library_are_offered_to_import(ask: Asked) -> None:
+    names = set(ask.labels("from actr3d.world import |"))
+    assert {"Floor", "Mannequin", "Scene"} <= names
+    assert not {"actuated_dofs", "asset_folder"} & names
+    assert ask.labels("from actr3d.world import (Floor,\n    Mann|") == ["Mannequin"]
+    assert "request" not in ask.labels("from actr3d.world import Floor\nFloor().|")
+
+
+def test_a_part_of_a_scene_is_offered_with_the_import_that_it_needs(ask: Asked) -> None:
+    items = {one["label"]: one for one in ask("complete", DOORWAY.replace("parts=(", "parts=(Fl|, "))["items"]}
+    assert (items["Floor"]["apply"], items["Floor"]["needs"]) == ("Floor(${})", "")
+    assert items["Car"]["needs"] == "from actr3d.world import Car"
+    assert "Car" not in ask.labels(DOORWAY.replace("Aperture(width", "Aperture(Ca|, width"))
 
 
 def test_private_names_are_offered_when_one_begins(ask: Asked) -> None:

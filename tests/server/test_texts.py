@@ -66,6 +66,17 @@ def test_a_run_is_stale_when_a_module_that_it_has_loaded_has_changed(desk: Desk,
     assert not talk.facts["stale"]
 
 
+def test_a_run_is_outdated_only_while_it_waits_at_its_start_and_its_file_has_another_text(desk: Desk, tmp_path: Path) -> None:
+    for name in ("helper.py", "late.py"):
+        (tmp_path / name).write_text("COUNT = WORD = 1\n", encoding="utf-8")
+    talk = desk.begin(tmp_path, WALKING)
+    assert not talk.session.is_outdated
+    (tmp_path / "model.py").write_text(WALKING + "\n", encoding="utf-8")
+    assert talk.session.summary()["outdated"]
+    talk.say("step")
+    talk.wait(lambda: not talk.session.is_outdated)  # what it has done is kept
+
+
 def test_pages_are_notified_when_a_loaded_module_is_saved(desk: Desk, tmp_path: Path) -> None:
     for name in ("helper.py", "other.py"):
         (tmp_path / name).write_text("COUNT = 1\n", encoding="utf-8")

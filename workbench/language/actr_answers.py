@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import Protocol
 
 from workbench.language.answers import Completion, Hover, Item, Renaming
-from workbench.language.library_words import Word, answers_of, features_of, words_for
+from workbench.language.library_words import Word, answers_of, features_of, scene_parts, words_for
 from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece
 
 
@@ -31,6 +31,7 @@ OWN, KNOWN, OTHER = 3, 2, 0
 """The ranks of completions: used with the same part, given by the library, used with other parts."""
 _SLOT = re.compile(r"(\??[\w.]+):(.*)", re.DOTALL)
 _SIGN = re.compile(r"(!?\??)[<>=]*([\w.-]*)$")
+_PARTS = re.compile(r"\bparts\s*=\s*$")
 MAX_NAMED = 8
 """How many names are listed in a documentation."""
 
@@ -93,6 +94,29 @@ def complete_name(model: ModelText, at: int, attributes: Attributes) -> tuple[li
         slots = distinct(item for item in _slots(model, about, at, attributes) if item.label.isidentifier())
         return [Item(label=f"{item.label}=", type=item.type, detail=item.detail, boost=item.boost, text=item.text) for item in slots], False
     return [], False
+
+
+def complete_part(text: str, start: int) -> list[Item]:
+    """Returns the parts of a scene that may come at a position in code: in the brackets of `parts=(`."""
+    if not _PARTS.search(text[: _bracket_around(text, start)]):
+        return []
+    found: list[Item] = []
+    for part in scene_parts():
+        known = re.search(rf"^from actr3d\.world import (\*|(\([^)]*|[^\n]*)\b{part.word}\b)", text, re.MULTILINE)
+        needs = "" if known else f"from actr3d.world import {part.word}"
+        inserted = f"{part.word}(${{}})"
+        found.append(Item(label=part.word, type="class", detail="part", boost=OWN, text=part.text, apply=inserted, needs=needs))
+    return found
+
+
+def _bracket_around(text: str, at: int) -> int:
+    """Returns where the innermost bracket opens that is open at a position; 0 for none."""
+    closed = 0
+    for place in range(at - 1, -1, -1):
+        closed += (text[place] in ")]}") - (text[place] in "([{")
+        if closed < 0:
+            return place
+    return 0
 
 
 def distinct(items: Iterable[Item]) -> list[Item]:

@@ -28,6 +28,8 @@ class Item:
     """Its documentation; empty if that is a question of its own."""
     apply: str = ""
     """What is inserted; empty for the label."""
+    needs: str = ""
+    """The import that it needs, if the text does not have it yet."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,6 +6,7 @@ import dataclasses
 from dataclasses import dataclass
 from functools import cache
 
+from actr3d import world
 from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportUnusedImport] # registers the sensor `view`
 from actr3d.vision import DETECTORS
 from actr3d.vision.feature import slot_names
@@ -54,6 +55,14 @@ def features() -> tuple[Word, ...]:
         slots = {slot: texts.get(slot, "") for slot in slot_names(one.finds)}
         found.append(Word(word=name, text=(one.finds.__doc__ or "").split("\n\n")[0], slots=slots))
     return tuple(found)
+
+
+@cache
+def scene_parts() -> tuple[Word, ...]:
+    """Returns the kinds of parts of a scene."""
+    names: list[str] = vars(world)["__all__"]
+    kinds = {name: getattr(world, name) for name in names}
+    return tuple(Word(word=name, text=(kind.__doc__ or "").split("\n\n")[0]) for name, kind in kinds.items() if hasattr(kind, "add_to"))
 
 
 def words_for(kind: str, method: str) -> tuple[Word, ...]:

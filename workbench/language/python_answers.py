@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -33,6 +34,9 @@ KINDS = {
 MAX_ITEMS = 400
 LONGEST_DOCUMENTATION = 4_000
 """How much of a documentation is shown [characters]."""
+
+
+_IMPORTING = re.compile(r"^[ \t]*from[ \t]+(actr3d[\w.]*)[ \t]+import[ \t]+(?:\([^)]*|[^\n()]*)\Z", re.MULTILINE)
 
 
 class _NothingImported(InferenceStateSameProcess):
@@ -71,7 +75,10 @@ class Python:
     def complete(self, explicit: ExplicitText, path: str, at: int) -> list[Item]:
         """Returns what can be written at a position; nothing in a string or a comment. Private names are left out until one begins."""
         script, (line, column) = self._script(explicit.text, path), explicit.place(at)
-        found = [one for one in script.complete(line, column) if one.type != "path"]
+        *above, current = explicit.text.split("\n")[:line]
+        public = _public_names("\n".join([*above, current[:column]]))
+        named = [one for one in script.complete(line, column) if public is None or one.name in public]
+        found = [one for one in named if one.type != "path"]
         start = column - len(found[0].name_with_symbols) + len(found[0].complete or "") if found else column
         if start == column or _before(explicit, line, start + 1) != "_":
             found = [one for one in found if not one.name.startswith("_")]
@@ -161,6 +168,13 @@ class PythonExpressions:
         """Returns whether it is True or False."""
         script, line, column = self._after(expression)
         return any(one.full_name == "builtins.bool" for one in script.infer(line, column - 1))
+
+
+def _public_names(before: str) -> list[str] | None:
+    """Returns the names that a package of the library offers, if the text before a place begins to import some from it; otherwise None."""
+    found = _IMPORTING.search(before)
+    module = sys.modules.get(found[1]) if found else None
+    return getattr(module, "__all__", None)
 
 
 def _before(explicit: ExplicitText, line: int, column: int) -> str:

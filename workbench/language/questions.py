@@ -83,7 +83,8 @@ class Assistant:
         marked = model if start < at else ModelText(f"{model.text[:at]}{_MARK}{model.text[at:]}")
         own, alone = actr_answers.complete_name(marked, at, attributes)
         python: list[Item] = [] if alone else self._python.complete(ExplicitText(model), path, at)
-        return Completion(start=start, items=actr_answers.distinct([*own, *python]))
+        parts = actr_answers.complete_part(model.text, start) if model.text[start - 1 : start] != "." else []
+        return Completion(start=start, items=actr_answers.distinct([*own, *parts, *python]))
 
     def _document(self, model: ModelText, path: str, at: int) -> Hover | None:
         found = actr_answers.document(model, at)
