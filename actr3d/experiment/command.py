@@ -219,8 +219,12 @@ def fit(
     (path / "fit.json").write_text(to_json(result), encoding="utf-8")
     out.event("fit", asdict(result))
     out.line(("\nfitted", "bold"), f" to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
+    few = result.fit.cells <= len(result.parameters)
     for one in result.parameters:
-        low, high = ("not determined" if bound is None else f"{bound:g}" for bound in (one.low, one.high))
+        low, high = (
+            "none: it needs more means than parameters" if few else "not determined" if bound is None else f"{bound:g}"
+            for bound in (one.low, one.high)
+        )
         out.line(f"  {one.name} = {one.value:g}   95 % interval: {low if low == high else f'{low} to {high}'}")
     for title, agreements in (("the fit", {"": result.fit}), ("held out", result.held_out), ("changed", result.ablated)):
         for what, found in agreements.items():
