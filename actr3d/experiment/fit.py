@@ -430,7 +430,7 @@ class QuadraticSurface:
     def _grid(self) -> NDArray[np.float64]:
         """Returns all points at which the surface is evaluated, (count, ..., count, p)."""
         count = GRID if self._axes <= 2 else max(5, int(GRID ** (2 / self._axes)))
-        return np.stack(np.meshgrid(*[np.linspace(0, 1, count)] * self._axes, indexing="ij"), axis=-1)
+        return np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, count)] * self._axes, indexing="ij"), axis=-1)
 
     def minimum(self) -> NDArray[np.float64]:
         """Returns the point with the least sum of squares, (p,)."""

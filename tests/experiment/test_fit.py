@@ -300,10 +300,10 @@ def test_intervals_have_the_true_value_as_often_as_they_say(data: int, parameter
     rng, runs, inside = np.random.default_rng(7), 300, 0
     x = np.column_stack([np.linspace(1, 2, data), np.ones(data)])[:, :parameters]
     true = np.full(parameters, 0.5)
-    grid = np.array(list(itertools.product(*[np.linspace(0, 1, 9)] * parameters)))
+    grid = list(itertools.product(np.linspace(0, 1, 9), repeat=parameters))
     for _ in range(runs):
         y = x @ true + rng.normal(0, 0.1, data)
-        points = np.vstack([grid, np.linalg.lstsq(x, y, rcond=None)[0]])  # a fit tries the minimum of the surface, too
+        points = np.array([*grid, np.linalg.lstsq(x, y, rcond=None)[0]], dtype=np.float64)  # a fit tries the minimum of the surface, too
         squares = [float(np.sum((y - x @ point) ** 2)) for point in points]
         low, high = QuadraticSurface(points, squares, data).interval(0)
         inside += (low is None or low <= 0.5) and (high is None or high >= 0.5)
