@@ -16,6 +16,7 @@ from annotated_types import Ge, Gt
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, alternatives, did_you_mean
 from actr3d.parameter_schema import Parameter
+from actr3d.values import escape_surrogates
 
 DIGITS = 6
 """Number of decimals to which drawn values are rounded, so that they are the same on every machine."""
@@ -27,6 +28,8 @@ MAX_TRIALS = 10_000_000
 """Maximum number of trials of an experiment."""
 LONGEST_NAME = 100
 """Maximum number of bytes of the name of a measure, in UTF-8."""
+LARGEST = 2**63
+"""Whole numbers must be below this, which tables and databases can store."""
 FINEST = 1e-5
 """The least standard deviation of a distribution."""
 OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
@@ -127,12 +130,12 @@ class Group(Configuration):
 
         Raises:
             ConfigurationError: If the number is out of bounds.
-            DesignError: If a value is not finite.
+            DesignError: If a value cannot be stored.
         """
         super().__post_init__()
         object.__setattr__(self, "parameters", {name: as_python(value) for name, value in self.parameters.items()})
         for name, value in self.parameters.items():
-            _check_finite(value, f"Group.parameters['{name}']", name)
+            _check_plain(value, f"Group.parameters['{name}']", name, drawn=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -222,7 +225,7 @@ class Design(Configuration):
 
         Raises:
             ConfigurationError: If a field has the wrong type, or is out of bounds.
-            DesignError: If there is no trial, a parameter is given twice, or a value is not finite.
+            DesignError: If there is no trial, a parameter is given twice, or a value cannot be stored.
         """
         super().__post_init__()
         for field_name in ("factors", "settings"):
@@ -233,14 +236,14 @@ class Design(Configuration):
                 raise DesignError(f"Design.factors['{name}']: must be a list of levels (got {given!r})", name)
             if not given:
                 raise DesignError(f"Design.factors['{name}']: must have at least one level (got {given!r})", name)
+            _check_plain(list(levels), f"Design.factors['{name}']", name, several=True)
             if len({repr(level) for level in levels}) < len(levels):
                 raise DesignError(f"Design.factors['{name}']: must name each level once (got {given!r})", name)
-            _check_finite(given, f"Design.factors['{name}']", name)
         # What `np.arange` gives for 0.3 is the level 0.3, as tables and human data have it.
         tidy = {name: [float(f"{one:.12g}") if type(one) is float else one for one in levels] for name, levels in self.factors.items()}
         object.__setattr__(self, "factors", tidy)
         for name, value in self.settings.items():
-            _check_finite(value, f"Design.settings['{name}']", name)
+            _check_plain(value, f"Design.settings['{name}']", name, drawn=True)
         if not self.groups:
             raise DesignError("Design.groups: must have at least one group (got {})", "groups")
         for name, group in cast("Mapping[str, Any]", self.groups).items():
@@ -330,7 +333,7 @@ class Design(Configuration):
         """Returns the values of a trial with those that `derive` computes from them.
 
         Raises:
-            DesignError: If `derive` fails, or returns something else, or a value that is not finite.
+            DesignError: If `derive` fails, or returns something else, or a value that cannot be stored.
         """
         if self.derive is None:
             return dict(values)
@@ -342,7 +345,7 @@ class Design(Configuration):
             raise DesignError(f"Design.derive: must return values by name (returned {more!r})", "derive")
         found = {str(name): as_python(value) for name, value in cast("Mapping[Any, Any]", more).items()}
         for name, value in found.items():
-            _check_finite(value, f"Design.derive['{name}']", "derive")
+            _check_plain(value, f"Design.derive['{name}']", "derive")
         return {**values, **found}
 
     def table(self) -> Iterator[Trial]:
@@ -488,20 +491,52 @@ def _example(value: Any, p: float) -> Any:
     return round(as_python(value.quantile(p)), DIGITS) if isinstance(value, Distribution) else value
 
 
-def _check_finite(value: Any, where: str, name: str) -> None:
-    """Checks that a value, and each value in it, is finite: neither tables nor the text of a model have another way to write it.
+def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False, several: bool = False) -> None:
+    """Checks that tables, JSON and the text of a model have a way to write a value, and each value in it.
+
+    Args:
+        value: The value.
+        where: What it is the value of, for the error.
+        name: The name that leads to its line.
+        drawn: Whether it may be a distribution.
+        several: Whether it is a list of such values.
 
     Raises:
-        DesignError: If it is infinite or NaN.
+        DesignError: If they have none.
     """
+    if drawn and isinstance(value, Distribution) and not isinstance(value, type):
+        return
     waiting = [value]
     for one in waiting:
-        if isinstance(one, (list, tuple)):
-            waiting += cast("Sequence[Any]", one)
-        elif isinstance(one, Mapping):
-            waiting += cast("Mapping[Any, Any]", one).values()
-        elif isinstance(one, float) and not math.isfinite(one):
-            raise DesignError(f"{where}: must be finite (got {value!r})", name)
+        right, got = "", ""
+        match one:
+            case list() | tuple():
+                waiting += cast("Sequence[Any]", one)
+            case Mapping() if all(isinstance(key, str) for key in cast("Mapping[Any, Any]", one)):
+                waiting += (part for pair in cast("Mapping[str, Any]", one).items() for part in pair)
+            case bool() | None:
+                pass
+            case int() if not -LARGEST <= one < LARGEST:
+                right = "whole numbers of at most 64 bits, or floats" if several else "a whole number of at most 64 bits, or a float"
+                got = f"one of {one.bit_length()} bits"
+            case float() if not math.isfinite(one):
+                right = "finite"
+            case str() if escape_surrogates(one) != one:
+                right = f"{'texts' if several else 'a text'} of characters that can be stored"
+            case int() | float() | str():
+                pass
+            case Distribution() if not isinstance(one, type):
+                own = "Group.parameters, for one value of each participant, or Design.settings, for one of each trial"
+                raise DesignError(f"{where}: a distribution belongs to {own} (got {value!r})", name)
+            case _:
+                each = (
+                    "numbers, texts, True, False, None, or lists or dicts"
+                    if several
+                    else "a number, text, True, False, None, or a list or dict"
+                )
+                right = f"{each} of these"
+        if right:
+            raise DesignError(f"{where}: must be {right} (got {got or repr(value)})", name)
 
 
 def _levels(value: Any, before: Sequence[Any]) -> Sequence[Any]:

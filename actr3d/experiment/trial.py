@@ -16,7 +16,7 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
 from actr3d.errors import ExperimentError, did_you_mean
-from actr3d.experiment.design import OWN_COLUMNS, Measured, Trial, as_python
+from actr3d.experiment.design import LARGEST, OWN_COLUMNS, Measured, Trial, as_python
 from actr3d.experiment.specification import Experiment
 from actr3d.output import ModelOutput, printing_to
 from actr3d.parameter_schema import parameters_of
@@ -25,8 +25,6 @@ from actr3d.runner.run import run_source
 from actr3d.runner.traceback_report import traceback_report
 from actr3d.values import escape_surrogates
 
-LARGEST = 2**63
-"""Whole numbers must be below this, which tables and databases can store."""
 PLAIN = (str, int, float, bool, type(None))
 """The types of measures."""
 

@@ -35,6 +35,14 @@ def without_value(values: Mapping[str, Any]) -> dict[str, Any]:
     return {"x": math.nan * values["fixed"]}
 
 
+def complex_value(_: Mapping[str, Any]) -> dict[str, Any]:
+    return {"x": 1j}
+
+
+def drawn_value(_: Mapping[str, Any]) -> dict[str, Any]:
+    return {"x": Uniform(low=0, high=1)}
+
+
 def test_each_participant_does_each_cell_as_often_as_the_design_says() -> None:
     design = design_of()
     table = list(design.table())
@@ -127,29 +135,54 @@ def test_values_are_derived_from_others() -> None:
         design_of(derive=lambda _: 3).trial(0)  # type: ignore[arg-type, return-value]
 
 
-@pytest.mark.parametrize(
-    ("changes", "says"),
-    [
-        ({"factors": {"a": []}}, r"Design\.factors\['a'\]: must have at least one level \(got \[\]\)"),
-        ({"factors": {"a": 3}}, r"Design\.factors\['a'\]: must be a list of levels \(got 3\)"),
-        ({"factors": {"a": "abc"}}, r"Design\.factors\['a'\]: must be a list of levels \(got 'abc'\)"),
-        ({"factors": {"a": [1, 1]}}, r"Design\.factors\['a'\]: must name each level once \(got \[1, 1\]\)"),
-        ({"factors": {"size": [1]}}, r"Design\.groups\['young'\]: 'size' is a factor already"),
-        ({"factors": {"seed": [1]}}, r"Design: 'seed' is a column of every table of trials; rename the parameter"),
-        ({"settings": {"age": 1}}, r"Design\.settings: 'age' is already a factor, or a parameter of a group"),
-        ({"factors": {"a": [1, math.nan]}}, r"Design\.factors\['a'\]: must be finite \(got \[1, nan\]\)"),
-        ({"factors": {"a": [(1, -math.inf)]}}, r"Design\.factors\['a'\]: must be finite \(got \[\(1, -inf\)\]\)"),
-        ({"settings": {"fixed": math.inf}}, r"Design\.settings\['fixed'\]: must be finite \(got inf\)"),
-        ({"factors": {}, "derive": without_value}, r"Design\.derive\['x'\]: must be finite \(got nan\)"),
-        ({"groups": {}}, r"Design\.groups: must have at least one group \(got \{\}\)"),
-        ({"measures": ["m/s"]}, r"measure: its name must be 1 to 100 bytes of printable characters without '/' \(got 'm/s'\)"),
-        ({"measures": [""]}, r"measure: its name must be"),
-        ({"measures": ["a\0"]}, r"measure: its name must be"),
-        ({"measures": ["a" * 101]}, r"measure: its name must be"),
-        ({"measures": ["速" * 40]}, r"measure: its name must be"),
-        ({"groups": {"a": 3}}, r"Design\.groups\['a'\]: must be a Group \(got 3\)"),
-    ],
-)
+INVALID: list[tuple[dict[str, Any], str]] = [
+    ({"factors": {"a": []}}, r"Design\.factors\['a'\]: must have at least one level \(got \[\]\)"),
+    ({"factors": {"a": 3}}, r"Design\.factors\['a'\]: must be a list of levels \(got 3\)"),
+    ({"factors": {"a": "abc"}}, r"Design\.factors\['a'\]: must be a list of levels \(got 'abc'\)"),
+    ({"factors": {"a": [1, 1]}}, r"Design\.factors\['a'\]: must name each level once \(got \[1, 1\]\)"),
+    ({"factors": {"size": [1]}}, r"Design\.groups\['young'\]: 'size' is a factor already"),
+    ({"factors": {"seed": [1]}}, r"Design: 'seed' is a column of every table of trials; rename the parameter"),
+    ({"settings": {"age": 1}}, r"Design\.settings: 'age' is already a factor, or a parameter of a group"),
+    ({"factors": {"a": [1, math.nan]}}, r"Design\.factors\['a'\]: must be finite \(got \[1, nan\]\)"),
+    ({"factors": {"a": [(1, -math.inf)]}}, r"Design\.factors\['a'\]: must be finite \(got \[\(1, -inf\)\]\)"),
+    ({"settings": {"fixed": math.inf}}, r"Design\.settings\['fixed'\]: must be finite \(got inf\)"),
+    ({"factors": {}, "derive": without_value}, r"Design\.derive\['x'\]: must be finite \(got nan\)"),
+    (
+        {"factors": {"a": [1j]}},
+        r"Design\.factors\['a'\]: must be numbers, texts, True, False, None, or lists or dicts of .* \(got \[1j\]\)",
+    ),
+    ({"factors": {"a": [b"cat"]}}, r"Design\.factors\['a'\]: must be numbers, texts, .* \(got \[b'cat'\]\)"),
+    (
+        {"factors": {"a": [10**5000]}},
+        r"Design\.factors\['a'\]: must be whole numbers of at most 64 bits, or floats \(got one of 16610 bits\)",
+    ),
+    ({"factors": {"a": ["\ud800"]}}, r"Design\.factors\['a'\]: must be texts of characters that can be stored \(got \['\\ud800'\]\)"),
+    (
+        {"factors": {"a": [Normal(mean=1, sd=1)]}},
+        r"Design\.factors\['a'\]: a distribution belongs to Group\.parameters, .* or Design\.settings, .* \(got \[Normal\(",
+    ),
+    ({"factors": {"a": [[1, Normal]]}}, r"Design\.factors\['a'\]: must be numbers, texts, "),
+    (
+        {"settings": {"fixed": {1, 2}}},
+        r"Design\.settings\['fixed'\]: must be a number, text, True, False, None, or a list .* \(got \{1, 2\}\)",
+    ),
+    ({"settings": {"fixed": object()}}, r"Design\.settings\['fixed'\]: must be a number, text, "),
+    ({"settings": {"fixed": Normal}}, r"Design\.settings\['fixed'\]: must be a number, text, "),
+    ({"settings": {"fixed": [Uniform(low=0, high=1)]}}, r"Design\.settings\['fixed'\]: a distribution belongs to"),
+    ({"settings": {"fixed": {(1, 2): 3}}}, r"Design\.settings\['fixed'\]: must be a number, text, "),
+    ({"factors": {}, "derive": complex_value}, r"Design\.derive\['x'\]: must be a number, text, "),
+    ({"factors": {}, "derive": drawn_value}, r"Design\.derive\['x'\]: a distribution belongs to"),
+    ({"groups": {}}, r"Design\.groups: must have at least one group \(got \{\}\)"),
+    ({"measures": ["m/s"]}, r"measure: its name must be 1 to 100 bytes of printable characters without '/' \(got 'm/s'\)"),
+    ({"measures": [""]}, r"measure: its name must be"),
+    ({"measures": ["a\0"]}, r"measure: its name must be"),
+    ({"measures": ["a" * 101]}, r"measure: its name must be"),
+    ({"measures": ["速" * 40]}, r"measure: its name must be"),
+    ({"groups": {"a": 3}}, r"Design\.groups\['a'\]: must be a Group \(got 3\)"),
+]
+
+
+@pytest.mark.parametrize(("changes", "says"), INVALID)
 def test_an_invalid_design_is_refused(changes: dict[str, Any], says: str) -> None:
     with pytest.raises(DesignError, match=says):
         design_of(**changes).trial(0)
@@ -161,12 +194,13 @@ def test_an_invalid_design_is_refused(changes: dict[str, Any], says: str) -> Non
         (lambda: Design(trials=0), r"Design\.trials: must be >= 1 \(got 0\)"),
         (lambda: Design(order="any"), r"Design\.order: must be one of"),  # type: ignore[arg-type]
         (lambda: Group(participants=0), r"Group\.participants: must be >= 1 \(got 0\)"),
+        (lambda: Group(parameters={"a": Group}), r"Group\.parameters\['a'\]: must be a number, text, .* \(got <class '.*Group'>\)"),
         (lambda: Normal(mean="x", sd=1), r"Normal\.mean: must be a number \(got 'x'\)"),  # type: ignore[arg-type]
         (lambda: Normal(mean=1, sd=-1), r"Normal\.sd: must be >= 0 \(got -1.0\)"),
     ],
 )
 def test_wrong_fields_are_refused(make: Any, says: str) -> None:
-    with pytest.raises(ConfigurationError, match=says):
+    with pytest.raises((ConfigurationError, DesignError), match=says):
         make()
 
 

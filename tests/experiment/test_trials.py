@@ -383,6 +383,13 @@ def test_a_folder_that_is_in_use_or_no_experiment_is_refused(tmp_path: Path) -> 
         Store(tmp_path / "out")
 
 
+def test_a_specification_that_cannot_be_written_leaves_no_folder(tmp_path: Path) -> None:
+    specification = replace(specify(str(write_experiment(tmp_path))).specification, values={"n": object()})
+    with pytest.raises(TypeError):
+        Store.create(tmp_path / "out", specification)
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_store_that_cannot_be_written_says_so_and_keeps_its_rows(tmp_path: Path) -> None:
     with store_of(tmp_path) as store:
         store.add(finished(0), "v")
