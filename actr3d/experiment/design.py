@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from random import Random
@@ -133,6 +133,7 @@ class Group(Configuration):
             DesignError: If a value cannot be stored.
         """
         super().__post_init__()
+        _check_names(self.parameters, "Group.parameters")
         object.__setattr__(self, "parameters", {name: as_python(value) for name, value in self.parameters.items()})
         for name, value in self.parameters.items():
             _check_plain(value, f"Group.parameters['{name}']", name, drawn=True)
@@ -157,6 +158,8 @@ class Measured(Configuration):
             DesignError: If the name cannot be that of a column and of a file.
         """
         super().__post_init__()
+        if self.over is not None:
+            _check_names([self.over], "Measured.over")
         if not 0 < len(self.name.encode("utf-8", "surrogatepass")) <= LONGEST_NAME or "/" in self.name or not self.name.isprintable():
             right = f"1 to {LONGEST_NAME} bytes of printable characters without '/'"
             raise DesignError(f"measure: its name must be {right} (got {self.name[:LONGEST_NAME]!r})", "measures")
@@ -204,7 +207,7 @@ class Design(Configuration):
     """The order of a participant's trials: drawn for each participant, or as the levels are listed."""
     derive: Callable[[Mapping[str, Any]], Mapping[str, Any]] | None = None
     """Computes more parameters of the model from the values of a trial, such as an aperture from a ratio and a shoulder width. A factor
-    that it reads need not be a parameter of the model."""
+    that it reads need not be a parameter of the model; it must not return a factor."""
     results: Callable[[Any], Mapping[str, Any]] | None = None
     """Computes the measures of a trial by name: from the simulation at its end, or from the module of a program that has run. None: the
     fields of the simulation's result, or the program's variables named by `measures`."""
@@ -228,6 +231,9 @@ class Design(Configuration):
             DesignError: If there is no trial, a parameter is given twice, or a value cannot be stored.
         """
         super().__post_init__()
+        tidy: dict[str, Sequence[Any]] = {}
+        for field_name in ("factors", "settings", "groups"):
+            _check_names(getattr(self, field_name), f"Design.{field_name}")
         for field_name in ("factors", "settings"):
             object.__setattr__(self, field_name, {name: as_python(value) for name, value in getattr(self, field_name).items()})
         for name, levels in self.factors.items():
@@ -237,10 +243,10 @@ class Design(Configuration):
             if not given:
                 raise DesignError(f"Design.factors['{name}']: must have at least one level (got {given!r})", name)
             _check_plain(list(levels), f"Design.factors['{name}']", name, several=True)
-            if len({repr(level) for level in levels}) < len(levels):
+            # What `np.arange` gives for 0.3 is the level 0.3, as tables and human data have it.
+            tidy[name] = [float(f"{one:.12g}") if type(one) is float else one for one in levels]
+            if len(set(map(_key, tidy[name]))) < len(levels):
                 raise DesignError(f"Design.factors['{name}']: must name each level once (got {given!r})", name)
-        # What `np.arange` gives for 0.3 is the level 0.3, as tables and human data have it.
-        tidy = {name: [float(f"{one:.12g}") if type(one) is float else one for one in levels] for name, levels in self.factors.items()}
         object.__setattr__(self, "factors", tidy)
         for name, value in self.settings.items():
             _check_plain(value, f"Design.settings['{name}']", name, drawn=True)
@@ -259,11 +265,13 @@ class Design(Configuration):
             raise DesignError(f"Design.settings: '{twice}' is already a factor, or a parameter of a group", twice)
         if isinstance(self.measures, (str, bytes)):
             raise DesignError(f"Design.measures: must be a list of names (got {self.measures!r})", "measures")
-        given = [one.name for one in self.kept]
+        given, columns = [one.name for one in self.kept], {*self.factors, *self.settings, *grouped, *OWN_COLUMNS}
         for measure in self.kept:
             if given.count(measure.name) > 1:
                 raise DesignError(f"Design.measures: '{measure.name}' is there twice", measure.name)
-            if measure.over in {*self.factors, *self.settings, *grouped, *OWN_COLUMNS}:
+            if measure.name in columns:
+                raise DesignError(f"Design.measures: '{measure.name}' is already a column of the trials; rename it", measure.name)
+            if measure.over in columns:
                 raise DesignError(f"Design.measures: '{measure.name}' is over '{measure.over}', which is another column", measure.name)
         for name in {*self.factors, *self.settings, *grouped}:
             if (name in OWN_COLUMNS and name != "group") or (name == "group" and name in self.factors):
@@ -333,7 +341,7 @@ class Design(Configuration):
         """Returns the values of a trial with those that `derive` computes from them.
 
         Raises:
-            DesignError: If `derive` fails, or returns something else, or a value that cannot be stored.
+            DesignError: If `derive` fails, or returns something else, a factor, or a value that cannot be stored.
         """
         if self.derive is None:
             return dict(values)
@@ -345,6 +353,9 @@ class Design(Configuration):
             raise DesignError(f"Design.derive: must return values by name (returned {more!r})", "derive")
         found = {str(name): as_python(value) for name, value in cast("Mapping[Any, Any]", more).items()}
         for name, value in found.items():
+            if name in self.factors or (name in OWN_COLUMNS and name != "group"):
+                what = "a factor" if name in self.factors else "a column of every table of trials"
+                raise DesignError(f"Design.derive: must not return '{name}', which is {what}; give it another name", "derive")
             _check_plain(value, f"Design.derive['{name}']", "derive")
         return {**values, **found}
 
@@ -394,10 +405,13 @@ class Design(Configuration):
         known = {parameter.name: parameter for parameter in parameters}
         given = {**self.settings, **self.factors, **{key: None for group in self.groups.values() for key in group.parameters}}
         read: set[str] = set()
+        measured = {one.name for one in self.kept}
         examples = [{name: _example(value, p) for name, value in self.settings.items()} for p in (FAR, 0.5, 1 - FAR)]
         for participant, cell, example in itertools.product(self.participants, self.cells, examples):
             values = _ReadNames({**example, **participant.parameters, **cell}, read)
             for name, value in self.derived(values).items():
+                if name in measured:
+                    raise DesignError(f"Design.measures: '{name}' is already a column of the trials; rename it", name)
                 if name in known:
                     try:
                         known[name].check(value)
@@ -489,6 +503,22 @@ def _value(value: Any, seed: str) -> Any:
 
 def _example(value: Any, p: float) -> Any:
     return round(as_python(value.quantile(p)), DIGITS) if isinstance(value, Distribution) else value
+
+
+def _check_names(names: Iterable[Any], where: str) -> None:
+    """Checks that names can be those of columns and conditions.
+
+    Raises:
+        DesignError: If one is no text, is empty, or has characters that cannot be printed.
+    """
+    for name in names:
+        if not isinstance(name, str) or not name or not name.isprintable():
+            raise DesignError(f"{where}: names must be texts of printable characters (got {name!r})", where.rpartition(".")[2])
+
+
+def _key(level: Any) -> Any:
+    """Returns what two levels have in common that are the same: equal numbers are, 1 and True are not."""
+    return level if isinstance(level, (int, float)) and not isinstance(level, bool) else repr(level)
 
 
 def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False, several: bool = False) -> None:

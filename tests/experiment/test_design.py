@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, ModelFileError
-from actr3d.experiment import Design, Group, Normal, Uniform
+from actr3d.experiment import Design, Group, Measured, Normal, Uniform
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from tests.helpers.experiments import write_experiment
 
@@ -37,6 +37,14 @@ def without_value(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def complex_value(_: Mapping[str, Any]) -> dict[str, Any]:
     return {"x": 1j}
+
+
+def next_level(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {"a": values["a"] + 1}
+
+
+def own_seed(_: Mapping[str, Any]) -> dict[str, Any]:
+    return {"seed": 1}
 
 
 def drawn_value(_: Mapping[str, Any]) -> dict[str, Any]:
@@ -140,6 +148,8 @@ INVALID: list[tuple[dict[str, Any], str]] = [
     ({"factors": {"a": 3}}, r"Design\.factors\['a'\]: must be a list of levels \(got 3\)"),
     ({"factors": {"a": "abc"}}, r"Design\.factors\['a'\]: must be a list of levels \(got 'abc'\)"),
     ({"factors": {"a": [1, 1]}}, r"Design\.factors\['a'\]: must name each level once \(got \[1, 1\]\)"),
+    ({"factors": {"a": [1, 1.0]}}, r"Design\.factors\['a'\]: must name each level once \(got \[1, 1\.0\]\)"),
+    ({"factors": {"a": [0.3, 0.1 + 0.2]}}, r"Design\.factors\['a'\]: must name each level once \(got \[0\.3, 0\.30000000000000004\]\)"),
     ({"factors": {"size": [1]}}, r"Design\.groups\['young'\]: 'size' is a factor already"),
     ({"factors": {"seed": [1]}}, r"Design: 'seed' is a column of every table of trials; rename the parameter"),
     ({"settings": {"age": 1}}, r"Design\.settings: 'age' is already a factor, or a parameter of a group"),
@@ -172,6 +182,18 @@ INVALID: list[tuple[dict[str, Any], str]] = [
     ({"settings": {"fixed": {(1, 2): 3}}}, r"Design\.settings\['fixed'\]: must be a number, text, "),
     ({"factors": {}, "derive": complex_value}, r"Design\.derive\['x'\]: must be a number, text, "),
     ({"factors": {}, "derive": drawn_value}, r"Design\.derive\['x'\]: a distribution belongs to"),
+    ({"derive": next_level}, r"Design\.derive: must not return 'a', which is a factor; give it another name"),
+    ({"derive": own_seed}, r"Design\.derive: must not return 'seed', which is a column of every table of trials"),
+    ({"groups": {"": Group()}}, r"Design\.groups: names must be texts of printable characters \(got ''\)"),
+    ({"groups": {1: Group()}}, r"Design\.groups: names must be texts of printable characters \(got 1\)"),
+    ({"groups": {"\ud800": Group()}}, r"Design\.groups: names must be texts of printable characters \(got '\\ud800'\)"),
+    ({"factors": {2: [1]}}, r"Design\.factors: names must be texts of printable characters \(got 2\)"),
+    ({"settings": {"": 1}}, r"Design\.settings: names must be texts of printable characters \(got ''\)"),
+    ({"measures": ["rt", "a"]}, r"Design\.measures: 'a' is already a column of the trials; rename it"),
+    ({"measures": ["size"]}, r"Design\.measures: 'size' is already a column of the trials; rename it"),
+    ({"measures": ["seed"]}, r"Design\.measures: 'seed' is already a column of the trials; rename it"),
+    ({"measures": ["error"]}, r"Design\.measures: 'error' is already a column of the trials; rename it"),
+    ({"measures": [Measured(name="m", over="fixed")]}, r"Design\.measures: 'm' is over 'fixed', which is another column"),
     ({"groups": {}}, r"Design\.groups: must have at least one group \(got \{\}\)"),
     ({"measures": ["m/s"]}, r"measure: its name must be 1 to 100 bytes of printable characters without '/' \(got 'm/s'\)"),
     ({"measures": [""]}, r"measure: its name must be"),
@@ -195,6 +217,8 @@ def test_an_invalid_design_is_refused(changes: dict[str, Any], says: str) -> Non
         (lambda: Design(order="any"), r"Design\.order: must be one of"),  # type: ignore[arg-type]
         (lambda: Group(participants=0), r"Group\.participants: must be >= 1 \(got 0\)"),
         (lambda: Group(parameters={"a": Group}), r"Group\.parameters\['a'\]: must be a number, text, .* \(got <class '.*Group'>\)"),
+        (lambda: Group(parameters={1: 2}), r"Group\.parameters: names must be texts of printable characters \(got 1\)"),  # type: ignore[dict-item]
+        (lambda: Measured(name="m", over=""), r"Measured\.over: names must be texts of printable characters \(got ''\)"),
         (lambda: Normal(mean="x", sd=1), r"Normal\.mean: must be a number \(got 'x'\)"),  # type: ignore[arg-type]
         (lambda: Normal(mean=1, sd=-1), r"Normal\.sd: must be >= 0 \(got -1.0\)"),
     ],
@@ -280,6 +304,29 @@ def test_the_designs_of_the_library_fit_their_models() -> None:
         again = Specification.from_json(experiment.specification.to_json(), "it")
         assert again == experiment.specification
         assert list(Experiment(again).design.changed(trials=1).table()) == list(experiment.design.changed(trials=1).table())
+
+
+def test_a_measure_with_the_name_of_a_derived_value_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "d.py"
+    given = "measures=['m'], factors={'n': [1]}, derive=lambda values: {'m': 2 * values['n']}"
+    path.write_text(f"n = 1\nm = 2\nfrom actr3d.experiment import *\n@design\ndef a():\n  return Design({given})\n")
+    with pytest.raises(DesignError, match=r"d\.py:6: Design\.measures: 'm' is already a column of the trials; rename it"):
+        specify(str(path))
+
+
+@pytest.mark.parametrize(
+    ("fields", "says"),
+    [
+        ("\n    factor={'n': [1]}", r"d\.py:6: Design\.factor: there is no such field; did you mean 'factors'\?"),
+        ("groups={'a': Group(\n    partcipants=3)}", r"d\.py:6: Group\.partcipants: there is no such field; did you mean 'participants'\?"),
+        ("\n    settings={'n': Uniform(lo=3, high=4)}", r"d\.py:6: Uniform\.lo: there is no such field; did you mean 'low'\?"),
+    ],
+)
+def test_a_misspelled_field_is_refused_with_its_line(tmp_path: Path, fields: str, says: str) -> None:
+    path = tmp_path / "d.py"
+    path.write_text(f"from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(measures=['n'], {fields})\n")
+    with pytest.raises(DesignError, match=says):
+        specify(str(path))
 
 
 def test_an_unknown_parameter_is_refused_with_its_line(tmp_path: Path) -> None:
