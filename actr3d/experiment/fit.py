@@ -169,6 +169,7 @@ class Fit:
 
     Raises:
         ExperimentError: If nothing can be fitted.
+        SettingError: If a parameter is given twice, or is a factor of the design.
         DesignError: If the design, or the range of a parameter, does not fit the model.
     """
 
@@ -191,12 +192,30 @@ class Fit:
             raise ExperimentError("--parameter: must be given at least once, as NAME=LOW..HIGH")
         self.target = cells_of_target(target)
         self.measure = target[0].measure
+        self._check_ranges()
         for ends in itertools.product(*((one.low, one.high) for one in ranges)):
             experiment = self._experiment(dict(zip(self._names, ends, strict=True)))  # checks the bounds of the model's parameters
             _check_conditions(self.target, experiment.design)
         self._points: list[dict[str, float]] = []
         self._means: list[dict[Cell, float]] = []
         self._failure = ""
+
+    def _check_ranges(self) -> None:
+        """Checks that each parameter has one range, and is none of the design's factors.
+
+        Raises:
+            SettingError: If one has two ranges, or is a factor with several levels or with texts.
+        """
+        varied, seen = self._experiment({}).design.factors, dict[str, Range]()
+        for one in self._ranges:
+            if one.name in seen:
+                ranges = f"{seen[one.name].low:g}..{seen[one.name].high:g} and {one.low:g}..{one.high:g}"
+                raise SettingError(f"--parameter {one.name}: is given twice ({ranges}); give one range")
+            seen[one.name] = one
+            levels = varied.get(one.name, ())
+            if len(levels) > 1 or any(isinstance(level, str) for level in levels):
+                shown = ", ".join(map(str, levels))
+                raise SettingError(f"--parameter {one.name}: is a factor of the design ({shown}); name one that does not vary")
 
     @property
     def _names(self) -> list[str]:

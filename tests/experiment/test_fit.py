@@ -235,6 +235,19 @@ def test_parameters_that_the_model_does_not_have_are_refused(tmp_path: Path) -> 
         fit_of(tmp_path, None, "slop=0..1")
 
 
+def test_a_parameter_that_is_given_twice_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SettingError, match=r"--parameter slope: is given twice \(0\.\.1 and 0\.\.3\); give one range"):
+        fit_of(tmp_path, None, "slope=0..1", "offset=0..1", "slope=0..3")
+
+
+@pytest.mark.parametrize("levels", ["['near', 'far']", "['near']", "[1, 2]"])
+def test_a_parameter_that_is_a_factor_is_refused(tmp_path: Path, levels: str) -> None:
+    shown = levels.strip("[]").replace("'", "")
+    line = LINE.replace('{"x": [1, 2, 3, 4, 5]}', f'{{"x": [1, 2, 3, 4, 5], "offset": {levels}}}')
+    with pytest.raises(SettingError, match=rf"--parameter offset: is a factor of the design \({shown}\); name one that does not vary"):
+        fit_of(tmp_path, None, "offset=1..3", line=line)
+
+
 def test_targets_that_do_not_fit_are_refused(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client)
     fit.measure = "z"
