@@ -200,6 +200,11 @@ def test_what_has_no_report_says_why(tmp_path: Path, capsys: Any) -> None:
     failed = store_rows(tmp_path / "failed", str(path), lambda _: {"error": "ValueError: never"})
     assert main(["report", str(failed)]) == 1
     assert "all 12 trials failed; the first one with: ValueError: never" in capsys.readouterr().err
+    noted = store_rows(
+        tmp_path / "noted", str(path), lambda _: {"error": "Traceback:\nValueError: never\nthe model had just asked its memory"}
+    )
+    assert main(["report", str(noted)]) == 1
+    assert "the first one with: ValueError: never\n" in capsys.readouterr().err
     assert main(["report", str(tmp_path)]) == 1
     assert "holds no experiment" in capsys.readouterr().err
 
