@@ -396,8 +396,12 @@ class Design(Configuration):
 
     # -- checks against the model
 
-    def check(self, parameters: Sequence[Parameter]) -> None:
+    def check(self, parameters: Sequence[Parameter], which: str = "") -> None:
         """Checks all values against the parameters of the model.
+
+        Args:
+            parameters: The parameters of the model.
+            which: What they are, for the error of an unknown one.
 
         Raises:
             DesignError: If a name is not a parameter of the model, or a value is not allowed.
@@ -421,7 +425,7 @@ class Design(Configuration):
                     raise DesignError(f"Design.derive: the model has no parameter '{name}'{did_you_mean(name, known)}", "derive")
         for name in given:
             if name not in known and name not in read:
-                raise DesignError(f"Design: the model has no parameter '{name}'{alternatives(name, known, 'it has:')}", name)
+                raise DesignError(f"Design: the model has no parameter '{name}'{alternatives(name, known, 'it has:')}{which}", name)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -146,7 +146,8 @@ class Experiment:
         """Units and meanings of the columns, as far as they are known."""
         self.describe(self.parameters)
         with naming_the_line(source, specification.name, specification.values):
-            self.design.check(self.parameters)
+            first = "" if self.blueprint is not None else " (the variables that its first lines set, before any import)"
+            self.design.check(self.parameters, first)
             if self.blueprint is None and self.design.results is None and not self.design.measures:
                 raise DesignError("Design.measures: must name the variables of the program that are its measures (got none)", "measures")
 

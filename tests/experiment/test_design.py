@@ -346,6 +346,13 @@ def test_an_unknown_parameter_is_refused_with_its_line(tmp_path: Path) -> None:
         specify(str(path), values={"m": 3})
 
 
+def test_an_import_before_the_variables_ends_the_parameters(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, model="import math\nn = 1\nrt = luck = 1\n")
+    says = r"the model has no parameter 'n'; it has: none \(the variables that its first lines set, before any import\)"
+    with pytest.raises(DesignError, match=says):
+        specify(str(path))
+
+
 def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_runs() -> None:
     with pytest.raises(DesignError, match=r"--set aperture: Design, small 1: aperture: must be <= 3 \(got 4\)"):
         specify("warren_whang_1987", values={"aperture": [0.5, 4]})
