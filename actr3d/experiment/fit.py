@@ -36,7 +36,7 @@ from scipy.special import stdtrit
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean
 from actr3d.experiment.cluster import Progress, run_experiment
-from actr3d.experiment.design import DIGITS, OWN_NUMBERS, Design, Measured
+from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
 from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
@@ -498,16 +498,26 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     with path.open(encoding="utf-8-sig", errors="replace", newline="") as file:
         lines = [row for row in csv.reader(file) if row and not row[0].lstrip().startswith("#")]
     head = [cell.strip() for cell in lines[0]] if lines else []
+    ignored = {*OWN_COLUMNS, *design.trial(0).columns} - {"participant", "group", *names.values()}
     if "measure" in head:
         place = head.index("measure")
         measures = [row[place].strip() for row in lines[1:] if len(row) > place]
     else:
-        there = [column for column in head if column not in {"participant", "group", *levels}]
+        there = [column for column in head if factor_name(column) not in {"participant", "group", *levels, *ignored}]
         kept = {one.name for one in design.kept}
         # Any other column is an error of the reader. A design that keeps all measures does not say which there are.
         measures = [column for column in there if column == measure or (column in kept if kept else not did_you_mean(column, levels))]
+        if measure in measures:  # another one may be a text
+            ignored |= {*measures} - {measure}
+            measures = [measure]
     parameters = {factor_name(one.name): one for one in experiment.parameters if one.name in design.factors}
-    schema = Schema(groups=list(design.groups), factors=levels, measures=list(dict.fromkeys(measures)), parameters=parameters)
+    schema = Schema(
+        groups=list(design.groups),
+        factors=levels,
+        measures=list(dict.fromkeys(measures)),
+        parameters=parameters,
+        ignored=sorted(ignored),
+    )
     data = read_human_data(path, schema)
     people: defaultdict[tuple[str, Cell], defaultdict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
     for number, row in enumerate(data.rows):
