@@ -23,7 +23,7 @@ from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
 from actr3d.experiment.table import export
-from actr3d.experiment.trial import PLAIN, record_trial
+from actr3d.experiment.trial import PLAIN, check_measures, record_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
 from actr3d.recording.schema import versions
 from actr3d.values import to_json
@@ -329,6 +329,7 @@ def _opened(
     experiment = specify(name, participants=participants, trials=trials, values=values)
     folder = folder or experiment.specification.name
     if not (resume and is_folder(folder)):
+        check_measures(experiment)
         return experiment, opened.enter_context(Store.create(folder, experiment.specification))
     store = opened.enter_context(Store(folder))
     _check_versions(store.specification, any_version=any_version)
