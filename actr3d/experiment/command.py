@@ -23,7 +23,7 @@ from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
 from actr3d.experiment.table import export
-from actr3d.experiment.trial import PLAIN, record_trial
+from actr3d.experiment.trial import PLAIN, check_measures, record_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
 from actr3d.recording.schema import versions
 from actr3d.values import to_json
@@ -219,8 +219,12 @@ def fit(
     (path / "fit.json").write_text(to_json(result), encoding="utf-8")
     out.event("fit", asdict(result))
     out.line(("\nfitted", "bold"), f" to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
+    few = result.fit.cells <= len(result.parameters)
     for one in result.parameters:
-        low, high = ("not determined" if bound is None else f"{bound:g}" for bound in (one.low, one.high))
+        low, high = (
+            "none: it needs more means than parameters" if few else "not determined" if bound is None else f"{bound:g}"
+            for bound in (one.low, one.high)
+        )
         out.line(f"  {one.name} = {one.value:g}   95 % interval: {low if low == high else f'{low} to {high}'}")
     for title, agreements in (("the fit", {"": result.fit}), ("held out", result.held_out), ("changed", result.ablated)):
         for what, found in agreements.items():
@@ -325,6 +329,7 @@ def _opened(
     experiment = specify(name, participants=participants, trials=trials, values=values)
     folder = folder or experiment.specification.name
     if not (resume and is_folder(folder)):
+        check_measures(experiment)
         return experiment, opened.enter_context(Store.create(folder, experiment.specification))
     store = opened.enter_context(Store(folder))
     _check_versions(store.specification, any_version=any_version)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from random import Random
@@ -16,6 +16,7 @@ from annotated_types import Ge, Gt
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, alternatives, did_you_mean
 from actr3d.parameter_schema import Parameter
+from actr3d.values import escape_surrogates
 
 DIGITS = 6
 """Number of decimals to which drawn values are rounded, so that they are the same on every machine."""
@@ -27,6 +28,8 @@ MAX_TRIALS = 10_000_000
 """Maximum number of trials of an experiment."""
 LONGEST_NAME = 100
 """Maximum number of bytes of the name of a measure, in UTF-8."""
+LARGEST = 2**63
+"""Whole numbers must be below this, which tables and databases can store."""
 FINEST = 1e-5
 """The least standard deviation of a distribution."""
 OWN_COLUMNS = ("trial", "participant", "group", "position", "repetition", "seed", "end", "error", "versions", "wall_s", "worker")
@@ -127,12 +130,13 @@ class Group(Configuration):
 
         Raises:
             ConfigurationError: If the number is out of bounds.
-            DesignError: If a value is not finite.
+            DesignError: If a value cannot be stored.
         """
         super().__post_init__()
+        _check_names(self.parameters, "Group.parameters")
         object.__setattr__(self, "parameters", {name: as_python(value) for name, value in self.parameters.items()})
         for name, value in self.parameters.items():
-            _check_finite(value, f"Group.parameters['{name}']", name)
+            _check_plain(value, f"Group.parameters['{name}']", name, drawn=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,6 +158,8 @@ class Measured(Configuration):
             DesignError: If the name cannot be that of a column and of a file.
         """
         super().__post_init__()
+        if self.over is not None:
+            _check_names([self.over], "Measured.over")
         if not 0 < len(self.name.encode("utf-8", "surrogatepass")) <= LONGEST_NAME or "/" in self.name or not self.name.isprintable():
             right = f"1 to {LONGEST_NAME} bytes of printable characters without '/'"
             raise DesignError(f"measure: its name must be {right} (got {self.name[:LONGEST_NAME]!r})", "measures")
@@ -201,7 +207,7 @@ class Design(Configuration):
     """The order of a participant's trials: drawn for each participant, or as the levels are listed."""
     derive: Callable[[Mapping[str, Any]], Mapping[str, Any]] | None = None
     """Computes more parameters of the model from the values of a trial, such as an aperture from a ratio and a shoulder width. A factor
-    that it reads need not be a parameter of the model."""
+    that it reads need not be a parameter of the model; it must not return a factor."""
     results: Callable[[Any], Mapping[str, Any]] | None = None
     """Computes the measures of a trial by name: from the simulation at its end, or from the module of a program that has run. None: the
     fields of the simulation's result, or the program's variables named by `measures`."""
@@ -222,9 +228,12 @@ class Design(Configuration):
 
         Raises:
             ConfigurationError: If a field has the wrong type, or is out of bounds.
-            DesignError: If there is no trial, a parameter is given twice, or a value is not finite.
+            DesignError: If there is no trial, a parameter is given twice, or a value cannot be stored.
         """
         super().__post_init__()
+        tidy: dict[str, Sequence[Any]] = {}
+        for field_name in ("factors", "settings", "groups"):
+            _check_names(getattr(self, field_name), f"Design.{field_name}")
         for field_name in ("factors", "settings"):
             object.__setattr__(self, field_name, {name: as_python(value) for name, value in getattr(self, field_name).items()})
         for name, levels in self.factors.items():
@@ -233,14 +242,14 @@ class Design(Configuration):
                 raise DesignError(f"Design.factors['{name}']: must be a list of levels (got {given!r})", name)
             if not given:
                 raise DesignError(f"Design.factors['{name}']: must have at least one level (got {given!r})", name)
-            if len({repr(level) for level in levels}) < len(levels):
+            _check_plain(list(levels), f"Design.factors['{name}']", name, several=True)
+            # What `np.arange` gives for 0.3 is the level 0.3, as tables and human data have it.
+            tidy[name] = [float(f"{one:.12g}") if type(one) is float else one for one in levels]
+            if len(set(map(_key, tidy[name]))) < len(levels):
                 raise DesignError(f"Design.factors['{name}']: must name each level once (got {given!r})", name)
-            _check_finite(given, f"Design.factors['{name}']", name)
-        # What `np.arange` gives for 0.3 is the level 0.3, as tables and human data have it.
-        tidy = {name: [float(f"{one:.12g}") if type(one) is float else one for one in levels] for name, levels in self.factors.items()}
         object.__setattr__(self, "factors", tidy)
         for name, value in self.settings.items():
-            _check_finite(value, f"Design.settings['{name}']", name)
+            _check_plain(value, f"Design.settings['{name}']", name, drawn=True)
         if not self.groups:
             raise DesignError("Design.groups: must have at least one group (got {})", "groups")
         for name, group in cast("Mapping[str, Any]", self.groups).items():
@@ -256,11 +265,13 @@ class Design(Configuration):
             raise DesignError(f"Design.settings: '{twice}' is already a factor, or a parameter of a group", twice)
         if isinstance(self.measures, (str, bytes)):
             raise DesignError(f"Design.measures: must be a list of names (got {self.measures!r})", "measures")
-        given = [one.name for one in self.kept]
+        given, columns = [one.name for one in self.kept], {*self.factors, *self.settings, *grouped, *OWN_COLUMNS}
         for measure in self.kept:
             if given.count(measure.name) > 1:
                 raise DesignError(f"Design.measures: '{measure.name}' is there twice", measure.name)
-            if measure.over in {*self.factors, *self.settings, *grouped, *OWN_COLUMNS}:
+            if measure.name in columns:
+                raise DesignError(f"Design.measures: '{measure.name}' is already a column of the trials; rename it", measure.name)
+            if measure.over in columns:
                 raise DesignError(f"Design.measures: '{measure.name}' is over '{measure.over}', which is another column", measure.name)
         for name in {*self.factors, *self.settings, *grouped}:
             if (name in OWN_COLUMNS and name != "group") or (name == "group" and name in self.factors):
@@ -330,7 +341,7 @@ class Design(Configuration):
         """Returns the values of a trial with those that `derive` computes from them.
 
         Raises:
-            DesignError: If `derive` fails, or returns something else, or a value that is not finite.
+            DesignError: If `derive` fails, or returns something else, a factor, or a value that cannot be stored.
         """
         if self.derive is None:
             return dict(values)
@@ -342,7 +353,10 @@ class Design(Configuration):
             raise DesignError(f"Design.derive: must return values by name (returned {more!r})", "derive")
         found = {str(name): as_python(value) for name, value in cast("Mapping[Any, Any]", more).items()}
         for name, value in found.items():
-            _check_finite(value, f"Design.derive['{name}']", "derive")
+            if name in self.factors or (name in OWN_COLUMNS and name != "group"):
+                what = "a factor" if name in self.factors else "a column of every table of trials"
+                raise DesignError(f"Design.derive: must not return '{name}', which is {what}; give it another name", "derive")
+            _check_plain(value, f"Design.derive['{name}']", "derive")
         return {**values, **found}
 
     def table(self) -> Iterator[Trial]:
@@ -382,8 +396,12 @@ class Design(Configuration):
 
     # -- checks against the model
 
-    def check(self, parameters: Sequence[Parameter]) -> None:
+    def check(self, parameters: Sequence[Parameter], which: str = "") -> None:
         """Checks all values against the parameters of the model.
+
+        Args:
+            parameters: The parameters of the model.
+            which: What they are, for the error of an unknown one.
 
         Raises:
             DesignError: If a name is not a parameter of the model, or a value is not allowed.
@@ -391,10 +409,13 @@ class Design(Configuration):
         known = {parameter.name: parameter for parameter in parameters}
         given = {**self.settings, **self.factors, **{key: None for group in self.groups.values() for key in group.parameters}}
         read: set[str] = set()
+        measured = {one.name for one in self.kept}
         examples = [{name: _example(value, p) for name, value in self.settings.items()} for p in (FAR, 0.5, 1 - FAR)]
         for participant, cell, example in itertools.product(self.participants, self.cells, examples):
             values = _ReadNames({**example, **participant.parameters, **cell}, read)
             for name, value in self.derived(values).items():
+                if name in measured:
+                    raise DesignError(f"Design.measures: '{name}' is already a column of the trials; rename it", name)
                 if name in known:
                     try:
                         known[name].check(value)
@@ -404,7 +425,7 @@ class Design(Configuration):
                     raise DesignError(f"Design.derive: the model has no parameter '{name}'{did_you_mean(name, known)}", "derive")
         for name in given:
             if name not in known and name not in read:
-                raise DesignError(f"Design: the model has no parameter '{name}'{alternatives(name, known, 'it has:')}", name)
+                raise DesignError(f"Design: the model has no parameter '{name}'{alternatives(name, known, 'it has:')}{which}", name)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -488,20 +509,68 @@ def _example(value: Any, p: float) -> Any:
     return round(as_python(value.quantile(p)), DIGITS) if isinstance(value, Distribution) else value
 
 
-def _check_finite(value: Any, where: str, name: str) -> None:
-    """Checks that a value, and each value in it, is finite: neither tables nor the text of a model have another way to write it.
+def _check_names(names: Iterable[Any], where: str) -> None:
+    """Checks that names can be those of columns and conditions.
 
     Raises:
-        DesignError: If it is infinite or NaN.
+        DesignError: If one is no text, is empty, or has characters that cannot be printed.
     """
+    for name in names:
+        if not isinstance(name, str) or not name or not name.isprintable():
+            raise DesignError(f"{where}: names must be texts of printable characters (got {name!r})", where.rpartition(".")[2])
+
+
+def _key(level: Any) -> Any:
+    """Returns what two levels have in common that are the same: equal numbers are, 1 and True are not."""
+    return level if isinstance(level, (int, float)) and not isinstance(level, bool) else repr(level)
+
+
+def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False, several: bool = False) -> None:
+    """Checks that tables, JSON and the text of a model have a way to write a value, and each value in it.
+
+    Args:
+        value: The value.
+        where: What it is the value of, for the error.
+        name: The name that leads to its line.
+        drawn: Whether it may be a distribution.
+        several: Whether it is a list of such values.
+
+    Raises:
+        DesignError: If they have none.
+    """
+    if drawn and isinstance(value, Distribution) and not isinstance(value, type):
+        return
     waiting = [value]
     for one in waiting:
-        if isinstance(one, (list, tuple)):
-            waiting += cast("Sequence[Any]", one)
-        elif isinstance(one, Mapping):
-            waiting += cast("Mapping[Any, Any]", one).values()
-        elif isinstance(one, float) and not math.isfinite(one):
-            raise DesignError(f"{where}: must be finite (got {value!r})", name)
+        right, got = "", ""
+        match one:
+            case list() | tuple():
+                waiting += cast("Sequence[Any]", one)
+            case Mapping() if all(isinstance(key, str) for key in cast("Mapping[Any, Any]", one)):
+                waiting += (part for pair in cast("Mapping[str, Any]", one).items() for part in pair)
+            case bool() | None:
+                pass
+            case int() if not -LARGEST <= one < LARGEST:
+                right = "whole numbers of at most 64 bits, or floats" if several else "a whole number of at most 64 bits, or a float"
+                got = f"one of {one.bit_length()} bits"
+            case float() if not math.isfinite(one):
+                right = "finite"
+            case str() if escape_surrogates(one) != one:
+                right = f"{'texts' if several else 'a text'} of characters that can be stored"
+            case int() | float() | str():
+                pass
+            case Distribution() if not isinstance(one, type):
+                own = "Group.parameters, for one value of each participant, or Design.settings, for one of each trial"
+                raise DesignError(f"{where}: a distribution belongs to {own} (got {value!r})", name)
+            case _:
+                each = (
+                    "numbers, texts, True, False, None, or lists or dicts"
+                    if several
+                    else "a number, text, True, False, None, or a list or dict"
+                )
+                right = f"{each} of these"
+        if right:
+            raise DesignError(f"{where}: must be {right} (got {got or repr(value)})", name)
 
 
 def _levels(value: Any, before: Sequence[Any]) -> Sequence[Any]:

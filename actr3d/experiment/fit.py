@@ -5,8 +5,11 @@ that the misfit is a function of the parameters alone. The candidates and their 
 continues where it was, and gives the same result.
 
 Around the best candidate, the sum of squared differences is described by a quadratic surface. It gives every second candidate (its
-minimum), the intervals of the parameters (profile likelihood, normal errors of unknown variance) and the estimates of parameter recovery.
-Source: Raue et al. (2009), Bioinformatics 25(15), for profile likelihoods.
+minimum), the intervals of the parameters and the estimates of parameter recovery. An interval has the values of a parameter at which the
+least sum of squares over all other parameters, relative to that over all of them, is at most 1 + F / (n - p), with the 95 % quantile of
+the F distribution with 1 and n - p degrees of freedom: n means with normal errors of one unknown variance, and p parameters.
+Source: Bates and Watts (1988), Nonlinear Regression Analysis and Its Applications, section 6.1 (profile t); Raue et al. (2009),
+Bioinformatics 25(15), for profile likelihoods.
 """
 
 from __future__ import annotations
@@ -22,17 +25,18 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from hashlib import sha256
 from pathlib import Path
-from statistics import NormalDist, fmean
+from statistics import fmean
 from typing import Any
 
 import numpy as np
 import optuna
 from numpy.typing import NDArray
+from scipy.special import stdtrit
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean
 from actr3d.experiment.cluster import Progress, run_experiment
-from actr3d.experiment.design import DIGITS, OWN_NUMBERS, Design, Measured
+from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
 from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
@@ -41,8 +45,6 @@ NARROWEST = 1e-4
 """The least width of a range."""
 STARTING = 10
 """The number of candidates that are drawn evenly before any are proposed."""
-RISE = NormalDist().inv_cdf(0.975) ** 2
-"""By how much -2 log likelihood rises at the bounds of an interval of 95 %: chi-squared with one degree of freedom."""
 DRAWS = 20
 """The maximum number of values that are drawn for a simulated data set, until the model has all means."""
 GRID = 201
@@ -167,6 +169,7 @@ class Fit:
 
     Raises:
         ExperimentError: If nothing can be fitted.
+        SettingError: If a parameter is given twice, or is a factor of the design.
         DesignError: If the design, or the range of a parameter, does not fit the model.
     """
 
@@ -189,12 +192,30 @@ class Fit:
             raise ExperimentError("--parameter: must be given at least once, as NAME=LOW..HIGH")
         self.target = cells_of_target(target)
         self.measure = target[0].measure
+        self._check_ranges()
         for ends in itertools.product(*((one.low, one.high) for one in ranges)):
             experiment = self._experiment(dict(zip(self._names, ends, strict=True)))  # checks the bounds of the model's parameters
             _check_conditions(self.target, experiment.design)
         self._points: list[dict[str, float]] = []
         self._means: list[dict[Cell, float]] = []
         self._failure = ""
+
+    def _check_ranges(self) -> None:
+        """Checks that each parameter has one range, and is none of the design's factors.
+
+        Raises:
+            SettingError: If one has two ranges, or is a factor with several levels or with texts.
+        """
+        varied, seen = self._experiment({}).design.factors, dict[str, Range]()
+        for one in self._ranges:
+            if one.name in seen:
+                ranges = f"{seen[one.name].low:g}..{seen[one.name].high:g} and {one.low:g}..{one.high:g}"
+                raise SettingError(f"--parameter {one.name}: is given twice ({ranges}); give one range")
+            seen[one.name] = one
+            levels = varied.get(one.name, ())
+            if len(levels) > 1 or any(isinstance(level, str) for level in levels):
+                shown = ", ".join(map(str, levels))
+                raise SettingError(f"--parameter {one.name}: is a factor of the design ({shown}); name one that does not vary")
 
     @property
     def _names(self) -> list[str]:
@@ -426,26 +447,29 @@ class QuadraticSurface:
         return np.column_stack([np.ones(len(points)), points, *products])
 
     def _grid(self) -> NDArray[np.float64]:
+        """Returns all points at which the surface is evaluated, (count, ..., count, p)."""
         count = GRID if self._axes <= 2 else max(5, int(GRID ** (2 / self._axes)))
-        return np.array(list(itertools.product(*[np.linspace(0, 1, count)] * self._axes)))
+        return np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, count)] * self._axes, indexing="ij"), axis=-1)
 
     def minimum(self) -> NDArray[np.float64]:
         """Returns the point with the least sum of squares, (p,)."""
-        grid = self._grid()
-        return grid[int(np.argmin(self._terms(grid) @ self._weights))]
+        points = self._grid().reshape(-1, self._axes)
+        return points[int(np.argmin(self._terms(points) @ self._weights))]
 
     def interval(self, axis: int) -> tuple[float | None, float | None]:
-        """Returns the bounds of a parameter between which the profile likelihood is near its maximum; None where the range ends first.
+        """Returns the bounds of the 95 % interval of a parameter; None where the range ends first.
 
-        With no more data than parameters, nothing is left to tell how much the data vary: both are None.
+        With few more data than parameters, an interval is wide: the data say little of how much they vary. With no more data than
+        parameters they say nothing of it, and both bounds are None.
         """
-        if self._data <= self._axes:
+        free = self._data - self._axes
+        if free <= 0:
             return None, None
         grid = self._grid()
-        losses = self._data * np.log(np.maximum(self._terms(grid) @ self._weights, self._least) / self._least)
-        values = np.unique(grid[:, axis])
-        profile = np.array([losses[grid[:, axis] == value].min() for value in values])
-        inside = values[profile - profile.min() <= RISE]
+        squares = np.maximum(self._terms(grid.reshape(-1, self._axes)) @ self._weights, self._least).reshape(grid.shape[:-1])
+        profile = squares.min(axis=tuple(other for other in range(self._axes) if other != axis))
+        most = 1 + stdtrit(free, 0.975) ** 2 / free  # the square of t has the F distribution with 1 and n - p degrees of freedom
+        inside = np.linspace(0, 1, len(profile))[profile <= most * profile.min()]
         low, high = float(inside.min()), float(inside.max())
         return None if low <= 0 else low, None if high >= 1 else high
 
@@ -474,16 +498,26 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     with path.open(encoding="utf-8-sig", errors="replace", newline="") as file:
         lines = [row for row in csv.reader(file) if row and not row[0].lstrip().startswith("#")]
     head = [cell.strip() for cell in lines[0]] if lines else []
+    ignored = {*OWN_COLUMNS, *design.trial(0).columns} - {"participant", "group", *names.values()}
     if "measure" in head:
         place = head.index("measure")
         measures = [row[place].strip() for row in lines[1:] if len(row) > place]
     else:
-        there = [column for column in head if column not in {"participant", "group", *levels}]
+        there = [column for column in head if factor_name(column) not in {"participant", "group", *levels, *ignored}]
         kept = {one.name for one in design.kept}
         # Any other column is an error of the reader. A design that keeps all measures does not say which there are.
         measures = [column for column in there if column == measure or (column in kept if kept else not did_you_mean(column, levels))]
+        if measure in measures:  # another one may be a text
+            ignored |= {*measures} - {measure}
+            measures = [measure]
     parameters = {factor_name(one.name): one for one in experiment.parameters if one.name in design.factors}
-    schema = Schema(groups=list(design.groups), factors=levels, measures=list(dict.fromkeys(measures)), parameters=parameters)
+    schema = Schema(
+        groups=list(design.groups),
+        factors=levels,
+        measures=list(dict.fromkeys(measures)),
+        parameters=parameters,
+        ignored=sorted(ignored),
+    )
     data = read_human_data(path, schema)
     people: defaultdict[tuple[str, Cell], defaultdict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
     for number, row in enumerate(data.rows):

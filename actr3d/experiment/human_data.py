@@ -6,20 +6,21 @@ lists them with their units. What the values of a measure are numbered by, such 
 name there, `latency` for `latency_1`, `latency_2`, and so on. A level of a parameter of the model must be within its bounds. A factor
 whose name is that of another column here or in the tables of a report, such as `n`, has an underscore added: `n_`. Of a factor whose levels
 are not all numbers, they are texts: `True`, `none`, `fast`.
-An empty cell is a value that is missing.
+An empty cell is a value that is missing. The table of trials of an experiment, `trials.csv`, can be read as trials of people.
 
 **Trials** have the columns
 
 - `participant`: a name or number, unique in its group;
 - `group`: the name of a group of the design; may be left out if the design has one group;
-- a column for each factor of the design, such as `aperture`, `ratio` or `condition`; without one, the data are means over its levels;
-- a column for each measure, such as `wall_angle_deg` or `speed_m_s`; at least one.
+- a column for each factor of the design, such as `aperture`, `ratio` or `condition`; without one, or with one that is all empty, the data
+  are means over its levels;
+- a column for each measure, such as `wall_angle_deg` or `speed_m_s`; at least one. `True` counts as 1, `False` as 0.
 
 **Published means** have the columns
 
 - `group`, and a column for each factor, as above; an empty cell is a mean over all groups or levels;
 - `measure`: the name of a measure;
-- `mean`, `sd` (between participants) and `n` (participants); `sd` and `n` may be empty;
+- `mean`, `sd` (between participants) and `n` (participants); `sd` and `n` may be empty; one mean for the same conditions;
 - `source`: where the mean is printed.
 
 The published means of the library's own designs are the files of the folder `human` beside this module; `Design.human` names one.
@@ -43,6 +44,8 @@ FOLDER = Path(__file__).parent / "human"
 """The folder of the library's published means."""
 SHOWN = 20
 """The maximum number of errors that are named at a time."""
+HUGE = 1e100
+"""The maximum size of a number: the squares of larger ones may be infinite."""
 OF_MEANS = ("measure", "mean", "sd", "n", "source")
 """The columns of published means that are not factors."""
 RESERVED = ("value", "mean", "sd", "low", "high", "n", "trials", "measure", "unit", "source", "model", "beside", "end", "error")
@@ -99,6 +102,10 @@ class Schema:
     measures: Sequence[str]
     parameters: Mapping[str, Parameter] = field(default_factory=dict[str, Parameter])
     """The parameters of the model that the factors are; levels of people must be within their bounds."""
+    switches: Sequence[str] = ()
+    """The measures that are True or False, whose means are proportions."""
+    ignored: Sequence[str] = ()
+    """Other columns of the table of trials, which data of people may have, too."""
 
 
 def library_human_data() -> dict[str, Path]:
@@ -138,6 +145,11 @@ class _Reader:
         try:
             for cells in reader:
                 if cells and cells[0].lstrip().startswith("#"):
+                    if self._lines and 1 < len(cells) == len(self._lines[0][1]):
+                        where = f"{path}:{reader.line_num}"
+                        self._errors.append(
+                            f"{where}: begins with '#', as a note does: rename {cells[0]!r}, or write notes above the first line"
+                        )
                     self._notes.append(",".join(cells).strip().lstrip("#").strip())
                 elif any(cell.strip() for cell in cells):
                     self._lines.append((reader.line_num, [cell.strip() for cell in cells]))
@@ -153,27 +165,54 @@ class _Reader:
         if not self._lines:
             raise ExperimentError(f"{self._path}: is empty; the first line must name the columns")
         line, head = self._lines[0]
-        published = self._check_head(line, head)
-        rows = [row for number, cells in self._lines[1:] if (row := self._row(number, head, cells, published)) is not None]
+        published = "measure" in head or "mean" in head
+        if not published:  # the table of trials has factors by their own names
+            head = [shown if (shown := factor_name(name)) in self._schema.factors else name for name in head]
+        self._check_head(line, head, published)
+        rows = {number: row for number, cells in self._lines[1:] if (row := self._row(number, head, cells, published)) is not None}
+        if not self._errors and rows:
+            self._check_rows(head, rows, published)
         # A file of published means without rows says in its notes that none are known.
         if not self._errors and not rows and not (published and self._notes):
             self._errors.append(f"{self._path}:{line}: no row follows the names of the columns")
         if self._errors:
             more = len(self._errors) - SHOWN
             raise ExperimentError("\n".join([*self._errors[:SHOWN], *([f"... and {more} more errors"] if more > 0 else [])]))
-        measures = [one for one in self._schema.measures if (any(row["measure"] == one for row in rows) if published else one in head)]
-        return HumanData(name=name, published=published, rows=rows, measures=measures, notes=self._notes)
+        measures = [
+            one for one in self._schema.measures if (any(row["measure"] == one for row in rows.values()) if published else one in head)
+        ]
+        return HumanData(name=name, published=published, rows=list(rows.values()), measures=measures, notes=self._notes)
 
-    def _check_head(self, line: int, head: list[str]) -> bool:
-        """Checks the names of the columns; returns whether the rows are published means."""
+    def _check_rows(self, head: list[str], rows: Mapping[int, Mapping[str, Any]], published: bool) -> None:
+        """Checks what several rows must have in common: one mean for the same conditions; factors that are in all trials or in none; a
+        value."""
+        factors = list(self._schema.factors)
+        if published:
+            seen: dict[tuple[Any, ...], int] = {}
+            for line, row in rows.items():
+                first = seen.setdefault(tuple(row[name] for name in ("group", *factors, "measure")), line)
+                if first != line:
+                    self._errors.append(f"{self._path}:{line}: is a second mean of '{row['measure']}' for the conditions of line {first}")
+            return
+        for name in factors:
+            if any(row[name] is not None for row in rows.values()):
+                for line, row in rows.items():
+                    if row[name] is None:
+                        self._add(line, name, "", "given, as in other rows; without the column, the data are means over its levels")
+        measures = [name for name in self._schema.measures if name in head]
+        if all(row[name] is None for row in rows.values() for name in measures):
+            self._errors.append(f"{self._path}: no row has a value of a measure: {', '.join(measures)}")
+
+    def _check_head(self, line: int, head: list[str], published: bool) -> None:
+        """Checks the names of the columns."""
         schema, where = self._schema, f"{self._path}:{line}"
-        published = "measure" in head or "mean" in head
         measures = [] if published else list(schema.measures)
         known = [*(["group", *OF_MEANS] if published else ["participant", "group"]), *schema.factors, *measures]
-        if len(head) == 1 and ";" in head[0]:
+        accepted = known if published else [*known, *schema.ignored]
+        if len(head) == 1 and (";" in head[0] or "\t" in head[0]):
             raise ExperimentError(f"{where}: the columns must be separated by commas (got {head[0]!r})")
         wrong = [f"{where}: column '{name}' is there twice" for name in dict.fromkeys(head) if head.count(name) > 1]
-        wrong += [f"{where}: unknown column '{name}'{alternatives(name, known, 'there may be:')}" for name in head if name not in known]
+        wrong += [f"{where}: unknown column '{name}'{alternatives(name, known, 'there may be:')}" for name in head if name not in accepted]
         needed = ["measure", "mean", "source"] if published else ["participant"]
         needed += ["group"] if not published and len(schema.groups) > 1 else []
         wrong += [f"{where}: column '{name}' is missing; {self._form(published)}" for name in needed if name not in head]
@@ -181,7 +220,6 @@ class _Reader:
             wrong.append(f"{where}: no column is a measure; there may be: {', '.join(measures)}")
         if wrong:
             raise ExperimentError("\n".join(wrong))
-        return published
 
     @staticmethod
     def _form(published: bool) -> str:
@@ -196,10 +234,12 @@ class _Reader:
         given, before = dict(zip(head, cells, strict=True)), len(self._errors)
         row: dict[str, Any] = {"group": self._one_of(line, "group", given.get("group", ""), self._schema.groups)}
         for name, levels in self._schema.factors.items():
-            row[name] = self._level(line, name, given.get(name, ""), levels)
+            # The table of trials has an empty cell for the level None.
+            none = "none" if name in given and not published and "none" in levels else ""
+            row[name] = self._level(line, name, given.get(name, "") or none, levels)
         if published:
             row["measure"] = self._one_of(line, "measure", given["measure"], self._schema.measures, needed=True)
-            row["mean"] = self._number(line, "mean", given["mean"], needed=True)
+            row["mean"] = self._value(line, "mean", given["mean"], row["measure"], needed=True)
             row["sd"] = self._number(line, "sd", given.get("sd", ""), least=0)
             row["n"] = self._number(line, "n", given.get("n", ""), least=1, whole=True)
             row["source"] = self._given(line, "source", given["source"])
@@ -209,7 +249,12 @@ class _Reader:
                 row["group"] = row["group"] or self._schema.groups[0]
             elif not row["group"] and len(self._errors) == before:
                 self._add(line, "group", "", f"one of: {', '.join(self._schema.groups)}")
-            row |= {name: self._number(line, name, given[name]) for name in self._schema.measures if name in given}
+            as_number = {"True": "1", "False": "0"}
+            row |= {
+                name: self._value(line, name, as_number.get(given[name], given[name]), name)
+                for name in self._schema.measures
+                if name in given
+            }
         return row if len(self._errors) == before else None
 
     # -- cells
@@ -246,8 +291,14 @@ class _Reader:
                 return None
         return value
 
+    def _value(self, line: int, column: str, text: str, measure: str | None, *, needed: bool = False) -> float | None:
+        """Returns a value of a measure, or a mean of it."""
+        if measure in self._schema.switches:
+            return self._number(line, column, text, needed=needed, least=0, most=1)
+        return self._number(line, column, text, needed=needed)
+
     def _number(
-        self, line: int, column: str, text: str, *, needed: bool = False, least: float = -math.inf, whole: bool = False
+        self, line: int, column: str, text: str, *, needed: bool = False, least: float = -HUGE, most: float = HUGE, whole: bool = False
     ) -> float | None:
         if not text and not needed:
             return None
@@ -255,9 +306,11 @@ class _Reader:
             value = math.nan if "_" in text else float(text)
         except ValueError:
             value = math.nan
-        if not math.isfinite(value) or value < least or (whole and value != int(value)):
+        if not least <= value <= most or (whole and value != int(value)):
             kind = "a whole number" if whole else "a number"
-            bound = "" if least == -math.inf else f" from {least:g} on"
+            bound = "" if least == -HUGE else f" from {least:g} on" if most == HUGE else f" from {least:g} to {most:g}"
+            if math.isfinite(value) and abs(value) > HUGE:
+                bound = f" from {max(least, -HUGE):g} to {HUGE:g}"
             point = "; write the decimal point as '.'" if "," in text else ""
             self._add(line, column, text, f"{kind}{bound}{point}")
             return None

@@ -10,10 +10,11 @@ import ast
 import inspect
 import json
 import pkgutil
+import re
 import sys
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -30,7 +31,7 @@ from actr3d.actr.loading.sweep import parameters as variables_of
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, alternatives, did_you_mean
 from actr3d.experiment import designs
-from actr3d.experiment.design import Design, Measured, is_design
+from actr3d.experiment.design import Design, Group, Measured, Normal, Uniform, is_design
 from actr3d.experiment.human_data import library_human_data
 from actr3d.output import ModelOutput, printing_to
 from actr3d.parameter_schema import Parameter
@@ -145,7 +146,8 @@ class Experiment:
         """Units and meanings of the columns, as far as they are known."""
         self.describe(self.parameters)
         with naming_the_line(source, specification.name, specification.values):
-            self.design.check(self.parameters)
+            first = "" if self.blueprint is not None else " (the variables that its first lines set, before any import)"
+            self.design.check(self.parameters, first)
             if self.blueprint is None and self.design.results is None and not self.design.measures:
                 raise DesignError("Design.measures: must name the variables of the program that are its measures (got none)", "measures")
 
@@ -353,6 +355,15 @@ def naming_the_line(source: Source, function: str, replaced: Mapping[str, Any]) 
         name = error.name if isinstance(error, DesignError) else str(error).partition(":")[0].rpartition(".")[2]
         place = f"--set {name}" if name in replaced else f"{source.file}:{line_of(source.text, function, name)}"
         raise DesignError(f"{place}: {error}", name) from None
+    except TypeError as error:
+        found = re.fullmatch(r"(\w+)\.__init__\(\) got an unexpected keyword argument '(\w+)'", str(error))
+        kind = next((one for one in (Design, Group, Measured, Normal, Uniform) if found is not None and one.__name__ == found[1]), None)
+        if found is None or kind is None:
+            raise
+        name = found[2]
+        near = did_you_mean(name, [field.name for field in fields(kind)])
+        place = f"{source.file}:{line_of(source.text, function, name)}"
+        raise DesignError(f"{place}: {found[1]}.{name}: there is no such field{near}", name) from None
 
 
 def line_of(text: str, function: str, name: str) -> int:

@@ -108,14 +108,14 @@ class Store:
         Raises:
             ExperimentError: If the folder is not empty, or cannot be made.
         """
-        path = Path(folder)
+        path, text = Path(folder), specification.to_json()
         try:
             path.mkdir(parents=True, exist_ok=True)
             if any(path.iterdir()):
                 what = "holds an experiment already; continue it with --resume" if (path / SPECIFICATION).exists() else "is not empty"
                 raise ExperimentError(f"--out: '{path}' {what}, or name a new folder")
             part = path / f"{SPECIFICATION}.{secrets.token_hex(4)}"
-            part.write_text(specification.to_json(), encoding="utf-8")
+            part.write_text(text, encoding="utf-8")
             try:
                 os.link(part, path / SPECIFICATION)  # fails if another command has been faster
             finally:

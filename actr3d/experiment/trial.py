@@ -15,9 +15,9 @@ from actr3d.actr.loading import run_text
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
-from actr3d.errors import ExperimentError, did_you_mean
-from actr3d.experiment.design import OWN_COLUMNS, Measured, Trial, as_python
-from actr3d.experiment.specification import Experiment
+from actr3d.errors import DesignError, ExperimentError, did_you_mean
+from actr3d.experiment.design import LARGEST, OWN_COLUMNS, Measured, Trial, as_python
+from actr3d.experiment.specification import Experiment, naming_the_line
 from actr3d.output import ModelOutput, printing_to
 from actr3d.parameter_schema import parameters_of
 from actr3d.runner.model_factory import Blueprint
@@ -25,8 +25,6 @@ from actr3d.runner.run import run_source
 from actr3d.runner.traceback_report import traceback_report
 from actr3d.values import escape_surrogates
 
-LARGEST = 2**63
-"""Whole numbers must be below this, which tables and databases can store."""
 PLAIN = (str, int, float, bool, type(None))
 """The types of measures."""
 
@@ -82,6 +80,42 @@ def parameters_for(experiment: Experiment, trial: Trial) -> dict[str, Any]:
     return {name: value for name, value in trial.values.items() if name in known}
 
 
+def check_measures(experiment: Experiment) -> None:
+    """Checks the names of measures against the result that the simulation of the first trial has before it runs.
+
+    Nothing is known before the run of a program, of a design with `results`, and of a simulation that cannot be built.
+
+    Raises:
+        DesignError: If the result has no measure of that name; names the file and the line.
+    """
+    design, blueprint, specification = experiment.design, experiment.blueprint, experiment.specification
+    if blueprint is None or design.results is not None or not design.kept:
+        return
+    trial = design.trial(0)
+    limits = _limits(experiment, trial)
+    try:
+        with printing_to(ModelOutput(lambda _: None)), unchecked(), limits, shared_random(limits.program_seed):
+            result = blueprint.build(parameters_for(experiment, trial))[0].result()
+    except Exception:  # noqa: BLE001 - the trial fails, with this error in its row
+        return
+    if result is not None:
+        with naming_the_line(specification.design, specification.name, specification.values):
+            for measure in design.kept:
+                _check_name(measure.name, asdict(result))
+
+
+def _check_name(name: str, given: Mapping[str, Any]) -> None:
+    """Checks that a trial has a measure.
+
+    Raises:
+        DesignError: If it has none of that name.
+    """
+    if name not in given:
+        has = f"it has: {', '.join(given)}" if given else "it has none; Design.results computes them from the simulation"
+        hint = did_you_mean(name, given) or f"; {has}"
+        raise DesignError(f"Design.measures: the trial has no measure '{name}'{hint}", name)
+
+
 def _limits(experiment: Experiment, trial: Trial) -> RunLimits:
     return RunLimits(seed=trial.seed, until=experiment.design.until)
 
@@ -127,10 +161,7 @@ def _checked(measures: Any, experiment: Experiment, trial: Trial) -> Row:
     given = cast("Mapping[str, Any]", measures)
     kept: Row = {}
     for measure in experiment.design.kept or [Measured(name=name) for name in given]:
-        if measure.name not in given:
-            has = f"it has: {', '.join(given)}" if given else "it has none; Design.results computes them from the simulation"
-            hint = did_you_mean(measure.name, given) or f"; {has}"
-            raise ExperimentError(f"Design.measures: the trial has no measure '{measure.name}'{hint}")
+        _check_name(measure.name, given)
         for name, value in measure.columns(given[measure.name]).items():
             if name in trial.columns or name in OWN_COLUMNS or name in kept:
                 raise ExperimentError(f"measure '{name}': is already a column of the trials; rename it")

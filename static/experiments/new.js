@@ -38,9 +38,9 @@ function wantedOf(design, facts) {
   const wanted = { design, values: {} };
   let problem = null;
   for (const [name, text] of Object.entries(texts)) {
-    const levels = readLevels(text);
+    const { levels, problem: why } = readLevels(text);
     const isFactor = Boolean(facts?.factors[name]);
-    if (levels === null || (!isFactor && levels.length !== 1)) problem ??= `${name}: ${isFactor ? "levels, each once, separated by commas" : "one value"}`;
+    if (levels === null || (!isFactor && levels.length !== 1)) problem ??= `${name}: ${isFactor ? "levels, each once, separated by commas" : "one value"}; ${why ?? `there are ${levels.length} (got '${text}')`}`;
     else if (!isFactor || levelsText(levels) !== levelsText(facts.factors[name])) wanted.values[name] = isFactor ? levels : levels[0];
   }
   for (const [name, text] of Object.entries(counts)) {
@@ -130,7 +130,7 @@ function Form({ design, facts }) {
     <tbody>
       ${Object.entries(facts.factors).map(([name, levels]) => {
         const text = draft.values[name] ?? levelsText(levels);
-        const read = readLevels(text);
+        const read = readLevels(text).levels;
         return html`<tr key=${name}>
           <th scope="row" title="A factor: each participant does all combinations">${name}</th>
           <td><${Field} wide label="Levels of ${name}" value=${text} invalid=${read === null} onInput=${(entered) => set(name, entered)} /></td>
@@ -140,7 +140,7 @@ function Form({ design, facts }) {
       })}
       ${more.map((name) => html`<tr key=${name}>
         <th scope="row" title=${facts.parameters.find((one) => one.name === name)?.help}>${name}</th>
-        <td><${Field} wide label="Value of ${name}" value=${draft.values[name]} invalid=${readLevels(draft.values[name])?.length !== 1} onInput=${(entered) => set(name, entered)} /></td>
+        <td><${Field} wide label="Value of ${name}" value=${draft.values[name]} invalid=${readLevels(draft.values[name]).levels?.length !== 1} onInput=${(entered) => set(name, entered)} /></td>
         <td class="quiet"><button class="bare" aria-label="Remove ${name}" title="Remove" onClick=${() => unset(name)}><${Icon} name="close" /></button></td>
       </tr>`)}
       ${others.length > 0

@@ -45,19 +45,25 @@ function levelText(level) {
 export const levelsText = (levels) => levels.map(levelText).join(", ");
 
 function readLevel(text) {
-  if (text.startsWith('"')) return JSON.parse(text);
+  if (text.includes('"')) return JSON.parse(text);
   if (text !== "" && Number.isFinite(Number(text))) return Number(text);
   return { true: true, false: false, none: null, True: true, False: false, None: null }[text] ?? (/^[Nn]one$/.test(text) ? null : text);
 }
 
-/** Returns the levels that a text lists, separated by commas; texts may be in quotes. Returns null if it lists none, or one twice. */
+/** Returns the levels that a text lists, separated by commas, and what is wrong: {levels, problem}; one of them is null. Texts may be in quotes. */
 export function readLevels(text) {
-  const parts = text.match(/\s*(?:"(?:[^"\\]|\\.)*"|[^,;"]+)\s*(?:[,;]|$)/g) ?? [];
-  if (parts.join("").trim() !== text.trim() || parts.length === 0) return null;
+  const wrong = (problem) => ({ levels: null, problem: `${problem} (got '${text}')` });
+  const parts = [""];
+  for (const [token] of text.matchAll(/"(?:[^"\\]|\\.)*"?|[^",;]+|[,;]/g)) {
+    if (/^[,;]$/.test(token)) parts.push("");
+    else parts[parts.length - 1] += token;
+  }
+  if (parts.some((part) => part.trim() === "")) return wrong(parts.length === 1 ? "there is none" : "one is empty");
   try {
-    const levels = parts.map((part) => readLevel(part.trim().replace(/[,;]$/, "").trim()));
-    return levels.includes("") || new Set(levels.map((level) => JSON.stringify(level))).size < levels.length ? null : levels;
+    const levels = parts.map((part) => readLevel(part.trim()));
+    const twice = levels.find((level, place) => levels.indexOf(level) < place);
+    return twice === undefined ? { levels, problem: null } : wrong(`${levelText(twice)} is there twice`);
   } catch {
-    return null; // wrong quotes
+    return wrong("the quotation marks are wrong");
   }
 }

@@ -39,7 +39,9 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
     levels = page.get_by_label("Levels of n")
     expect(levels).to_have_value("1, 2, 5")
     levels.fill("1, 2, 2")
-    expect(foot).to_contain_text("n: levels, each once, separated by commas")
+    expect(foot).to_contain_text("n: levels, each once, separated by commas; 2 is there twice (got '1, 2, 2')")
+    levels.fill("1, ")
+    expect(foot).to_contain_text("n: levels, each once, separated by commas; one is empty (got '1, ')")
     levels.fill("1, 2, 5, 9")
     page.get_by_label("trials a combination").fill("3")
     expect(foot).to_contain_text("24 trials")  # 4 numbers, 3 times, 2 participants

@@ -41,6 +41,27 @@ def test_turning_points_are_found() -> None:
     assert critical_ratio([(1.0, True), (1.2, True)]) is None, "nothing is known where nobody walks straight through"
 
 
+@pytest.mark.parametrize(("centre", "slope"), [(1.9, 0.8), (1.5, 1.5), (1.5, 4.0)])
+def test_intervals_of_turning_points_have_the_true_one_as_often_as_they_say(centre: float, slope: float) -> None:
+    draw, ratios, runs, inside = random.Random(3), [0.9 + 0.1 * n for n in range(13)], 150, 0
+    for _ in range(runs):
+        trials = [(ratio, draw.random() < 1 / (1 + math.exp(slope * (ratio - centre)))) for ratio in ratios for _ in range(20)]
+        found = critical_ratio(trials)
+        assert found is not None
+        inside += found.low <= centre <= found.high
+    assert 0.92 < inside / runs < 0.99  # 0.95; a bound is one of 401 ratios, beyond the last one that is inside
+
+
+def test_a_turning_point_that_may_lie_beyond_the_trials_has_an_open_interval() -> None:
+    flat = critical_ratio((ratio, n < 10) for ratio in (0.9, 1.2, 1.5, 1.8, 2.1) for n in range(20))
+    assert flat is not None
+    assert (flat.low, flat.high) == (-math.inf, math.inf), "as many turn at each ratio"
+    beyond = critical_ratio((ratio, n < most) for ratio, most in ((0.9, 20), (1.2, 19), (1.5, 17), (1.8, 15)) for n in range(20))
+    assert beyond is not None
+    assert beyond.high == math.inf
+    assert 1.5 < beyond.low < beyond.value == 1.8
+
+
 def test_equivalence_takes_small_differences_and_small_spread() -> None:
     near, far, wide = [20.0, 21.0, 22.0, 21.0, 20.5], [28.0, 29.0, 30.0, 29.0, 28.5], [5.0, 40.0, 12.0, 33.0, 16.0]
     assert equivalence(near, [21.0, 20.0, 21.5, 20.5, 22.0], 5)[1] < 0.01

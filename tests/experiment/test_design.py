@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, ModelFileError
-from actr3d.experiment import Design, Group, Normal, Uniform
+from actr3d.experiment import Design, Group, Measured, Normal, Uniform
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from tests.helpers.experiments import write_experiment
 
@@ -33,6 +33,22 @@ def design_of(**changes: Any) -> Design:
 
 def without_value(values: Mapping[str, Any]) -> dict[str, Any]:
     return {"x": math.nan * values["fixed"]}
+
+
+def complex_value(_: Mapping[str, Any]) -> dict[str, Any]:
+    return {"x": 1j}
+
+
+def next_level(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {"a": values["a"] + 1}
+
+
+def own_seed(_: Mapping[str, Any]) -> dict[str, Any]:
+    return {"seed": 1}
+
+
+def drawn_value(_: Mapping[str, Any]) -> dict[str, Any]:
+    return {"x": Uniform(low=0, high=1)}
 
 
 def test_each_participant_does_each_cell_as_often_as_the_design_says() -> None:
@@ -127,29 +143,68 @@ def test_values_are_derived_from_others() -> None:
         design_of(derive=lambda _: 3).trial(0)  # type: ignore[arg-type, return-value]
 
 
-@pytest.mark.parametrize(
-    ("changes", "says"),
-    [
-        ({"factors": {"a": []}}, r"Design\.factors\['a'\]: must have at least one level \(got \[\]\)"),
-        ({"factors": {"a": 3}}, r"Design\.factors\['a'\]: must be a list of levels \(got 3\)"),
-        ({"factors": {"a": "abc"}}, r"Design\.factors\['a'\]: must be a list of levels \(got 'abc'\)"),
-        ({"factors": {"a": [1, 1]}}, r"Design\.factors\['a'\]: must name each level once \(got \[1, 1\]\)"),
-        ({"factors": {"size": [1]}}, r"Design\.groups\['young'\]: 'size' is a factor already"),
-        ({"factors": {"seed": [1]}}, r"Design: 'seed' is a column of every table of trials; rename the parameter"),
-        ({"settings": {"age": 1}}, r"Design\.settings: 'age' is already a factor, or a parameter of a group"),
-        ({"factors": {"a": [1, math.nan]}}, r"Design\.factors\['a'\]: must be finite \(got \[1, nan\]\)"),
-        ({"factors": {"a": [(1, -math.inf)]}}, r"Design\.factors\['a'\]: must be finite \(got \[\(1, -inf\)\]\)"),
-        ({"settings": {"fixed": math.inf}}, r"Design\.settings\['fixed'\]: must be finite \(got inf\)"),
-        ({"factors": {}, "derive": without_value}, r"Design\.derive\['x'\]: must be finite \(got nan\)"),
-        ({"groups": {}}, r"Design\.groups: must have at least one group \(got \{\}\)"),
-        ({"measures": ["m/s"]}, r"measure: its name must be 1 to 100 bytes of printable characters without '/' \(got 'm/s'\)"),
-        ({"measures": [""]}, r"measure: its name must be"),
-        ({"measures": ["a\0"]}, r"measure: its name must be"),
-        ({"measures": ["a" * 101]}, r"measure: its name must be"),
-        ({"measures": ["速" * 40]}, r"measure: its name must be"),
-        ({"groups": {"a": 3}}, r"Design\.groups\['a'\]: must be a Group \(got 3\)"),
-    ],
-)
+INVALID: list[tuple[dict[str, Any], str]] = [
+    ({"factors": {"a": []}}, r"Design\.factors\['a'\]: must have at least one level \(got \[\]\)"),
+    ({"factors": {"a": 3}}, r"Design\.factors\['a'\]: must be a list of levels \(got 3\)"),
+    ({"factors": {"a": "abc"}}, r"Design\.factors\['a'\]: must be a list of levels \(got 'abc'\)"),
+    ({"factors": {"a": [1, 1]}}, r"Design\.factors\['a'\]: must name each level once \(got \[1, 1\]\)"),
+    ({"factors": {"a": [1, 1.0]}}, r"Design\.factors\['a'\]: must name each level once \(got \[1, 1\.0\]\)"),
+    ({"factors": {"a": [0.3, 0.1 + 0.2]}}, r"Design\.factors\['a'\]: must name each level once \(got \[0\.3, 0\.30000000000000004\]\)"),
+    ({"factors": {"size": [1]}}, r"Design\.groups\['young'\]: 'size' is a factor already"),
+    ({"factors": {"seed": [1]}}, r"Design: 'seed' is a column of every table of trials; rename the parameter"),
+    ({"settings": {"age": 1}}, r"Design\.settings: 'age' is already a factor, or a parameter of a group"),
+    ({"factors": {"a": [1, math.nan]}}, r"Design\.factors\['a'\]: must be finite \(got \[1, nan\]\)"),
+    ({"factors": {"a": [(1, -math.inf)]}}, r"Design\.factors\['a'\]: must be finite \(got \[\(1, -inf\)\]\)"),
+    ({"settings": {"fixed": math.inf}}, r"Design\.settings\['fixed'\]: must be finite \(got inf\)"),
+    ({"factors": {}, "derive": without_value}, r"Design\.derive\['x'\]: must be finite \(got nan\)"),
+    (
+        {"factors": {"a": [1j]}},
+        r"Design\.factors\['a'\]: must be numbers, texts, True, False, None, or lists or dicts of .* \(got \[1j\]\)",
+    ),
+    ({"factors": {"a": [b"cat"]}}, r"Design\.factors\['a'\]: must be numbers, texts, .* \(got \[b'cat'\]\)"),
+    (
+        {"factors": {"a": [10**5000]}},
+        r"Design\.factors\['a'\]: must be whole numbers of at most 64 bits, or floats \(got one of 16610 bits\)",
+    ),
+    ({"factors": {"a": ["\ud800"]}}, r"Design\.factors\['a'\]: must be texts of characters that can be stored \(got \['\\ud800'\]\)"),
+    (
+        {"factors": {"a": [Normal(mean=1, sd=1)]}},
+        r"Design\.factors\['a'\]: a distribution belongs to Group\.parameters, .* or Design\.settings, .* \(got \[Normal\(",
+    ),
+    ({"factors": {"a": [[1, Normal]]}}, r"Design\.factors\['a'\]: must be numbers, texts, "),
+    (
+        {"settings": {"fixed": {1, 2}}},
+        r"Design\.settings\['fixed'\]: must be a number, text, True, False, None, or a list .* \(got \{1, 2\}\)",
+    ),
+    ({"settings": {"fixed": object()}}, r"Design\.settings\['fixed'\]: must be a number, text, "),
+    ({"settings": {"fixed": Normal}}, r"Design\.settings\['fixed'\]: must be a number, text, "),
+    ({"settings": {"fixed": [Uniform(low=0, high=1)]}}, r"Design\.settings\['fixed'\]: a distribution belongs to"),
+    ({"settings": {"fixed": {(1, 2): 3}}}, r"Design\.settings\['fixed'\]: must be a number, text, "),
+    ({"factors": {}, "derive": complex_value}, r"Design\.derive\['x'\]: must be a number, text, "),
+    ({"factors": {}, "derive": drawn_value}, r"Design\.derive\['x'\]: a distribution belongs to"),
+    ({"derive": next_level}, r"Design\.derive: must not return 'a', which is a factor; give it another name"),
+    ({"derive": own_seed}, r"Design\.derive: must not return 'seed', which is a column of every table of trials"),
+    ({"groups": {"": Group()}}, r"Design\.groups: names must be texts of printable characters \(got ''\)"),
+    ({"groups": {1: Group()}}, r"Design\.groups: names must be texts of printable characters \(got 1\)"),
+    ({"groups": {"\ud800": Group()}}, r"Design\.groups: names must be texts of printable characters \(got '\\ud800'\)"),
+    ({"factors": {2: [1]}}, r"Design\.factors: names must be texts of printable characters \(got 2\)"),
+    ({"settings": {"": 1}}, r"Design\.settings: names must be texts of printable characters \(got ''\)"),
+    ({"measures": ["rt", "a"]}, r"Design\.measures: 'a' is already a column of the trials; rename it"),
+    ({"measures": ["size"]}, r"Design\.measures: 'size' is already a column of the trials; rename it"),
+    ({"measures": ["seed"]}, r"Design\.measures: 'seed' is already a column of the trials; rename it"),
+    ({"measures": ["error"]}, r"Design\.measures: 'error' is already a column of the trials; rename it"),
+    ({"measures": [Measured(name="m", over="fixed")]}, r"Design\.measures: 'm' is over 'fixed', which is another column"),
+    ({"groups": {}}, r"Design\.groups: must have at least one group \(got \{\}\)"),
+    ({"measures": ["m/s"]}, r"measure: its name must be 1 to 100 bytes of printable characters without '/' \(got 'm/s'\)"),
+    ({"measures": [""]}, r"measure: its name must be"),
+    ({"measures": ["a\0"]}, r"measure: its name must be"),
+    ({"measures": ["a" * 101]}, r"measure: its name must be"),
+    ({"measures": ["速" * 40]}, r"measure: its name must be"),
+    ({"groups": {"a": 3}}, r"Design\.groups\['a'\]: must be a Group \(got 3\)"),
+]
+
+
+@pytest.mark.parametrize(("changes", "says"), INVALID)
 def test_an_invalid_design_is_refused(changes: dict[str, Any], says: str) -> None:
     with pytest.raises(DesignError, match=says):
         design_of(**changes).trial(0)
@@ -161,12 +216,15 @@ def test_an_invalid_design_is_refused(changes: dict[str, Any], says: str) -> Non
         (lambda: Design(trials=0), r"Design\.trials: must be >= 1 \(got 0\)"),
         (lambda: Design(order="any"), r"Design\.order: must be one of"),  # type: ignore[arg-type]
         (lambda: Group(participants=0), r"Group\.participants: must be >= 1 \(got 0\)"),
+        (lambda: Group(parameters={"a": Group}), r"Group\.parameters\['a'\]: must be a number, text, .* \(got <class '.*Group'>\)"),
+        (lambda: Group(parameters={1: 2}), r"Group\.parameters: names must be texts of printable characters \(got 1\)"),  # type: ignore[dict-item]
+        (lambda: Measured(name="m", over=""), r"Measured\.over: names must be texts of printable characters \(got ''\)"),
         (lambda: Normal(mean="x", sd=1), r"Normal\.mean: must be a number \(got 'x'\)"),  # type: ignore[arg-type]
         (lambda: Normal(mean=1, sd=-1), r"Normal\.sd: must be >= 0 \(got -1.0\)"),
     ],
 )
 def test_wrong_fields_are_refused(make: Any, says: str) -> None:
-    with pytest.raises(ConfigurationError, match=says):
+    with pytest.raises((ConfigurationError, DesignError), match=says):
         make()
 
 
@@ -248,6 +306,29 @@ def test_the_designs_of_the_library_fit_their_models() -> None:
         assert list(Experiment(again).design.changed(trials=1).table()) == list(experiment.design.changed(trials=1).table())
 
 
+def test_a_measure_with_the_name_of_a_derived_value_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "d.py"
+    given = "measures=['m'], factors={'n': [1]}, derive=lambda values: {'m': 2 * values['n']}"
+    path.write_text(f"n = 1\nm = 2\nfrom actr3d.experiment import *\n@design\ndef a():\n  return Design({given})\n")
+    with pytest.raises(DesignError, match=r"d\.py:6: Design\.measures: 'm' is already a column of the trials; rename it"):
+        specify(str(path))
+
+
+@pytest.mark.parametrize(
+    ("fields", "says"),
+    [
+        ("\n    factor={'n': [1]}", r"d\.py:6: Design\.factor: there is no such field; did you mean 'factors'\?"),
+        ("groups={'a': Group(\n    partcipants=3)}", r"d\.py:6: Group\.partcipants: there is no such field; did you mean 'participants'\?"),
+        ("\n    settings={'n': Uniform(lo=3, high=4)}", r"d\.py:6: Uniform\.lo: there is no such field; did you mean 'low'\?"),
+    ],
+)
+def test_a_misspelled_field_is_refused_with_its_line(tmp_path: Path, fields: str, says: str) -> None:
+    path = tmp_path / "d.py"
+    path.write_text(f"from actr3d.experiment import *\nn = 1\n@design\ndef a():\n  return Design(measures=['n'], {fields})\n")
+    with pytest.raises(DesignError, match=says):
+        specify(str(path))
+
+
 def test_an_unknown_parameter_is_refused_with_its_line(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, factors='{"m": [1, 2]}')
     with pytest.raises(DesignError, match=r"counting_design\.py:10: Design: the model has no parameter 'm'.*it has: n, mode"):
@@ -263,6 +344,13 @@ def test_an_unknown_parameter_is_refused_with_its_line(tmp_path: Path) -> None:
         specify(str(path), values={"mode": math.inf})
     with pytest.raises(DesignError, match=r"^--set m: Design: the model has no parameter 'm'"):
         specify(str(path), values={"m": 3})
+
+
+def test_an_import_before_the_variables_ends_the_parameters(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, model="import math\nn = 1\nrt = luck = 1\n")
+    says = r"the model has no parameter 'n'; it has: none \(the variables that its first lines set, before any import\)"
+    with pytest.raises(DesignError, match=says):
+        specify(str(path))
 
 
 def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_runs() -> None:

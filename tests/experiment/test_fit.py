@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Generator
 from pathlib import Path
@@ -112,6 +113,9 @@ def test_the_command_compares_a_held_out_design_with_data_of_a_file(tmp_path: Pa
     told = capsys.readouterr().out
     assert "fitted to 2 means of y, from 2 candidates" in told
     assert "steeper: RMSE" in told
+    people.write_text("x,measure,mean,source\n1,y,2.4,ours\n", encoding="utf-8")
+    assert main([*words, "--candidates", "2"]) == 0
+    assert "95 % interval: none: it needs more means than parameters" in capsys.readouterr().out
 
 
 def test_held_out_designs_are_run_with_the_model_and_their_own_numbers(tmp_path: Path, client: Any) -> None:
@@ -231,6 +235,19 @@ def test_parameters_that_the_model_does_not_have_are_refused(tmp_path: Path) -> 
         fit_of(tmp_path, None, "slop=0..1")
 
 
+def test_a_parameter_that_is_given_twice_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SettingError, match=r"--parameter slope: is given twice \(0\.\.1 and 0\.\.3\); give one range"):
+        fit_of(tmp_path, None, "slope=0..1", "offset=0..1", "slope=0..3")
+
+
+@pytest.mark.parametrize("levels", ["['near', 'far']", "['near']", "[1, 2]"])
+def test_a_parameter_that_is_a_factor_is_refused(tmp_path: Path, levels: str) -> None:
+    shown = levels.strip("[]").replace("'", "")
+    line = LINE.replace('{"x": [1, 2, 3, 4, 5]}', f'{{"x": [1, 2, 3, 4, 5], "offset": {levels}}}')
+    with pytest.raises(SettingError, match=rf"--parameter offset: is a factor of the design \({shown}\); name one that does not vary"):
+        fit_of(tmp_path, None, "offset=1..3", line=line)
+
+
 def test_targets_that_do_not_fit_are_refused(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client)
     fit.measure = "z"
@@ -284,10 +301,26 @@ def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:
     squares = [1 + 30 * (x - 0.4) ** 2 for x, _ in points]
     surface = QuadraticSurface(points, squares, 10)
     low, high = surface.interval(0)
-    half = math.sqrt((math.exp(3.84 / 10) - 1) / 30)
+    half = math.sqrt(2.306**2 / 8 / 30)  # t of 95 % with 10 - 2 degrees of freedom
     assert (low, high) == (pytest.approx(0.4 - half, abs=0.01), pytest.approx(0.4 + half, abs=0.01))
     assert surface.interval(1) == (None, None)
     assert surface.minimum()[0] == pytest.approx(0.4, abs=0.02)
+
+
+@pytest.mark.parametrize(("data", "parameters"), [(2, 1), (3, 1), (4, 2), (12, 2)])
+def test_intervals_have_the_true_value_as_often_as_they_say(data: int, parameters: int) -> None:
+    """A straight line through the origin, or with an offset, with normal errors whose variance the fit does not know."""
+    rng, runs, inside = np.random.default_rng(7), 300, 0
+    x = np.column_stack([np.linspace(1, 2, data), np.ones(data)])[:, :parameters]
+    true = np.full(parameters, 0.5)
+    grid = list(itertools.product(np.linspace(0, 1, 9), repeat=parameters))
+    for _ in range(runs):
+        y = x @ true + rng.normal(0, 0.1, data)
+        points = np.array([*grid, np.linalg.lstsq(x, y, rcond=None)[0]], dtype=np.float64)  # a fit tries the minimum of the surface, too
+        squares = [float(np.sum((y - x @ point) ** 2)) for point in points]
+        low, high = QuadraticSurface(points, squares, data).interval(0)
+        inside += (low is None or low <= 0.5) and (high is None or high >= 0.5)
+    assert 0.92 < inside / runs < 0.98  # 0.95, and more than twice the standard error of 300 runs
 
 
 def test_as_many_parameters_as_data_have_no_interval() -> None:

@@ -16,7 +16,9 @@ from actr3d.parameter_schema import Parameter
 SCHEMA = Schema(
     groups=["small", "large"],
     factors={"aperture": [0.4, 0.5], "condition": ["normal", "fast"]},
-    measures=["wall_angle_deg", "speed_m_s"],
+    measures=["wall_angle_deg", "speed_m_s", "turned"],
+    switches=["turned"],
+    ignored=["trial", "seed", "error"],
 )
 
 
@@ -32,6 +34,22 @@ def test_trials_are_read(tmp_path: Path) -> None:
     assert data.rows[0] == {"participant": "1", "group": "small", "aperture": 0.4, "condition": "fast", "wall_angle_deg": 50.5}
     assert data.rows[1]["wall_angle_deg"] is None, "an empty cell is a missing value"
     assert data.rows[1]["aperture"] == 0.45, "people may have been at other apertures than the model"
+
+
+def test_tables_of_trials_are_read_as_those_of_people(tmp_path: Path) -> None:
+    """The library writes switches as True and False, and None as an empty cell."""
+    schema = replace(SCHEMA, factors={"aperture": [0.4, 0.5], "load": ["none", "bag"]})
+    head = "trial,participant,group,aperture,load,seed,turned,error\n"
+    data = read(tmp_path, head + "0,small 1,small,0.4,,1 small,True,\n1,small 1,small,0.5,bag,1 small,False,\n", schema)
+    assert [(row["aperture"], row["load"], row["turned"]) for row in data.rows] == [(0.4, "none", 1.0), (0.5, "bag", 0.0)]
+    assert data.measures == ["turned"]
+    assert "seed" not in data.rows[0]
+
+
+def test_a_factor_that_is_empty_everywhere_is_averaged_over(tmp_path: Path) -> None:
+    data = read(tmp_path, "participant,group,aperture,wall_angle_deg\n1,small,,50\n2,small,,51\n# by hand\n")
+    assert [row["aperture"] for row in data.rows] == [None, None]
+    assert data.notes == ["by hand"]
 
 
 def test_levels_of_people_are_within_the_bounds_of_the_parameter(tmp_path: Path) -> None:
@@ -63,7 +81,10 @@ BAD = {
     ),
     "twice": ("participant,group,group,wall_angle_deg\n", r"people.csv:1: column 'group' is there twice"),
     "no participant": ("group,aperture,wall_angle_deg\n", r"people.csv:1: column 'participant' is missing; trials need"),
-    "no measure": ("participant,group,aperture\n", r"people.csv:1: no column is a measure; there may be: wall_angle_deg, speed_m_s"),
+    "no measure": (
+        "participant,group,aperture\n",
+        r"people.csv:1: no column is a measure; there may be: wall_angle_deg, speed_m_s, turned",
+    ),
     "no source": ("group,measure,mean\n", r"people.csv:1: column 'source' is missing; published means need"),
     "text for a number": (HEAD + "1,small,0.4,fast,fifty\n", r"people.csv:2: column 'wall_angle_deg': must be a number \(got 'fifty'\)"),
     "comma": (HEAD + '1,small,0.4,fast,"50,5"\n', r"must be a number; write the decimal point as '.' \(got '50,5'\)"),
@@ -80,8 +101,29 @@ BAD = {
     "no mean": (MEANS + "small,0.4,wall_angle_deg,,1,5,X\n", r"people.csv:2: column 'mean': must be a number \(got ''\)"),
     "unknown measure": (
         MEANS + "small,0.4,angle,5,1,5,X\n",
-        r"column 'measure': must be one of: wall_angle_deg, speed_m_s \(got 'angle'\)",
+        r"column 'measure': must be one of: wall_angle_deg, speed_m_s, turned \(got 'angle'\)",
     ),
+    "two means": (
+        MEANS + "small,0.4,wall_angle_deg,5,1,5,X\nsmall,0.5,wall_angle_deg,5,1,5,X\nsmall,0.4,wall_angle_deg,7,1,5,Y\n",
+        r"people.csv:4: is a second mean of 'wall_angle_deg' for the conditions of line 2",
+    ),
+    "no level": (
+        HEAD + "1,small,0.4,fast,50\n2,small,,fast,50\n",
+        r"people.csv:3: column 'aperture': must be given, as in other rows; without the column, .* \(got ''\)",
+    ),
+    "person as a note": (
+        HEAD + "#1,small,0.4,fast,50\n2,small,0.4,fast,50\n",
+        r"people.csv:2: begins with '#', as a note does: rename '#1', or write notes above the first line",
+    ),
+    "no value": (HEAD + "1,small,0.4,fast,\n2,small,0.5,fast,\n", r"people.csv: no row has a value of a measure: wall_angle_deg"),
+    "huge": (HEAD + "1,small,0.4,fast,1e308\n", r"people.csv:2: .* must be a number from -1e\+100 to 1e\+100 \(got '1e308'\)"),
+    "proportion": (
+        MEANS + "small,0.4,turned,1.7,,,X\n",
+        r"people.csv:2: column 'mean': must be a number from 0 to 1 \(got '1.7'\)",
+    ),
+    "switch": ("participant,group,turned\n1,small,2\n", r"people.csv:2: column 'turned': must be a number from 0 to 1 \(got '2'\)"),
+    "tabs": ("participant\tgroup\n", r"people.csv:1: the columns must be separated by commas \(got 'participant\\tgroup'\)"),
+    "semicolons": ("participant;group\n", r"people.csv:1: the columns must be separated by commas \(got 'participant;group'\)"),
     "where it is from": (MEANS + "small,0.4,wall_angle_deg,5,1,5,\n", r"people.csv:2: column 'source': must be given \(got ''\)"),
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+import shutil
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -13,11 +14,13 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
+from actr3d.experiment.fit import load_target
 from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.command import write_report
 from actr3d.experiment.report.figures import legend_columns
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
+from actr3d.experiment.table import export
 from tests.helpers.experiments import write_experiment
 from tests.helpers.reports import store_rows, walk
 
@@ -191,6 +194,27 @@ def test_two_experiments_are_compared(tmp_path: Path) -> None:
     assert ">two</text>" in (one / "report/figures/measure_rt.svg").read_text(encoding="utf-8")
 
 
+def test_the_table_of_trials_can_be_the_data_of_people(tmp_path: Path) -> None:
+    """With switches, texts, columns of the library's own, and a factor whose name reports change."""
+    factors = '{"n": [1, 2, 5], "mode": ["count", None]}'
+    path = write_experiment(tmp_path, factors=factors, participants=3)
+    path.write_text(path.read_text(encoding="utf-8").replace('"luck"', '"luck", "right", "word"'), encoding="utf-8")
+    folder = store_rows(
+        tmp_path / "out", str(path), lambda trial: {**count(trial), "right": trial.number % 3 > 0, "word": f"{trial.number % 2}"}
+    )
+    with Store(folder) as store:
+        export(store)
+    shutil.copy(folder / "trials.csv", tmp_path / "people.csv")
+    assert main(["report", str(folder), "--human", str(tmp_path / "people.csv")]) == 0
+    fit = {row["measure"]: row for row in table(folder, "fit_to_people")}
+    assert {name: (row["cells"], round(float(row["rmse"]), 9)) for name, row in fit.items()} == dict.fromkeys(
+        ("rt", "luck", "right"), ("6", 0.0)
+    )
+    target = load_target(str(tmp_path / "people.csv"), specify(str(path)), "right")
+    assert len(target) == 6
+    assert {tuple(one.conditions) for one in target} == {("group", "n", "mode")}
+
+
 def test_what_has_no_report_says_why(tmp_path: Path, capsys: Any) -> None:
     path = write_experiment(tmp_path, participants=1)
     empty = tmp_path / "empty"
@@ -200,6 +224,11 @@ def test_what_has_no_report_says_why(tmp_path: Path, capsys: Any) -> None:
     failed = store_rows(tmp_path / "failed", str(path), lambda _: {"error": "ValueError: never"})
     assert main(["report", str(failed)]) == 1
     assert "all 12 trials failed; the first one with: ValueError: never" in capsys.readouterr().err
+    noted = store_rows(
+        tmp_path / "noted", str(path), lambda _: {"error": "Traceback:\nValueError: never\nthe model had just asked its memory"}
+    )
+    assert main(["report", str(noted)]) == 1
+    assert "the first one with: ValueError: never\n" in capsys.readouterr().err
     assert main(["report", str(tmp_path)]) == 1
     assert "holds no experiment" in capsys.readouterr().err
 

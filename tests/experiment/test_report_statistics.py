@@ -35,10 +35,10 @@ def counting():
 '''
 
 
-def grouped(folder: Path, *, effect: float, **options: Any) -> Results:
+def grouped(folder: Path, *, effect: float, design: str = GROUPED, **options: Any) -> Results:
     """Returns the results of two groups, three numbers and two modes; the old are slower by `effect`, and each number costs 1 s."""
     path = write_experiment(folder)
-    path.write_text(GROUPED, encoding="utf-8")
+    path.write_text(design, encoding="utf-8")
     draw = random.Random(3)
     person = {f"{group} {n}": draw.gauss(0, 0.3) for group in ("young", "old") for n in range(1, 9)}
 
@@ -131,6 +131,16 @@ def test_the_analysis_of_variance_is_that_of_the_textbook(tmp_path: Path) -> Non
     young, old = (means[means["group"] == group]["value"].to_numpy() for group in ("young", "old"))
     pooled = (young.var(ddof=1) + old.var(ddof=1)) / 2
     assert row["F"] == pytest.approx((young.mean() - old.mean()) ** 2 / (pooled * 2 / 4))
+
+
+def test_groups_of_unequal_size_are_named_with_the_sums_of_squares_of_each_test(tmp_path: Path) -> None:
+    (tmp_path / "equal").mkdir()
+    equal = run_tests(grouped(tmp_path / "equal", effect=1.0), "rt")
+    assert not [note for note in equal.notes if "type II" in note]
+    results = grouped(tmp_path, effect=1.0, design=GROUPED.replace("Group(participants=4)}", "Group(participants=8)}"))
+    (note,) = [note for note in run_tests(results, "rt").notes if "type II" in note]
+    assert note.startswith("The groups are of unequal size (young 4, old 8). The analysis of variance has sums of squares of type II:")
+    assert "The tests of the mixed model are of type III" in note
 
 
 def test_what_a_design_does_not_allow_is_not_tested_and_says_why(tmp_path: Path) -> None:

@@ -306,6 +306,18 @@ def test_a_trial_of_a_body_has_the_fields_of_its_result_and_their_units(tmp_path
         process.end()
 
 
+def test_a_misspelled_measure_of_a_body_is_refused_before_anything_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "walks.py"
+    path.write_text(
+        "from actr3d.experiment import Design, design\n\n\n@design\ndef walks():\n"
+        "    return Design(model='aperture_passage.py', measures=[\n        'outcome', 'wall_angel_deg'])\n"
+    )
+    assert main(["experiment", str(path), "--out", str(tmp_path / "out")]) == 2
+    says = "walks.py:7: Design.measures: the trial has no measure 'wall_angel_deg'; did you mean 'wall_angle_deg'?"
+    assert says in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 # -- the store
 
 
@@ -381,6 +393,13 @@ def test_a_folder_that_is_in_use_or_no_experiment_is_refused(tmp_path: Path) -> 
     (tmp_path / "out" / "trials.sqlite").write_bytes(b"not a database" * 100)
     with pytest.raises(ExperimentError, match=r"trials\.sqlite: cannot be opened"):
         Store(tmp_path / "out")
+
+
+def test_a_specification_that_cannot_be_written_leaves_no_folder(tmp_path: Path) -> None:
+    specification = replace(specify(str(write_experiment(tmp_path))).specification, values={"n": object()})
+    with pytest.raises(TypeError):
+        Store.create(tmp_path / "out", specification)
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_store_that_cannot_be_written_says_so_and_keeps_its_rows(tmp_path: Path) -> None:

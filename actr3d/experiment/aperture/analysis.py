@@ -152,7 +152,8 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
             name="boundaries",
             title="Boundary of each participant",
             frame=people,
-            note="Half of the judgements there are «can pass», by a logistic fit; low, high: 95 % interval of the profile likelihood.",
+            note="Half of the judgements there are «can pass», by a logistic fit; low, high: 95 % interval of the profile likelihood, "
+            "infinite where it goes beyond the ratios of the trials.",
             digits={"boundary": 3, "low": 3, "high": 3},
         ),
     ]
@@ -398,7 +399,8 @@ def _critical_ratios(findings: Findings) -> Parts:
     digits = {"critical_ratio": 3, "low": 3, "high": 3, "bend": 3, "baseline_deg": 1}
     note = (
         f"Logistic: half of the trials are turned by more than {TURNED:g} degrees above the participant's baseline, its median angle above "
-        f"{WIDE:g} A/S. low, high: 95 % interval of the profile likelihood; an abrupt change is known to one step of apertures. "
+        f"{WIDE:g} A/S. low, high: 95 % interval of the profile likelihood, infinite where it goes beyond the ratios of the "
+        "trials; an abrupt change is known to one step of apertures. "
         "Bend: piecewise-linear fit; it is too large for a rotation that falls more steeply near its end."
     )
     parts: Parts = []
@@ -408,7 +410,9 @@ def _critical_ratios(findings: Findings) -> Parts:
         ticks = [(float(n), one.rpartition(" ")[2]) for one, n in names.items()] if len(names) <= 30 else [(0.0, "")]
         figure = curves_figure(panes, "participant", "critical ratio A/S", ticks=ticks)
         title = "Critical ratio of each participant"
-        parts.append(Plot(name="critical_ratio", title=title, figure=figure, note="95 % intervals of the profile likelihood."))
+        parts.append(
+            Plot(name="critical_ratio", title=title, figure=figure, note="95 % intervals of the profile likelihood, unless they are open.")
+        )
     summary: list[dict[str, Any]] = []
     for (group, condition), of in frame.groupby(["group", "condition"], sort=False):
         values: list[float] = of["critical_ratio"].dropna().tolist()

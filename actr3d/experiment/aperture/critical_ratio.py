@@ -10,6 +10,8 @@ import numpy as np
 
 STEEPEST = 200.0
 """The greatest slope of the logistic curve per unit of the ratio: steeper ones cannot be distinguished."""
+SHALLOWEST = 0.02
+"""The least slope: on it, as good as the same part of the trials is turned at all ratios."""
 STEPS = 401
 """The number of ratios at which the likelihood is computed, between the smallest and the largest of the trials."""
 CHI_SQUARED = 3.841
@@ -21,8 +23,11 @@ class CriticalRatio:
     """A critical ratio with its 95 % interval."""
 
     value: float
+    """The smallest or the largest ratio of the trials if the critical one is most likely beyond it."""
     low: float
+    """Minus infinity if the interval goes beyond the smallest ratio of the trials."""
     high: float
+    """Infinity if it goes beyond the largest one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,16 +61,19 @@ def critical_ratio(trials: Iterable[tuple[float, bool]]) -> CriticalRatio | None
     if not 0 < turned.sum() < total.sum():
         return None
     centres = np.linspace(levels[0], levels[-1], STEPS)
-    slopes = np.geomspace(2.0, STEEPEST, 16)
     profile = np.full(STEPS, -np.inf)
-    for slope in slopes:
+    for slope in (*np.geomspace(2.0, STEEPEST, 16)[::-1], *np.geomspace(2.0, SHALLOWEST, 64)[1:]):
         signed = slope * (ratios[None, :] - centres[:, None])
         likelihood = -(np.logaddexp(0.0, signed) @ turned) - np.logaddexp(0.0, -signed) @ (total - turned)
         profile = np.maximum(profile, likelihood)
+        if likelihood.max() < profile.max() - CHI_SQUARED / 2:
+            break  # the likelihood is concave in the slope: on all shallower ones it is smaller still
     best = profile.max()
     top: list[float] = centres[profile >= best - 1e-3].tolist()
-    inside: list[float] = centres[profile >= best - CHI_SQUARED / 2].tolist()
-    return CriticalRatio(value=(top[0] + top[-1]) / 2, low=inside[0], high=inside[-1])
+    inside = profile >= best - CHI_SQUARED / 2
+    within: list[float] = centres[inside].tolist()
+    low, high = -np.inf if inside[0] else within[0], np.inf if inside[-1] else within[-1]
+    return CriticalRatio(value=(top[0] + top[-1]) / 2, low=low, high=high)
 
 
 def bend(ratios: Sequence[float], angles: Sequence[float]) -> Bend | None:

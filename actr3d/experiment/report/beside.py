@@ -43,8 +43,15 @@ def factors_of(parts: Sequence[Results]) -> dict[str, list[float] | list[str]]:
 
 def schema_of(parts: Sequence[Results]) -> Schema:
     """Returns what human data for an experiment may hold."""
-    measures = [name for part in parts for name in part.measures]
-    return Schema(groups=parts[0].groups, factors=factors_of(parts), measures=measures, parameters=parts[0].parameters)
+    measures, factors = [name for part in parts for name in part.measures], factors_of(parts)
+    return Schema(
+        groups=parts[0].groups,
+        factors=factors,
+        measures=measures,
+        parameters=parts[0].parameters,
+        switches=[name for part in parts for name in part.measures if name in part.columns and part.columns[name].type == "boolean"],
+        ignored=[name for name in parts[0].columns if name not in (*measures, *factors)],
+    )
 
 
 def human_data_of(design: Design, parts: Sequence[Results], file: Path | str | None) -> tuple[HumanData | None, str]:

@@ -14,7 +14,7 @@ from actr3d.experiment.design import OWN_COLUMNS, Design
 from actr3d.experiment.human_data import factor_name, plain_levels, plain_text
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.specification import Experiment, Specification
-from actr3d.experiment.store import CHUNK, Column, Store
+from actr3d.experiment.store import CHUNK, Column, Store, summary
 from actr3d.parameter_schema import Parameter
 
 NUMBERS = ("boolean", "integer", "real")
@@ -138,7 +138,7 @@ def read_results(folder: Path | str) -> Results:
     about = [name for name in ("trial", "participant", "group", *renamed.values(), "end", "error") if name in frame]
     failures = frame.loc[failed, about].reset_index(drop=True)
     if not len(rows):
-        first = str(failures["error"].iloc[0]).strip().splitlines()[-1]
+        first = summary(str(failures.sort_values("trial")["error"].iloc[0]))
         raise ExperimentError(f"'{folder}': all {len(failures):,} trials failed; the first one with: {first}")
     of_design = {*design.trial(0).columns, *OWN_COLUMNS, *renamed.values()}
     kinds = {name: columns[name].type for name in rows if name in columns and name not in of_design}

@@ -133,6 +133,14 @@ def run_tests(results: Results, measure: str) -> Tests:
         return Tests(anova=None, mixed_model=None, assumptions=None, notes=[f"Not tested: {reason}."])
     if lost:
         notes.append(f"{lost} participants without a value in some cell are not part of the analysis of variance.")
+    if grouped and factors and sizes.nunique() > 1:
+        counts = ", ".join(f"{name} {sizes[name]}" for name in results.groups)
+        notes.append(
+            f"The groups are of unequal size ({counts}). The analysis of variance has sums of squares of type II: "
+            "in the effect of a factor, a group counts by its participants. The tests of the mixed model are of type III, "
+            "as those of SPSS, jamovi and JASP: there all groups count the same. "
+            "Both may differ where the groups differ in the effect of a factor."
+        )
     anova: list[dict[str, Any]] = []
     checks: list[dict[str, Any]] = []
     with noting_warnings() as warned:
