@@ -57,7 +57,7 @@ class World:
         seed: The seed of sensor noise.
 
     Raises:
-        WorldError: If MuJoCo cannot compile the scene (with MuJoCo's message), if it is not a `Scene`, if a body stands in a wall or
+        WorldError: If MuJoCo cannot compile the scene (with MuJoCo's message), if it is not a `Scene`, if a body is inside a wall or
             something else that is fixed, or if the seed is not a whole number >= 0.
     """
 
@@ -84,7 +84,7 @@ class World:
         """What can be moved by hand."""
         for name, body in self.bodies.items():
             if inside := deeper({}, self.objects.depths({body.root}, others="fixed")):
-                raise WorldError(f"'{name}' stands in {', '.join(map(repr, inside))} at the start; leave room")
+                raise WorldError(f"'{name}' is inside {', '.join(map(repr, inside))} at the start; leave room")
         self._pushes = Pushes(self.physics, self.objects)
         self._changes = ModelChanges(self.mj_model)
         self._substepping = Substepping(self.physics, list(self.bodies.values()), self._pushes)

@@ -1,5 +1,5 @@
-// Draws the 3D view with all pixels of the screen once it rests. While drawing is slow, viser draws fewer pixels; it would do so until many
-// pictures in a row are fast, and a picture that rests is not drawn again.
+// Draws the 3D view with all pixels of the screen once it rests. While drawing is slow, viser draws fewer pixels until many
+// pictures in a row are fast; but a view that rests is not drawn again.
 
 const REST = 500; // after this time without a picture, the view rests [ms]
 

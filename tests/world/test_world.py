@@ -201,9 +201,9 @@ def test_a_closing_aperture_is_held_open_by_what_lies_in_it() -> None:
 
 def test_a_body_that_stands_inside_something_fixed_is_refused_at_the_start() -> None:
     walls = (Wall(name="w", start=(0, -1), end=(0, 1)), Loose(name="pole", position=(0.2, 0, 0.5), mass=None))
-    with pytest.raises(WorldError, match=r"'m' stands in 'w', 'pole' at the start; leave room"):
+    with pytest.raises(WorldError, match=r"'m' is inside 'w', 'pole' at the start; leave room"):
         World(Scene(parts=(Floor(), Mannequin(name="m"), *walls)))
-    with pytest.raises(WorldError, match=r"'m' stands in 'aperture_(left|right)', 'aperture_(left|right)' at the start; leave room"):
+    with pytest.raises(WorldError, match=r"'m' is inside 'aperture_(left|right)', 'aperture_(left|right)' at the start; leave room"):
         World(Scene(parts=(Floor(), Mannequin(name="m", position=(7.0, 0.0)), Aperture(width=0.3))))
 
 
