@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
@@ -151,7 +152,7 @@ def run(
             with (
                 _stopping() as stop,
                 local_cluster(workers or os.cpu_count() or 1) if cluster is None else nullcontext(cluster) as client,
-                _progress(out, total) as show,
+                _progress(out, "", total) as show,
             ):
                 run_experiment(experiment, store, client, show=show, stop=stop)
             took, ran = time.monotonic() - begin, store.count - before
@@ -205,16 +206,9 @@ def fit(
     held_out = {design: means(specify(design), data, f"--hold-out {design}=FILE") for design, _, data in named}
     options = {"values": values, "participants": participants, "trials": trials}
     with local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler) as client:
-        last = [""]
-
-        def show(what: str, state: State) -> None:
-            out.event("progress", {"what": what, **asdict(state)})
-            if what != last[0]:
-                last[0] = what
-                out.line(what)
-
         path.mkdir(parents=True, exist_ok=True)
-        running = Fit(name, [Range.from_text(text) for text in ranges], wanted, path, client, options=options, show=show)
+        searched = [Range.from_text(text) for text in ranges]
+        running = Fit(name, searched, wanted, path, client, options=options, progress=partial(_progress, out))
         result = running.run(candidates, hold_out=held_out, ablate=ablate, recover=recover)
     (path / "fit.json").write_text(to_json(result), encoding="utf-8")
     out.event("fit", asdict(result))
@@ -384,10 +378,12 @@ def _stopping() -> Generator[threading.Event]:
 
 
 @contextmanager
-def _progress(out: Output, total: int) -> Generator[Callable[[State], None]]:
-    """Shows the progress inside the block: a bar in a terminal, else a line from time to time."""
+def _progress(out: Output, what: str, total: int) -> Generator[Callable[[State], None]]:
+    """Shows the progress of an experiment, and what it is for, inside the block: a bar in a terminal, else a line from time to time."""
+    if what:
+        out.line((what, "bold"))
     if out.json or not out.console.is_terminal:
-        yield _lines(out)
+        yield _lines(out, {"what": what} if what else {})
         return
     columns = (
         BarColumn(),
@@ -410,13 +406,13 @@ def _progress(out: Output, total: int) -> Generator[Callable[[State], None]]:
         yield show
 
 
-def _lines(out: Output) -> Callable[[State], None]:
+def _lines(out: Output, about: Mapping[str, str]) -> Callable[[State], None]:
     begin: list[tuple[float, int]] = []
     last = [0.0]
 
     def show(state: State) -> None:
         now = time.monotonic()
-        out.event("progress", asdict(state))
+        out.event("progress", {**about, **asdict(state)})
         if not begin:
             begin.append((now, state.done))
         if now - last[0] >= EVERY:

@@ -22,6 +22,7 @@ import random
 import warnings
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from hashlib import sha256
 from pathlib import Path
@@ -40,6 +41,9 @@ from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, M
 from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
+
+Shown = Callable[[str, int], AbstractContextManager[Callable[[Progress], object]]]
+"""Shows the progress of an experiment inside a block: called with what it is for, and its number of trials."""
 
 NARROWEST = 1e-4
 """The least width of a range."""
@@ -165,7 +169,7 @@ class Fit:
         client: The cluster.
         options: `values`, `participants` and `trials` for `specify`. The values hold for held-out designs too, the numbers do not.
         seed: The seed of the proposals.
-        show: Called with the number of a candidate and the progress of its trials.
+        progress: Shows the progress of each experiment.
 
     Raises:
         ExperimentError: If nothing can be fitted.
@@ -183,11 +187,11 @@ class Fit:
         *,
         options: Mapping[str, Any] | None = None,
         seed: int = 1,
-        show: Callable[[str, Progress], object] = lambda _name, _progress: None,
+        progress: Shown = lambda _what, _total: nullcontext(lambda _: None),
     ) -> None:
         self._design, self._ranges, self._folder, self._client = design, tuple(ranges), folder, client
         self._options: dict[str, Any] = {"values": {}, "participants": None, "trials": None, **(options or {})}
-        self._seed, self._show = seed, show
+        self._seed, self._progress = seed, progress
         if not ranges:
             raise ExperimentError("--parameter: must be given at least once, as NAME=LOW..HIGH")
         self.target = cells_of_target(target)
@@ -248,7 +252,7 @@ class Fit:
         for change in ablate:
             self._without(change, lowest)
         for number in range(candidates):
-            self._evaluate(number)
+            self._evaluate(number, f"candidate {number + 1} of {candidates}")
         best = min(range(candidates), key=lambda number: rmse(self._means[number], self.target))
         if not math.isfinite(rmse(self._means[best], self.target)):
             raise ExperimentError(f"measure '{self.measure}': no candidate has a mean in all conditions of the target{self._failure}")
@@ -262,8 +266,8 @@ class Fit:
             fit=agreement(self._means[best], self.target),
             candidates=candidates,
             held_out={name: self._held_out(name, target, values) for name, target in (hold_out or {}).items()},
-            ablated={change: self._compared("ablated", self._without(change, values)) for change in ablate},
-            recovered=tuple(self._recover(number) for number in range(recover)),
+            ablated={change: self._compared("ablated", f"changed: {change}", self._without(change, values)) for change in ablate},
+            recovered=tuple(self._recover(number, f"simulated data {number + 1} of {recover}") for number in range(recover)),
         )
 
     # -- candidates
@@ -294,10 +298,10 @@ class Fit:
                 study.add_trial(optuna.trial.create_trial(params=point, distributions=distributions, value=loss))
         return {name: round(value, DIGITS) for name, value in study.ask(distributions).params.items()}
 
-    def _evaluate(self, number: int) -> None:
+    def _evaluate(self, number: int, what: str) -> None:
         point = self._propose(number)
         self._points.append(point)
-        means, failure = self._simulate("candidate", self._experiment(point))
+        means, failure = self._simulate("candidate", f"{what}: {_text_of(point)}", self._experiment(point))
         self._means.append(means)
         self._failure = self._failure or failure
 
@@ -306,14 +310,15 @@ class Fit:
         return specify(self._design, values={**options["values"], **values}, participants=options["participants"], trials=options["trials"])
 
     def _simulate(
-        self, kind: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
+        self, kind: str, what: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
     ) -> tuple[dict[Cell, float], str]:
         """Runs an experiment, or continues it; returns its means by cell, none if all trials failed, and the first failure, "" for none.
 
         Its folder is named by all that determines its rows: what has run before is used again, and nothing else.
 
         Args:
-            kind: What it is for.
+            kind: What it is for, as in the name of its folder.
+            what: The same in full, for the progress.
             experiment: The experiment.
             measure: The measure; None for that of the fit.
             target: The means with which it is compared; None for those of the fit.
@@ -322,7 +327,8 @@ class Fit:
         folder = self._folder / f"{kind} {sha256(text.encode('utf-8', 'surrogatepass')).hexdigest()[:12]}"
         store = Store(folder) if (folder / SPECIFICATION).exists() else Store.create(folder, experiment.specification)
         with store:
-            run_experiment(experiment, store, self._client, show=lambda progress: self._show(kind, progress))
+            with self._progress(what, len(experiment.design)) as show:
+                run_experiment(experiment, store, self._client, show=show)
             columns = [name for name, _ in next(iter(self.target if target is None else target))]
             failure = ""
             if store.failures:
@@ -334,14 +340,14 @@ class Fit:
             return cells_of_rows(finished, experiment.design.measure(measure or self.measure), columns), failure
 
     def _compared(
-        self, kind: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
+        self, kind: str, what: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
     ) -> Agreement:
         """Runs an experiment, or continues it, and compares its means with a target; for the arguments, see `_simulate`.
 
         Raises:
             ExperimentError: If they have no conditions in common.
         """
-        means, failure = self._simulate(kind, experiment, measure, target)
+        means, failure = self._simulate(kind, what, experiment, measure, target)
         if not means:
             raise ExperimentError(f"{kind}: no trial has a value of '{measure or self.measure}'{failure}")
         return agreement(means, self.target if target is None else target)
@@ -380,7 +386,7 @@ class Fit:
 
     def _held_out(self, name: str, target: Sequence[TargetMean], values: Mapping[str, float]) -> Agreement:
         cells = cells_of_target(target)
-        return self._compared("hold-out", self._other(name, values), target[0].measure, cells)
+        return self._compared("hold-out", f"held out: {name}", self._other(name, values), target[0].measure, cells)
 
     def _without(self, change: str, values: Mapping[str, float]) -> Experiment:
         """Returns the experiment of the fit with an ablated model.
@@ -401,7 +407,7 @@ class Fit:
         except DesignError as error:
             raise DesignError(f"--ablate {change}: {str(error).removeprefix(f'--set {name}: ')}", error.name) from None
 
-    def _recover(self, number: int) -> dict[str, float]:
+    def _recover(self, number: int, what: str) -> dict[str, float]:
         """Simulates data with known parameters, and estimates these from the candidates.
 
         Raises:
@@ -411,11 +417,17 @@ class Fit:
         failure = ""
         for _ in range(DRAWS):  # where the model fails, there are no data
             true = {one.name: round(rng.uniform(one.low, one.high), DIGITS) for one in self._ranges}
-            simulated, failure = self._simulate("simulated", self._experiment({**true, "seed": 1_000_000 + number}))
+            simulated, failure = self._simulate(
+                "simulated", f"{what}: {_text_of(true)}", self._experiment({**true, "seed": 1_000_000 + number})
+            )
             if math.isfinite(rmse(simulated, self.target)):
                 target = {cell: simulated[cell] for cell in self.target}
                 return {**{f"true {name}": value for name, value in true.items()}, **self._values_at(self._surface(target).minimum())}
         raise ExperimentError(f"--recover: no mean in all conditions of the target for {DRAWS} drawn values{failure}")
+
+
+def _text_of(values: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} = {value:g}" for name, value in values.items())
 
 
 class QuadraticSurface:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Generator
 from pathlib import Path
 from typing import Any
@@ -109,8 +110,10 @@ def test_the_command_compares_a_held_out_design_with_data_of_a_file(tmp_path: Pa
     words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit"), "--workers", "1"]
     assert main([*words, "--hold-out", f"{model}:steeper"]) == 1
     assert "names no human data; give --hold-out" in capsys.readouterr().err
-    assert main([*words, "--candidates", "2", "--hold-out", f"{model}:steeper={others}"]) == 0
+    assert main([*words, "--candidates", "2", "--recover", "1", "--hold-out", f"{model}:steeper={others}"]) == 0
     told = capsys.readouterr().out
+    for what in ("candidate 2 of 2: slope = ", "held out: ", "simulated data 1 of 1: slope = "):
+        assert re.search(rf"^{what}.*\n\d+ of \d+ trials", told, re.MULTILINE), what
     assert "fitted to 2 means of y, from 2 candidates" in told
     assert "steeper: RMSE" in told
     people.write_text("x,measure,mean,source\n1,y,2.4,ours\n", encoding="utf-8")
