@@ -21,10 +21,10 @@ from actr3d.errors import Actr3dError
 from actr3d.values import escape_surrogates
 from workbench import experiment_routes, language_routes, recording_routes, routes, sockets
 from workbench.auth import Gate, Guard
+from workbench.built_manual import manual, no_manual
 from workbench.experiments import Experiments
 from workbench.files import ModelFolder
 from workbench.language.language_server import LanguageServer
-from workbench.manual import manual, no_manual
 from workbench.page_files import ROUTE, PageFiles
 from workbench.protocol import problem_of
 from workbench.recordings import Recordings

@@ -16,7 +16,7 @@ from functools import partial
 from pathlib import Path
 
 from workbench.auth import LOOPBACK, Gate, Token
-from workbench.manual import build_manual
+from workbench.built_manual import build_manual
 from workbench.retention import MAX_MEGABYTES, MAX_RECORDINGS, Keeping
 from workbench.shipped import models_folder
 from workbench.worker.spawn import MEMORY, spawn

@@ -14,9 +14,9 @@ from pydantic import Field
 
 from actr3d.values import escape_surrogates
 from workbench.about import about_of
+from workbench.built_manual import manual, manual_page
 from workbench.files import ModelFile
 from workbench.loader import listing_of, outline_of, undefined_in
-from workbench.manual import manual, manual_page
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.asgi_client import COOKIE, GATE, HOST, ask
-from workbench import app, manual
+from workbench import app, built_manual
 
 
 def test_the_built_manual_is_served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -27,12 +27,12 @@ def test_a_shipped_model_has_a_page_in_the_built_manual(tmp_path: Path, monkeypa
     page = tmp_path / "models" / "tutorial-counting" / "index.html"
     page.parent.mkdir(parents=True)
     page.write_text("<h1>Counting</h1>", encoding="utf-8")
-    monkeypatch.setattr(manual, "manual", lambda: tmp_path)
-    assert manual.manual_page("tutorial/counting.py") == "/manual/models/tutorial-counting/"
-    assert manual.manual_page("own.py") is None
-    assert manual.manual_page("\0.py") is None
-    monkeypatch.setattr(manual, "manual", lambda: None)
-    assert manual.manual_page("tutorial/counting.py") is None
+    monkeypatch.setattr(built_manual, "manual", lambda: tmp_path)
+    assert built_manual.manual_page("tutorial/counting.py") == "/manual/models/tutorial-counting/"
+    assert built_manual.manual_page("own.py") is None
+    assert built_manual.manual_page("\0.py") is None
+    monkeypatch.setattr(built_manual, "manual", lambda: None)
+    assert built_manual.manual_page("tutorial/counting.py") is None
 
 
 def test_without_a_built_manual_the_answer_says_how_to_build_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -57,13 +57,13 @@ def test_the_manual_of_a_copy_of_the_repository_is_built_in_the_background(tmp_p
     (tmp_path / "docs" / "index.md").write_text("# Manual of a copy", encoding="utf-8")
     (tmp_path / "mkdocs.yml").write_text("site_name: Copy", encoding="utf-8")
     site = tmp_path / "build" / "site"
-    monkeypatch.setattr(manual, "PACKAGE", tmp_path / "workbench")
-    monkeypatch.setattr(manual, "SITE", site)
+    monkeypatch.setattr(built_manual, "PACKAGE", tmp_path / "workbench")
+    monkeypatch.setattr(built_manual, "SITE", site)
     made = app.make_app(tmp_path / "models", GATE)
-    manual.build_manual()
+    built_manual.build_manual()
     assert "is being built" in ask(made, "/manual/", HOST, COOKIE).body.decode()
     end = time.monotonic() + 60
-    while manual.is_being_built():
+    while built_manual.is_being_built():
         assert time.monotonic() < end
         time.sleep(0.05)
     assert b"Manual of a copy" in ask(made, "/manual/", HOST, COOKIE).body
@@ -72,11 +72,11 @@ def test_the_manual_of_a_copy_of_the_repository_is_built_in_the_background(tmp_p
 
 def test_a_manual_that_cannot_be_built_is_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "mkdocs.yml").write_text("site_name: [", encoding="utf-8")
-    monkeypatch.setattr(manual, "PACKAGE", tmp_path / "workbench")
-    monkeypatch.setattr(manual, "SITE", tmp_path / "build" / "site")
-    manual.build_manual()
+    monkeypatch.setattr(built_manual, "PACKAGE", tmp_path / "workbench")
+    monkeypatch.setattr(built_manual, "SITE", tmp_path / "build" / "site")
+    built_manual.build_manual()
     end = time.monotonic() + 60
-    while manual.is_being_built():
+    while built_manual.is_being_built():
         assert time.monotonic() < end
         time.sleep(0.05)
     assert "uv run mkdocs build" in ask(app.make_app(tmp_path / "models", GATE), "/manual/", HOST, COOKIE).body.decode()
