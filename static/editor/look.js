@@ -61,7 +61,7 @@ const theme = EditorView.theme({
   ".cm-tooltip.cm-tooltip-autocomplete > ul": { fontFamily: "var(--mono)", fontSize: "12px" },
   ".cm-tooltip.cm-tooltip-autocomplete > ul > li[aria-selected]": { color: "var(--text)", backgroundColor: "var(--chosen)" },
   ".cm-changedLine, &.cm-merge-b .cm-changedLine": { backgroundColor: "color-mix(in srgb, var(--added) 16%, transparent)" },
-  ".cm-changedText, &.cm-merge-b .cm-changedText": { background: "color-mix(in srgb, var(--added) 38%, transparent)" },
+  ".cm-changedText, &.cm-merge-b .cm-changedText": { background: "color-mix(in srgb, var(--added) 30%, transparent)" },
   ".cm-deletedChunk": { backgroundColor: "color-mix(in srgb, var(--bad) 12%, transparent)" },
   ".cm-deletedChunk .cm-deletedText": { background: "color-mix(in srgb, var(--bad) 28%, transparent)" },
   ".cm-changeGutter": { width: "14px", paddingLeft: "0", textAlign: "center", fontWeight: "700" },
