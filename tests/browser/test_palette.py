@@ -124,18 +124,18 @@ def test_the_palette_opens_again_as_soon_as_it_is_closed(page: Page) -> None:
 
 
 def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Callable[..., Page]) -> None:
-    built = [False, True]
+    built: list[bool] = []
     page = pages("counting.py")
     shows(page, "#status", "at its start")
-    page.context.route("**/api/models", lambda route: route.fulfill(json={**answer_to(route).json(), "manual": built.pop(0)}))
+    page.context.route("**/api/models", lambda route: route.fulfill(json={**answer_to(route).json(), "manual": bool(built)}))
     page.reload()
     shows(page, "#status", "at its start")
     search(page, "time chunk")
     expect(page.get_by_role("dialog")).to_contain_text("Nothing is found")
     expect(page.get_by_role("group", name="Manual")).to_have_count(0)
+    page.keyboard.press("Escape")
     page.context.route("**/manual/**", lambda route: route.fulfill(body=json.dumps(INDEX), content_type="application/json"))
-    page.reload()
-    shows(page, "#status", "at its start")
+    built.append(True)  # while the page is open
     search(page, "time chunk")
     found = page.get_by_role("group", name="Manual").get_by_role("option")
     expect(found).to_have_text(["ChunksMemory: alert(1) Time and chunks."])

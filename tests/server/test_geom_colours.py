@@ -46,7 +46,7 @@ def test_an_object_has_the_colour_of_its_largest_visible_part() -> None:
         Floor(),
         Mannequin(name="walker", load=Load()),
         Car(name="car", position=(6.0, 0.0)),
-        Wall(name="wall", start=(9.0, -1.0), end=(9.0, 1.0)),
+        Wall(name="wall", start=(12.0, -1.0), end=(12.0, 1.0)),
     )
     world = World(Scene(parts=parts))
     model: Any = world.mj_model
