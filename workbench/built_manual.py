@@ -6,7 +6,6 @@ import subprocess
 import sys
 import tempfile
 import threading
-from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -54,13 +53,13 @@ def build_manual() -> None:
 def _build() -> None:
     try:
         SITE.parent.mkdir(exist_ok=True)
-        with suppress(OSError), tempfile.TemporaryDirectory(prefix="site-", dir=SITE.parent) as folder:
+        with tempfile.TemporaryDirectory(prefix="site-", dir=SITE.parent) as folder:
             made = Path(folder) / "site"
             # What the user does meanwhile has the processor first.
             command = ["nice", "-n", "10", sys.executable, "-m", "mkdocs", "build", "--quiet", "--site-dir", str(made)]
             subprocess.run(command, cwd=PACKAGE.parent, stdin=subprocess.DEVNULL, capture_output=True, check=True)
             made.rename(SITE)
-    except subprocess.CalledProcessError:
+    except (OSError, subprocess.CalledProcessError):
         pass  # the command that `no_manual` names says what is wrong
     finally:
         _building.clear()

@@ -130,7 +130,7 @@ def _reason(error: OSError, options: argparse.Namespace) -> str:
 
 
 def _announce(folder: Path, url: str, token: Token, browse: bool) -> None:
-    """Prints the address as the last line and opens it in the browser, for a user who may want the manual."""
+    """Prints the address as the last line; opens it in the browser, and builds the manual for its user if there is none."""
     address = f"{url}/?token={token.reveal()}"
     print(f"models: {folder}")
     print(address, flush=True)

@@ -446,8 +446,9 @@ class Session(Broadcast, Receiver):
     @property
     def is_outdated(self) -> bool:
         """Whether the run on screen waits at its start and its file has another text by now: nothing is lost if it is made again."""
-        waits = self._shown is not None and not self.is_loading and never_begun(self.state, self.log) and self.path.is_file()
-        return waits and self._shown is not None and self._shown.is_stale(digest_of_file(self.path))
+        if self._shown is None or self.is_loading or not never_begun(self.state, self.log) or not self.path.is_file():
+            return False
+        return self._shown.is_stale(digest_of_file(self.path))
 
     @property
     def alive(self) -> bool:

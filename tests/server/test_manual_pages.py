@@ -52,6 +52,13 @@ def test_a_manual_that_is_built_while_the_workbench_runs_is_served(tmp_path: Pat
     assert ask(made, "/manual/", HOST, COOKIE).body == b"<h1>Manual</h1>"
 
 
+def wait_until_built() -> None:
+    end = time.monotonic() + 60
+    while built_manual.is_being_built():
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
 def test_the_manual_of_a_copy_of_the_repository_is_built_in_the_background(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "docs").mkdir()
     (tmp_path / "docs" / "index.md").write_text("# Manual of a copy", encoding="utf-8")
@@ -62,10 +69,7 @@ def test_the_manual_of_a_copy_of_the_repository_is_built_in_the_background(tmp_p
     made = app.make_app(tmp_path / "models", GATE)
     built_manual.build_manual()
     assert "is being built" in ask(made, "/manual/", HOST, COOKIE).body.decode()
-    end = time.monotonic() + 60
-    while built_manual.is_being_built():
-        assert time.monotonic() < end
-        time.sleep(0.05)
+    wait_until_built()
     assert b"Manual of a copy" in ask(made, "/manual/", HOST, COOKIE).body
     assert [one.name for one in site.parent.iterdir()] == ["site"]
 
@@ -75,8 +79,5 @@ def test_a_manual_that_cannot_be_built_is_not_waited_for(tmp_path: Path, monkeyp
     monkeypatch.setattr(built_manual, "PACKAGE", tmp_path / "workbench")
     monkeypatch.setattr(built_manual, "SITE", tmp_path / "build" / "site")
     built_manual.build_manual()
-    end = time.monotonic() + 60
-    while built_manual.is_being_built():
-        assert time.monotonic() < end
-        time.sleep(0.05)
+    wait_until_built()
     assert "uv run mkdocs build" in ask(app.make_app(tmp_path / "models", GATE), "/manual/", HOST, COOKIE).body.decode()

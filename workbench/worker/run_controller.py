@@ -199,7 +199,6 @@ class RunController:
             changed: What happened to the later part of the run; None if there was none.
         """
         with self._sending:
-            self._known_run = None
             if changed is not None:
                 self._reached = 0
                 if self.status == "paused":
@@ -215,6 +214,7 @@ class RunController:
             at: From when on the run goes another way than the recording, or further [s].
             until: The furthest time that was known of it [s].
         """
+        self._known_run = None
         recording = Path(self.channel.start.recorded or "").stem
         self.run.become_branch(recording, at)  # first, as pages list recordings again when they hear of the branch
         self.channel.post(Branched(recording=recording, at=at, until=until))
@@ -376,10 +376,8 @@ class RunController:
         if found is None and not (is_over and state.events < known_run.count):
             self._compared = max(self._compared, state.events)
             if self.run.clock > known_run.time and not is_over:
-                self._known_run = None
                 self.leave_recording(known, known)
             return state
-        self._known_run = None
         self.run.forget_ahead()
         self._sent = state.events if found is None else found
         self.channel.cut(Cut(events=self._sent), self._sent)
