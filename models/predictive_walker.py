@@ -120,8 +120,8 @@ MEMORIES = 150
 """Number of passages that a walker remembers. Source: chosen for this model."""
 ANY = 10.0
 """Cost of any contact where its energy does not count [J]. Source: chosen for this model."""
-DOOR = "feature:opening height:>1.5 depth:>0.5"
-"""Openings that one can walk through [m]. Source: chosen for this model."""
+DOOR = "feature:opening height:>2 depth:>0.5"
+"""Doorways: openings as high as doors are, and free behind [m]. A gap beside a person is not as high. Source: chosen for this model."""
 BLOCKED = 0.1
 """Time without progress after which a movement ends as blocked, and the walk with it [s]. Source: chosen for this model."""
 FIELD = 2.6

@@ -122,6 +122,27 @@ def test_a_window_is_a_hole_in_one_thing() -> None:
     assert one.left == one.right == one.above == one.below != 0
 
 
+@pytest.mark.parametrize("thick", [0.05, 0.2, 0.35])
+@pytest.mark.parametrize("width", [0.9, 2.0])
+@pytest.mark.parametrize("aside", [-60, -35, 10, 50])
+def test_the_height_of_a_doorway_is_exact_to_one_scan_line_from_any_side(aside: float, width: float, thick: float) -> None:
+    bearing, distance = math.radians(aside), 3.6
+    x, y = 7 - distance * math.cos(bearing), distance * math.sin(bearing)
+    person = Mannequin(name="m", position=(x, y), heading=math.atan2(-y, 7 - x))
+    world = World(Scene(parts=(Floor(), person, Aperture(width=width, thickness=thick))))
+    openings = openings_of(world.bodies["m"].get("view"))
+    one = max((one for one in openings if not one.cut), key=lambda one: one.height)
+    line = 2 * math.tan(math.pi / 6) / 100 * (distance + width / 2 + thick)  # one scan line where the farther side is
+    assert one.height == near(2.5, abs=line)
+    assert one.top == near(2.5 - 0.936 * person.height, abs=line)
+
+
+def test_the_height_between_unequal_sides_is_that_of_the_lower_one() -> None:
+    for near_one, far_one in ((1.8, 2.6), (2.0, 2.6), (2.2, 1.9)):
+        one = only(found("opening", pole("a", 3.0, 0.5, height=near_one) + pole("b", 6.0, -0.5, height=far_one)))
+        assert one.top == near(min(near_one, far_one) - 1.5, abs=2 * math.tan(math.pi / 6) / 100 * 6.0)
+
+
 @pytest.mark.parametrize("distance", [6.0, 2.0, 1.0])
 def test_between_two_poles(distance: float) -> None:
     one = only(found("opening", pole("a", distance, 0.4) + pole("b", distance, -0.3)))

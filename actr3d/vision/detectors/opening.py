@@ -40,8 +40,7 @@ class Opening(Feature):
     width: Metres
     """Free width on the ground, along its boundary if that is one line (a wall), otherwise straight from edge to edge."""
     height: Metres
-    """Height of the scan lines that it spans, at the middle between its edges: exact to one of them if both are equally far, and too
-    small if it is seen aslant. If open above, the height of its sides."""
+    """Height of the scan lines that it spans; exact to one of them. If open above, the height of its sides."""
     depth: Metres
     """Free depth behind it, perpendicular to its width, up to the nearest edge that is visible through it; infinite without one."""
     top: Metres

@@ -27,8 +27,8 @@ GAP = np.dtype(
         ("along", "f8", (2,)),  # the direction from left to right in which its width is meant (ahead, left)
         ("width", "f8"),  # [m]
         ("deep", "f8"),  # how far it is free behind, square to its width [m]
-        ("high", "f8"),  # where its row ends above and below, above the eye [m]
-        ("low", "f8"),
+        ("highs", "f8", (2,)),  # where its row ends above and below at the left and at the right edge, above the eye [m]
+        ("lows", "f8", (2,)),
         ("far", "f8"),  # the distance of the farther edge from the eye [m]
     ],
     align=True,
@@ -106,12 +106,12 @@ def measure(points: Array, gaps: Records, number: int) -> None:
 
 @compiled
 def _set_levels(points: Array, gap: Record, optics: Record, up: float) -> None:
-    """Sets where the row of a gap ends above and below, half way to the next rows."""
-    left, right = points[gap.left, 1], points[gap.right, 0]
-    middle, deep = 0.5 * (left[2] + right[2]), 0.5 * (left[3] + right[3])
+    """Sets where the row of a gap ends above and below at each of its edges, half way to the next rows."""
     here = row_tangent(gap.row, optics)
-    gap.high = middle + deep * up * (row_tangent(gap.row - 0.5, optics) - here)
-    gap.low = middle + deep * up * (row_tangent(gap.row + 0.5, optics) - here)
+    for side in range(2):
+        point = points[gap.left, 1] if side == 0 else points[gap.right, 0]
+        gap.highs[side] = point[2] + point[3] * up * (row_tangent(gap.row - 0.5, optics) - here)
+        gap.lows[side] = point[2] + point[3] * up * (row_tangent(gap.row + 0.5, optics) - here)
 
 
 @compiled

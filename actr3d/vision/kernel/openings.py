@@ -56,7 +56,7 @@ def set_openings(extents: Records, points: Array, gaps: Records, count: int, row
             low, high = max(low, x * left[0] + y * left[1]), min(high, x * right[0] + y * right[1])
             if high <= low and k < i:
                 break
-            area = max(0.0, high - low) * (gaps[k].high - gaps[i].low)
+            area = max(0.0, high - low) * 0.5 * (gaps[k].highs[0] + gaps[k].highs[1] - gaps[i].lows[0] - gaps[i].lows[1])
             if area > opening.area * (1.0 + 1e-9):
                 opening.area, opening.width = area, max(0.0, high - low)
                 opening.first, opening.last = k, i
@@ -69,7 +69,8 @@ def set_openings(extents: Records, points: Array, gaps: Records, count: int, row
 def _finish(extents: Records, points: Array, gaps: Records, rows: int, opening: Record) -> None:
     """Writes what follows from the first and the last gap of an opening."""
     first, last = gaps[opening.first], gaps[opening.last]
-    opening.top, opening.bottom = first.high, last.low
+    opening.top = _end(extents, points, first, first.row - 1, first.highs, first.row == 0, 1.0)
+    opening.bottom = _end(extents, points, last, last.row + 1, last.lows, last.row == rows - 1, -1.0)
     opening.cut = first.row == 0 or last.row == rows - 1
     opening.deep = math.inf
     middle = k = opening.last
@@ -85,6 +86,46 @@ def _finish(extents: Records, points: Array, gaps: Records, rows: int, opening: 
     opening.left, opening.right = extents[gaps[middle].left].label, extents[gaps[middle].right].label
     opening.above = _bound(extents, first, first.row - 1)
     opening.below = _bound(extents, last, last.row + 1)
+
+
+@compiled
+def _end(extents: Records, points: Array, gap: Record, row: int, levels: Array, cut: bool, sign: float) -> float:
+    """Returns the height at which an opening ends above (`sign` 1) or below (-1), above the eye [m].
+
+    Its first or last gap has another height at each of its edges, because they are not equally far. What counts is the edge that
+    ends there. Where both end, or neither, what bounds the opening is level (the tops of equal walls, a lintel, the ground), and
+    its outer height is that of the edge where it is met first; of one that leaves the field of view, the inner height is free.
+
+    Args:
+        extents: The view's.
+        points: Where their edges are.
+        gap: The first or the last gap.
+        row: The next row.
+        levels: Where the gap ends at its left and at its right edge, above the eye [m].
+        cut: Whether there is no next row.
+        sign: 1 for above, -1 for below.
+    """
+    one, other = sign * levels[0], sign * levels[1]
+    if cut:
+        return sign * min(one, other)
+    left = _goes_on(extents, points, gap.left, 1, row)
+    if left == _goes_on(extents, points, gap.right, 0, row):
+        return sign * max(one, other)
+    return sign * (other if left else one)
+
+
+@compiled
+def _goes_on(extents: Records, points: Array, number: int, side: int, row: int) -> bool:
+    """Returns whether an edge of an extent goes on in the next row: of the same thing, within a wall's thickness on the ground."""
+    step = -1 if row < extents[number].row else 1
+    at = number
+    while 0 <= at < len(extents) and (extents[at].row - row) * step <= 0:
+        if extents[at].row == row and extents[at].label == extents[number].label:
+            x, y = points[at, side, 0] - points[number, side, 0], points[at, side, 1] - points[number, side, 1]
+            if math.sqrt(x * x + y * y) <= THICKEST:
+                return True
+        at += step
+    return False
 
 
 @compiled
