@@ -13,8 +13,8 @@ Four parallel systems:
 - *Steering* (a production of 50 ms for each look and each turn) walks to the middle of the doorway by the law of Fajen & Warren (2003). A
   doorway is the opening between two things, however wide it is. If it is hidden, the walker goes where it must be, by its own movement.
 - *Avoiding* notices objects that are nearer than the doorway; the same law turns away from them. Near the doorway the walker waits if
-  something is in it, before it, or as near to it on the other side: for as long as that comes nearer, and then until its patience ends.
-  Then it looks for a doorway again, and goes on; if there is none, it gives up.
+  something comes, before it or behind it, as near to it as the walker is: for as long as that comes nearer, and then until its patience
+  ends. Then it looks for a doorway again, and goes on; if there is none, it gives up.
 - *Planning* imagines one turn after the other, and keeps the cheapest. It goes on until two steps before the doorway.
 - *Walking* turns the shoulders in one of these two steps, about half a step before the doorway, and turns them back behind it.
 
@@ -455,8 +455,8 @@ class Person(ACTR):
     def sees(self, far, left, deep):
         """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees], with free depth behind it [m].
 
-        It keeps its course in the last step. Before that, it waits for what has come as near to the doorway as the walker is. Something
-        before the doorway has a depth below 0. Each step that it comes nearer renews the patience.
+        It keeps its course in the last step. Before that, it waits for what comes as near to the doorway as the walker is, not for what
+        stands there. Something before the doorway has a depth below 0. Each step that it comes nearer renews the patience.
         """
         now, waits = self.now(), self.b_goal["do"] == "wait"
         obstructed = self.obstacle is not None and now - self.obstacle[2] < FORGET and self.obstacle[0] < far - BEFORE
@@ -467,7 +467,7 @@ class Person(ACTR):
             self.taken = now
             comes = deep < self.nearest - BEFORE
         elif now - self.taken > FORGET:
-            self.nearest = inf
+            self.nearest = deep if self.nearest == inf else max(self.nearest, deep)
         if comes:
             self.nearest, self.patient_until = deep, now + self.random.uniform(*PATIENCE)
         free = now > min(self.patient_until, self.taken + FORGET) if waits else far < self.step or not (comes and self.motor.walking)
