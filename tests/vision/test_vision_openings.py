@@ -137,6 +137,18 @@ def test_the_height_of_a_doorway_is_exact_to_one_scan_line_from_any_side(aside: 
     assert one.top == near(2.5 - 0.936 * person.height, abs=line)
 
 
+@pytest.mark.parametrize("pitch", [0.0, 25.0, -25.0])
+def test_things_that_are_seen_at_different_heights_have_no_opening_between_them(pitch: float) -> None:
+    """A far one may end below where a near one begins to be seen."""
+    heights: list[float] = []
+    for seed in range(60):
+        uniform = Random(seed).uniform
+        poles = [pole(f"p{n}", uniform(0.5, 6), uniform(-3, 3), uniform(0.02, 0.2), uniform(0.3, 2.5)) for n in range(8)]
+        heights += [one.height for one in found("opening", "".join(poles), eye=eye(pitch=pitch))]
+    assert len(heights) > 200
+    assert min(heights) > 0
+
+
 def test_the_height_between_unequal_sides_is_that_of_the_lower_one() -> None:
     for near_one, far_one in ((1.8, 2.6), (2.0, 2.6), (2.2, 1.9)):
         one = only(found("opening", pole("a", 3.0, 0.5, height=near_one) + pole("b", 6.0, -0.5, height=far_one)))

@@ -28,7 +28,7 @@ on the default screen. Source: chosen."""
 
 @dataclass(frozen=True, kw_only=True)
 class Opening(Feature):
-    """A gap between two edges, over one or more scan lines, with nothing between them that is as near as they are.
+    """A gap between two edges that are seen at the same heights, with nothing between them that is as near as they are.
 
     Its size is that of the largest upright rectangle in it (by area). `distance` and `direction` are those of the middle between its
     two edges, of which one may be at the front of a wall and the other at its back.
@@ -93,7 +93,8 @@ def opening(view: View, *, step: Annotated[Metres, Ge(0)] = 0.02) -> tuple[Openi
         elif there > len(openings):
             openings = np.empty(there, OPENING)
         else:
-            return tuple(_opening(*numbers[:SHOWN]) for numbers in openings[:there].tolist())
+            known = [_opening(*numbers[:SHOWN]) for numbers in openings[:there].tolist()]
+            return tuple([one for one in known if one.height > 0])
 
 
 def _opening(
