@@ -259,9 +259,9 @@ class Avoiding(ACTR):
         if nearer > 0:
             periphery.request("feature:obstacle", distance=f"<{nearer:.2f}")
 
-    def avoid(b_obstacle="feature:obstacle distance:?far leftmost:?left rightmost:?right"):
+    def avoid(b_obstacle="feature:obstacle object:?what distance:?far leftmost:?left rightmost:?right"):
         b_obstacle.clear()
-        self.parent.obstacle = float(far), radians(float(left) + float(right)) / 2, self.now()
+        self.parent.obstacle = float(far), radians(float(left) + float(right)) / 2, self.now(), what
 
 
 class Planning(ACTR):
@@ -456,12 +456,14 @@ class Person(ACTR):
         """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees], with free depth behind it [m].
 
         It keeps its course in the last step. Before that, it waits for what comes as near to the doorway as the walker is, not for what
-        stands there. Something before the doorway has a depth below 0. Each step that it comes nearer renews the patience.
+        stands there. Something before the doorway, not its sides, has a depth below 0. Each step that it comes nearer renews the patience.
         """
         now, waits = self.now(), self.b_goal["do"] == "wait"
         obstructed = self.obstacle is not None and now - self.obstacle[2] < FORGET and self.obstacle[0] < far - BEFORE
-        if obstructed and abs(self.obstacle[0] * sin(self.obstacle[1] - radians(left))) < float(self.b_door["width"]) / 2:
-            deep = self.obstacle[0] - far
+        if obstructed and self.obstacle[3] not in (self.b_door["left"], self.b_door["right"]):
+            distance, direction, *_ = self.obstacle
+            if abs(distance * sin(direction - radians(left))) < float(self.b_door["width"]) / 2:
+                deep = distance - far
         comes = False
         if far < YIELD * self.step and deep < far:
             self.taken = now
@@ -482,7 +484,7 @@ class Person(ACTR):
         aside = atan2(far * sin(radians(left)) - self.middle, far * cos(radians(left)))
         pull = ATTRACTION * aside * (exp(-NEARNESS * far) + MIN_ATTRACTION)
         if obstructed:
-            distance, direction, _ = self.obstacle
+            distance, direction, *_ = self.obstacle
             pull -= REPULSION * direction * exp(-NARROWNESS * abs(direction)) * exp(-REACH * distance)
         self.rate += (pull - DAMPING * self.rate) * elapsed + self.random.gauss(0, HEADING_NOISE * sqrt(elapsed))
         self.head(self.rate)
