@@ -147,6 +147,12 @@ def test_only_public_names_of_the_library_are_offered_to_import(ask: Asked) -> N
     assert "request" not in ask.labels("from actr3d.world import Floor\nFloor().|")
 
 
+def test_only_names_that_exist_are_offered_after_everything_was_imported(ask: Asked) -> None:
+    names = set(ask.labels("from actr3d.actr import *\n\nx = |"))
+    assert {"Buffer", "DMNoise", "print", "None"} <= names
+    assert not {"check_agent", "production_system", "annotations", "AbstractSet", "WindowsError"} & names
+
+
 def test_a_part_of_a_scene_is_offered_with_the_import_that_it_needs(ask: Asked) -> None:
     items = {one["label"]: one for one in ask("complete", DOORWAY.replace("parts=(", "parts=(Fl|, "))["items"]}
     assert (items["Floor"]["apply"], items["Floor"]["needs"]) == ("Floor(${})", "")
@@ -180,6 +186,8 @@ def test_a_completion_says_what_it_is(ask: Asked) -> None:
     (slot,) = (one for one in ask("complete", DOORWAY.replace("pose x:?x", "pose |"))["items"] if one["label"] == "heading")
     assert (slot["detail"], slot["apply"]) == ("slot of pose", "heading:")
     assert "left is positive" in slot["text"]
+    said = ask("document item", "from actr3d.actr import *\nDMNoise(None, noi|)", "noise=")
+    assert said["text"].startswith("s of the noise")
     said = ask("document item", "from actr3d.world import Ap|", "Aperture")
     assert said["title"].startswith("Aperture(name")
     assert "doorway" in said["text"]
@@ -203,6 +211,7 @@ def test_a_completion_says_what_it_is(ask: Asked) -> None:
         (DOORWAY.replace('"pose"', '"po|se"', 1), "value pose", "Senses position"),
         (DOORWAY.replace("pose x:", "pose x|:"), "slot x", "pose: [m]"),
         (DOORWAY.replace("width=parameters", "wid|th=parameters"), "", "free width"),
+        (COUNTING.replace("Memory(retrieval)", "Memory(retrieval, lat|ency=1)"), "latency: ", "F in the retrieval time"),
     ],
 )
 def test_what_is_known_of_a_name(ask: Asked, text: str, title: str, said: str) -> None:
