@@ -206,7 +206,7 @@ def _documentation(one: jedi.BaseName) -> Documentation:
     return Documentation(title=title[:LONGEST_DOCUMENTATION], text=(text or _field_text(one))[:LONGEST_DOCUMENTATION])
 
 
-def _text_of_parameter(one: jedi.BaseName) -> str:
+def _text_of_parameter(one: Any) -> str:
     """Returns what the docstring of its function says of a parameter, or that of its class."""
     function = one.parent()
     owners = [function, *([function.parent()] if function.name == "__init__" else [])]
