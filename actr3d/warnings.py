@@ -24,8 +24,12 @@ def is_library(filename: str) -> bool:
 
 def of_library(code: CodeType) -> bool:
     """Checks whether code belongs to the library."""
-    # A dataclass's generated `__init__`, between a configuration's checks and its caller, has no file.
-    return is_library(code.co_filename) or (code.co_filename == "<string>" and code.co_name == "__init__")
+    return is_library(code.co_filename) or is_generated(code.co_filename, code.co_name)
+
+
+def is_generated(filename: str, function: str) -> bool:
+    """Checks for the `__init__` that a dataclass generates: it has no file, and runs between a configuration's checks and its caller."""
+    return filename == "<string>" and function == "__init__"
 
 
 def warn_modeller(message: str) -> None:

@@ -4,16 +4,16 @@ import { addressed } from "./address.js";
 import { command } from "./commands.js";
 import { remembered } from "./local_storage.js";
 import { computed, effect, signal } from "./vendor/preact.js";
-import { session } from "./store.js";
+import { hasScene, session } from "./store.js";
 import { embedded } from "./windows.js";
 
 /** The parts of the page, with their titles. */
 export const AREAS = { scene: "3D view", panels: "Panels", timeline: "Timeline" };
 
-/** Whether there is a 3D view; otherwise the panels have all the room. While a model loads, it is as for the previous one. */
+/** Whether there is a 3D view, with something to see in it; otherwise the panels have all the room. While a model loads, it is as for the previous one. */
 export const hasWorld = remembered("has world", true);
 effect(() => {
-  if (session.value?.kind) hasWorld.value = Boolean(session.value.world);
+  if (session.value?.kind) hasWorld.value = hasScene.value;
 });
 
 /** Returns a value that models with a world and those without one have each for themselves; it is stored in the browser. */

@@ -8,6 +8,8 @@ const MAX_NOTICES = 500;
 
 /** The facts about the session and its run (`Session.facts_json`); null before there is one. */
 export const session = signal(null);
+/** Whether the run has a world in which there is something to see. */
+export const hasScene = computed(() => Boolean(session.value?.world) && !session.value.world.empty);
 /** The name of this browser among the viewers; empty if not known yet. */
 export const me = signal("");
 /** The newest state: status, time, speed, apertures, parameters, parts (`Session.state_json`); null before the first. */

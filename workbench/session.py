@@ -147,7 +147,7 @@ class Session(Broadcast, Receiver):
     def adopt(self, worker: Worker) -> None:
         """Shows a run that has been built elsewhere: in the process of a notebook."""
         self._attempt += 1
-        self._after_end = "the notebook has no variable for this simulation any more"
+        self._after_end = "the notebook no longer has this simulation"
         launched = LaunchedRun(Start(path=str(self.path), folder=str(self.path.parent), attempt=self._attempt, real_time=True), worker)
         self.run_task(WorkerMonitor(worker, launched.start, self).serve())
         self._await(launched)

@@ -18,7 +18,8 @@ LIBRARY = ("actr3d.actr", "actr3d.world", "actr3d.motor", "actr3d.vision", "actr
 
 
 def undefined_names(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Yields the line and a message for each name that is read there, and that nothing in the text defines or imports."""
+    """Yields the line and a message for each name that is imported from the library without being there, or that nothing defines."""
+    yield from _not_in_library(tree.body)
     defined = names_defined_in(tree)
     if defined is None:
         return
@@ -32,6 +33,18 @@ def undefined_names(tree: ast.Module) -> Iterator[tuple[int, str]]:
     for name in sorted(_read_first(tree.body), key=lambda name: (name.lineno, name.col_offset)):
         if name.id not in known:
             yield name.lineno, f"nothing defines '{name.id}'{did_you_mean(name.id, known)}"
+
+
+def _not_in_library(body: list[ast.stmt]) -> Iterator[tuple[int, str]]:
+    """Yields the line and a message for each name that some statements import from a module of the library that does not have it."""
+    for node in body:
+        if isinstance(node, ast.ImportFrom) and node.module in LIBRARY and not node.level:
+            module = import_module(node.module)
+            public: list[str] = getattr(module, "__all__", dir(module))
+            for one in node.names:
+                if one.name != "*" and not hasattr(module, one.name):
+                    hint = did_you_mean(one.name, public) or f"; it has: {', '.join(public)}"
+                    yield node.lineno, f"{node.module} has no '{one.name}'{hint}"
 
 
 def _read_first(body: list[ast.stmt]) -> Iterator[ast.Name]:

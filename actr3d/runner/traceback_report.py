@@ -10,7 +10,7 @@ from pathlib import Path
 
 from actr3d.actr.loading.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError, ModelFileError, hint_for
-from actr3d.warnings import is_library
+from actr3d.warnings import is_generated, is_library
 
 PYTHON = tuple({sysconfig.get_path(kind) for kind in ("stdlib", "platstdlib", "purelib", "platlib")})
 """The folders of Python's own modules and of installed packages."""
@@ -99,7 +99,8 @@ def _place(error: BaseException, report: traceback.TracebackException, hidden: s
 def _keep_own_lines(report: traceback.TracebackException | None, hidden: str | None) -> None:
     """Removes the lines of the library and the loader from a report and from the reports of its causes."""
     if report is not None:
-        report.stack = traceback.StackSummary.from_list([frame for frame in report.stack if not _is_ours(frame.filename, hidden)])
+        own = [one for one in report.stack if not _is_ours(one.filename, hidden) and not is_generated(one.filename, one.name)]
+        report.stack = traceback.StackSummary.from_list(own)
         _keep_own_lines(report.__cause__, hidden)
         _keep_own_lines(report.__context__, hidden)
 

@@ -16,7 +16,7 @@ import { frameBudget } from "../frame_budget.js";
 import { VIEWS } from "../scene/stage.js";
 import { runStatus } from "../run_status.js";
 import { openWindow } from "../windows.js";
-import { alive, complain, running, session, state } from "../store.js";
+import { alive, complain, hasScene, running, session, state } from "../store.js";
 
 const open = signal(false); // whether the list of overlays is shown
 const view = remembered("view", "follow");
@@ -118,8 +118,7 @@ async function makeVideo() {
   }
 }
 
-/** Whether there is a scene to look at. */
-const isShown = () => Boolean(session.value?.world);
+const isShown = () => hasScene.value;
 const noView = () => "This model has no 3D view.";
 command({ text: "Next view: with the body, free, from the side, from above, through the eye", key: "v", group: "3D view", work: nextView, ready: isShown, why: noView });
 const reset = command({ text: "Reset view", key: "Shift+v", group: "3D view", work: resetView, ready: isShown, why: noView });

@@ -322,10 +322,27 @@ def test_at_150_percent_the_3d_view_s_tools_are_one_row_and_the_hint_is_whole(pa
     page.keyboard.press("?")
     manual = page.get_by_role("dialog").get_by_role("link", name="Manual of ACT-R 3D")
     assert manual.evaluate("({ parentElement: line }) => line.scrollHeight <= line.clientHeight")
+    page.keyboard.press("Escape")
+    open_tab(page, "About")
     page.emulate_media(media="print")  # the open panel is printed, without what can be pressed
     expect(page.get_by_role("tabpanel")).to_be_visible()
     expect(page.get_by_role("tablist")).to_be_hidden()
+    expect(page.locator(".about h2").first).to_be_visible()
+    expect(page.locator(".about button", has_text="Edit")).to_be_hidden()
     page.emulate_media(media="screen")
+
+
+@pytest.mark.slow
+def test_as_narrow_as_in_a_notebook_the_timeline_s_tools_and_what_a_system_does_can_be_read(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py", 690, 560, tab="buffers")
+    shows(page, "#time", "0.00 s")
+    page.locator("#step").click()
+    shows(page, "#time", "0.01 s")
+    right = "all => Math.max(...all.map((one) => one.getBoundingClientRect().right))"
+    assert page.get_by_role("toolbar", name="Timeline").get_by_role("button").evaluate_all(right) <= 690
+    doing = page.locator(".part .doing").first
+    expect(doing).to_have_text("look is about to fire")
+    assert doing.evaluate("one => one.scrollWidth <= one.clientWidth")
 
 
 @pytest.mark.slow

@@ -85,6 +85,31 @@ def test_parts_of_the_page_are_maximised_collapsed_and_swapped(page: Page) -> No
 
 
 @pytest.mark.slow
+def test_a_world_with_nothing_in_it_has_no_3d_view(page: Page, workbench: Served) -> None:
+    text = (workbench.folder / "counting.py").read_text().partition("if __name__")[0]
+    text += """
+from dataclasses import dataclass
+from actr3d.simulation import Simulation
+from actr3d.world import Scene
+
+
+@dataclass(frozen=True)
+class Parameters:
+    pass
+
+
+def build(parameters: Parameters) -> Simulation:
+    return Simulation(Scene(), bodiless={"counting": Counting})
+"""
+    (workbench.folder / "nowhere.py").write_text(text)
+    page.reload()
+    shows(page, "#status", "at its start")
+    choose(page, "nowhere.py")
+    expect(page.get_by_role("region", name="3D view", exact=True)).not_to_be_visible()
+    panels_are_at(page, 0, 1280)
+
+
+@pytest.mark.slow
 def test_a_panel_has_a_window_of_its_own_which_follows_the_page(pages: Pages) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")

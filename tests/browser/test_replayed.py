@@ -15,9 +15,11 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
 
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Mannequin, Scene
 from tests.helpers.page import PATIENCE, drawn, until
 from tests.helpers.workbench_server import served
-from tests.server.test_html_replay import ZOO
+from tests.server.test_html_replay import ZOO, Waiting
 from workbench.html_replay import make
 from workbench.html_replay.shapes import Shapes
 
@@ -38,6 +40,26 @@ def replay(tmp_path_factory: pytest.TempPathFactory) -> Path:
         address = f"{server.url}/api/recordings/{recording}/file"
         file.write_bytes(httpx.get(address, headers=server.headers, params={"form": "replay.html"}, timeout=150).content)
         return file
+
+
+def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_was_not_over(browser: Browser, tmp_path: Path) -> None:
+    simulation = Simulation(Scene(parts=(Floor(), Mannequin())), bodiless={"waiting": Waiting}, trace="all")
+    with simulation.record(tmp_path / "run.sqlite"):
+        simulation.run(1)
+    make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    with browser.new_context(viewport={"width": 690, "height": 500}, offline=True) as context:
+        page = context.new_page()
+        page.set_default_timeout(PATIENCE)
+        page.goto((tmp_path / "replay.html").as_uri())
+        expect(page.locator("#outcome")).to_have_text("Shown up to 1.00 s: the run was not over then.")
+        for width in (690, 850):  # below each other, and beside each other
+            page.set_viewport_size({"width": width, "height": 500})
+            drawn(page)
+            scene, filter_box = page.locator("#scene").bounding_box(), page.locator("#filter").bounding_box()
+            assert scene is not None
+            assert scene["height"] > 150
+            assert filter_box is not None
+            assert filter_box["width"] >= 190  # what can be written there is shown whole
 
 
 @pytest.mark.slow

@@ -7,7 +7,8 @@ import json
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Generator, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -81,21 +82,19 @@ def kernel() -> Iterator[Kernel]:
     started.end()
 
 
-@pytest.fixture
-def notebook(kernel: Kernel) -> Iterator[str]:
-    """Serves pages with the widget, as a notebook's server does; returns their address."""
-    module = Path(widget.__file__).with_name("widget.js").read_bytes()
-    traits = json.dumps({"page": kernel.page, "height": 560, "problem": ""})
+MODULE = Path(widget.__file__).with_name("widget.js").read_text(encoding="utf-8")
+
+
+@contextmanager
+def serving(answer: Callable[[str, int], str]) -> Generator[str]:
+    """Serves what a function returns for a path and the port, modules where a path ends so; yields the address."""
 
     class Handler(http.server.BaseHTTPRequestHandler):
         def do_GET(self) -> None:
-            background = "#111" if "dark" in self.path else "#fff"
-            is_module = self.path == "/widget.js"
-            page = NOTEBOOK.replace("TRAITS", traits).replace("BACKGROUND", background).encode()
             self.send_response(200)
-            self.send_header("content-type", "text/javascript" if is_module else "text/html")
+            self.send_header("content-type", "text/javascript" if self.path.endswith(".js") else "text/html")
             self.end_headers()
-            self.wfile.write(module if is_module else page)
+            self.wfile.write(answer(self.path, server.server_port).encode())
 
         def log_message(self, format: str, *args: Any) -> None:
             pass
@@ -104,6 +103,19 @@ def notebook(kernel: Kernel) -> Iterator[str]:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://localhost:{server.server_port}"
         server.shutdown()
+
+
+def notebook_page(path: str, page: dict[str, Any]) -> str:
+    """Returns a notebook with the widget of a page, dark or light as its path says."""
+    traits = json.dumps({"page": page, "height": 560, "problem": ""})
+    return NOTEBOOK.replace("TRAITS", traits).replace("BACKGROUND", "#111" if "dark" in path else "#fff")
+
+
+@pytest.fixture
+def notebook(kernel: Kernel) -> Iterator[str]:
+    """Serves pages with the widget, as a notebook's server does; returns their address."""
+    with serving(lambda path, _: MODULE if path == "/widget.js" else notebook_page(path, kernel.page)) as address:
+        yield address
 
 
 def opened(browser: Browser, address: str) -> Page:
@@ -116,6 +128,28 @@ def opened(browser: Browser, address: str) -> Page:
 
 def time_of(frame: FrameLocator, text: str) -> None:
     expect(frame.locator("#time")).to_have_text(text)
+
+
+def test_a_page_that_is_late_is_shown_as_soon_as_it_is_there(browser: Browser) -> None:
+    hurried = MODULE.replace("PATIENCE = 8000", "PATIENCE = 300")
+    late = """<p id="size"></p><script>
+      document.querySelector("p").textContent = `${innerHeight} px`;
+      setTimeout(() => parent.postMessage("workbench", "*"), 1500);
+    </script>"""
+
+    def answer(path: str, port: int) -> str:
+        if path == "/widget.js":
+            return hurried
+        return late if "session=" in path else notebook_page(path, {"port": port, "session": "s1", "ticket": "one"})
+
+    with serving(answer) as address:
+        page = opened(browser, address)
+        shows(page, ".actr3d-note", "does not answer this browser")
+        button = page.get_by_role("button", name="Try again")
+        assert button.evaluate("one => getComputedStyle(one).borderTopStyle") == "solid"  # also where the notebook has no style for buttons
+        expect(page.locator(".actr3d-note")).to_have_count(0)
+        expect(page.frame_locator("iframe").locator("#size")).to_be_visible()
+        expect(page.frame_locator("iframe").locator("#size")).to_have_text("560 px")
 
 
 @pytest.mark.slow
@@ -154,7 +188,7 @@ def test_the_widget_follows_the_cells_and_says_what_to_do_where_it_cannot(browse
 
     kernel.cell("[globals().pop('simulation') and None, gc.collect() and None]")
     lost = page.frame_locator("iframe").first
-    expect(lost.locator("#status")).to_contain_text("the notebook has no variable for this simulation any more")
+    expect(lost.locator("#status")).to_contain_text("the notebook no longer has this simulation")
     kernel.end()
     expect(lost.locator("#connection")).to_have_text("the kernel does not answer any more: run the cell again")
     expect(lost.locator("#run")).to_be_disabled()

@@ -34,6 +34,19 @@ MODELS = Path(__file__).parents[2] / "models"
 COUNTING = (MODELS / "counting.py").read_text(encoding="utf-8")
 DOORWAY = (MODELS / "doorway.py").read_text(encoding="utf-8")
 
+SEEING = """from actr3d.actr import *
+from actr3d.vision import Vision
+
+
+class Walker(ACTR):
+    goal = Buffer()
+    visual = Buffer()
+    vision = Vision(visual)
+
+    def look(goal="walk", vision="busy:False"):
+        vision.request("feature:obstacle", radius=2, bearing=20)
+"""
+
 Ask = Callable[..., Any]
 
 
@@ -147,6 +160,20 @@ def test_only_public_names_of_the_library_are_offered_to_import(ask: Asked) -> N
     assert "request" not in ask.labels("from actr3d.world import Floor\nFloor().|")
 
 
+def test_a_request_to_vision_is_offered_the_conditions_of_its_feature(ask: Asked) -> None:
+    items = {one["label"]: one for one in ask("complete", SEEING.replace("radius=2, bearing=20", "|"))["items"]}
+    assert {"width=", "distance=", "bearing=", "radius=", "bottom_up="} <= set(items)
+    assert "depth=" not in items  # of another feature
+    assert "straight ahead" in items["bearing="]["text"]
+    assert items["width="]["detail"] == "of obstacle"
+
+
+def test_only_names_that_exist_are_offered_after_everything_was_imported(ask: Asked) -> None:
+    names = set(ask.labels("from actr3d.actr import *\n\nx = |"))
+    assert {"Buffer", "DMNoise", "print", "None"} <= names
+    assert not {"check_agent", "production_system", "annotations", "AbstractSet", "WindowsError"} & names
+
+
 def test_a_part_of_a_scene_is_offered_with_the_import_that_it_needs(ask: Asked) -> None:
     items = {one["label"]: one for one in ask("complete", DOORWAY.replace("parts=(", "parts=(Fl|, "))["items"]}
     assert (items["Floor"]["apply"], items["Floor"]["needs"]) == ("Floor(${})", "")
@@ -180,6 +207,8 @@ def test_a_completion_says_what_it_is(ask: Asked) -> None:
     (slot,) = (one for one in ask("complete", DOORWAY.replace("pose x:?x", "pose |"))["items"] if one["label"] == "heading")
     assert (slot["detail"], slot["apply"]) == ("slot of pose", "heading:")
     assert "left is positive" in slot["text"]
+    said = ask("document item", "from actr3d.actr import *\nDMNoise(None, noi|)", "noise=")
+    assert said["text"].startswith("s of the noise")
     said = ask("document item", "from actr3d.world import Ap|", "Aperture")
     assert said["title"].startswith("Aperture(name")
     assert "doorway" in said["text"]
@@ -203,6 +232,9 @@ def test_a_completion_says_what_it_is(ask: Asked) -> None:
         (DOORWAY.replace('"pose"', '"po|se"', 1), "value pose", "Senses position"),
         (DOORWAY.replace("pose x:", "pose x|:"), "slot x", "pose: [m]"),
         (DOORWAY.replace("width=parameters", "wid|th=parameters"), "", "free width"),
+        (COUNTING.replace("Memory(retrieval)", "Memory(retrieval, lat|ency=1)"), "latency: ", "F in the retrieval time"),
+        (SEEING.replace("bearing=", "bea|ring="), "condition bearing", "obstacle: Greatest angle"),
+        (SEEING.replace("radius=", "rad|ius="), "condition radius", "obstacle: distance: Distance on the ground"),
     ],
 )
 def test_what_is_known_of_a_name(ask: Asked, text: str, title: str, said: str) -> None:
@@ -224,6 +256,12 @@ def test_how_a_function_is_called(ask: Asked) -> None:
     assert found["text"].startswith("F in the retrieval time")
     (field,) = ask("signature", "from actr3d.world import Aperture\nAperture(closing=|)")
     assert field["text"].startswith("How fast")
+    turning = DOORWAY.replace('eye.set("walk", self.speed)', 'eye.set("heading", speed=|)')
+    (command,) = ask("signature", turning)
+    assert (command["name"], command["parameters"], command["active"]) == ("heading", ["angle", "speed=2.0"], 1)
+    assert "the whole body" in command["text"]
+    (command,) = ask("signature", turning.replace("speed=|", "1|"))
+    assert command["active"] == 0
 
 
 # -- definitions, renaming, formatting

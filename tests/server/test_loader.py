@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from actr3d import world
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.errors import ConfigurationError
 from actr3d.parameter_schema import LiveCommand
@@ -207,6 +208,9 @@ def test_parameters_read_from_a_text_are_those_of_the_loaded_model(name: str) ->
             "class A:\n    x = 1\n    y: 'Later' = x\n    def f(self, z=x): return whatever\nprint([n for n in range(A.y)])\n",
             [],
         ),
+        ("from actr3d.world import Floor, Walls\n", [(1, "actr3d.world has no 'Walls'; did you mean 'Wall'?")]),
+        ("from actr3d.world import Block\n", [(1, f"actr3d.world has no 'Block'; it has: {', '.join(vars(world)['__all__'])}")]),
+        ("try:\n    from actr3d.world import Block\nexcept ImportError:\n    Block = None\n", []),
         ("@qqq\ndef f(a=zzz): pass\nf(lambda: nothing)\n", [(1, "nothing defines 'qqq'"), (2, "nothing defines 'zzz'")]),
         ("from elsewhere import *\nAgent().run()\n", []),
         ("exec('x = 1')\nprint(x)\n", []),

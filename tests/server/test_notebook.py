@@ -32,6 +32,7 @@ from tests.helpers.walkers import driving
 from workbench.auth import Gate, Guard, Token
 from workbench.notebook import widget
 from workbench.notebook.live_run import LiveRun
+from workbench.notebook.server import NotebookWorker
 from workbench.page_commands.running import Pause, Run, Step
 from workbench.worker.messages import FROM_WORKER, LENGTH, Cut, Do, Facts, FromWorker, News, Over, Start, State, framed
 
@@ -227,6 +228,16 @@ def test_a_simulation_without_references_ends_its_run() -> None:
             pass
 
     in_notebook(cells)
+
+
+def test_a_kernel_that_is_restarted_ends_its_runs_as_one_that_says_so() -> None:
+    async def restart() -> list[FromWorker | None]:
+        wire, its_end = socket.socketpair()
+        worker = await NotebookWorker.at(its_end)
+        wire.close()
+        return [await worker.receive(), await worker.receive()]
+
+    assert asyncio.run(restart()) == [Over(), None]
 
 
 def test_the_widget_needs_its_package_and_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -82,6 +82,7 @@ def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
         "seed": str(seed),
         "parameters": _plain(facts.get("parameters", {})),
         "ended": None if ended is None else str(ended.get("by")),
+        "failed": facts.get("failed") is not None,
     }
 
 

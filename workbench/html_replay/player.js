@@ -20,9 +20,7 @@ table("parameters", data.parameters);
 table("result", data.events.result);
 const came = data.events.result && data.events.result.outcome;
 const ENDINGS = { stop: "the model called stop()", done: "no agent had anything left to do", end: "the program was over", exit: "the program ended itself", limits: "its time was over",
-  left: "left before its end" };
-get("outcome").textContent =
-  (came ? `Outcome: ${came}. ` : "") + (data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : "It was interrupted, or was still running.");
+  left: "it was left before its end" };
 
 let drawing = null;
 try {
@@ -41,6 +39,8 @@ const rows = data.events.rows;
 const end = Math.max(drawing ? drawing.times[drawing.times.length - 1] : 0, rows.length ? rows[rows.length - 1][0] : 0);
 const events = new Events(data.events, (time) => goTo(time));
 get("time").max = end;
+const over = data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : `Shown up to ${end.toFixed(2)} s: ${data.failed ? "the run has failed" : "the run was not over"} then.`;
+get("outcome").textContent = (came ? `Outcome: ${came}. ` : "") + over;
 
 function goTo(time) {
   now = Math.min(end, Math.max(0, time));

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import Protocol
 
-from workbench.language.answers import Completion, Hover, Item, Renaming
+from workbench.language.answers import Completion, Hover, Item, Renaming, Signature
 from workbench.language.library_words import Word, answers_of, features_of, scene_parts, words_for
 from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece
 
@@ -31,6 +32,7 @@ OWN, KNOWN, OTHER = 3, 2, 0
 """The ranks of completions: used with the same part, given by the library, used with other parts."""
 _SLOT = re.compile(r"(\??[\w.]+):(.*)", re.DOTALL)
 _SIGN = re.compile(r"(!?\??)[<>=]*([\w.-]*)$")
+_WORD_AND_VALUES = re.compile(r"""\(\s*["'](\w+)["']\s*,(.*)""", re.DOTALL)
 _PARTS = re.compile(r"\bparts\s*=\s*$")
 MAX_NAMED = 8
 """How many names are listed in a documentation."""
@@ -93,7 +95,26 @@ def complete_name(model: ModelText, at: int, attributes: Attributes) -> tuple[li
         about = ChunkText(kind="chunk", part=name.called[-2], agent=name.agent, method=name.method, text="", start=at)
         slots = distinct(item for item in _slots(model, about, at, attributes) if item.label.isidentifier())
         return [Item(label=f"{item.label}=", type=item.type, detail=item.detail, boost=item.boost, text=item.text) for item in slots], False
-    return [], False
+    conditions = _conditions(model, name, attributes)
+    return [
+        Item(label=f"{label}=", type="property", detail=f"of {word.word}", boost=KNOWN, text=said)
+        for word, slots in conditions
+        for label, said in slots.items()
+    ], False
+
+
+def _conditions(model: ModelText, name: Name, attributes: Attributes | None = None) -> list[tuple[Word, dict[str, str]]]:
+    """Returns the features that the request around a name may search for, with what it may name as `width=">0.5"`."""
+    part = model.parts_of(name.agent).get(name.called[-2]) if name.called[-1:] == ("request",) and len(name.called) > 1 else None
+    if part is None:
+        return []
+    before = [
+        one for one in model.texts if (one.kind, one.part, one.method) == ("request", part.name, name.method) and one.end < name.start
+    ]
+    named = {piece.text for piece in before[-1].pieces} if before else set[str]()
+    words = list(_features(model, part, attributes))
+    words = [word for word in words if word.word in named] or words
+    return [(word, {slot: said for slot, said in (word.slots | word.conditions).items() if slot != "feature"}) for word in words]
 
 
 def complete_part(text: str, start: int) -> list[Item]:
@@ -107,6 +128,25 @@ def complete_part(text: str, start: int) -> list[Item]:
         inserted = f"{part.word}(${{}})"
         found.append(Item(label=part.word, type="class", detail="part", boost=OWN, text=part.text, apply=inserted, needs=needs))
     return found
+
+
+def sign(model: ModelText, at: int) -> Signature | None:
+    """Returns how a command or a question to a body is given in whose brackets a position is, after its word: `body.set("heading", `."""
+    bracket = _bracket_around(model.text, at)
+    name = model.name_at(bracket)
+    part = model.parts_of(name.agent).get(name.before[-1]) if name is not None and name.before and bracket else None
+    found = _WORD_AND_VALUES.match(model.text[bracket:at])
+    if name is None or part is None or found is None:
+        return None
+    for word in words_for(part.kind, "set" if name.text == "set" else "request"):
+        if word.word == found[1]:
+            parameters = word.takes.split(", ") if word.takes else []
+            *before, now = found[2].split(",")
+            named = re.match(r"\s*(\w+)\s*=", now)
+            names = [one.partition("=")[0] for one in parameters]
+            active = names.index(named[1]) if named and named[1] in names else len(before)
+            return Signature(name=word.word, parameters=parameters, active=active if active < len(parameters) else None, text=word.text)
+    return None
 
 
 def _bracket_around(text: str, at: int) -> int:
@@ -172,7 +212,7 @@ def _features(model: ModelText, part: Part, attributes: Attributes | None = None
     """Yields the features that a module finds: the library's, and those that the text itself defines."""
     library = features_of(part.kind)
     for one in library:
-        yield Word(word=one.word, text=one.text, slots={"feature": "", **one.slots})
+        yield replace(one, slots={"feature": "", **one.slots})
     for agent in model.agents.values() if library else ():
         if "Feature" in agent.bases:
             slots = dict(attributes.parameters(agent.name)) if attributes is not None else {}
@@ -243,6 +283,9 @@ def document(model: ModelText, at: int) -> Hover | None:
         return Hover(start=name.start, end=name.end, title=f"?{name.text}", text=_of_variable(model, name.method, name.text))
     if name.keyword and name.called[-1:] == ("modify",):
         return Hover(start=name.start, end=name.end, title=f"slot {name.text}", text=_of_slot(model, name.text))
+    said = [f"{word.word}: {slots[name.text]}" for word, slots in _conditions(model, name) if name.keyword and slots.get(name.text)]
+    if said:
+        return Hover(start=name.start, end=name.end, title=f"condition {name.text}", text="\n".join(said))
     return None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
 from dataclasses import dataclass
 from functools import cache
 
@@ -11,7 +12,7 @@ from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportU
 from actr3d.vision import DETECTORS
 from actr3d.vision.feature import slot_names
 from actr3d.world.body import ACTUATORS, SENSORS
-from workbench.language.field_texts import texts_of
+from workbench.language.field_texts import parameter_text, texts_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,6 +25,8 @@ class Word:
     """Its arguments."""
     slots: dict[str, str] = dataclasses.field(default_factory=dict[str, str])
     """The slots of the chunk that answers it, with their meanings."""
+    conditions: dict[str, str] = dataclasses.field(default_factory=dict[str, str])
+    """What a request for it may name besides: slots by their other names, and parameters, with their meanings."""
 
 
 @cache
@@ -53,7 +56,9 @@ def features() -> tuple[Word, ...]:
     for name, one in sorted(DETECTORS.items()):
         texts = texts_of(one.finds)
         slots = {slot: texts.get(slot, "") for slot in slot_names(one.finds)}
-        found.append(Word(word=name, text=(one.finds.__doc__ or "").split("\n\n")[0], slots=slots))
+        conditions = {other: f"{slot}: {slots[slot]}".rstrip(": ") for other, slot in one.finds.aliases.items()}
+        conditions |= {given: parameter_text(inspect.getdoc(one.detect) or "", given) for given in one.parameters}
+        found.append(Word(word=name, text=(one.finds.__doc__ or "").split("\n\n")[0], slots=slots, conditions=conditions))
     return tuple(found)
 
 

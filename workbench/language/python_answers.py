@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import re
 import sys
 from collections.abc import Callable
@@ -82,11 +83,12 @@ class Python:
         start = column - len(found[0].name_with_symbols) + len(found[0].complete or "") if found else column
         if start == column or _before(explicit, line, start + 1) != "_":
             found = [one for one in found if not one.name.startswith("_")]
-        found = found[:MAX_ITEMS]
-        owners = (
-            [f"{one.full_name}." for one in script.infer(line, start - 2)] if start > 1 and _before(explicit, line, start) == "." else []
-        )
-        return [_item(one, tuple(owners)) for one in found]
+        owners: list[str] = []
+        if start > 1 and _before(explicit, line, start) == ".":
+            owners = [f"{one.full_name}." for one in script.infer(line, start - 2)]
+        else:
+            found = [one for one in found if one.type == "param" or _is_known_by_name(one)]
+        return [_item(one, tuple(owners)) for one in found[:MAX_ITEMS]]
 
     def document_item(self, explicit: ExplicitText, path: str, at: int, label: str) -> Documentation | None:
         """Returns the documentation of one of the completions."""
@@ -177,6 +179,14 @@ def _public_names(before: str) -> list[str] | None:
     return getattr(module, "__all__", None)
 
 
+def _is_known_by_name(one: jedi.Completion) -> bool:
+    """Returns whether a name that jedi finds is really there: it reads the list of a module's public names only if that is simple."""
+    if one.module_name == "builtins" and one.type != "keyword":
+        return hasattr(builtins, one.name)
+    public = getattr(sys.modules.get(one.module_name), "__all__", None) if one.module_name.startswith("actr3d.") else None
+    return public is None or one.name in public
+
+
 def _before(explicit: ExplicitText, line: int, column: int) -> str:
     """Returns the character before a place."""
     return explicit.text.split("\n")[line - 1][column - 1 : column]
@@ -191,9 +201,16 @@ def _item(one: jedi.Completion, owners: tuple[str, ...]) -> Item:
 
 def _documentation(one: jedi.BaseName) -> Documentation:
     signatures = [signature.to_string() for signature in one.get_signatures()]
-    title = "\n".join(signatures[:3]) or (one.description if one.type not in ("module", "keyword") else one.name)
-    text = one.docstring(raw=True) if one.type != "param" else ""
+    title = "\n".join(signatures[:3]) or (one.description.removeprefix("param ") if one.type not in ("module", "keyword") else one.name)
+    text = _text_of_parameter(one) if one.type == "param" else one.docstring(raw=True)
     return Documentation(title=title[:LONGEST_DOCUMENTATION], text=(text or _field_text(one))[:LONGEST_DOCUMENTATION])
+
+
+def _text_of_parameter(one: Any) -> str:
+    """Returns what the docstring of its function says of a parameter, or that of its class."""
+    function = one.parent()
+    owners = [function, *([function.parent()] if function.name == "__init__" else [])]
+    return next((text for owner in owners if (text := parameter_text(owner.docstring(raw=True), one.name.rstrip("=")))), "")
 
 
 def _signature(one: jedi.BaseSignature) -> Signature:

@@ -65,7 +65,8 @@ class Assistant:
             return _plain(self._document(model, question.path, at), units)
         if question.ask == "signature":
             in_text = model.text_at(at) is not None
-            signatures = [] if in_text else self._python.signatures(ExplicitText(model), question.path, at)
+            own = actr_answers.sign(model, at)
+            signatures = [] if in_text else [own] if own else self._python.signatures(ExplicitText(model), question.path, at)
             return [asdict(one) for one in signatures]
         if question.ask == "define":
             return _plain(self._define(model, question.path, at), units)

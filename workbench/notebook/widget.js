@@ -4,11 +4,13 @@ const PATIENCE = 8000; // how long the page may take to report that it is there 
 const LOCAL = ["localhost", "127.0.0.1"]; // the page is served on this computer only, and cookies need the name that the notebook has
 
 const STYLE = `
-  .actr3d { display: flex; flex-direction: column; gap: 6px; width: 100%; font: 13px system-ui, sans-serif; }
+  .actr3d { position: relative; display: flex; flex-direction: column; gap: 6px; width: 100%; font: 13px system-ui, sans-serif; }
   .actr3d iframe { flex: 1; min-height: 0; width: 100%; border: 0; border-radius: 4px; background: transparent; }
   .actr3d-note { box-sizing: border-box; padding: 8px 12px; border: 1px solid #8888; border-radius: 4px; line-height: 1.5; }
+  .actr3d iframe[hidden] { display: block; position: absolute; inset: 0; height: 100%; visibility: hidden; } /* of its size, to which it lays itself out */
+  p.actr3d-note { margin: 0; }
   .actr3d-note p { margin: 0 0 6px; }
-  .actr3d-note button { margin-right: 6px; padding: 3px 10px; font: inherit; cursor: pointer; }
+  .actr3d-note button { margin-right: 6px; padding: 3px 10px; border: 1px solid #8888; border-radius: 4px; background: #8881; color: inherit; font: inherit; cursor: pointer; }
   .actr3d-note code { font-size: 12px; }
 `;
 
@@ -49,7 +51,7 @@ function render({ model, el }) {
   function showPage() {
     frame = made("iframe", { title: "ACT-R 3D", src: address(), allow: "fullscreen" });
     place.replaceChildren(frame);
-    timer = setTimeout(() => explain(unreachable()), PATIENCE);
+    timer = setTimeout(() => explain(unreachable(), frame), PATIENCE);
   }
 
   function unreachable() {
@@ -60,14 +62,17 @@ function render({ model, el }) {
     return [`The live view at port ${port} does not answer this browser. If the notebook runs on another computer, forward the port: `, forward, ". After a restart of the kernel, or in another browser, run the cell again."];
   }
 
-  /** Says why there is no page, and offers what can be done. */
-  function explain(reason) {
+  /** Says why there is no page, and offers what can be done. A page that is only late is shown as soon as it reports: `late` is its frame. */
+  function explain(reason, late = null) {
     clearTimeout(timer);
-    frame = null;
+    frame = late;
     const again = made("button", { textContent: "Try again", onclick: showPage });
     const replay = made("button", { textContent: "Play the run up to now", onclick: askReplay });
     const buttons = port && LOCAL.includes(location.hostname) ? [again, replay] : [replay];
-    place.replaceChildren(made("div", { className: "actr3d-note", role: "status" }, made("p", {}, ...reason), ...buttons));
+    const note = made("div", { className: "actr3d-note", role: "status" }, made("p", {}, ...reason), ...buttons);
+    if (!late) return place.replaceChildren(note);
+    late.hidden = true;
+    place.prepend(note); // a frame that is moved would load again
   }
 
   function askReplay() {
@@ -77,7 +82,10 @@ function render({ model, el }) {
   }
 
   function hearPage({ source, data }) {
-    if (source === frame?.contentWindow && data === "workbench") clearTimeout(timer);
+    if (!frame || source !== frame.contentWindow || data !== "workbench") return;
+    clearTimeout(timer);
+    frame.hidden = false;
+    place.querySelector(".actr3d-note")?.remove();
   }
 
   function hearKernel({ replay, error }) {

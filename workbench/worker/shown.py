@@ -58,6 +58,7 @@ class Shown:
         """
         return {
             **self.surroundings,
+            "empty": self.simulation.world.mj_model.ngeom == 0,
             "agents": self.simulation.embodied,
             "openings": self._openings,
             "objects": [] if parameters is None else self.simulation.world.objects.names,
