@@ -72,7 +72,10 @@ function state(lanes, time, source, data) {
   const text = asked && asked.time === time ? asked.text : "busy";
   const open = lane.open;
   if (lane.is.error) {
-    if (!open?.bad) lane.begin(time, { text: "error", tone: "bad", bad: true });
+    if (open?.bad) return;
+    if (open) open.tone = "bad";
+    lane.close(time, "failed");
+    lane.begin(time, { text: "error", tone: "bad", bad: true });
   } else if (lane.is.busy) {
     if (!open || open.bad) lane.begin(time, { text, tone: "series-2" });
   } else lane.close(time);

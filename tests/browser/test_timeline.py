@@ -337,6 +337,24 @@ def test_what_a_model_says_is_text(pages: Callable[..., Page], workbench: Served
     when(page, "0.00")
 
 
+def test_a_request_that_fails_at_the_end_of_a_run_looks_like_one(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    bands: Any = page.evaluate(
+        """async () => {
+          const { Lanes } = await part("timeline/lanes.js");
+          const lanes = new Lanes();
+          const events = [
+            [0, "mind.DM", "state", { busy: true }], [0, "mind.DM", "request", { asked: { 0: "colour" } }],
+            [50000, "mind.DM", "state", { error: true }], [50000, "mind.DM", "state", { busy: false }],
+            [50000, "mind.DM", "retrieval", { failed: true }], [50000, "mind", "stop", { by: "done" }],
+          ];
+          for (const event of events) lanes.take(event);
+          return lanes.lanes.get("module mind.DM").bands.map(({ text, tone, to, end }) => [text, tone, to, end]);
+        }"""
+    )
+    assert bands[0][1:] == ["bad", 0.05, "failed"], "not like one that succeeded"
+
+
 def test_many_events_are_taken_in_one_by_one(pages: Callable[..., Page]) -> None:
     """Whatever has happened before, more events cost what they are, and what is drawn is no more than the page is wide."""
     page = pages("counting.py")
