@@ -18,7 +18,7 @@ from actr3d.experiment.store import CHUNK, Column, Store
 
 CSV, PARQUET, COLUMNS = "trials.csv", "trials.parquet", "columns.csv"
 """The names of the exported files in the folder of an experiment."""
-DTYPES: dict[str, type] = {"boolean": bool, "integer": np.int64, "real": np.float64}
+DTYPES: dict[str, Any] = {"integer": np.int64, "real": np.float64}
 """The types of numbers by the type of their column."""
 
 
@@ -86,7 +86,7 @@ def _array(arrow: Any, arrow_type: Any, kind: str, values: list[Any]) -> Any:
         texts = arrow.lib.StringBuilder()
         texts.append_values([value if value is None or isinstance(value, str) else json.dumps(value) for value in values])
         return texts.finish()
-    there = np.array([value is not None for value in values], bool)
-    numbers = np.array([0 if value is None else value for value in values], DTYPES[kind])
-    bits = [np.packbits(one, bitorder="little") if one.dtype == bool else one for one in (there, numbers)]
-    return arrow.Array.from_buffers(arrow_type, len(values), [arrow.py_buffer(one) for one in bits])
+    there = np.packbits(np.array([value is not None for value in values], bool), bitorder="little")
+    plain = [0 if value is None else value for value in values]
+    numbers: Any = np.packbits(np.array(plain, bool), bitorder="little") if kind == "boolean" else np.array(plain, DTYPES[kind])
+    return arrow.Array.from_buffers(arrow_type, len(values), [arrow.py_buffer(there), arrow.py_buffer(numbers)])
