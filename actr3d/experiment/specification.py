@@ -18,7 +18,7 @@ from dataclasses import asdict, dataclass, field, fields
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import actr3d
 from actr3d.actr.compat.old_names import is_old_name
@@ -37,7 +37,9 @@ from actr3d.output import ModelOutput, printing_to
 from actr3d.parameter_schema import Parameter
 from actr3d.recording.schema import versions
 from actr3d.runner.build_check import check_build, has_build
-from actr3d.runner.model_factory import Blueprint
+
+if TYPE_CHECKING:
+    from actr3d.runner.model_factory import Blueprint
 
 FORMAT = 1
 """The version of the format of a specification."""
@@ -134,6 +136,8 @@ class Experiment:
         self.blueprint: Blueprint | None = None
         """Builds the model's simulations; None for a program."""
         if has_build(model.text):
+            from actr3d.runner.model_factory import Blueprint  # a program does without the world that this loads
+
             with RunLimits(), printing_to(ModelOutput(lambda _: None)):
                 self.blueprint = Blueprint(model.text, model.file, Path(model.file).parent, helpers or HelperTexts(model.helpers))
         self.parameters: tuple[Parameter, ...] = (

@@ -20,7 +20,6 @@ from actr3d.experiment.design import LARGEST, OWN_COLUMNS, Measured, Trial, as_p
 from actr3d.experiment.specification import Experiment, naming_the_line
 from actr3d.output import ModelOutput, printing_to
 from actr3d.parameter_schema import parameters_of
-from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.run import run_source
 from actr3d.runner.traceback_report import traceback_report
 from actr3d.values import escape_surrogates
@@ -136,6 +135,8 @@ def _run(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> tuple[st
                 "the design more time (until), or a function `results` that knows what they are then"
             )
         return end, vars(module)
+    from actr3d.runner.model_factory import Blueprint  # a program does without the world that this loads
+
     with limits, shared_random(limits.program_seed):
         end = "limits"
         simulation, _ = Blueprint(model.text, model.file, folder, helpers).build(values)

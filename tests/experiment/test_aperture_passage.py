@@ -333,8 +333,8 @@ def test_a_seed_gives_the_same_bytes_however_it_is_run(model: Any, variant: str)
 
 
 def test_another_seed_is_another_trial(model: Any) -> None:
-    results = {passed(model, seed, aperture=0.45).wall_angle_deg for seed in range(1, 5)}
-    assert len(results) > 1
+    results = {passed(model, seed, aperture=0.45).wall_angle_deg for seed in (1, 2)}
+    assert len(results) == 2
 
 
 @pytest.mark.slow

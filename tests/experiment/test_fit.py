@@ -208,7 +208,7 @@ def test_candidates_at_which_the_model_fails_are_bad_ones(tmp_path: Path, client
 
 
 def test_a_fit_at_whose_candidates_the_model_always_fails_shows_its_error(tmp_path: Path, client: Any) -> None:
-    fit = fit_of(tmp_path, client, "slope=0..3", line=FAILING.replace("FAILS", "slope != 1.0"))
+    fit = fit_of(tmp_path, client, "slope=0..3", line=FAILING.replace("FAILS", "slope != 1.0"), options={"participants": 1})
     with pytest.raises(
         ExperimentError, match=r"no candidate has a mean .*; trial 0 in '.*candidate \w+' failed: ValueError: no line: [\d.]+$"
     ):

@@ -81,7 +81,8 @@ def test_rows_are_the_same_for_any_number_of_workers(tmp_path: Path, client: Any
 
 def test_failures_are_rows_and_the_rest_goes_on(tmp_path: Path, client: Any) -> None:
     factors = '{"mode": ["count", "fail", "hang", "die"]}'
-    path = write_experiment(tmp_path, factors=factors, participants=1, trials=2, limit=2)
+    waiting = COUNTER.replace("        pass", "        __import__('time').sleep(60)")  # to hang by computing is in test_trials.py
+    path = write_experiment(tmp_path, factors=factors, participants=1, trials=2, limit=2, model=waiting)
     seen: list[Progress] = []
     rows = csv.DictReader(io.StringIO(run_here(client, path, tmp_path / "out", show=seen.append)))
     ends = sorted((row["mode"], row["end"]) for row in rows)

@@ -374,6 +374,24 @@ def test_tables_have_the_types_and_units_of_their_columns(tmp_path: Path) -> Non
         assert 'trial,integer,,"The number of the trial, from 0."' in columns
 
 
+def test_a_table_has_every_value_as_it_is_and_is_written_without_pandas(tmp_path: Path) -> None:
+    """Pandas takes half a second to load."""
+    parquet = pytest.importorskip("pyarrow.parquet")
+    rows = [
+        {"flag": n % 3 > 0, "whole": 2**63 - 1 - n, "number": n / 7, "word": f"{n}", "list": [n], "none": None} if n % 4 else {}
+        for n in range(11)
+    ]
+    rows[1] |= {"whole": -(2**63), "number": 1e308, "word": ""}
+    with store_of(tmp_path) as store:
+        store.add([one for n, row in enumerate(rows) for one in finished(n, **row)], "v")
+    code = "import sys; from actr3d.experiment.table import export, Store; export(Store(sys.argv[1])); assert 'pandas' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code, str(store.folder)], check=True, timeout=60)
+    table = parquet.read_table(store.folder / "trials.parquet")
+    for name in ("flag", "whole", "number", "word", "none"):
+        assert table.column(name).to_pylist() == [row.get(name) for row in rows]
+    assert table.column("list").to_pylist() == [str(row["list"]) if row else None for row in rows]
+
+
 def test_only_one_process_writes(tmp_path: Path) -> None:
     with store_of(tmp_path) as store, store.only_writer(), Store(store.folder) as other:
         with pytest.raises(ExperimentError, match=rf"another process \({os.getpid()}\) runs this experiment"), other.only_writer():
@@ -470,11 +488,11 @@ def test_nothing_of_a_trial_stays_alive() -> None:
     with specification.sealed() as helpers:
         experiment = Experiment(specification, helpers)
         counts: list[int] = []
-        for number in range(4):
+        for number in range(3):
             assert run_trial(experiment, experiment.design.trial(number), helpers)["end"] == "stop"
             counts.append(alive())
     assert counts[1] > 0
-    assert counts[1:] == [counts[1]] * 3
+    assert counts[1] == counts[2]
 
 
 @pytest.mark.parametrize(

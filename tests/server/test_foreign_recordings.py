@@ -117,16 +117,16 @@ def test_nothing_can_be_had_of_them_but_the_file_and_a_clear_error(desk: Desk, h
 @pytest.mark.parametrize(
     "scene",
     [
-        "no scene",
-        to_text(b"no scene"),
-        to_text(b"\0" * LONGEST + b"\0"),
-        to_text(os.urandom(5000)),
+        lambda: "no scene",
+        lambda: to_text(b"no scene"),
+        lambda: to_text(b"\0" * LONGEST + b"\0"),  # takes half a second to make
+        lambda: to_text(os.urandom(5000)),
     ],
     ids=["text", "bytes", "huge", "random"],
 )
-def test_a_damaged_scene_has_no_curves(desk: Desk, tmp_path: Path, scene: str) -> None:
+def test_a_damaged_scene_has_no_curves(desk: Desk, tmp_path: Path, scene: Callable[[], str]) -> None:
     path = written(tmp_path, "m", firing(3), kind="simulation", period_us=10_000, timestep_us=2000, world=WORLD)
-    fact("compiled", json.dumps(scene))(path)
+    fact("compiled", json.dumps(scene()))(path)
     for place in ("curves", "file"):
         answer = desk.ask(tmp_path, f"/api/recordings/m/{place}", query="form=replay.html" if place == "file" else "")
         assert answer.status == 409, answer.body
