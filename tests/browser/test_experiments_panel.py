@@ -114,6 +114,25 @@ def test_two_pages_see_an_experiment_stop_and_go_on(pages: Callable[..., Page], 
         expect(page.locator(f"tr[data-experiment='{name}']")).to_have_count(0)
 
 
+def test_numbers_that_cannot_be_run_are_named_before_anything_runs(pages: Callable[..., Page], workbench: Served, design: str) -> None:
+    page = pages(design.partition(":")[0], tab="experiments", refusals=True)
+    before = workbench.get("/api/experiments").json()
+    page.get_by_role("button", name="New experiment").click()
+    page.get_by_label("Design", exact=True).select_option(design)
+    foot, run = page.locator(".foot"), page.locator(".foot").get_by_role("button", name="Run")
+    expect(foot).to_contain_text("24 trials")
+    page.get_by_label("processes").fill("257")
+    expect(foot).to_contain_text("processes: must be a whole number from 1 to 256 (got '257')")
+    expect(run).to_be_disabled()
+    page.get_by_label("processes").fill("1")
+    page.get_by_label("participants").fill("1000001")
+    expect(foot).to_contain_text("participants: must be a whole number from 1 to 1,000,000 (got '1000001')")
+    page.get_by_label("participants").fill("1000000")
+    expect(foot).to_contain_text("12,000,000 trials")
+    expect(page.get_by_role("alert")).to_contain_text("must give at most 10,000,000 trials in all (got 12,000,000)")
+    assert workbench.get("/api/experiments").json() == before
+
+
 SLOWLY = """() => { const fetched = window.fetch;
 window.fetch = (what, how) => !String(what).includes("/means?") ? fetched(what, how) : new Promise((done, failed) => {
     how?.signal?.addEventListener("abort", () => failed(new DOMException("aborted", "AbortError")));
