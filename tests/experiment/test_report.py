@@ -318,7 +318,10 @@ def test_each_critical_ratio_is_drawn_above_its_own_participant(tmp_path: Path) 
 @pytest.mark.slow
 def test_starts_aside_and_aslant_have_a_figure_and_a_table(tmp_path: Path) -> None:
     def misaligned(trial: Any) -> dict[str, Any]:
-        return {**walk(trial), "outcome": "passed" if trial.values["start_aside"] < 0.2 else "stopped"}
+        if trial.values["start_aside"] < 0.2:
+            return walk(trial)
+        # It leans against the wall beside the doorway, and its front is in the wall by the depth of a contact.
+        return {**walk(trial), "outcome": "stopped", "clearance_left_m": -0.002, "clearance_right_m": 0.8}
 
     folder = store_rows(tmp_path / "starts", "misaligned_start", misaligned, trials=2)
     write_report(folder)
@@ -327,4 +330,6 @@ def test_starts_aside_and_aslant_have_a_figure_and_a_table(tmp_path: Path) -> No
     assert len(rows) == 24
     assert {float(row["passed"]) for row in rows if float(row["start_aside"]) < 0.2} == {1.0}
     assert {float(row["passed"]) for row in rows if float(row["start_aside"]) > 0.2} == {0.0}
+    assert {row["right"] for row in rows if float(row["start_aside"]) > 0.2} == {""}, "it was not in the doorway"
+    assert all(6.7 < float(row["right"]) < 7.1 for row in rows if float(row["start_aside"]) < 0.2)
     assert "Starts aside and aslant" in page(folder)
