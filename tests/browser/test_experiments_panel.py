@@ -161,6 +161,26 @@ def test_a_figure_fills_in_although_its_means_take_longer_than_new_trials(
     expect(page.locator(".tools .state")).to_have_text("stopped")
 
 
+@pytest.mark.slow
+def test_a_figure_stays_while_the_server_does_not_answer(pages: Callable[..., Page], workbench: Served, design: str) -> None:
+    name = workbench.post("/api/experiments", {"design": design, "trials": 1000, "workers": 1}).json()["id"]
+    page = pages("counting.py", tab="experiments", refusals=True)
+    page.locator(f"tr[data-experiment='{name}']").click()
+    expect(page.locator(".point")).to_have_count(3)
+    page.route("**/means?*", lambda route: route.fulfill(status=409, json={"error": "no worker can be started"}))
+    expect(page.get_by_text("no worker can be started")).to_be_visible()
+    expect(page.locator(".point")).to_have_count(3)
+    expect(page.get_by_text("No finished trial has a value")).to_have_count(0)
+    page.unroute("**/means?*")
+    expect(page.get_by_text("no worker can be started")).to_have_count(0)
+    page.route("**/api/experiments", lambda route: route.fulfill(status=403, json={"error": "the token is missing or wrong"}))
+    expect(page.get_by_text("The state of the experiment is not known: the token is missing or wrong")).to_be_visible()
+    page.unroute("**/api/experiments")
+    expect(page.get_by_text("The state of the experiment is not known")).to_have_count(0)
+    workbench.post(f"/api/experiments/{name}/stop")
+    expect(page.locator(".tools .state")).to_have_text("stopped")
+
+
 def test_of_trials_that_have_all_failed_there_is_no_figure(page: Page) -> None:
     page.evaluate("""async () => {
         const { html, render } = await part("vendor/preact.js");
