@@ -147,6 +147,18 @@ def test_two_groups_have_fewer_degrees_of_freedom_for_the_test_of_sphericity(tmp
     assert row["holds"].startswith("cannot be tested with so few participants: use the corrected p (ε = 0.")
 
 
+def test_with_few_participants_the_tests_of_the_mixed_model_say_that_their_p_is_too_small(tmp_path: Path) -> None:
+    """They are asymptotic: with two groups of four, p = 0.05 of an F test with 1 and 6 degrees of freedom is 0.014 there."""
+    says = "of the mixed model are too small with fewer than 10 participants in a group"
+    assert [note for note in run_tests(grouped(tmp_path, effect=0.5), "rt").notes if says in note]
+    enough = write_experiment(tmp_path, participants=10, factors='{"n": [1, 2, 5], "mode": ["count", "fail"]}')
+    draw = random.Random(8)
+    folder = store_rows(tmp_path / "enough", str(enough), lambda _: {"rt": draw.gauss(0, 1), "luck": 0.5})
+    tests = run_tests(read_results(folder), "rt")
+    assert tests.mixed_model is not None
+    assert not [note for note in tests.notes if says in note]
+
+
 def test_the_analysis_of_variance_is_that_of_the_textbook(tmp_path: Path) -> None:
     """The F of groups is the square of the t of the participants' means."""
     results = grouped(tmp_path, effect=0.4)

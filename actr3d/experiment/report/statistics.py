@@ -147,6 +147,11 @@ def run_tests(results: Results, measure: str) -> Tests:
         _analyse_variance(whole, results, anova, checks, notes)
         _check_assumptions(whole, factors, grouped, checks)
         mixed = _mixed_model(means, factors, grouped, notes) if len(factors) + grouped > 1 else None
+    if mixed is not None and sizes.min() < FEW:
+        notes.append(
+            f"The p of the Wald tests of the mixed model are too small with fewer than {FEW} participants in a group, most of all those of "
+            "the group: prefer the analysis of variance where it has the effect."
+        )
     notes += [f"Note of a library: {text}" for text in warned if "etrying" not in text]
     return Tests(anova=pd.DataFrame(anova) if anova else None, mixed_model=mixed, assumptions=pd.DataFrame(checks), notes=notes)
 
