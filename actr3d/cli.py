@@ -376,6 +376,8 @@ def _experiment(options: argparse.Namespace) -> int:
     if options.trial is not None or options.record is not None:
         if options.trial is None or options.record is None:
             raise SettingError("--trial ID and --record RECORDING are given together")
+        if idle := [f"--{name.replace('_', '-')}" for name in BESIDE_TRIAL if getattr(options, name)]:
+            raise SettingError(f"--trial: runs a trial again exactly as it was; leave out {' and '.join(idle)}")
         return command.run_again(options.name, options.trial, options.record, out)
     numbers = _numbers(options)
     if options.check:
@@ -402,6 +404,10 @@ def _report(options: argparse.Namespace) -> int:
 
     print(command.write_report(options.folder, human=options.human, compare=options.compare))
     return 0
+
+
+BESIDE_TRIAL = ("set", "participants", "trials", "workers", "scheduler", "out", "resume", "check")
+"""The options of `actr3d experiment` that mean nothing for one trial."""
 
 
 def _numbers(options: argparse.Namespace) -> dict[str, Any]:

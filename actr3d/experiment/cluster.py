@@ -22,6 +22,7 @@ from typing import Any, NoReturn, cast
 
 import dask.config
 from distributed import Client, KilledWorker, LocalCluster, get_worker
+from distributed.utils import silence_logging_cmgr
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Experiment
@@ -101,7 +102,8 @@ def existing_cluster(address: str) -> Generator[Any]:
     Raises:
         ExperimentError: If there is no scheduler.
     """
-    with dask.config.set(SETTINGS):
+    # Dask logs tracebacks of its own when a scheduler ends; what a user can do about it is in the errors here.
+    with dask.config.set(SETTINGS), silence_logging_cmgr(logging.CRITICAL):
         try:
             client: Any = Client(scheduler_file=address, timeout=PATIENCE) if os.path.isfile(address) else Client(address, timeout=PATIENCE)  # noqa: PTH113
         except (OSError, TimeoutError, ValueError, ImportError, RuntimeError) as error:
@@ -231,7 +233,7 @@ class _Run:
 
     def _lost(self) -> NoReturn:
         total = len(self._experiment.design)
-        raise ExperimentError(f"the scheduler is gone; {self._done} of {total} trials are kept; continue with --resume")
+        raise ExperimentError(f"the scheduler is gone; {self._done} of {total} trials are kept; continue with --resume") from None
 
 
 # -- on the workers

@@ -22,7 +22,7 @@ from rich.text import Text
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
-from actr3d.experiment.store import SPECIFICATION, Store, summary
+from actr3d.experiment.store import SPECIFICATION, Store, only_process, summary, write_whole
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import PLAIN, check_measures, record_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
@@ -205,12 +205,14 @@ def fit(
     named = [given.partition("=") for given in hold_out]
     held_out = {design: means(specify(design), data, f"--hold-out {design}=FILE") for design, _, data in named}
     options = {"values": values, "participants": participants, "trials": trials}
-    with local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler) as client:
-        path.mkdir(parents=True, exist_ok=True)
-        searched = [Range.from_text(text) for text in ranges]
+    searched = [Range.from_text(text) for text in ranges]
+    with (
+        _folder_of_fit(path),
+        local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler) as client,
+    ):
         running = Fit(name, searched, wanted, path, client, options=options, progress=partial(_progress, out))
         result = running.run(candidates, hold_out=held_out, ablate=ablate, recover=recover)
-    (path / "fit.json").write_text(to_json(result), encoding="utf-8")
+        write_whole(path / "fit.json", to_json(result))
     out.event("fit", asdict(result))
     out.line(("\nfitted", "bold"), f" to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
     few = result.fit.cells <= len(result.parameters)
@@ -333,6 +335,21 @@ def _opened(
         different = [one for one in names if getattr(there, one) != getattr(wanted, one)]
         raise ExperimentError(f"'{folder}' is another experiment: {' and '.join(different)} differ; choose another --out")
     return Experiment(there), store
+
+
+@contextmanager
+def _folder_of_fit(path: Path) -> Generator[None]:
+    """Makes the folder of a fit, in which no other process fits inside the block.
+
+    Raises:
+        ExperimentError: If it cannot be made or written, or another process fits there.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ExperimentError(f"--out: cannot make '{path}' ({error.strerror or error})") from None
+    with only_process(path, "a fit there"):
+        yield
 
 
 def _other_versions(there: Specification) -> list[str]:

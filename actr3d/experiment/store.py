@@ -9,7 +9,7 @@ import re
 import secrets
 import sqlite3
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager
+from contextlib import AbstractContextManager, closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self, cast
@@ -92,14 +92,22 @@ class Store:
             raise ExperimentError(f"'{self.folder}' holds no experiment: cannot read {SPECIFICATION} ({_why(error)})") from None
         self.specification = Specification.from_json(text, str(path))
         try:
-            self._database = sqlite3.connect(self.folder / TRIALS, timeout=30, isolation_level=None, check_same_thread=False)
-            try:
-                self._database.executescript(f"PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; {_SCHEMA}")
-            except BaseException:
-                self._database.close()
-                raise
+            self._database = self._opened()
         except sqlite3.Error as error:
             raise ExperimentError(f"{self.folder / TRIALS}: cannot be opened ({error})") from None
+
+    def _opened(self) -> sqlite3.Connection:
+        """Opens the table of trials to write, or only to read where nothing can be written."""
+        path = self.folder / TRIALS
+        try:
+            return _connected(path, f"PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; {_SCHEMA}")
+        except sqlite3.OperationalError as error:
+            if not path.is_file() or error.sqlite_errorcode & 0xFF not in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY):
+                raise
+            # SQLite would make its log for every reader. Without a log, nobody writes the file.
+            log = path.with_name(f"{path.name}-wal")
+            options = "mode=ro" if log.exists() else "mode=ro&immutable=1"
+            return _connected(f"{path.absolute().as_uri()}?{options}", "SELECT 1 FROM trial, column LIMIT 0")
 
     @classmethod
     def create(cls, folder: Path | str, specification: Specification) -> Store:
@@ -144,31 +152,15 @@ class Store:
         Raises:
             ExperimentError: If the file cannot be written.
         """
-        path = self.folder / FACTS
-        part = path.with_name(f"{FACTS}.part")
-        try:
-            part.write_text(to_json(facts), encoding="utf-8")
-            part.replace(path)
-        except OSError as error:
-            raise ExperimentError(f"'{path}': cannot be written ({_why(error)})") from None
+        write_whole(self.folder / FACTS, to_json(facts))
 
-    @contextmanager
-    def only_writer(self) -> Generator[None]:
+    def only_writer(self) -> AbstractContextManager[None]:
         """Makes this process the only one that adds rows, inside the block.
 
         Raises:
-            ExperimentError: If another process runs this experiment.
+            ExperimentError: If another process runs this experiment, or the folder cannot be written.
         """
-        with (self.folder / LOCK).open("a+", encoding="utf-8") as file:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                file.seek(0)
-                raise ExperimentError(f"'{self.folder}': another process ({file.read().strip()}) runs this experiment") from None
-            file.truncate(0)
-            file.write(str(os.getpid()))
-            file.flush()
-            yield
+        return only_process(self.folder, "this experiment")
 
     def add(self, finished: Iterable[Finished], versions: str, about: dict[str, dict[str, str | None]] | None = None) -> int:
         """Adds rows in one transaction; a trial that has a row keeps it. Returns the number of new rows.
@@ -283,6 +275,58 @@ class Store:
         if not isinstance(row, dict):
             raise ExperimentError(f"{self.folder / TRIALS}: is damaged (the row of trial {number!r} is no JSON object)")
         return cast("Row", row)
+
+
+@contextmanager
+def only_process(folder: Path, what: str) -> Generator[None]:
+    """Makes this process the only one that writes to a folder, inside the block.
+
+    Args:
+        folder: The folder.
+        what: What runs there, for the error.
+
+    Raises:
+        ExperimentError: If another process does, or the folder cannot be written.
+    """
+    try:
+        file = (folder / LOCK).open("a+", encoding="utf-8")
+    except OSError as error:
+        raise ExperimentError(f"'{folder}': cannot be written ({_why(error)})") from None
+    with file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            file.seek(0)
+            raise ExperimentError(f"'{folder}': another process ({file.read().strip()}) runs {what}") from None
+        with suppress(OSError):  # only the number of the process, for the error above, is lost if the disk is full
+            file.truncate(0)
+            os.write(file.fileno(), str(os.getpid()).encode())
+        yield
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Writes a text file: a reader finds either the earlier one or the new one, whole.
+
+    Raises:
+        ExperimentError: If it cannot be written.
+    """
+    part = path.with_name(f"{path.name}.part")
+    try:
+        part.write_text(text, encoding="utf-8")
+        part.replace(path)
+    except OSError as error:
+        raise ExperimentError(f"'{path}': cannot be written ({_why(error)})") from None
+
+
+def _connected(path: Path | str, script: str) -> sqlite3.Connection:
+    """Returns a connection to a file, or to the file of a URI, in which a script has run."""
+    database = sqlite3.connect(path, timeout=30, isolation_level=None, check_same_thread=False, uri=isinstance(path, str))
+    try:
+        database.executescript(script)
+    except BaseException:
+        database.close()
+        raise
+    return database
 
 
 def _type_of(value: Any) -> str:

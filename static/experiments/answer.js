@@ -19,10 +19,16 @@ class Asker {
     if (this.busy) return void (this.again = true);
     this.busy = true;
     const begun = Date.now();
-    const answer = await call("GET", this.path, undefined, this.leave.signal).then((answer) => ({ answer, error: null }), (error) => ({ answer: null, error: error.message }));
+    const answer = await call("GET", this.path, undefined, this.leave.signal).then((answer) => ({ answer, error: null }), (error) => ({ answer: this.last(), error: error.message }));
     if (this.leave.signal.aborted) return;
     this.found.value = { path: this.path, ...answer, waiting: false };
     setTimeout(() => this.rested(), Math.max(BETWEEN, 2 * (Date.now() - begun)));
+  }
+
+  /** Returns the last answer to this question: it stays also if the server cannot answer for a while. */
+  last() {
+    const { path, answer } = this.found.peek();
+    return path === this.path ? answer : null;
   }
 
   rested() {

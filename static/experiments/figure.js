@@ -276,6 +276,6 @@ export function Figure({ experiment, facts, columns: all }) {
     ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
     ${answer && lines.length > 0
       ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOf(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} experiment=${experiment} other=${other} /><//>`
-      : html`<p class="empty" role="status">${answer || error ? "No finished trial has a value of this measure." : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
+      : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
   `;
 }

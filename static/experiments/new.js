@@ -27,9 +27,12 @@ function change(design, changes) {
   drafts.value = { ...drafts.value, [design]: { ...draftOf(design), ...changes } };
 }
 
-/** Returns a whole number >= 1; null for an empty text, NaN for any other. */
-function readCount(text) {
-  return text.trim() === "" ? null : /^[1-9]\d{0,5}$/.test(text.trim()) ? Number(text) : NaN;
+/** The greatest numbers that the server takes. */
+const MOST = { participants: 1_000_000, trials: 1_000_000, workers: 256 };
+
+/** Returns the number of `name`, a whole number >= 1; null for an empty text, NaN for any other. */
+function readCount(name, text) {
+  return text.trim() === "" ? null : /^[1-9]\d{0,6}$/.test(text.trim()) && Number(text) <= MOST[name] ? Number(text) : NaN;
 }
 
 /** Returns what the server is asked for, and the number of trials; `problem` says what is wrong. */
@@ -44,8 +47,8 @@ function wantedOf(design, facts) {
     else if (!isFactor || levelsText(levels) !== levelsText(facts.factors[name])) wanted.values[name] = isFactor ? levels : levels[0];
   }
   for (const [name, text] of Object.entries(counts)) {
-    const count = readCount(text);
-    if (Number.isNaN(count)) problem ??= `${name}: must be a whole number >= 1`;
+    const count = readCount(name, text);
+    if (Number.isNaN(count)) problem ??= `${name === "workers" ? "processes" : name}: must be a whole number from 1 to ${MOST[name].toLocaleString("en")} (got '${text}')`;
     else if (count !== null) wanted[name] = count;
   }
   if (!facts || problem) return { wanted, problem, trials: null };
@@ -76,11 +79,11 @@ function useFacts(design) {
   return found.value.of === design ? found.value : { facts: null, error: null };
 }
 
-/** Checks changed values in the server when the user pauses; returns what is wrong with them, or null. */
+/** Checks what was changed in the server when the user pauses; returns {error, waiting}: what is wrong, or null. */
 function useCheck(wanted, problem) {
   const found = useSignal({ of: "", error: null });
   const key = JSON.stringify({ ...wanted, workers: undefined });
-  const changed = Object.keys(wanted.values).length > 0;
+  const changed = Object.keys(wanted.values).length > 0 || wanted.participants !== undefined || wanted.trials !== undefined;
   useEffect(() => {
     if (!changed || problem) return undefined;
     const leave = new AbortController();
@@ -91,7 +94,8 @@ function useCheck(wanted, problem) {
     }, PAUSE);
     return () => (clearTimeout(timer), leave.abort());
   }, [key, changed, problem]);
-  return found.value.of === key ? found.value.error : null;
+  const known = found.value.of === key;
+  return { error: known ? found.value.error : null, waiting: changed && !problem && !known };
 }
 
 function DesignChoice({ design, choose }) {
@@ -123,7 +127,7 @@ function Form({ design, facts }) {
   const settings = Object.entries(facts.settings).filter(([name]) => !more.includes(name));
   const count = (name, label, otherwise) => html`<tr>
     <th scope="row">${label}</th>
-    <td><${Field} label=${label} value=${draft[name]} otherwise=${otherwise} invalid=${Number.isNaN(readCount(draft[name]))} onInput=${(text) => change(design, { [name]: text })} /></td>
+    <td><${Field} label=${label} value=${draft[name]} otherwise=${otherwise} invalid=${Number.isNaN(readCount(name, draft[name]))} onInput=${(text) => change(design, { [name]: text })} /></td>
     <td></td>
   </tr>`;
   return html`<table class="design-form">
@@ -186,7 +190,7 @@ function Foot({ design, facts, error }) {
   const starting = useSignal(false);
   const refused = useSignal({ of: "", error: null });
   const { wanted, problem, trials } = wantedOf(design, facts);
-  const wrong = useCheck(wanted, problem);
+  const { error: wrong, waiting } = useCheck(wanted, problem);
   const key = JSON.stringify(wanted);
   const last = refused.value.of === key ? refused.value.error : null;
   const full = experiments.value?.filter(isRunning).length >= 2;
@@ -205,7 +209,7 @@ function Foot({ design, facts, error }) {
   return html`
     ${trouble ? html`<pre class="trouble" role="alert">${trouble}</pre>` : null}
     <div class="foot">
-      <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${estimate(design, trials, wanted.workers)}</span>`}</span>
+      <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${estimate(design, trials, wanted.workers)}${waiting ? " · checking …" : ""}</span>`}</span>
       <span class="stretch"></span>
       <button class="primary" disabled=${starting.value || full || problem !== null || trials === null} title=${full ? "Two experiments are already running" : "Run all trials in the background"} onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}</button>
     </div>

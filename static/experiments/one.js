@@ -8,7 +8,7 @@ import { whenInFull, whenText } from "../runs/wording.js";
 import { call } from "../server.js";
 import { useFresh } from "./answer.js";
 import { Figure } from "./figure.js";
-import { busy, deleteExperiment, experiments, isRunning, makeReport, part, resumeExperiment, shown, stopExperiment } from "./list.js";
+import { busy, deleteExperiment, experiments, isRunning, makeReport, part, problem, resumeExperiment, shown, stopExperiment } from "./list.js";
 import { Parts } from "./parts.js";
 import { Trials } from "./trials.js";
 import { changedText, doneText, durationText, failuresText, levelsText, rateText, stateText } from "./wording.js";
@@ -108,6 +108,7 @@ export function Experiment() {
       <${Actions} experiment=${experiment} />
     </div>
     <${Progress} experiment=${experiment} />
+    ${problem.value ? html`<p class="problem bad" role="alert">The state of the experiment is not known: ${problem.value}</p>` : null}
     ${experiment.problem ? html`<pre class="trouble" role="alert">${experiment.problem}</pre>` : null}
     <div class="contents"><${Contents} key="${experiment.id}" experiment=${experiment} facts=${facts} /></div>
   `;

@@ -22,7 +22,7 @@ export function durationText(seconds) {
   if (seconds < 1) return "less than 1 s";
   if (seconds < 100) return `${Math.ceil(seconds)} s`;
   if (seconds < 100 * 60) return `${Math.round(seconds / 60)} min`;
-  return seconds < 72 * 3600 ? `${(seconds / 3600).toFixed(1)} h` : `${Math.round(seconds / 86_400)} days`;
+  return seconds < 72 * 3600 ? `${(seconds / 3600).toFixed(1)} h` : `${Math.round(seconds / 86_400).toLocaleString("en")} days`;
 }
 
 export function rateText(rate) {

@@ -11,6 +11,7 @@ const UNITS = [
   ["_s", "s", 2],
   ["_n", "N", 1],
   ["_kg", "kg", 2],
+  ["_j", "J", 2],
 ];
 
 /** Returns the name of a measured value without its unit, and the unit: `peak_angle_deg` becomes {label: "peak angle", unit: "°", ...}. */

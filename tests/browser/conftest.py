@@ -14,7 +14,7 @@ from playwright.sync_api import Browser, Page
 from tests.helpers.page import Users, chromium
 from tests.helpers.workbench_server import Served, served
 
-REFUSED = re.compile("Failed to load resource: the server responded with a status of 40[0-9]")
+REFUSED = re.compile("Failed to load resource: the server responded with a status of 4(0[0-9]|22)")
 """What Chromium writes to its console of an answer that says why something is not done."""
 
 

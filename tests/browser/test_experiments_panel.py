@@ -114,6 +114,25 @@ def test_two_pages_see_an_experiment_stop_and_go_on(pages: Callable[..., Page], 
         expect(page.locator(f"tr[data-experiment='{name}']")).to_have_count(0)
 
 
+def test_numbers_that_cannot_be_run_are_named_before_anything_runs(pages: Callable[..., Page], workbench: Served, design: str) -> None:
+    page = pages(design.partition(":")[0], tab="experiments", refusals=True)
+    before = workbench.get("/api/experiments").json()
+    page.get_by_role("button", name="New experiment").click()
+    page.get_by_label("Design", exact=True).select_option(design)
+    foot, run = page.locator(".foot"), page.locator(".foot").get_by_role("button", name="Run")
+    expect(foot).to_contain_text("24 trials")
+    page.get_by_label("processes").fill("257")
+    expect(foot).to_contain_text("processes: must be a whole number from 1 to 256 (got '257')")
+    expect(run).to_be_disabled()
+    page.get_by_label("processes").fill("1")
+    page.get_by_label("participants").fill("1000001")
+    expect(foot).to_contain_text("participants: must be a whole number from 1 to 1,000,000 (got '1000001')")
+    page.get_by_label("participants").fill("1000000")
+    expect(foot).to_contain_text("12,000,000 trials")
+    expect(page.get_by_role("alert")).to_contain_text("must give at most 10,000,000 trials in all (got 12,000,000)")
+    assert workbench.get("/api/experiments").json() == before
+
+
 SLOWLY = """() => { const fetched = window.fetch;
 window.fetch = (what, how) => !String(what).includes("/means?") ? fetched(what, how) : new Promise((done, failed) => {
     how?.signal?.addEventListener("abort", () => failed(new DOMException("aborted", "AbortError")));
@@ -138,6 +157,26 @@ def test_a_figure_fills_in_although_its_means_take_longer_than_new_trials(
     expect(page.locator(".point")).not_to_have_count(0)
     before = trials()
     until(page, lambda: trials() > before)
+    workbench.post(f"/api/experiments/{name}/stop")
+    expect(page.locator(".tools .state")).to_have_text("stopped")
+
+
+@pytest.mark.slow
+def test_a_figure_stays_while_the_server_does_not_answer(pages: Callable[..., Page], workbench: Served, design: str) -> None:
+    name = workbench.post("/api/experiments", {"design": design, "trials": 1000, "workers": 1}).json()["id"]
+    page = pages("counting.py", tab="experiments", refusals=True)
+    page.locator(f"tr[data-experiment='{name}']").click()
+    expect(page.locator(".point")).to_have_count(3)
+    page.route("**/means?*", lambda route: route.fulfill(status=409, json={"error": "no worker can be started"}))
+    expect(page.get_by_text("no worker can be started")).to_be_visible()
+    expect(page.locator(".point")).to_have_count(3)
+    expect(page.get_by_text("No finished trial has a value")).to_have_count(0)
+    page.unroute("**/means?*")
+    expect(page.get_by_text("no worker can be started")).to_have_count(0)
+    page.route("**/api/experiments", lambda route: route.fulfill(status=403, json={"error": "the token is missing or wrong"}))
+    expect(page.get_by_text("The state of the experiment is not known: the token is missing or wrong")).to_be_visible()
+    page.unroute("**/api/experiments")
+    expect(page.get_by_text("The state of the experiment is not known")).to_have_count(0)
     workbench.post(f"/api/experiments/{name}/stop")
     expect(page.locator(".tools .state")).to_have_text("stopped")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import pytest
@@ -152,6 +152,41 @@ def test_each_wrong_model_fails_the_constraints_that_it_should_fail(what: str) -
     expected, of = BAD[what]
     assert set(unmet(of)) >= set(expected)
     assert unmet(of) != unmet(as_it_is)
+
+
+def results(of: Findings) -> dict[int, bool | None]:
+    return {constraint.number: constraint.met for constraint in of.all()}
+
+
+def test_with_two_participants_a_group_nothing_is_tested() -> None:
+    """A t test of two would be met or not met by chance, and the report says that nothing is tested."""
+    few = Findings(one for one in GOOD if one.participant[-1] in "01")
+    assert few.scores() is None
+    assert (results(few)[3], results(few)[5]) == (None, None)
+    enough = Findings(one for one in GOOD if one.participant[-1] in "012")
+    assert (results(enough)[3], results(enough)[5]) == (True, True)
+
+
+def test_a_critical_ratio_that_the_trials_leave_open_is_not_tested() -> None:
+    """One walker turns at the narrower of two apertures: where it begins to turn is not known."""
+    two = [one for one in GOOD if one.aperture in (0.5, 0.7) and one.participant == "small 2" and one.condition == "normal"][::2]
+    found = Findings(two).critical()
+    assert found.met is None
+    assert found.found == "it needs more trials or more ratios: small normal 1.485 (95 % interval −∞ to ∞)"
+    below = Findings(replace(one, angle=20.0 if one.ratio < 1.1 else 0.0) for one in GOOD if one.aperture > 0.4)
+    assert below.critical().met is False, "a ratio that is certainly too small is so, wherever it is"
+
+
+def held(bars: Mapping[float, float | None]) -> Findings:
+    return Findings((replace(GOOD[0], bar=0.8, shoulders=0.8 / bar, aperture=0.9, angle=angle) for bar, angle in bars.items()), "ratio")
+
+
+def test_bars_with_which_no_walker_sets_out_are_named() -> None:
+    assert held({1.5: 50.0, 2.0: 40.0, 2.5: 30.0}).longer_bar().met is True
+    assert held({1.5: 50.0, 2.0: 55.0, 2.5: 30.0}).longer_bar().met is False
+    declined = held({1.5: None, 2.0: None, 2.5: 30.0}).longer_bar()
+    assert declined.met is False
+    assert "none, none, 30.0 at A/S 1.12; none: no walker set out, although people pass" in declined.found
 
 
 def test_where_it_can_pass_is_one_of_them() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import os
 import re
 from collections.abc import Generator
 from pathlib import Path
@@ -29,7 +30,7 @@ from actr3d.experiment.fit import (
     rmse,
 )
 from actr3d.experiment.specification import specify
-from actr3d.experiment.store import Store
+from actr3d.experiment.store import Store, only_process
 from tests.helpers.experiments import COUNTER, write_experiment
 
 LINE = """
@@ -190,6 +191,21 @@ def test_a_fit_that_was_stopped_continues_to_the_same_result(tmp_path: Path, cli
     folders = [path.name for path in (tmp_path / "a" / "fit").iterdir()]
     assert len(folders) == 8
     assert all(name.startswith("candidate ") for name in folders)
+
+
+def test_two_commands_do_not_fit_in_one_folder_and_one_that_cannot_be_made_is_named(tmp_path: Path, capsys: Any) -> None:
+    model, people = tmp_path / "line.py", tmp_path / "people.csv"
+    model.write_text(LINE, encoding="utf-8")
+    people.write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--candidates", "1", "--workers", "1"]
+    (tmp_path / "out").mkdir()
+    with only_process(tmp_path / "out", "a fit there"):
+        assert main([*words, "--out", str(tmp_path / "out")]) == 1
+    assert re.fullmatch(rf"error: '.*out': another process \({os.getpid()}\) runs a fit there\n", capsys.readouterr().err)
+    assert main([*words, "--out", str(people / "out")]) == 1
+    assert re.fullmatch(r"error: --out: cannot make '.*out' \(Not a directory\)\n", capsys.readouterr().err)
+    assert main(["fit", f"{model}:line", "--parameter", "slope=3", "--target", str(people), "--out", str(tmp_path / "new")]) == 2
+    assert not (tmp_path / "new").exists()
 
 
 FAILING = LINE.replace("slope = 2.0", "slope = 1.0").replace(

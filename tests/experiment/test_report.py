@@ -177,6 +177,7 @@ def test_failures_and_missing_trials_are_said_plainly(tmp_path: Path) -> None:
 def test_one_participant_is_described_and_not_tested(tmp_path: Path) -> None:
     folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
     write_report(folder)
+    assert "(1 rows)" not in page(folder)
     assert "A group has one participant. With fewer than 3 nothing can be said" in page(folder)
     assert {row["low"] for row in table(folder, "means_rt")} == {""}
     assert not list((folder / "report/tables").glob("anova*"))
@@ -293,10 +294,40 @@ def test_an_experiment_that_was_run_has_a_report(tmp_path: Path, capsys: Any) ->
     assert [(row["n_"], row["n"]) for row in table(folder, "means_rt")] == [("1", "3"), ("2", "3"), ("5", "3")]
 
 
+def test_two_participants_are_described_and_not_tested(tmp_path: Path) -> None:
+    folder = store_rows(tmp_path / "walks", "warren_whang_1987", walk, trials=1, participants=2)
+    write_report(folder)
+    assert "nothing is tested, and intervals over two participants are no more than their range" in page(folder)
+    found = {row["number"]: row["result"] for row in table(folder, "constraints")}
+    assert (found["3"], found["5"]) == ("not testable", "not testable")
+    assert not (folder / "report/tables/equivalence.csv").exists()
+
+
+def test_each_critical_ratio_is_drawn_above_its_own_participant(tmp_path: Path) -> None:
+    """That of the first is not known, as it never turns; one of a single step of apertures is not known either."""
+
+    def first_never(trial: Any) -> dict[str, Any]:
+        return {**walk(trial), "wall_angle_deg": 0.0} if trial.participant.name == "small 1" else walk(trial)
+
+    folder = store_rows(tmp_path / "walks", "warren_whang_1987", first_never, trials=1, participants=3)
+    write_report(folder)
+    picture = (folder / "report/figures/critical_ratio.svg").read_text(encoding="utf-8")
+    labels = [label for label in re.findall(r"<text [^>]*>([^<]+)</text>", picture) if label in ("1", "2", "3")]
+    assert labels == ["1", "2", "3", "1", "2", "3"] * 2
+    assert "2 of 12 curves have no critical ratio" in page(folder)
+    folder = store_rows(tmp_path / "two", "warren_whang_1987", walk, trials=1, participants=3, values={"aperture": [0.5, 0.7]})
+    write_report(folder)
+    assert {row["critical_ratio"] for row in table(folder, "critical_ratios")} == {""}
+    assert "12 of 12 curves have no critical ratio: all of their trials are turned, or none is, or there are too few" in page(folder)
+
+
 @pytest.mark.slow
 def test_starts_aside_and_aslant_have_a_figure_and_a_table(tmp_path: Path) -> None:
     def misaligned(trial: Any) -> dict[str, Any]:
-        return {**walk(trial), "outcome": "passed" if trial.values["start_aside"] < 0.2 else "stopped"}
+        if trial.values["start_aside"] < 0.2:
+            return walk(trial)
+        # It leans against the wall beside the doorway, and its front is in the wall by the depth of a contact.
+        return {**walk(trial), "outcome": "stopped", "clearance_left_m": -0.002, "clearance_right_m": 0.8}
 
     folder = store_rows(tmp_path / "starts", "misaligned_start", misaligned, trials=2)
     write_report(folder)
@@ -305,4 +336,6 @@ def test_starts_aside_and_aslant_have_a_figure_and_a_table(tmp_path: Path) -> No
     assert len(rows) == 24
     assert {float(row["passed"]) for row in rows if float(row["start_aside"]) < 0.2} == {1.0}
     assert {float(row["passed"]) for row in rows if float(row["start_aside"]) > 0.2} == {0.0}
+    assert {row["right"] for row in rows if float(row["start_aside"]) > 0.2} == {""}, "it was not in the doorway"
+    assert all(6.7 < float(row["right"]) < 7.1 for row in rows if float(row["start_aside"]) < 0.2)
     assert "Starts aside and aslant" in page(folder)

@@ -123,6 +123,42 @@ def test_effect_sizes_are_those_of_the_whole_design_and_each_interaction_is_ther
     assert row["F"] == pytest.approx(effect / 4 / (error / 20))
 
 
+@pytest.mark.parametrize(("participants", "tested"), [(3, False), (4, True)])
+def test_sphericity_is_tested_only_with_more_participants_than_levels(tmp_path: Path, participants: int, tested: bool) -> None:
+    """The differences of k levels have k - 1 variances; pingouin gives p = 1, or 1.58, where the participants have fewer."""
+    path = write_experiment(tmp_path, participants=participants, trials=1, factors='{"n": [1, 2, 3, 4]}')
+    draw = random.Random(6)
+    folder = store_rows(tmp_path / "out", str(path), lambda _: {"rt": draw.gauss(0, 1), "luck": 0.5})
+    row = next(one for one in run_tests(read_results(folder), "rt").assumptions.to_dict("records") if one["test"] == "Mauchly")
+    assert math.isfinite(row["p"]) == math.isfinite(row["statistic"]) == tested
+    assert row["holds"].startswith("cannot be tested with so few participants") != tested
+    if tested:
+        assert 0 <= row["p"] <= 1
+
+
+def test_two_groups_have_fewer_degrees_of_freedom_for_the_test_of_sphericity(tmp_path: Path) -> None:
+    design = GROUPED.replace("[1, 2, 5]", "[1, 2, 3, 4, 5, 6, 7, 8]").replace(', "mode": ["count", "fail"]', "")
+    row = next(
+        one
+        for one in run_tests(grouped(tmp_path, effect=1.0, design=design), "rt").assumptions.to_dict("records")
+        if one["test"] == "Mauchly"
+    )
+    assert math.isnan(row["p"])
+    assert row["holds"].startswith("cannot be tested with so few participants: use the corrected p (ε = 0.")
+
+
+def test_with_few_participants_the_tests_of_the_mixed_model_say_that_their_p_is_too_small(tmp_path: Path) -> None:
+    """They are asymptotic: with two groups of four, p = 0.05 of an F test with 1 and 6 degrees of freedom is 0.014 there."""
+    says = "of the mixed model are too small with fewer than 10 participants in a group"
+    assert [note for note in run_tests(grouped(tmp_path, effect=0.5), "rt").notes if says in note]
+    enough = write_experiment(tmp_path, participants=10, factors='{"n": [1, 2, 5], "mode": ["count", "fail"]}')
+    draw = random.Random(8)
+    folder = store_rows(tmp_path / "enough", str(enough), lambda _: {"rt": draw.gauss(0, 1), "luck": 0.5})
+    tests = run_tests(read_results(folder), "rt")
+    assert tests.mixed_model is not None
+    assert not [note for note in tests.notes if says in note]
+
+
 def test_the_analysis_of_variance_is_that_of_the_textbook(tmp_path: Path) -> None:
     """The F of groups is the square of the t of the participants' means."""
     results = grouped(tmp_path, effect=0.4)

@@ -253,6 +253,8 @@ def test_no_row_changes_if_the_scheduler_is_killed(tmp_path: Path, client: Any, 
             assert process.returncode == 1
             assert "error: the scheduler is gone" in said
             assert "continue with --resume" in said
+            assert "another exception" not in said
+            assert "distributed" not in said
     with a_cluster(unused_port):
         assert subprocess.run(command, timeout=120, capture_output=True).returncode == 0
     assert table(tmp_path / "out") == run_here(client, path, tmp_path / "whole")

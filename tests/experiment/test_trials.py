@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import signal
 import sqlite3
 import subprocess
@@ -11,9 +12,9 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -413,6 +414,53 @@ def test_a_folder_that_is_in_use_or_no_experiment_is_refused(tmp_path: Path) -> 
         Store(tmp_path / "out")
 
 
+@contextmanager
+def not_writable(folder: Path) -> Generator[None]:
+    """Makes a folder one that nobody can write to, inside the block; root can write everywhere, and acts as somebody else."""
+    for path in (*folder.iterdir(), folder):
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    was = os.geteuid()
+    try:
+        if was == 0:
+            os.seteuid(65_534)
+        yield
+    finally:
+        if was == 0:
+            os.seteuid(0)
+        folder.chmod(0o755)
+
+
+def test_an_experiment_in_a_folder_that_cannot_be_written_is_read() -> None:
+    with tempfile.TemporaryDirectory() as place:  # pytest's own folders are closed to others
+        outer = Path(place)
+        outer.chmod(0o755)
+        folder = outer / "out"
+        with Store.create(folder, specify(str(write_experiment(outer))).specification) as store:
+            store.add(finished(0, 1), "v")
+        with not_writable(folder), Store(folder) as store:
+            assert [row["trial"] for row in store.rows()] == [0, 1]
+            assert store.count == 2
+            with pytest.raises(ExperimentError, match=r"facts\.json': cannot be written \(Permission denied\)"):
+                store.write_facts({})
+            with pytest.raises(ExperimentError, match=r"out': cannot be written \(Permission denied\)"), store.only_writer():
+                pass
+            with pytest.raises(ExperimentError, match=r"trials\.sqlite: cannot write \(attempt to write a readonly database\)"):
+                store.add(finished(2), "v")
+
+
+def test_rows_in_the_log_of_a_killed_process_are_read_also_where_nothing_can_be_written() -> None:
+    with tempfile.TemporaryDirectory() as place:
+        outer = Path(place)
+        outer.chmod(0o755)
+        folder = outer / "out"
+        with Store.create(outer / "first", specify(str(write_experiment(outer))).specification) as store:
+            store.add(finished(0, 1), "v")
+            shutil.copytree(store.folder, folder)  # as if it was killed now
+        assert (folder / "trials.sqlite-wal").stat().st_size > 0
+        with not_writable(folder), Store(folder) as store:
+            assert store.count == 2
+
+
 def test_a_specification_that_cannot_be_written_leaves_no_folder(tmp_path: Path) -> None:
     specification = replace(specify(str(write_experiment(tmp_path))).specification, values={"n": object()})
     with pytest.raises(TypeError):
@@ -474,6 +522,9 @@ def test_a_trial_is_recorded_and_replayed(tmp_path: Path, capsys: pytest.Capture
     assert "trial: must be a number from 0 to 23 (got 99)" in capsys.readouterr().err
     assert main(["experiment", "out", "--trial", "7"]) == 2
     assert "--trial ID and --record RECORDING are given together" in capsys.readouterr().err
+    assert main(["experiment", "out", "--trial", "7", "--record", "x.rec", "--set", "n=1", "--participants", "3"]) == 2
+    assert "--trial: runs a trial again exactly as it was; leave out --set and --participants" in capsys.readouterr().err
+    assert not Path("x.rec").exists()
     assert main(["experiment", "--trial", "3", "--record", str(tmp_path / "b.rec")]) == 2
     assert "which experiment? name a design, a file or the folder" in capsys.readouterr().err
 

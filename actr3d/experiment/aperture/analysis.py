@@ -349,6 +349,8 @@ class Rotation:
         if not self._by_aperture or self._findings.pair is None:
             return []
         means = self._frame.groupby(["group", "participant", "level"], observed=True)[["angle", "ratio"]].mean().reset_index().dropna()
+        if means["level"].nunique() < 4:  # a parabola goes through the means of three
+            return []
         rows: list[dict[str, Any]] = []
         for name, column in (("A/S", "ratio"), ("A", "level")):
             x, y = means[column].to_numpy(dtype=float), means["angle"].to_numpy(dtype=float)
@@ -406,7 +408,7 @@ def _critical_ratios(findings: Findings) -> Parts:
     parts: Parts = []
     if (known := frame[frame["critical_ratio"].notna()]).size:
         panes = [_ratios_pane(known[known["condition"] == condition], condition, findings) for condition in findings.conditions]
-        names = {one: n for n, one in enumerate(dict.fromkeys(known["participant"]))}
+        names = _places(findings)
         ticks = [(float(n), one.rpartition(" ")[2]) for one, n in names.items()] if len(names) <= 30 else [(0.0, "")]
         figure = curves_figure(panes, "participant", "critical ratio A/S", ticks=ticks)
         title = "Critical ratio of each participant"
@@ -429,7 +431,10 @@ def _critical_ratios(findings: Findings) -> Parts:
     parts.append(Table(name="critical_ratios", title=title, frame=frame, note=note, digits=digits, folded=True))
     if len(known) < len(frame):
         parts.append(
-            Caution(f"{len(frame) - len(known)} of {len(frame)} curves have no critical ratio: all of their trials are turned, or none is.")
+            Caution(
+                f"{len(frame) - len(known)} of {len(frame)} curves have no critical ratio: all of their trials are turned, or none is, or "
+                "there are too few to say where turning begins."
+            )
         )
     return parts
 
@@ -439,6 +444,8 @@ def _fits(of: Sequence[Passing], curve: tuple[list[float], list[float]]) -> dict
     wide = [one.angle or 0.0 for one in of if one.ratio > WIDE]
     base = float(np.median(wide)) if wide else 0.0
     logistic = critical_ratio((one.ratio, (one.angle or 0.0) > base + TURNED) for one in of) if of else None
+    if logistic is not None and math.isinf(logistic.low) and math.isinf(logistic.high):
+        logistic = None  # it may be anywhere
     line = bend(*curve)
     return {
         "critical_ratio": math.nan if logistic is None else logistic.value,
@@ -449,8 +456,13 @@ def _fits(of: Sequence[Passing], curve: tuple[list[float], list[float]]) -> dict
     }
 
 
+def _places(findings: Findings) -> dict[str, int]:
+    """Returns the place of each participant on the axis, also of those without a critical ratio."""
+    return {one: n for n, one in enumerate(one for group in findings.groups for one in findings.people(group))}
+
+
 def _ratios_pane(rows: Any, condition: str, findings: Findings) -> Pane:
-    places = {one: n for n, one in enumerate(one for group in findings.groups for one in findings.people(group))}
+    places = _places(findings)
     curves: list[Curve] = []
     for group in findings.groups:
         of = rows[rows["group"] == group]
@@ -499,7 +511,7 @@ def _margins(findings: Findings, frame: Any) -> Parts:
     table = in_order(pd.DataFrame(rows), ["group", "condition", by], frame)
     of_sides = [name for name in table if name.startswith((*SIDES, "largest"))]
     units, digits = dict.fromkeys(of_sides, "cm"), dict.fromkeys(of_sides, 1) | {"aperture": 2, "ratio": 2}
-    note = "sd: between trials; largest difference: between the sides of one trial."
+    note = "Means, least values and sd are of trials, not of participants; largest difference: between the sides of one trial."
     units |= {"aperture": "m"} if by == "aperture" else {}
     parts.append(Table(name="margins", title="Margins of each cell", frame=table, units=units, digits=digits, note=note, folded=True))
     return [*parts, _contacts(frame), *_onset(findings, frame, x_label, scale)]
@@ -567,8 +579,10 @@ def _starts(results: Results) -> Parts:
     keys = ["aperture", *by] if wide else by
     table = cell_means(rows, "passed", keys)[[*keys, "mean", "n", "trials"]].rename(columns={"mean": "passed"})
     table["untouched"] = cell_means(rows, "free", keys)["mean"]
+    # A walker that leans against the wall beside the doorway is in the wall by the depth of the contact, and has a clearance, too.
+    in_doorway = rows[["clearance_left_m", "clearance_right_m"]].max(axis=1) < rows["aperture"]
     for side in ("left", "right"):
-        rows[side] = 100 * rows[f"clearance_{side}_m"]
+        rows[side] = 100 * rows[f"clearance_{side}_m"].where(in_doorway)
         margins = cell_means(rows, side, keys).rename(columns={"mean": side})
         table = table.merge(margins[[*keys, side]], on=keys, how="left")
     units = {"start_aside": "m", "start_heading": "degrees", "left": "cm", "right": "cm"} | ({"aperture": "m"} if wide else {})

@@ -16,8 +16,10 @@ from statistics import mean, stdev, variance
 import numpy as np
 from scipy.special import stdtr
 
-from actr3d.experiment.aperture.critical_ratio import critical_ratio
+from actr3d.experiment.aperture.critical_ratio import CriticalRatio, critical_ratio
 from actr3d.experiment.aperture.passing import DEPTH, Passing
+from actr3d.experiment.report.page import number
+from actr3d.experiment.report.statistics import FEWEST
 
 TURNED = 5.0
 """A walker has turned if its angle is above this [degrees]: people sway by a few degrees (docs/human-data.md). No source: our choice."""
@@ -179,7 +181,7 @@ class Findings:
 
     def scores(self) -> tuple[list[float], list[float]] | None:
         """Returns the mean angle on the ratio, from 1.0 to 1.4, of each participant of the large and of the small group [degrees]."""
-        if self.pair is None or min(len(self.people(group)) for group in self.pair) < 2:
+        if self.pair is None or min(len(self.people(group)) for group in self.pair) < FEWEST:
             return None
         curves = {key: self.curve(*key) for key in sorted(self._people) if key[0] in self.pair}
         low = max((min(ratios) for ratios, _ in curves.values()), default=math.inf)
@@ -200,7 +202,7 @@ class Findings:
         """3: the groups agree on the ratio: two one-sided t tests of participants."""
         says, scores = "groups coincide on A/S", self.scores()
         if scores is None:
-            return _untested(3, says, "it needs two groups of two or more participants, and common ratios between 1.0 and 1.4")
+            return _untested(3, says, "it needs two groups of three or more participants, and common ratios between 1.0 and 1.4")
         difference, p = equivalence(*scores, SAME)
         found = f"large minus small {difference:.1f} degrees, within {SAME:g}: p = {p:.3g}"
         return Constraint(number=3, says=says, met=p < 0.05, found=found)
@@ -216,9 +218,13 @@ class Findings:
         if not cells or any(not of or not _spans([one.ratio for one in of], CRITICAL) for of in cells.values()):
             return _untested(4, says, f"it needs ratios below {CRITICAL[0]} and above {CRITICAL[1]} in each group and condition")
         found = {key: critical_ratio((one.ratio, (one.angle or 0.0) > TURNED) for one in of) for key, of in cells.items()}
-        met = all(ratio is not None and CRITICAL[0] <= ratio.value <= CRITICAL[1] for ratio in found.values())
-        texts = [f"{' '.join(filter(None, key))} {'none' if ratio is None else f'{ratio.value:.3f}'}" for key, ratio in found.items()]
-        return Constraint(number=4, says=says, met=met, found=", ".join(texts))
+        known = {
+            key: ratio is not None and CRITICAL[0] <= ratio.value <= CRITICAL[1] for key, ratio in found.items() if not _left_open(ratio)
+        }
+        texts = [f"{' '.join(filter(None, key))} {_ratio_text(ratio)}" for key, ratio in found.items()]
+        if all(known.values()) and len(known) < len(found):
+            return _untested(4, says, f"it needs more trials or more ratios: {', '.join(texts)}")
+        return Constraint(number=4, says=says, met=all(known.values()), found=", ".join(texts))
 
     def faster_turns_more(self) -> Constraint:
         """5: fast minus normal below the critical point, by participants."""
@@ -234,8 +240,8 @@ class Findings:
                 below = [fast[ratio] - normal[ratio] for ratio in normal if ratio < CRITICAL[0] and ratio in fast]
                 if below:
                     differences.append(mean(below))
-            if len(differences) < 2:
-                return _untested(5, says, "it needs two or more participants in each group, with apertures below the critical ratio")
+            if len(differences) < FEWEST:
+                return _untested(5, says, "it needs three or more participants in each group, with apertures below the critical ratio")
             p = above_zero(mean(differences), stdev(differences) / math.sqrt(len(differences)), len(differences) - 1)
             met &= p < 0.05
             found.append(f"{group} {mean(differences):+.1f} degrees (p = {p:.2g})")
@@ -305,7 +311,10 @@ class Findings:
             met &= all(a > b for a, b in pairwise(means))
             found.append(f"{', '.join('none' if math.isnan(angle) else f'{angle:.1f}' for angle in means)} at A/S {ratio:g}")
         lengths = _listed(next(iter(angles.values())))
-        return Constraint(number=BARS, says=says, met=met, found=f"degrees with bars of {lengths} body widths: {'; '.join(found)}")
+        text = f"degrees with bars of {lengths} body widths: {'; '.join(found)}"
+        if any(not of for bars in angles.values() for of in bars.values()):
+            text += "; none: no walker set out, although people pass"
+        return Constraint(number=BARS, says=says, met=met, found=text)
 
     def judged(self, boundary: float | None) -> Constraint:
         """9: the boundary of what is judged to be passable."""
@@ -322,6 +331,20 @@ def _untested(number: int, says: str, why: str) -> Constraint:
 
 def _spans(ratios: Sequence[float], bounds: tuple[float, float]) -> bool:
     return min(ratios) < bounds[0] and max(ratios) > bounds[1]
+
+
+def _left_open(ratio: CriticalRatio | None) -> bool:
+    """Returns whether an interval without an end reaches the bounds: a few trials say neither that they are met nor that they are not."""
+    return ratio is not None and (
+        (ratio.low == -math.inf and ratio.high >= CRITICAL[0]) or (ratio.high == math.inf and ratio.low <= CRITICAL[1])
+    )
+
+
+def _ratio_text(ratio: CriticalRatio | None) -> str:
+    if ratio is None:
+        return "none"
+    interval = f" (95 % interval {number(ratio.low, 3)} to {number(ratio.high, 3)})" if _left_open(ratio) else ""
+    return f"{ratio.value:.3f}{interval}"
 
 
 def _sides(left: float, right: float) -> str:

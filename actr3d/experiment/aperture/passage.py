@@ -38,15 +38,15 @@ class PassageResult:
     peak_angle_deg: float | None
     """The greatest angle between the shoulder line and the wall while walking [degrees], from 0 to 90; None if it did not set out."""
     wall_angle_deg: float | None
-    """The same when the axis reached the wall [degrees]; None if it did not."""
+    """The angle between the shoulder line and the wall when the axis reached the wall [degrees]; None if it did not."""
     logged_angle_deg: float | None
-    """The sum of the joint angles of torso and clavicle at that moment [degrees], logged by the original model (docs/human-data.md); plus
-    that of the stance, if the body has one."""
+    """The sum of the joint angles of torso and clavicle when the axis reached the wall [degrees], logged by the original model
+    (docs/human-data.md); plus that of the stance, if the body has one."""
     onset_distance_m: float | None
     """Distance from the wall at which the shoulders began to turn to their greatest angle [m]; None if they did not. How they turn to and
     fro with each step does not count."""
     onset_time_s: float | None
-    """The time at which they began to turn [s]; None if they did not."""
+    """The time at which the shoulders began to turn [s]; None if they did not."""
     contacts: int
     """Number of contacts of a part of the body with an object."""
     max_force_n: float
@@ -60,7 +60,8 @@ class PassageResult:
     """Smallest distance between any part of the body and the left segment of the wall, while a part of the body was between its
     faces [m]; None if none was."""
     clearance_right_m: float | None
-    """The same on the right [m]."""
+    """Smallest distance between any part of the body and the right segment of the wall, while a part of the body was between its
+    faces [m]; None if none was."""
     speed_m_s: float | None
     """Mean walking speed [m/s], from setting out until it reached the wall, otherwise until the end."""
     time_s: float

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from actr3d.experiment.design import Design, Group, Normal, design
+from actr3d.experiment.design import Design, Group, Measured, Normal, design
 
 RATIOS = tuple(round(0.9 + 0.04 * n, 2) for n in range(14))
 """The apertures in shoulder widths. Source: chosen, around the boundary that people judge, about 1.16 (docs/human-data.md)."""
@@ -39,5 +39,10 @@ def passability_judgement() -> Design:
         settings={"task": "judge"},
         derive=aperture_of,
         results=judgement,
+        measures=[
+            Measured(name="judged", meaning="How the walker judged that it can pass: as it is, turned, or not at all."),
+            Measured(name="passable", meaning="Whether it judged that it can pass without turning."),
+            Measured(name="time_s", unit="s", meaning="The simulated time of the judgement."),
+        ],
         trials=10,
     )

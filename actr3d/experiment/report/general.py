@@ -15,7 +15,7 @@ from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results
-from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, participant_means, run_tests
+from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, in_order, participant_means, run_tests
 
 MAX_PANES = 6
 """A factor with more levels than this makes no panes of a figure."""
@@ -63,7 +63,10 @@ def cautions(results: Results) -> list[Caution]:
     least = min(group.participants for group in results.design.groups.values())
     if least < FEWEST:
         many = "one participant" if least == 1 else f"{least} participants"
-        found.append(f"A group has {many}. With fewer than {FEWEST} nothing can be said about other participants: nothing is tested.")
+        narrow = ", and intervals over two participants are no more than their range" if least == 2 else ""
+        found.append(
+            f"A group has {many}. With fewer than {FEWEST} nothing can be said about other participants: nothing is tested{narrow}."
+        )
     elif least < FEW:
         found.append(f"A group has {least} participants. With fewer than {FEW}, bootstrap intervals are too narrow.")
     if len(results.versions) > 1:
@@ -157,7 +160,7 @@ def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
         by = [key for key in ("group",) if len(results.groups) > 1]
         rows = results.rows[[*by, name]].fillna({name: "none"})
         if rows[name].nunique() <= MAX_KINDS:
-            counts = rows.groupby([*by, name], observed=True).size().rename("trials").reset_index()
+            counts = in_order(rows.groupby([*by, name], observed=True).size().rename("trials").reset_index(), by, rows)
             found.append(Table(name=f"counts_{name}", title=f"Trials by {name.replace('_', ' ')}", frame=counts))
     return found
 

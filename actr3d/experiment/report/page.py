@@ -127,7 +127,8 @@ def _table(table: Table) -> str:
     note = f'<p class="note">{_text(table.note)}</p>' if table.note else ""
     body = f'{note}<div class="scroll"><table>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table></div>\n'
     if table.folded or len(frame) > FOLDED:
-        return f"<details><summary>{_text(table.title)} ({len(frame)} rows)</summary>\n{body}{link}</details>"
+        rows_text = "1 row" if len(frame) == 1 else f"{len(frame)} rows"
+        return f"<details><summary>{_text(table.title)} ({rows_text})</summary>\n{body}{link}</details>"
     return f"<h3>{_text(table.title)}</h3>\n{body}{link}"
 
 

@@ -147,6 +147,11 @@ def run_tests(results: Results, measure: str) -> Tests:
         _analyse_variance(whole, results, anova, checks, notes)
         _check_assumptions(whole, factors, grouped, checks)
         mixed = _mixed_model(means, factors, grouped, notes) if len(factors) + grouped > 1 else None
+    if mixed is not None and sizes.min() < FEW:
+        notes.append(
+            f"The p of the Wald tests of the mixed model are too small with fewer than {FEW} participants in a group, most of all those of "
+            "the group: prefer the analysis of variance where it has the effect."
+        )
     notes += [f"Note of a library: {text}" for text in warned if "etrying" not in text]
     return Tests(anova=pd.DataFrame(anova) if anova else None, mixed_model=mixed, assumptions=pd.DataFrame(checks), notes=notes)
 
@@ -165,8 +170,9 @@ def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]],
         else:
             found = pg.rm_anova(data=data, dv="value", within=factor, subject="participant", correction=True)
             _add(anova, factor, found, {})
-        if len(results.factors[factor]) > 2:
-            _add_sphericity(checks, factor, found)
+        if (levels := len(results.factors[factor])) > 2:
+            testable = data["participant"].nunique() - max(1, data["group"].nunique()) >= levels - 1
+            _add_sphericity(checks, factor, found, testable=testable)
     for one, other in combinations(factors, 2):
         if not grouped:
             found = pg.rm_anova(data=_over(whole, [one, other]), dv="value", within=[one, other], subject="participant", correction=True)
@@ -216,17 +222,25 @@ def _add(anova: list[dict[str, Any]], of: str, found: Any, names: dict[str, str]
         )
 
 
-def _add_sphericity(checks: list[dict[str, Any]], factor: str, found: Any) -> None:
+def _add_sphericity(checks: list[dict[str, Any]], factor: str, found: Any, *, testable: bool) -> None:
+    """Adds the check of the sphericity of a factor.
+
+    Args:
+        checks: All checks.
+        factor: The factor.
+        found: The analysis of variance.
+        testable: Whether the participants, without one for each group, are at least as many as the differences of levels. With fewer,
+            the statistic is 0 but for rounding, and pingouin gives any p for it, also 1 or more; epsilon is still right.
+    """
     row: dict[str, Any] = next((one for one in found.to_dict("records") if one["Source"] == factor), dict[str, Any]())
-    p = row.get("p_spher", np.nan)
-    # With fewer participants than levels the test of Mauchly cannot be computed; epsilon still can.
+    p = row.get("p_spher", np.nan) if testable else np.nan
     eps = row.get("eps", np.nan)
     holds = "" if not np.isfinite(p) else "yes" if p >= LEVEL else "no: use the corrected p (Greenhouse-Geisser)"
     checks.append(
         {
             "assumption": f"sphericity of {factor}",
             "test": "Mauchly",
-            "statistic": row.get("W_spher", np.nan),
+            "statistic": row.get("W_spher", np.nan) if testable else np.nan,
             "p": p,
             "holds": holds or f"cannot be tested with so few participants: use the corrected p (ε = {eps:.2f})",
         }
