@@ -746,17 +746,17 @@ LATE = """async () => {
   const { lanes } = await part("timeline/record.js");
   const { names, plot, plots } = await part("timeline/curves.js");
   const of = (time, busy) => [time * 1e6, "memory", "state", { busy }];
-  const seen = async (first, list) => {
+  // At once, before a message of the server can replace the run.
+  const seen = (first, list) => {
     take([{ run: known.run + 1, epoch: 1, events: { first, list, ...(first > 0 && { missing: first }) } }]);
     plot("memory busy", true);
-    await new Promise((done) => setTimeout(done));
     const { name, times, values } = plots.value.find(({ title }) => title === "time busy").series[0];
     return { name, times: [...times], values: [...values] };
   };
   const events = [of(1, true), of(3, false), of(5, true), of(6, false)];
-  const whole = await seen(0, events);
-  const late = await seen(2, events.slice(2));
-  const idle = await seen(1, events.slice(1));
+  const whole = seen(0, events);
+  const late = seen(2, events.slice(2));
+  const idle = seen(1, events.slice(1));
   return { whole, late, idle };
 }"""
 """The time that a memory was busy: of a run whose first event is known, and of others of which the page was sent only the last ones."""
