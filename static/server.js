@@ -2,7 +2,7 @@
 
 import { page } from "./address.js";
 import { frameBudget } from "./frame_budget.js";
-import { complain, connected, events, forget, hurried, known, opening, session, take } from "./store.js";
+import { complain, connected, events, forget, hurried, known, opening, restarted, session, take } from "./store.js";
 
 const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation the eye is compiled, too, which takes up to a minute.";
 const AGAIN = 1000; // the delay before a new connection [ms]
@@ -172,8 +172,14 @@ function connect() {
   socket.onclose = ({ reason }) => {
     connected.value = false;
     abandon(() => new Error(reason ? `the workbench ended the connection: ${reason}` : "the connection was lost"));
+    if (session.peek()) seeWhetherRestarted();
     setTimeout(connect, AGAIN);
   };
+}
+
+async function seeWhetherRestarted() {
+  const answer = await fetch("/api/sessions").catch(() => null);
+  restarted.value = answer?.status === 401;
 }
 
 /** Deals with what the server does not do: a session that was ended while there was no connection is opened again. */

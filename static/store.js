@@ -24,6 +24,8 @@ export const notices = signal([]);
 export const opening = signal(null);
 /** Whether the websocket is open; null before the first connection. */
 export const connected = signal(null);
+/** Whether the workbench was started again, with another token: then it answers this page no more. */
+export const restarted = signal(false);
 
 export const running = computed(() => state.value?.status === "running");
 /** Whether the run goes as fast as possible: then drawing must not take too much of the processor. */

@@ -8,9 +8,10 @@ import { Hint } from "./pace.js";
 import { Share } from "./share.js";
 import { runStatus } from "../run_status.js";
 import { embedded } from "../windows.js";
-import { connected, me, session, state } from "../store.js";
+import { connected, me, restarted, session, state } from "../store.js";
 
 const LOST = embedded === null ? "connection lost; trying again …" : "the kernel does not answer any more: run the cell again";
+const RESTARTED = embedded === null ? "the workbench was started again: open the address that it printed" : LOST;
 const BAD = ["busy", "halted", "failed", "lost", "unloadable"];
 
 /** Returns the number of pages that show the run, and who sent the last command. */
@@ -34,7 +35,7 @@ export function StatusLine() {
     </span>
     ${embedded === null ? html`<${Share} />` : null}
     <span id="connection" class=${connected.value === false ? "bad" : ""}>
-      ${connected.value === false ? LOST : connected.value ? "connected" : "connecting …"}
+      ${connected.value === false ? (restarted.value ? RESTARTED : LOST) : connected.value ? "connected" : "connecting …"}
     </span>
   </footer>`;
 }
