@@ -456,7 +456,7 @@ class Person(ACTR):
         """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees], with free depth behind it [m].
 
         It keeps its course in the last step. Before that, it waits for what comes as near to the doorway as the walker is, not for what
-        stands there. Something before the doorway, not its sides, has a depth below 0. Each step that it comes nearer renews the patience.
+        does not move. Something before the doorway, not its sides, has a depth below 0. Each step that it comes nearer renews the patience.
         """
         now, waits = self.now(), self.b_goal["do"] == "wait"
         obstructed = self.obstacle is not None and now - self.obstacle[2] < FORGET and self.obstacle[0] < far - BEFORE

@@ -40,7 +40,7 @@ def passability_judgement() -> Design:
         derive=aperture_of,
         results=judgement,
         measures=[
-            Measured(name="judged", meaning="How the walker judged that it can pass: as it is, turned, or not at all."),
+            Measured(name="judged", meaning="How the walker judged that it can pass: «as it is» (not turned), «turned», or «not at all»."),
             Measured(name="passable", meaning="Whether it judged that it can pass without turning."),
             Measured(name="time_s", unit="s", meaning="The simulated time of the judgement."),
         ],
