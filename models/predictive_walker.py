@@ -459,10 +459,12 @@ class Person(ACTR):
         does not move. Something before the doorway, not its sides, has a depth below 0. Each step that it comes nearer renews the patience.
         """
         now, waits = self.now(), self.b_goal["do"] == "wait"
-        obstructed = self.obstacle is not None and now - self.obstacle[2] < FORGET and self.obstacle[0] < far - BEFORE
-        if obstructed and self.obstacle[3] not in (self.b_door["left"], self.b_door["right"]):
-            distance, direction, *_ = self.obstacle
-            if abs(distance * sin(direction - radians(left))) < float(self.b_door["width"]) / 2:
+        obstructed = False
+        if self.obstacle is not None:
+            distance, direction, noticed, what = self.obstacle
+            obstructed = now - noticed < FORGET and distance < far - BEFORE
+            before = abs(distance * sin(direction - radians(left))) < float(self.b_door["width"]) / 2
+            if obstructed and before and what not in (self.b_door["left"], self.b_door["right"]):
                 deep = distance - far
         comes = False
         if far < YIELD * self.step and deep < far:
@@ -484,7 +486,6 @@ class Person(ACTR):
         aside = atan2(far * sin(radians(left)) - self.middle, far * cos(radians(left)))
         pull = ATTRACTION * aside * (exp(-NEARNESS * far) + MIN_ATTRACTION)
         if obstructed:
-            distance, direction, *_ = self.obstacle
             pull -= REPULSION * direction * exp(-NARROWNESS * abs(direction)) * exp(-REACH * distance)
         self.rate += (pull - DAMPING * self.rate) * elapsed + self.random.gauss(0, HEADING_NOISE * sqrt(elapsed))
         self.head(self.rate)
