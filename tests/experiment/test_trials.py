@@ -174,7 +174,7 @@ def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:
     assert worker.stdout.readline() == b"ready\n"
 
     def children() -> list[str]:
-        return subprocess.run(["pgrep", "-P", str(worker.pid)], capture_output=True, text=True).stdout.split()
+        return subprocess.run(["pgrep", "-P", str(worker.pid), "-f", "trial_process"], capture_output=True, text=True).stdout.split()
 
     deadline = time.monotonic() + 60
     while not (found := children()) and time.monotonic() < deadline:
