@@ -227,6 +227,9 @@ function update() {
   }
 }
 
+/** Functions that send what waits for an earlier answer; it is sent before any other command. */
+export const heldBack = new Set();
+
 /** Sends a command or a question; returns its result, or throws an Error with the reason. */
 export function say(what) {
   return new Promise((resolve, reject) => {
@@ -234,6 +237,7 @@ export function say(what) {
       reject(new Error(shown === null ? "no run is shown" : "there is no connection to the workbench"));
       return;
     }
+    for (const send of heldBack) send();
     number += 1;
     waiting.set(number, { resolve, reject });
     socket.send(JSON.stringify({ id: number, command: what }));

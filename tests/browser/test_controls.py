@@ -402,3 +402,32 @@ def test_a_value_of_a_parameter_that_has_another_name_now_is_left_out_by_a_resta
 
 def renamed(source: str) -> str:
     return source.replace("    width: Annotated", "    gap: Annotated").replace("parameters.width", "parameters.gap")
+
+
+AT_ONCE = """async () => {
+  const { optimistic } = await part("parts/optimistic_value.js");
+  const { order } = await part("server.js");
+  const { state } = await part("store.js");
+  const { send } = WebSocket.prototype;
+  const sent = [];
+  WebSocket.prototype.send = function (text) {
+    const { command } = JSON.parse(text);
+    if (command) sent.push(command.values?.[0] ?? command.type);
+    send.call(this, text);
+  };
+  const shown = () => Math.round(100 * state.value.apertures.aperture);
+  const width = optimistic(shown, (value) => ({ type: "command", word: "aperture", values: [value / 100], named: { name: "aperture" } }));
+  for (const value of [60, 70, 80]) width.set(value);
+  order({ type: "step" });
+  const before = [...sent];
+  for (let n = 0; n < 1000 && !(shown() === 80 && state.value.tick === 1); n += 1) await new Promise((done) => setTimeout(done, 10));
+  WebSocket.prototype.send = send;
+  return { before, sent: sent.filter((what) => typeof what === "number"), shown: width.value.value };
+}"""
+
+
+def test_what_was_set_last_is_sent_before_the_next_command(page: Page) -> None:
+    """Also if an earlier value is not confirmed yet: a run never begins with a value that the page does not show."""
+    shows(page, "#status", "at its start")
+    found = page.evaluate(AT_ONCE)
+    assert found == {"before": [0.6, 0.8, "step"], "sent": [0.6, 0.8], "shown": 80}
