@@ -495,14 +495,23 @@ HIDDEN = """([hidden, name]) => new Promise((done) => {
 
 
 def part_seen(page: Page, frame: Frame, body: str) -> float:
-    """Returns how large the part of the picture is that changes where a body is not drawn."""
+    """Returns how large the part of the picture is that changes where a body is not drawn, once nothing else moves in it."""
     pictures: list[Any] = []
-    for hidden in (False, True, False):
-        frame.evaluate(HIDDEN, [hidden, body])
-        drawn(page)
-        with Image.open(BytesIO(page.locator("#scene iframe").screenshot())) as picture:
-            pictures.append(np.asarray(picture.convert("RGB"), dtype=int))
-    return float((np.abs(pictures[0] - pictures[1]).max(axis=2) > 12).mean())
+
+    def changed(one: int, other: int) -> float:
+        return float((np.abs(pictures[one] - pictures[other]).max(axis=2) > 12).mean())
+
+    def rests() -> bool:
+        pictures.clear()
+        for hidden in (False, True, False):
+            frame.evaluate(HIDDEN, [hidden, body])
+            drawn(page)
+            with Image.open(BytesIO(page.locator("#scene iframe").screenshot())) as picture:
+                pictures.append(np.asarray(picture.convert("RGB"), dtype=int))
+        return changed(0, 2) < 0.001
+
+    until(page, rests)
+    return changed(0, 1)
 
 
 @pytest.mark.slow
