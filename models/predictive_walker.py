@@ -463,8 +463,8 @@ class Person(ACTR):
         if self.obstacle is not None:
             distance, direction, noticed, what = self.obstacle
             obstructed = now - noticed < FORGET and distance < far - BEFORE
-            before = abs(distance * sin(direction - radians(left))) < float(self.b_door["width"]) / 2
-            if obstructed and before and what not in (self.b_door["left"], self.b_door["right"]):
+            in_front = abs(distance * sin(direction - radians(left))) < float(self.b_door["width"]) / 2
+            if obstructed and in_front and what not in (self.b_door["left"], self.b_door["right"]):
                 deep = distance - far
         comes = False
         if far < YIELD * self.step and deep < far:

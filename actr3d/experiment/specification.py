@@ -136,10 +136,8 @@ class Experiment:
         self.blueprint: Blueprint | None = None
         """Builds the model's simulations; None for a program."""
         if has_build(model.text):
-            from actr3d.runner.model_factory import Blueprint  # a program does without the world that this loads
-
             with RunLimits(), printing_to(ModelOutput(lambda _: None)):
-                self.blueprint = Blueprint(model.text, model.file, Path(model.file).parent, helpers or HelperTexts(model.helpers))
+                self.blueprint = load_blueprint(model, helpers or HelperTexts(model.helpers))
         self.parameters: tuple[Parameter, ...] = (
             self.blueprint.fields
             if self.blueprint is not None
@@ -307,6 +305,18 @@ def _model_of(of: Design, path: Path) -> Path:
         near = did_you_mean(of.model, [file.name for folder in (path.parent, library_models()) for file in folder.glob("*.py")])
         raise ExperimentError(f"{path}: Design.model: there is no file '{of.model}' beside it or among the library's models{near}")
     return beside if beside.exists() else shipped
+
+
+def load_blueprint(model: Source, helpers: HelperTexts) -> Blueprint:
+    """Loads a model file with a `build`.
+
+    Raises:
+        ModelFileError: If the file is not valid.
+        Exception: Any error that the file itself raises.
+    """
+    from actr3d.runner.model_factory import Blueprint  # a program does without the world that this loads
+
+    return Blueprint(model.text, model.file, Path(model.file).parent, helpers)
 
 
 def load_quietly(source: Source, helpers: HelperTexts | None = None) -> ModuleType:

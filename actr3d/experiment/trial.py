@@ -17,7 +17,7 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
 from actr3d.errors import DesignError, ExperimentError, did_you_mean
 from actr3d.experiment.design import LARGEST, OWN_COLUMNS, Measured, Trial, as_python
-from actr3d.experiment.specification import Experiment, naming_the_line
+from actr3d.experiment.specification import Experiment, load_blueprint, naming_the_line
 from actr3d.output import ModelOutput, printing_to
 from actr3d.parameter_schema import parameters_of
 from actr3d.runner.run import run_source
@@ -123,9 +123,8 @@ def _run(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> tuple[st
     """Runs a trial; returns what ended it, and all its measures."""
     design, model = experiment.design, experiment.specification.model
     limits, values = _limits(experiment, trial), parameters_for(experiment, trial)
-    folder = Path(model.file).parent
     if experiment.blueprint is None:
-        module = run_text(with_values(model.text, values), model.file, limits=limits, folder=folder, helpers=helpers)
+        module = run_text(with_values(model.text, values), model.file, limits=limits, folder=Path(model.file).parent, helpers=helpers)
         end = "limits" if limits.ended else "end"
         if design.results is not None:
             return end, design.results(module)
@@ -135,11 +134,9 @@ def _run(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> tuple[st
                 "the design more time (until), or a function `results` that knows what they are then"
             )
         return end, vars(module)
-    from actr3d.runner.model_factory import Blueprint  # a program does without the world that this loads
-
     with limits, shared_random(limits.program_seed):
         end = "limits"
-        simulation, _ = Blueprint(model.text, model.file, folder, helpers).build(values)
+        simulation, _ = load_blueprint(model, helpers).build(values)
         with suppress(EndOfRun):
             end = simulation.run().ended_by
         if design.results is not None:

@@ -25,8 +25,7 @@ export function optimistic(reported, command, send = order) {
 
   async function say() {
     const { id } = session.peek() ?? {};
-    for (let last = null; last !== answer || said !== wanted.peek(); ) {
-      if (id !== session.peek()?.id) break;
+    for (let last = null; id === session.peek()?.id && (last !== answer || said !== wanted.peek()); ) {
       sayNewest();
       last = answer;
       await last;
