@@ -71,6 +71,7 @@ def line_of(text: str, part: str) -> int:
     [
         ('skin.set("walk_to", 3, 1.5)', "no actuator 'walk_to'"),
         ('skin.set("walk", "fast")', "speed: must be a number"),
+        ('skin.set("heading", 40)', "did you mean 40 degrees"),
         ('skin.request("psoe")', "no sensor 'psoe'; did you mean 'pose'"),
         ('skin.get("view", azimuth=1)', "no field 'azimuth'"),
         ('motor.rotate("elbwo", 1)', "no jointed part 'elbwo'"),
