@@ -107,7 +107,7 @@ class SimulationRun(ControlledRun):
             self._recording = simulation.record(start.record, **facts)
             helpers.heard = partial(self._recording.fact, "helpers")  # an agent may import one later
         if start.recorded is not None:
-            self._known_run = known_run = KnownRun(Path(start.recorded), self._shown.kept.states.add)
+            self._known_run = known_run = KnownRun(Path(start.recorded), lambda _, *state: self._shown.kept.states.add(*state))
             if self._recording is not None:
                 for command in start.commands:
                     self._recording.command(*command)
