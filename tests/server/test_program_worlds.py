@@ -131,7 +131,7 @@ def test_an_opened_recording_has_the_curves_of_the_simulation_that_is_shown_to_i
     talk.say("run")
     talk.until("ended")
     curves = talk.say("curves", most=5_000)
-    opened = Talk(desk, desk.do(talk.sessions.reopen(talk.session.recording)), talk.sessions)
+    opened = Talk(desk, desk.do(talk.sessions.reopen(talk.session.recording or "")), talk.sessions)
     opened.until("paused", time=0)
     opened.say("until", time=0.12)
     opened.until("paused", time=0.12)
@@ -153,7 +153,7 @@ def test_what_a_recording_knew_is_forgotten_where_its_program_goes_another_way(d
     talk.until("ended")
     curves = talk.say("curves", most=5_000)["curves"]
     (tmp_path / "walking.txt").write_text("0.6", encoding="utf-8")
-    opened = Talk(desk, desk.do(talk.sessions.reopen(talk.session.recording)), talk.sessions)
+    opened = Talk(desk, desk.do(talk.sessions.reopen(talk.session.recording or "")), talk.sessions)
     opened.until("paused", time=0)
     opened.say("run")
     opened.until("ended")

@@ -19,6 +19,7 @@ from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.recording.reader import RecordedCommand
+from actr3d.recording.writer import State as RecordedState
 from actr3d.runner.facts import REACHED, program_facts
 from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.runner.program_changes import ProgramChanges
@@ -196,9 +197,9 @@ class ProgramRun(ControlledRun):
         if recorded is not None:
             ahead: dict[int, Past] = {}
 
-            def keep(run: int, tick: int, state: bytes, contacts: Contacts) -> None:
-                if run in ahead or len(ahead) < MAX_SIMULATIONS:
-                    ahead.setdefault(run, Past()).add(tick, state, contacts)
+            def keep(state: RecordedState) -> None:
+                if state.run in ahead or len(ahead) < MAX_SIMULATIONS:
+                    ahead.setdefault(state.run, Past()).add(state.tick, state.data, state.contacts)
 
             known_run = KnownRun(Path(recorded), keep)
             self._ahead = dict(enumerate(ahead.values(), 1))
