@@ -2,15 +2,20 @@
 // texts for the same status.
 
 import { computed } from "./vendor/preact.js";
-import { opening, session, state } from "./store.js";
+import { connected, opening, restarted, session, state } from "./store.js";
 import { embedded } from "./windows.js";
 
 const AGAIN = embedded === null ? "«Run again» starts it from the beginning." : "A cell can make it again.";
 const FIX = embedded === null ? "see Messages for the reason and the line. Fix it in the editor, then run it again." : "the cell shows the reason.";
+const RESTARTED =
+  embedded === null
+    ? "The workbench was started again: open the address that it printed. What this run has recorded is among the runs there."
+    : "The kernel does not answer any more: run the cell again.";
 const STOP = embedded === null ? "it answers after this step. Stop ends it." : "it answers after this step, or after the cell.";
 
 /** The states: `line` is a word or two, `text` describes the status and what to do. Both receive the result of `known`. */
 const STATUSES = {
+  restarted: { line: () => (embedded === null ? "stopped with the workbench" : "stopped with the kernel"), text: () => RESTARTED },
   none: { line: () => "no run", text: () => "No model is shown: choose one above." },
   loading: { line: loadingLine, text: () => opening.value?.text ?? "The model is being loaded …" },
   unloadable: { line: () => "the model cannot be loaded", text: () => `This model cannot be loaded: ${FIX}` },
@@ -47,6 +52,7 @@ function known() {
 }
 
 function nameOf({ alive, loading, kind, stuck, signal, status, furthest, ending }) {
+  if (connected.value === false && restarted.value) return "restarted";
   if (!session.value) return opening.value ? "loading" : "none";
   if (stuck && (alive || loading)) return signal ? "halted" : "busy";
   if (alive) return status === undefined ? "loading" : status === "paused" && furthest === 0 ? "ready" : status;
@@ -56,7 +62,7 @@ function nameOf({ alive, loading, kind, stuck, signal, status, furthest, ending 
 }
 
 /**
- * The status of the run: {is, line, text}. `is` means: no run is shown; it is loading; it cannot be loaded, see Messages; it is ready,
+ * The status of the run: {is, line, text}. `is` means: the workbench of the run was started again; no run is shown; it is loading; it cannot be loaded, see Messages; it is ready,
  * running, busy with something that does not end, halted by a signal, or paused; it has ended by itself; the model has failed; a user
  * has stopped it with its process; its process is lost.
  */
@@ -68,9 +74,9 @@ export const runStatus = computed(() => {
 
 const isOne = (names) => computed(() => names.includes(runStatus.value.is));
 /** Whether the run is over at the current moment. */
-export const isOver = isOne(["ended", "failed", "stopped", "lost"]);
+export const isOver = isOne(["ended", "failed", "stopped", "lost", "restarted"]);
 /** Whether the run can answer no questions, because it does not exist yet or any more. */
-export const isGone = isOne(["none", "loading", "unloadable", "stopped", "lost"]);
+export const isGone = isOne(["none", "loading", "unloadable", "stopped", "lost", "restarted"]);
 /** Whether there is no agent to inspect: no run is known, or its program has not created one. */
 export const isBare = computed(() => state.value === null || (session.value?.kind === "program" && !session.value.world && Object.keys(state.value.parts).length === 0));
 

@@ -39,7 +39,7 @@ def is_being_built() -> bool:
 def no_manual() -> str:
     """Returns the answer for a user who asks for the manual while there is none."""
     if is_being_built():
-        return "The manual is being built. Load this page again in half a minute."
+        return "The manual is being built: try again in half a minute."
     return "The manual has not been built. In a copy of the repository: uv run mkdocs build"
 
 

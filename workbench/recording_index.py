@@ -48,6 +48,9 @@ class Summary:
     """For a branch: the time at which the past of its run was changed [s]."""
     origin: str | None = None
     """For a branch: the recording that has the other way of its run."""
+    ancestors: tuple[tuple[str, float], ...] = ()
+    """For a branch: the recordings from which its origin comes, the nearest first, and when the way of the one before left each [s]. Any
+    of them may have been deleted since."""
     kept: float | None = None
     """For a copy of what lay ahead of a run when its past was changed: when that was [s since 1970]."""
     ended: str | None = None
@@ -126,6 +129,7 @@ def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
         different=_different(parameters, facts.get("sources", {}).get(file, "")),
         branched=facts.get("branched"),
         origin=facts.get("origin"),
+        ancestors=tuple((str(name), float(time)) for name, time in facts.get("ancestors", ())),
         kept=None if branched_at(path) is None else written(path),
         ended=None if ended is None else str(ended["by"]),
         failed=None if facts.get("failed") is None else str(facts["failed"]),

@@ -14,7 +14,7 @@ from pydantic import Field
 
 from actr3d.values import escape_surrogates
 from workbench.about import about_of
-from workbench.built_manual import manual, manual_page
+from workbench.built_manual import manual, manual_page, no_manual
 from workbench.files import ModelFile
 from workbench.loader import listing_of, outline_of, undefined_in
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
@@ -90,10 +90,11 @@ def sessions_of(request: Request) -> Sessions:
 
 @router.get("/models")
 def models(request: Request) -> dict[str, Any]:
-    """Lists the model files; none of them is executed. `manual` says whether the manual is there."""
+    """Lists the model files; none of them is executed. `manual` says whether the manual is there, `no_manual` how to get it if not."""
     folder = sessions_of(request).folder
     files = [{"path": escape_surrogates(path), **vars(outline_of(folder.root / path))} for path in folder.paths()]
-    return {"folder": escape_surrogates(str(folder.root)), "models": files, "manual": manual() is not None}
+    missing = no_manual() if manual() is None else None
+    return {"folder": escape_surrogates(str(folder.root)), "models": files, "manual": missing is None, "no_manual": missing}
 
 
 @router.get("/model")

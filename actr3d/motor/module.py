@@ -19,6 +19,7 @@ from actr3d.motor.checks import check_patterns
 from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, Freedom, Limbs
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Order, Step, Turn, Walk, gait
 from actr3d.motor.schema import BodySchema
+from actr3d.world.actuators.motion import MOST_TURNS
 from actr3d.world.command_registry import known, number
 from actr3d.world.sensors.anatomy import BodyPlan
 from actr3d.world.sensors.proprioception import Proprioception
@@ -183,7 +184,7 @@ class Motor(WithParameters, Port):
         Raises:
             WorldError: If a value is not a number, or the body cannot walk.
         """
-        by = None if angle is None else radians(number(angle, "turn: angle"))
+        by = None if angle is None else radians(number(angle, "turn: angle", -360 * MOST_TURNS, 360 * MOST_TURNS))
         ends = by is None and speed is not None and number(speed, "turn: speed") == 0
         rate = 0.0 if ends else radians(self._speed("turn", speed, by is not None))
         self._command(partial(self._turn, by, rate), "turn", angle=angle, speed=speed)

@@ -44,6 +44,13 @@ def _ended(value: Any) -> bool:
     return value is None or (isinstance(value, dict) and isinstance(cast("dict[str, Any]", value).get("by"), str))
 
 
+def _ancestors(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) and all(
+        isinstance(one, (list, tuple)) and len(cast("list[Any]", one)) == 2 and isinstance(one[0], str) and _number(one[1])
+        for one in cast("list[Any]", value)
+    )
+
+
 _TEXT = _Kind("a text", lambda value: isinstance(value, str))
 _TEXTS = _Kind("texts by their names, without NUL characters", _texts)
 _SEED = _Kind("a whole number or a text", lambda value: isinstance(value, str) or type(value) is int)
@@ -71,6 +78,7 @@ _KINDS = {
     "whole": _Kind("true, or null", lambda value: value is True or value is None),
     "branched": _Kind("a number >= 0, or null", lambda value: value is None or _number(value)),
     "origin": _TEXT,
+    "ancestors": _Kind("pairs of a text and a number >= 0", _ancestors),
     "reached": _Kind("a number >= 0", _number),
 }
 """The facts that this library or the workbench reads; other facts may have any values."""

@@ -12,9 +12,9 @@ END = ("failed", "ended", "whole")
 """The facts of how a run ended."""
 CHECKED_BEFORE = frozenset({"form", "versions"})
 """Facts that are not compared here: a file of another format is not opened, and other versions are refused or allowed before the run."""
-UNCHECKED = frozenset({"branched", "origin"})
-"""Facts that running a recording again cannot show: when a user of the workbench made another way of a run (`branched`), and which
-recording has the other one (`origin`)."""
+UNCHECKED = frozenset({"branched", "origin", "ancestors"})
+"""Facts that running a recording again cannot show: when a user of the workbench made another way of a run (`branched`), which
+recording has the other one (`origin`), and from which that comes, with the time at which each left the next (`ancestors`)."""
 REACHED = "reached"
 """The time that the runs of a program have reached together in the workbench [s]: after the last event, it shows nowhere else. It is not
 compared, because the command line does not record it."""

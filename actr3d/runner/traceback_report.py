@@ -8,6 +8,7 @@ import traceback
 from dataclasses import dataclass
 from pathlib import Path
 
+from actr3d.actr.kernel.parameters import elsewhere
 from actr3d.actr.loading.python2 import PYTHON_2_NAMES
 from actr3d.errors import Actr3dError, ModelFileError, hint_for
 from actr3d.warnings import is_generated, is_library
@@ -62,7 +63,9 @@ def traceback_report(error: BaseException, hidden: str | None = None) -> Traceba
 
 
 def _hint(error: BaseException, message: str) -> str:
-    """Returns `"; did you mean 'x'?"` for a name that nothing defines; an empty string if Python has a hint itself, or there is none."""
+    """Returns a hint such as `"; did you mean 'x'?"` for a name that nothing defines; an empty string if Python has one itself, or none."""
+    if isinstance(error, AttributeError):
+        return elsewhere(error.obj)
     if not isinstance(error, NameError) or not str(error) or error.__traceback__ is None or "id you mean" in message:
         return ""
     *_, (frame, _) = traceback.walk_tb(error.__traceback__)

@@ -206,7 +206,7 @@ class Vision(WithParameters, Searching):
             WorldError: If one of them is not a number.
             SimulationError: If the agent has no body.
         """
-        angles = (number(value, f"vision '{self._path}': gaze: {name}") for name, value in (("left", left), ("up", up)))
+        angles = (number(value, f"vision '{self._path}': gaze: {name}", -360, 360) for name, value in (("left", left), ("up", up)))
         self._send_command("gaze", *map(math.radians, angles))
 
     def _ask_bottom_up(self, query: Query) -> Search:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection
 from typing import Any, Generic, TypeVar, get_type_hints
 
 from actr3d.errors import WorldError, did_you_mean, followed
+from actr3d.world.frames import FULL_TURN
 
 B = TypeVar("B")
 """The type that the functions are for: `Body`."""
@@ -135,6 +136,20 @@ def number(value: Any, what: str, least: float = -math.inf, most: float = math.i
     if not least <= given <= most:
         bound = f">= {least:g}" if given < least else f"<= {most:g}"
         raise WorldError(f"{what}: must be {bound} (got {value!r})")
+    return given
+
+
+def checked_angle(value: Any, what: str, turns: int = 1) -> float:
+    """Returns an angle [rad] of at most so many full turns to either side: a greater number is one of degrees.
+
+    Raises:
+        WorldError: If it is none.
+    """
+    given = number(value, what)
+    if abs(given) > turns * FULL_TURN:
+        bound = f"{'<=' if given > 0 else '>='} {math.copysign(turns * FULL_TURN, given):g} rad"
+        full = "a full turn" if turns == 1 else f"{turns} full turns"
+        raise WorldError(f"{what}: must be {bound}, {full} (got {value!r}); did you mean {given:g} degrees, math.radians({given:g})?")
     return given
 
 

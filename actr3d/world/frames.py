@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 Frame = tuple[NDArray[np.float64], NDArray[np.float64]]
 """The origin (3,) [m] and the axes as columns (3, 3), both in the world's frame: a vector v of the world is `v @ axes` in this frame."""
 
+FULL_TURN = 2 * math.pi
+"""[rad]"""
+
 WORLD_FRAME: Frame = (np.zeros(3), np.eye(3))
 
 

@@ -19,7 +19,7 @@ from actr3d.warnings import warn_modeller
 from actr3d.world.asset_folder import Files, Folder, digest, resolved
 from actr3d.world.mesh import UNSEEN, Quaternion, orientation
 from actr3d.world.mjcf_rewrite import Document, read_imported
-from actr3d.world.scene_objects import Name
+from actr3d.world.scene_objects import Heading, Name
 
 HIDDEN_GROUP = 3
 """First geom group that MuJoCo's viewers do not draw: files use it for geoms with contacts only."""
@@ -55,7 +55,7 @@ class Imported(Configuration):
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Its origin at the start, (x, y, z) [m]."""
 
-    heading: float = 0.0
+    heading: Heading = 0.0
     """Its rotation about the vertical at the start [rad]."""
 
     quaternion: Quaternion | None = None

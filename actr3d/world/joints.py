@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from mujoco import MjModel, mjtTrn
+from mujoco import MjModel, mjtJoint, mjtTrn
 
 from actr3d.world.physics import Physics
 
@@ -26,6 +26,8 @@ class Joint:
     def __init__(self, physics: Physics, number: int, name: str) -> None:
         model, data = physics.mj_model, physics.mj_data
         self.name = name
+        self.turns: bool = model.jnt_type[number] == int(mjtJoint.mjJNT_HINGE)
+        """Whether it is a hinge, not a slide."""
         self.number = number
         """MuJoCo's number of the joint."""
         limited = bool(model.jnt_limited[number])

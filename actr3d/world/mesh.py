@@ -20,7 +20,7 @@ from actr3d.world.asset_folder import Files, Folder, digest
 from actr3d.world.convex_decomposition import convex_parts
 from actr3d.world.mesh_loading import Triangles, read_triangles
 from actr3d.world.mesh_repair import Surface, check_extent, surface
-from actr3d.world.scene_objects import WALL_SOLREF, Colour, Length, Name, yaw_quaternion
+from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Name, yaw_quaternion
 
 Quaternion = tuple[float, float, float, float]
 
@@ -72,7 +72,7 @@ class Mesh(Configuration):
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Position of the file's origin at the start, (x, y, z) [m]."""
 
-    heading: float = 0.0
+    heading: Heading = 0.0
     """Its rotation about the vertical at the start [rad]."""
 
     quaternion: Quaternion | None = None

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from actr3d.errors import WorldError, alternatives
 from actr3d.world.body import Body
-from actr3d.world.command_registry import number
+from actr3d.world.command_registry import checked_angle, number
+from actr3d.world.frames import FULL_TURN
 from actr3d.world.physics import Physics
 from actr3d.world.scene_objects import yaw_quaternion
 
@@ -23,8 +24,8 @@ at less than 3 m/s, but fling away, or crush without bounds, what is deeper. Sou
 FARTHEST = 10_000.0
 """Greatest coordinate of a place [m]: there, the numbers of 32 bits with which scenes are drawn still distinguish millimetres."""
 
-MAX_TURN = 1_000.0
-"""Greatest heading [rad]: more than a body ever turns. Source: chosen for this library."""
+MAX_TURN = FULL_TURN
+"""Greatest heading [rad]: a greater number is one of degrees."""
 
 MAX_FORCE = 1e5
 """Greatest force of a push along an axis [N]. Source: chosen for this library."""
@@ -255,7 +256,7 @@ def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, 
         WorldError: If a value is not a number, or out of bounds.
     """
     x, y = number(x, f"{what}: x", -FARTHEST, FARTHEST), number(y, f"{what}: y", -FARTHEST, FARTHEST)
-    return x, y, None if heading is None else number(heading, f"{what}: heading", -MAX_TURN, MAX_TURN)
+    return x, y, None if heading is None else checked_angle(heading, f"{what}: heading")
 
 
 def deeper(before: Mapping[str, float], after: Mapping[str, float]) -> list[str]:

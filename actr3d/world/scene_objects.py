@@ -7,14 +7,16 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, MinLen
+from annotated_types import Ge, Gt, Le, MinLen
 from mujoco import MjModel, MjSpec, mjtGeom
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
+from actr3d.world.frames import FULL_TURN
 
 Name = Annotated[str, MinLen(1)]
 Length = Annotated[float, Gt(0)]
+Heading = Annotated[float, Ge(-FULL_TURN), Le(FULL_TURN)]
 Colour = tuple[float, float, float, float]
 
 SHAPES = {
@@ -128,7 +130,7 @@ class Aperture(Configuration):
     position: tuple[float, float] = (7.0, 0.0)
     """The middle of the gap on the floor, (x, y) [m]. Source of the default: 7 m of approach, as in the original (docs/human-data.md)."""
 
-    heading: float = 0.0
+    heading: Heading = 0.0
     """The direction in which one walks through it [rad], 0 along x."""
 
     closing: Annotated[float, Ge(0)] = 0.0
@@ -245,7 +247,7 @@ class Loose(Configuration):
     position: tuple[float, float, float] = (2.0, 0.0, 0.5)
     """Its centre at the start, (x, y, z) [m]."""
 
-    heading: float = 0.0
+    heading: Heading = 0.0
     """Its rotation about the vertical at the start [rad]."""
 
     mass: Length | None = 1.0

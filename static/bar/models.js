@@ -20,6 +20,8 @@ function shortName(path) {
 export const folder = signal("");
 /** Whether the manual is there. */
 export const hasManual = signal(false);
+/** How to get the manual; null if it is there, or before this is known. */
+export const noManual = signal(null);
 /** The model that is shown. */
 export const model = signal(null);
 
@@ -36,6 +38,7 @@ export async function listModels() {
   folder.value = listing.folder;
   models.value = listing.models;
   hasManual.value = listing.manual;
+  noManual.value = listing.no_manual;
 }
 
 /** Shows a model. */

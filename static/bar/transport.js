@@ -62,7 +62,7 @@ const shownButtons = BUTTONS.filter(({ id }) => embedded === null || !OF_MODELS.
 /** Whether a button is disabled; its key is then disabled too. */
 function isIdle(id) {
   const { alive, loading } = session.value ?? {};
-  if (!session.value || (embedded !== null && OF_MODELS.includes(id))) return true;
+  if (!session.value || runStatus.value.is === "restarted" || (embedded !== null && OF_MODELS.includes(id))) return true;
   if (id === "run") return embedded === null ? loading && !isRestarting() : !alive;
   if (id === "stop") return !alive && !loading;
   if (id === "back") return !alive || !state.value?.time;

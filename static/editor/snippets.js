@@ -21,6 +21,13 @@ export const SNIPPETS = [
     needs: [ACTR],
     source: "${retrieval} = Buffer()\n${memory} = Memory(${retrieval})\n",
   },
+  {
+    label: "vision",
+    detail: "vision with the eye of a body, and its buffer",
+    needs: [ACTR, "from actr3d.vision import Vision"],
+    source: "${visual} = Buffer()\n${vision} = Vision(${visual})\n",
+  },
+  { label: "motor", detail: "motor control of a body", needs: [ACTR, "from actr3d.motor import Motor"], source: "${motor} = Motor()\n" },
   { label: "body", detail: "an agent with a body in a world", needs: BODY.imports, source: BODY.source, whole: true },
   {
     label: "detector",

@@ -5,7 +5,7 @@ import { KEY_GROUPS, keyText } from "../keys.js";
 import { remembered } from "../local_storage.js";
 import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { match } from "./fuzzy.js";
-import { hasManual } from "../bar/models.js";
+import { hasManual, noManual } from "../bar/models.js";
 import { inManual, readManual } from "./manual_search.js";
 import { readRecordings } from "./recordings.js";
 
@@ -141,6 +141,7 @@ function Palette({ opening }) {
     </ul>
     <p class="palette-refusal" role="status">${refusal.value}</p>
     ${entries.length === 0 ? html`<p class="empty">Nothing is found: try other words.</p>` : null}
+    ${search.value.trim() && noManual.value ? html`<p class="palette-manual quiet">${noManual.value}</p>` : null}
   </dialog>`;
 }
 

@@ -21,51 +21,59 @@ import { span } from "./view.js";
 
 const open = remembered("branches open", true);
 
-/** Returns a function from a run of the list to the run from which it branches; undefined for one that is no branch.
+/** Returns a function from a run of the list to it and all from which it comes, one after the other: [{id, run, left}]. `run` is undefined for
+ * a recording that was deleted; `left` is when the first went another way [s].
  *
  * What lay ahead of a run is kept when its past is changed. If that happens again later, at an earlier time, the former copy follows the new
  * one, which has the run's way until then. */
-function parents(list) {
+function lines(list) {
   const known = new Map(list.map((run) => [run.id, run]));
   const copies = Map.groupBy(list.filter(({ kept }) => kept !== null), (run) => run.origin);
   const later = (run) => (copies.get(run.origin) ?? []).filter((other) => other.kept > run.kept && other.branched < run.branched);
   const first = (list) => list.toSorted((one, other) => one.kept - other.kept)[0];
-  return (run) => (run.kept === null ? undefined : first(later(run))) ?? (run.origin === run.id ? undefined : known.get(run.origin));
-}
-
-/** Returns a run and all from which it branches, one after the other. */
-function lineOf(run, parentOf) {
-  const line = [];
-  for (let one = run; one && !line.includes(one); one = parentOf(one)) line.push(one);
-  return line;
-}
-
-/** Returns the tree that a recording is in, as rows with their depth: a branch follows that from which it comes. */
-export function treeOf(list, id) {
-  const parentOf = parents(list);
-  const root = lineOf(list.find((run) => run.id === id), parentOf).at(-1);
-  if (!root) return [];
-  const below = Map.groupBy(list.filter((run) => parentOf(run)), (run) => parentOf(run).id);
-  const rows = [];
-  const done = new Set();
-  const add = (run, depth) => {
-    if (done.has(run.id)) return;
-    done.add(run.id);
-    rows.push({ run, depth });
-    for (const child of (below.get(run.id) ?? []).toSorted((one, other) => (one.branched ?? 0) - (other.branched ?? 0) || one.made - other.made)) add(child, depth + 1);
+  const stepsOf = (run) => {
+    const copy = run.kept === null ? undefined : first(later(run));
+    if (copy) return [[copy.id, run.branched]];
+    return run.origin === null || run.branched === null ? [] : [[run.origin, run.branched], ...run.ancestors];
   };
-  add(root, 0);
-  return rows;
+  return (begin) => {
+    const line = [{ id: begin.id, run: begin, left: Infinity }];
+    let steps = stepsOf(begin);
+    while (steps.length > 0) {
+      const [[id, at], ...others] = steps;
+      if (line.some((one) => one.id === id)) break;
+      const run = known.get(id);
+      line.push({ id, run, left: Math.min(line.at(-1).left, at) });
+      steps = run ? stepsOf(run) : others;
+    }
+    return line;
+  };
+}
+
+/** Returns the tree that a recording is in, as rows with their depth: a branch follows the nearest recording from which it comes; those that
+ * come from one that was deleted are side by side. */
+export function treeOf(list, id) {
+  const lineOf = lines(list);
+  const rootOf = (run) => lineOf(run).at(-1).id;
+  const mine = list.find((run) => run.id === id);
+  if (!mine) return [];
+  const root = rootOf(mine);
+  const below = Map.groupBy(list.filter((run) => rootOf(run) === root), (run) => lineOf(run).slice(1).find((one) => one.run)?.id ?? null);
+  const rowsBelow = (id, depth) =>
+    (below.get(id) ?? [])
+      .toSorted((one, other) => (one.branched ?? 0) - (other.branched ?? 0) || one.made - other.made)
+      .flatMap((run) => [{ run, depth }, ...rowsBelow(run.id, depth + 1)]);
+  return rowsBelow(null, 0);
 }
 
 /** Returns until when two runs of a tree are the same [s]; null if they are not in one. */
 export function sameUntil(list, one, other) {
-  const parentOf = parents(list);
-  const lines = [one, other].map((id) => lineOf(list.find((run) => run.id === id), parentOf));
-  const shared = lines[0].find((run) => lines[1].includes(run));
+  const lineOf = lines(list);
+  const [mine, its] = [one, other].map((id) => lineOf(list.find((run) => run.id === id)));
+  const shared = mine.find(({ id }) => its.some((each) => each.id === id));
   if (!shared) return null;
-  const moments = lines.flatMap((line) => line.slice(0, line.indexOf(shared))).map(({ branched }) => branched ?? 0);
-  return moments.length > 0 ? Math.min(...moments) : null;
+  const moment = Math.min(shared.left, its.find(({ id }) => id === shared.id).left);
+  return moment === Infinity ? null : moment;
 }
 
 const tree = computed(() => treeOf(runs.value ?? [], shown.value));

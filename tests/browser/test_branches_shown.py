@@ -28,6 +28,29 @@ def change_the_past(page: Page) -> None:
     shows(page, "#status", r"changed at 0\.50 s")
 
 
+TREES = """async () => {
+  const { treeOf, sameUntil } = await part("timeline/branches.js");
+  const run = (id, origin = null, branched = null, ancestors = []) => ({ id, origin, branched, ancestors, kept: null, made: 0 });
+  const all = [run("a"), run("b", "a", 3), run("c", "b", 5, [["a", 3]]), run("d", "c", 2, [["b", 5], ["a", 3]]), run("other")];
+  return ["", "b", "c", "a", "ab"].map((gone) => {
+    const left = all.filter(({ id }) => !gone.includes(id));
+    return [treeOf(left, "d").map(({ run, depth }) => `${depth}${run.id}`).join(" "), sameUntil(left, "d", gone.includes("b") ? "c" : "b")];
+  });
+}"""
+
+
+def test_a_branch_below_a_deleted_recording_follows_the_nearest_one_that_it_comes_from(page: Page) -> None:
+    trees = [["0a 1b 2c 3d", 2], ["0a 1c 2d", 2], ["0a 1b 2d", 2], ["0b 1c 2d", 2], ["0c 1d", 2]]
+    assert page.evaluate(TREES) == trees
+    siblings = """async () => {
+      const { treeOf, sameUntil } = await part("timeline/branches.js");
+      const run = (id, at) => ({ id, origin: "gone", branched: at, ancestors: [], kept: null, made: 0 });
+      const both = [run("e", 4), run("f", 2)];
+      return [treeOf(both, "e").map(({ run, depth }) => depth + run.id), sameUntil(both, "e", "f")];
+    }"""
+    assert page.evaluate(siblings) == [["0f", "0e"], 2]
+
+
 @pytest.mark.slow
 def test_a_branch_is_deleted_by_its_name_and_its_notice_goes_with_it(page: Page) -> None:
     shows(page, "#status", "at its start")

@@ -161,7 +161,15 @@ def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[st
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "piece", ["an agent with a production", "a production", "a declarative memory and its buffer", "an agent with a body", "a design of"]
+    "piece",
+    [
+        "an agent with a production",
+        "a production",
+        "a declarative memory and its buffer",
+        "vision with",
+        "an agent with a body",
+        "a design of",
+    ],
 )
 def test_pieces_are_inserted_where_they_may_stand(opened: Callable[[str], Page], workbench: Served, piece: str) -> None:
     page = opened(SHORT)

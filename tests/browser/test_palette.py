@@ -127,11 +127,13 @@ def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Cal
     built: list[bool] = []
     page = pages("counting.py")
     shows(page, "#status", "at its start")
-    page.context.route("**/api/models", lambda route: route.fulfill(json={**answer_to(route).json(), "manual": bool(built)}))
+    missing = "The manual has not been built. In a copy of the repository: uv run mkdocs build"
+    listing = {False: {"manual": False, "no_manual": missing}, True: {"manual": True, "no_manual": None}}
+    page.context.route("**/api/models", lambda route: route.fulfill(json={**answer_to(route).json(), **listing[bool(built)]}))
     page.reload()
     shows(page, "#status", "at its start")
     search(page, "time chunk")
-    expect(page.get_by_role("dialog")).to_contain_text("Nothing is found")
+    expect(page.get_by_role("dialog")).to_contain_text(f"Nothing is found: try other words.{missing}")
     expect(page.get_by_role("group", name="Manual")).to_have_count(0)
     page.keyboard.press("Escape")
     page.context.route("**/manual/**", lambda route: route.fulfill(body=json.dumps(INDEX), content_type="application/json"))
@@ -139,6 +141,7 @@ def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Cal
     search(page, "time chunk")
     found = page.get_by_role("group", name="Manual").get_by_role("option")
     expect(found).to_have_text(["ChunksMemory: alert(1) Time and chunks."])
+    expect(page.get_by_role("dialog")).not_to_contain_text(missing)
     page.keyboard.press("Control+a")
     page.keyboard.insert_text("where time goes")
     expect(found).to_have_text(["Profile a modelIt says where time goes."])

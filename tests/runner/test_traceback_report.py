@@ -71,6 +71,7 @@ def line_of(text: str, part: str) -> int:
     [
         ('skin.set("walk_to", 3, 1.5)', "no actuator 'walk_to'"),
         ('skin.set("walk", "fast")', "speed: must be a number"),
+        ('skin.set("heading", 40)', "did you mean 40 degrees"),
         ('skin.request("psoe")', "no sensor 'psoe'; did you mean 'pose'"),
         ('skin.get("view", azimuth=1)', "no field 'azimuth'"),
         ('motor.rotate("elbwo", 1)', "no jointed part 'elbwo'"),
@@ -90,6 +91,23 @@ def test_an_unknown_name_is_reported_with_a_similar_one_that_names_the_same_kind
     report = traceback_report(caught.value)
     assert report.message == "NameError: name 'MemoryNoise' is not defined; did you mean 'DMNoise'?"
     assert report.text.endswith(f"\n{report.message}\n")
+
+
+@pytest.mark.parametrize(
+    ("statement", "message", "package"),
+    [
+        ("Vision(Buffer())", "Vision(visual, location): missing a required argument: 'location'", "vision"),
+        ("Vision(Buffer(), Buffer()).request('feature:obstacle')", "'Vision' object has no attribute 'request'", "vision"),
+        ("Motor().walk(1.2)", "'Motor' object has no attribute 'walk'", "motor"),
+    ],
+)
+def test_a_module_for_agents_without_a_body_names_the_one_for_agents_with_a_body(statement: str, message: str, package: str) -> None:
+    with pytest.raises((AttributeError, Actr3dError)) as caught:
+        run_text(f"from actr3d.actr import *\n{statement}\n", "mine.py")
+    report = traceback_report(caught.value)
+    kind = statement.partition("(")[0]
+    assert f"{message}; for an agent with a body: from actr3d.{package} import {kind}, after from actr3d.actr import *" in report.message
+    assert report.text.endswith(f"{report.message}\n")
 
 
 def test_a_wrong_request_is_reported_at_its_line_where_no_line_of_a_model_is_running() -> None:

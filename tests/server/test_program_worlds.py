@@ -125,6 +125,43 @@ def test_its_steps_are_ticks_and_what_it_was_is_shown_again_where_it_goes_back(d
     assert told(talk) == seen[0.01]
 
 
+@pytest.mark.parametrize("source", [ONE, TRIALS])
+def test_an_opened_recording_has_the_curves_of_the_simulation_that_is_shown_to_its_end(desk: Desk, tmp_path: Path, source: str) -> None:
+    talk = desk.begin(tmp_path, source, record=True)
+    talk.say("run")
+    talk.until("ended")
+    curves = talk.say("curves", most=5_000)
+    opened = Talk(desk, desk.do(talk.sessions.reopen(talk.session.recording or "")), talk.sessions)
+    opened.until("paused", time=0)
+    opened.say("until", time=0.12)
+    opened.until("paused", time=0.12)
+    known = opened.say("curves", most=5_000)
+    many = len(known["times"])
+    assert many == (151 if source is ONE else 41)
+    assert known["times"] == curves["times"][:many]
+    assert known["curves"] == {name: curves["curves"][name][:many] for name in known["curves"]}
+    opened.say("run")
+    opened.until("ended")
+    assert opened.say("curves", most=5_000) == curves
+
+
+def test_what_a_recording_knew_is_forgotten_where_its_program_goes_another_way(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / "walking.txt").write_text("1.2", encoding="utf-8")
+    source = ONE.replace('body.set("walk", 1.2)', f'body.set("walk", float(open({str(tmp_path / "walking.txt")!r}).read()))')
+    talk = desk.begin(tmp_path, source, record=True)
+    talk.say("run")
+    talk.until("ended")
+    curves = talk.say("curves", most=5_000)["curves"]
+    (tmp_path / "walking.txt").write_text("0.6", encoding="utf-8")
+    opened = Talk(desk, desk.do(talk.sessions.reopen(talk.session.recording or "")), talk.sessions)
+    opened.until("paused", time=0)
+    opened.say("run")
+    opened.until("ended")
+    now = opened.say("curves", most=5_000)["curves"]
+    assert now["walker x"][:15] == curves["walker x"][:15]
+    assert now["walker x"][-1] < 0.7 * curves["walker x"][-1]
+
+
 def test_a_program_stops_where_a_body_touches_something(desk: Desk, tmp_path: Path) -> None:
     source = ONE.replace("Scene(parts=(", "Scene(parts=(Wall(name='w', start=(0.6, -2), end=(0.6, 2)), ")
     talk = desk.begin(tmp_path, source.replace('goal.set("wait")', 'goal.set("wait")\n        body.set("walk", 1.2)'))

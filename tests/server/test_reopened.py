@@ -202,7 +202,11 @@ def test_what_runs_past_the_end_of_a_recording_is_kept_as_a_branch_of_it(desk: D
     assert unchanged.until("paused")["furthest"] == 0.3
     further = reopened(again, branch)
     assert (further.state["furthest"], whole(further)) == (0.5, events)
-    assert (talk.summary(branch).branched, talk.summary(branch).origin) == (0.3, name)
+    assert (talk.summary(branch).branched, talk.summary(branch).origin, talk.summary(branch).ancestors) == (0.3, name, ())
+    further.say("until", time=0.6)
+    further.until("paused", time=0.6)
+    last = talk.summary(further.session.recording or "")
+    assert (last.branched, last.origin, last.ancestors) == (0.5, branch, ((name, 0.3),))
 
 
 @pytest.mark.parametrize("ahead", [False, True], ids=["at its end", "in its past"])

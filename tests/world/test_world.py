@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from typing import Any
 
 import mujoco
 import numpy as np
 import pytest
 
 from actr3d.errors import Actr3dError, ConfigurationError, WorldError
-from actr3d.world import Aperture, Floor, ImportedBody, Loose, Mannequin, Scene, Track, Wall, World
+from actr3d.world import Aperture, Car, Floor, ImportedBody, Loose, Mannequin, Scene, Track, Wall, World
 from actr3d.world.scene_objects import SHAPES
 from tests.helpers.small_agents import near
 
@@ -246,3 +247,9 @@ def test_a_loose_object_has_a_least_size_and_mass() -> None:
         World(Scene(parts=(least,)))
     with pytest.raises(ConfigurationError, match=r"Loose 'o'.mass: must be >= 1e-06 kg \(got 1e-16\)"):
         Loose(name="o", mass=1e-16)
+
+
+@pytest.mark.parametrize("part", [Aperture, Car, Loose, Mannequin])
+def test_a_heading_in_degrees_is_refused(part: type[Any]) -> None:
+    with pytest.raises(ConfigurationError, match=r"heading: must be <= 6.28\d* \(got 40.0\)"):
+        part(name="turned", heading=40)

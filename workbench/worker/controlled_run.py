@@ -19,6 +19,8 @@ class ControlledRun(ABC):
     """A run that a controller controls."""
 
     _recording: Recording | None = None
+    ancestors: Sequence[Sequence[Any]] = ()
+    """The recordings from which the run comes, the nearest first, and when the way of the one before left each [s]."""
 
     @property
     @abstractmethod
@@ -148,9 +150,16 @@ class ControlledRun(ABC):
         if self._recording is not None:
             self._recording.flush()
 
-    def become_branch(self, recording: str, time: float) -> None:
-        """Records that the run has repeated another recording up to a time [s], and is a branch of it from then on."""
-        self._record(branched=time, origin=recording)
+    def become_branch(self, recording: str, time: float, before: Sequence[Sequence[Any]]) -> None:
+        """Records that the run has repeated another recording up to a time [s], and is a branch of it from then on.
+
+        Args:
+            recording: The name of the recording.
+            time: The time [s].
+            before: The recordings from which that one comes; see `ancestors`.
+        """
+        self.ancestors = [[recording, time], *before]
+        self._record(branched=time, origin=recording, ancestors=before)
         self.flush()
 
     def _record(self, **facts: Any) -> None:

@@ -47,7 +47,7 @@ class KeptBranch:
             raise SimulationError(f"{why}: {ahead} would be lost; go to its newest moment, or allow it with `drop`")
         path = new_branch(Path(self._start.record), self._at)
         try:
-            recording.copy_to(path, branched=self._at, origin=Path(self._start.record).stem)
+            recording.copy_to(path, branched=self._at, origin=Path(self._start.record).stem, ancestors=self._controller.run.ancestors)
         except Actr3dError as error:
             if drop:
                 return None

@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from actr3d.actr.kernel.run_limits import Contacts
 from actr3d.clock import microseconds, seconds
 from actr3d.recording import Recorded
+from actr3d.recording.writer import State as RecordedState
 from actr3d.runner.facts import REACHED
 from actr3d.trace import TraceEvent
 from workbench.program_time import events_both_ways
@@ -25,13 +25,13 @@ class KnownRun:
 
     Args:
         path: The recording.
-        keep: Called with each tick of a single simulation, the physics state at its end, and the contacts in it.
+        keep: Called with the physics state at the end of each tick.
 
     Raises:
         RecordingError: If the recording cannot be read.
     """
 
-    def __init__(self, path: Path, keep: Callable[[int, bytes, Contacts], object] | None = None) -> None:
+    def __init__(self, path: Path, keep: Callable[[RecordedState], object] | None = None) -> None:
         self._digests = array("q")
         """A hash of each event."""
         self.events: list[bytes] = []
@@ -45,7 +45,7 @@ class KnownRun:
                 self._take(event, timed)
             if keep is not None:
                 for state in recorded.states():
-                    keep(state.tick, state.data, state.contacts)
+                    keep(state)
         self.time = max(time, microseconds(self.facts.get(REACHED, 0)), self.ticks * self.facts.get("period_us", 0))
         """The duration of the recording, summed over all its runs [us]."""
 

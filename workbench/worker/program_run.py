@@ -19,6 +19,7 @@ from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.recording.reader import RecordedCommand
+from actr3d.recording.writer import State as RecordedState
 from actr3d.runner.facts import REACHED, program_facts
 from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.runner.program_changes import ProgramChanges
@@ -39,6 +40,7 @@ from workbench.worker.names import Names, Top, names_of_program
 from workbench.worker.program_times import ProgramTimes
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.shown import Kept, Shown
+from workbench.worker.state_history import Past
 
 PERIOD = 10_000
 """The length of a step [us]: that of a tick of a simulation."""
@@ -156,6 +158,8 @@ class ProgramRun(ControlledRun):
         """The simulation that was shown last."""
         self._kept: dict[int, Kept] = {}
         """What is kept of the past of simulations, by number; it outlives that the program is run again."""
+        self._ahead: dict[int, Past] = {}
+        """By the number of a simulation that has not begun yet, its states in the recording that is run again."""
         self._commands = [RecordedCommand(*command) for command in start.commands]
         """The changes of users, which each pass through the program repeats."""
         self._changes = ProgramChanges(self._limits, self._commands)
@@ -191,9 +195,22 @@ class ProgramRun(ControlledRun):
         """Shows the whole timeline of a recorded run that is run again."""
         recorded = self._controller.channel.start.recorded
         if recorded is not None:
-            known_run = KnownRun(Path(recorded))
+            ahead: dict[int, Past] = {}
+
+            def keep(state: RecordedState) -> None:
+                if state.run in ahead or len(ahead) < MAX_SIMULATIONS:
+                    ahead.setdefault(state.run, Past()).add(state.tick, state.data, state.contacts)
+
+            known_run = KnownRun(Path(recorded), keep)
+            self._ahead = dict(enumerate(ahead.values(), 1))
+            if self._shown is not None:
+                self._take_ahead(self._shown)
             self._furthest = max(self._furthest, known_run.time)
             self._controller.repeat_recorded(known_run)
+
+    def _take_ahead(self, shown: Shown) -> None:
+        """Gives the simulation that has begun last what is recorded of its past and future."""
+        shown.kept.states = self._ahead.pop(self._begun, shown.kept.states)
 
     def _introduce(self) -> None:
         """Informs the server that the run has begun; for a program that makes a simulation, once this simulation is at its start."""
@@ -420,6 +437,7 @@ class ProgramRun(ControlledRun):
                 simulation.traced()
             self._begun += 1
             self._shown = shown = Shown(simulation, self._kept.get(self._begun))
+            self._take_ahead(shown)
             self._kept[self._begun] = shown.kept
             if len(self._kept) > MAX_SIMULATIONS:
                 self._kept.pop(next(number for number in self._kept if number != self._begun))
@@ -511,6 +529,12 @@ class ProgramRun(ControlledRun):
 
     def forget_ahead(self) -> None:
         self._furthest = self._clock
+        self._ahead.clear()
+        for number in [number for number in self._kept if number > self._begun]:
+            del self._kept[number]
+            self._simulations.pop(number, None)
+        if self._shown is not None:
+            self._shown.kept.cut(self._shown.simulation.ticks)
 
     def tops(self) -> list[Top]:
         self._hold_models()

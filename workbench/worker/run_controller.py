@@ -214,9 +214,11 @@ class RunController:
             at: From when on the run goes another way than the recording, or further [s].
             until: The furthest time that was known of it [s].
         """
+        facts = {} if self._known_run is None else self._known_run.facts
         self._known_run = None
         recording = Path(self.channel.start.recorded or "").stem
-        self.run.become_branch(recording, at)  # first, as pages list recordings again when they hear of the branch
+        before = [[facts["origin"], facts["branched"]], *facts.get("ancestors", ())] if facts.get("origin") else []
+        self.run.become_branch(recording, at, before)  # first, as pages list recordings again when they hear of the branch
         self.channel.post(Branched(recording=recording, at=at, until=until))
 
     # -- commands from users

@@ -49,7 +49,7 @@ def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Con
         try:
             given: dict[str, Any] = signature.bind(self, *args, **keys).arguments
         except TypeError as error:
-            raise ParameterError(f"{kind}({', '.join(names)}): {error}") from None
+            raise ParameterError(f"{kind}({', '.join(names)}): {error}{elsewhere(self)}") from None
         for name, wanted in declared().items():
             if name in given:
                 several = signature.parameters[name].kind is inspect.Parameter.VAR_POSITIONAL
@@ -66,6 +66,9 @@ NEAR = 0.8
 
 class WithParameters:
     """A module whose parameters may be set later; it warns if one is set under a misspelt name."""
+
+    _elsewhere = ""
+    """Which other module of the same name a modeller may have meant."""
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name not in self.__dict__:
@@ -87,6 +90,12 @@ class WithParameters:
         if not kind.__module__.startswith("actr3d."):
             return set()
         return {*inspect.signature(kind.__init__).parameters, *(name for name in vars(self) if name[0] != "_")} - {"self"}
+
+
+def elsewhere(module: object) -> str:
+    """Returns which other module of its name may be meant, for the end of an error about what a module does not know; empty if none."""
+    words = module._elsewhere if isinstance(module, WithParameters) else ""  # pyright: ignore[reportPrivateUsage] # models log public names
+    return words and f"; {words}"
 
 
 def settable_of(part: WithParameters) -> set[str]:

@@ -21,6 +21,8 @@ class Motor(WithParameters, Model):
     Source: ACT-R's times: 0.25 s preparation, 0.05 s initiation, 0.1 s until the key is struck, 0.15 s to finish.
     """
 
+    _elsewhere = "for an agent with a body: from actr3d.motor import Motor, after from actr3d.actr import *"
+
     @named_parameters
     def __init__(self) -> None:
         Model.__init__(self)

@@ -31,6 +31,8 @@ class Vision(WithParameters, Model):
     Source: ACT-R's onset span of 0.5 s, and 0.085 s for an attention shift.
     """
 
+    _elsewhere = "for an agent with a body: from actr3d.vision import Vision, after from actr3d.actr import *"
+
     @named_parameters
     def __init__(self, visual: Buffer, location: Buffer) -> None:
         Model.__init__(self)

@@ -13,13 +13,17 @@ from collections.abc import Mapping
 from actr3d.errors import WorldError
 from actr3d.world.anatomy import Steering
 from actr3d.world.body import MAX_CONTROL, Body, actuator
-from actr3d.world.command_registry import known, number
+from actr3d.world.command_registry import checked_angle, known, number
+from actr3d.world.frames import FULL_TURN
 from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import HEADING, TURN
 from actr3d.world.objects import place
 
 MODERATE = 2.0
 """Default speed of joints [rad/s]. Source: the order of the original ACT-R 3D's 120 degrees a second (docs/human-data.md)."""
+
+MOST_TURNS = 2
+"""How far a turn goes at most, in full turns. Source: chosen for this library; to go on turning is `walk`."""
 
 SACCADE, SACCADE_PER_RAD = 0.02, 0.002 * math.degrees(1)
 """Duration of a saccade: 20 ms, and 2 ms for each degree, [s] and [s/rad]. Source: EMMA (Salvucci 2001; docs/human-data.md)."""
@@ -42,7 +46,7 @@ def walk(body: Body, speed: float, turn: float = 0.0, direction: float = 0.0) ->
     """
     fastest, spin, _ = body.fastest()
     speed, turn = number(speed, "walk: speed", -fastest, fastest), number(turn, "walk: turn", -spin, spin)
-    direction = number(direction, "walk: direction")
+    direction = checked_angle(direction, "walk: direction")
     body.motion.forget_course()
     left = speed * math.sin(direction) if direction else 0.0
     body.hold.drive_base((speed * math.cos(direction), left, turn))
@@ -54,9 +58,9 @@ def heading(body: Body, angle: float, speed: float = MODERATE) -> None:
     """Turns the whole body to a heading [rad, in the world's frame] at a speed [rad/s], the shorter way round.
 
     Raises:
-        WorldError: If a value is not a number, or the speed is not > 0 or is too fast.
+        WorldError: If a value is not a number, the angle is more than a full turn, or the speed is not > 0 or is too fast.
     """
-    angle, speed = number(angle, "heading: angle"), number(speed, "heading: speed", 1e-6, body.fastest()[1])
+    angle, speed = checked_angle(angle, "heading: angle"), number(speed, "heading: speed", 1e-6, body.fastest()[1])
     body.motion.forget_course()
     body.motion.targets[HEADING] = (angle, speed)
 
@@ -66,9 +70,9 @@ def turn(body: Body, angle: float, speed: float = MODERATE) -> None:
     """Turns the whole body by an angle [rad, left is positive] at a speed [rad/s], also while it walks.
 
     Raises:
-        WorldError: If a value is not a number, or the speed is not > 0 or is too fast.
+        WorldError: If a value is not a number, the angle is more than two full turns, or the speed is not > 0 or is too fast.
     """
-    angle, speed = number(angle, "turn: angle"), number(speed, "turn: speed", 1e-6, body.fastest()[1])
+    angle, speed = checked_angle(angle, "turn: angle", MOST_TURNS), number(speed, "turn: speed", 1e-6, body.fastest()[1])
     body.motion.forget_course()
     body.motion.targets[TURN] = (body.base.place[2] + angle, speed)
 
@@ -117,9 +121,10 @@ def position(body: Body, name: str, angle: float, speed: float = MODERATE) -> No
     """Turns a joint to an angle [rad], or to its limit where that is nearer, at a constant speed [rad/s], and holds it there.
 
     Raises:
-        WorldError: If there is no such joint, no servo moves it, the angle is not a number, or the speed is not > 0 or is too fast.
+        WorldError: If there is no such joint, no servo moves it, the angle is not a number or more than a full turn, or the speed
+            is not > 0 or is too fast.
     """
-    body.motion.targets[name] = _target(body, name, angle, speed)
+    body.motion.targets[name] = _target(body, name, _place(body, name, angle), speed)
 
 
 @_if_jointed
@@ -131,7 +136,7 @@ def posture(body: Body, angles: Mapping[str, float], speed: float = MODERATE) ->
     """
     if not isinstance(angles, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
         raise WorldError(f"posture: angles: must be angles by joint (got {angles!r})")
-    body.motion.targets |= {name: _target(body, name, angle, speed) for name, angle in angles.items()}
+    body.motion.targets |= {name: _target(body, name, _place(body, name, angle), speed) for name, angle in angles.items()}
 
 
 @_if_drivable
@@ -142,7 +147,7 @@ def steering(body: Body, angle: float) -> None:
         WorldError: If the angle is not a number.
     """
     car = _car(body)
-    position(body, "steer", number(angle, "steering: angle") / car.ratio, car.rate / car.ratio)
+    body.motion.targets["steer"] = _target(body, "steer", number(angle, "steering: angle") / car.ratio, car.rate / car.ratio)
 
 
 @_if_drivable
@@ -187,21 +192,14 @@ def teleport(body: Body, x: float, y: float, heading: float | None = None) -> No
 @_if_eye_moves
 def gaze(body: Body, left: float, up: float = 0.0, speed: float | None = None) -> None:
     """Turns the eye to a direction relative to the head [rad, to the left and up], or to its limits; at a speed [rad/s] or as people do."""
-    yaw, pitch = body.joints["eye_yaw"], body.joints["eye_pitch"]
-    to_yaw = max(yaw.lower, min(yaw.upper, number(left, "gaze: left")))
-    to_pitch = max(pitch.lower, min(pitch.upper, -number(up, "gaze: up")))
-    turns = (abs(to_yaw - yaw.position), abs(to_pitch - pitch.position))
-    farthest = max(turns)
-    time = SACCADE + SACCADE_PER_RAD * farthest if speed is None else farthest / number(speed, "gaze: speed", 1e-6)
-    for name, angle, turn in zip(("eye_yaw", "eye_pitch"), (to_yaw, to_pitch), turns, strict=True):
-        body.motion.targets[name] = (angle, max(turn / time, 1e-6) if time > 0 else MODERATE)
+    _look(body, checked_angle(left, "gaze: left"), checked_angle(up, "gaze: up"), speed)
 
 
 @_if_eye_moves
 def saccade(body: Body, left: float, up: float = 0.0) -> None:
     """Turns the eye by an angle from its present direction [rad to the left, rad up], or to its limits, as fast as people do."""
     yaw, pitch = body.joints["eye_yaw"].position, body.joints["eye_pitch"].position
-    gaze(body, yaw + number(left, "saccade: left"), number(up, "saccade: up") - pitch)
+    _look(body, yaw + checked_angle(left, "saccade: left"), checked_angle(up, "saccade: up") - pitch)
 
 
 @_if_hands
@@ -258,11 +256,29 @@ def _servoed(body: Body, name: str) -> Joint:
     return turned
 
 
+def _place(body: Body, name: str, angle: float) -> float:
+    """Returns the given angle [rad] of a joint, or the place of a slide [m]."""
+    turned = _servoed(body, name)
+    is_limb = turned.turns and max(map(abs, turned.limits)) <= FULL_TURN
+    return (checked_angle if is_limb else number)(angle, "position: angle")
+
+
 def _target(body: Body, name: str, angle: float, speed: float) -> tuple[float, float]:
     """Returns the target of a joint, within its limits, and the speed."""
     turned = _servoed(body, name)
-    angle = max(turned.lower, min(turned.upper, number(angle, "position: angle")))
-    return angle, number(speed, "position: speed", 1e-6, body.fastest()[2])
+    return max(turned.lower, min(turned.upper, angle)), number(speed, "position: speed", 1e-6, body.fastest()[2])
+
+
+def _look(body: Body, left: float, up: float, speed: float | None = None) -> None:
+    """Turns the eye to a direction relative to the head [rad], or to its limits; at a speed [rad/s] or as people do."""
+    yaw, pitch = body.joints["eye_yaw"], body.joints["eye_pitch"]
+    to_yaw = max(yaw.lower, min(yaw.upper, left))
+    to_pitch = max(pitch.lower, min(pitch.upper, -up))
+    turns = (abs(to_yaw - yaw.position), abs(to_pitch - pitch.position))
+    farthest = max(turns)
+    time = SACCADE + SACCADE_PER_RAD * farthest if speed is None else farthest / number(speed, "gaze: speed", 1e-6)
+    for name, angle, turn in zip(("eye_yaw", "eye_pitch"), (to_yaw, to_pitch), turns, strict=True):
+        body.motion.targets[name] = (angle, max(turn / time, 1e-6) if time > 0 else MODERATE)
 
 
 def _car(body: Body) -> Steering:

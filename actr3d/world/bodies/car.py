@@ -13,7 +13,7 @@ from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
 from actr3d.world.anatomy import Anatomy, Steering, body_kind
 from actr3d.world.bodies.planar_base import add_planar_base
-from actr3d.world.scene_objects import WALL_SOLREF, Colour, Length, Name
+from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Name
 from actr3d.world.velocity_servo import add_servo
 
 GRAVITY = 9.81
@@ -44,7 +44,7 @@ class Car(Configuration):
     position: tuple[float, float] = (0.0, 0.0)
     """Position of the rear axle's middle at the start, (x, y) [m]."""
 
-    heading: float = 0.0
+    heading: Heading = 0.0
     """Its heading at the start [rad], 0 along x."""
 
     wheelbase: Length = 2.665

@@ -19,7 +19,7 @@ from actr3d.world.bodies.load import Load
 from actr3d.world.bodies.mannequin_limits import FASTEST_JOINT, FASTEST_TURN, FASTEST_WALK, limits_of, strength_of
 from actr3d.world.bodies.planar_base import add_planar_base
 from actr3d.world.gait import OWN, Gait, LegPlan
-from actr3d.world.scene_objects import WALL_SOLREF, Colour, Length, Name
+from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Name
 from actr3d.world.velocity_servo import add_servo
 
 SIDES = ("left", "right")
@@ -96,7 +96,7 @@ class Mannequin(Configuration):
     position: tuple[float, float] = (0.0, 0.0)
     """Its position at the start, (x, y) [m]."""
 
-    heading: float = 0.0
+    heading: Heading = 0.0
     """Its heading at the start [rad], 0 along x."""
 
     height: Length = 1.75
