@@ -571,10 +571,8 @@ def _starts(results: Results) -> Parts:
     keys = ["aperture", *by] if wide else by
     table = cell_means(rows, "passed", keys)[[*keys, "mean", "n", "trials"]].rename(columns={"mean": "passed"})
     table["untouched"] = cell_means(rows, "free", keys)["mean"]
-    # A walker that leans against the wall beside the doorway is in the wall by the depth of the contact, and has a clearance, too.
-    in_doorway = rows[["clearance_left_m", "clearance_right_m"]].max(axis=1) < rows["aperture"]
     for side in ("left", "right"):
-        rows[side] = 100 * rows[f"clearance_{side}_m"].where(in_doorway)
+        rows[side] = 100 * rows[f"clearance_{side}_m"]
         margins = cell_means(rows, side, keys).rename(columns={"mean": side})
         table = table.merge(margins[[*keys, side]], on=keys, how="left")
     units = {"start_aside": "m", "start_heading": "degrees", "left": "cm", "right": "cm"} | ({"aperture": "m"} if wide else {})
