@@ -368,7 +368,7 @@ def naming_the_line(source: Source, function: str, replaced: Mapping[str, Any]) 
     except (ConfigurationError, DesignError) as error:
         name = error.name if isinstance(error, DesignError) else str(error).partition(":")[0].rpartition(".")[2]
         place = f"--set {name}" if name in replaced else f"{source.file}:{line_of(source.text, function, name)}"
-        raise DesignError(f"{place}: {error}", name) from None
+        raise (type(error) if isinstance(error, DesignError) else DesignError)(f"{place}: {error}", name) from None
     except TypeError as error:
         found = re.fullmatch(r"(\w+)\.__init__\(\) got an unexpected keyword argument '(\w+)'", str(error))
         kind = next((one for one in (Design, Group, Measured, Normal, Uniform) if found is not None and one.__name__ == found[1]), None)
