@@ -338,12 +338,12 @@ def _opened(
         return experiment, opened.enter_context(Store.create(folder, experiment.specification)), sure
     store = opened.enter_context(Store(folder))
     _check_versions(store.specification, any_version=any_version)
-    there, wanted = store.specification, replace(experiment.specification, versions=store.specification.versions)
-    if there.to_json() != wanted.to_json():
-        names = ("name", "design", "model", "participants", "trials", "values")
-        different = [one for one in names if getattr(there, one) != getattr(wanted, one)]
-        raise ExperimentError(f"'{folder}' is another experiment: {' and '.join(different)} differ; choose another --out")
-    return Experiment(there), store, True
+    there, wanted = store.specification, experiment.specification
+    if different := there.differences(wanted):
+        same = f"choose another --out, or continue it as it is: actr3d experiment {folder} --resume"
+        raise ExperimentError(f"'{folder}' is another experiment: {'; '.join(different)}; {same}")
+    # The files may be at another place now, and other files that the model reads beside them.
+    return Experiment(replace(wanted, versions=there.versions)), store, True
 
 
 @contextmanager

@@ -324,8 +324,8 @@ class Fit:
             measure: The measure; None for that of the fit.
             target: The means with which it is compared; None for those of the fit.
         """
-        text = experiment.specification.to_json()
-        folder = self._folder / f"{kind} {sha256(text.encode('utf-8', 'surrogatepass')).hexdigest()[:12]}"
+        text = json.dumps(experiment.specification.content(), sort_keys=True)
+        folder = self._folder / f"{kind} {sha256(text.encode()).hexdigest()[:12]}"
         store = Store(folder) if (folder / SPECIFICATION).exists() else Store.create(folder, experiment.specification)
         with store:
             with self._progress(what, len(experiment.design)) as show:
