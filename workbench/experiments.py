@@ -420,7 +420,7 @@ class Experiments:
         """
         folder = self._trusted(name, trust=trust)
         async with self._turns:
-            problem = await self._work(["report", str(folder.path)])
+            problem = await self._work(["report", str(folder.path), "--out", str(folder.report_folder)])
         if problem is not None:
             raise ExperimentRunError(problem)
 
@@ -449,6 +449,8 @@ class Experiments:
         folder = self.folder(name)
         if name in self._running or folder.is_locked:
             raise ExperimentRunError("this experiment runs: stop it, then delete it")
+        if folder.elsewhere.is_dir():
+            move_to_trash(self._models.root, folder.elsewhere)
         return move_to_trash(self._models.root, folder.path)
 
     def _trusted(self, name: str, *, trust: bool) -> ExperimentFolder:

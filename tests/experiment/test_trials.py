@@ -12,9 +12,9 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -31,6 +31,7 @@ from actr3d.experiment.table import export
 from actr3d.experiment.trial import run_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
 from tests.helpers.experiments import COUNTER, trial_processes, write_experiment
+from tests.helpers.folders import not_writable
 
 
 def rows_of(path: Path | str, **values: Any) -> list[dict[str, Any]]:
@@ -479,22 +480,6 @@ def test_a_folder_that_is_in_use_or_no_experiment_is_refused(tmp_path: Path) -> 
     (tmp_path / "out" / "trials.sqlite").write_bytes(b"not a database" * 100)
     with pytest.raises(ExperimentError, match=r"trials\.sqlite: cannot be opened"):
         Store(tmp_path / "out")
-
-
-@contextmanager
-def not_writable(folder: Path) -> Generator[None]:
-    """Makes a folder one that nobody can write to, inside the block; root can write everywhere, and acts as somebody else."""
-    for path in (*folder.iterdir(), folder):
-        path.chmod(0o555 if path.is_dir() else 0o444)
-    was = os.geteuid()
-    try:
-        if was == 0:
-            os.seteuid(65_534)
-        yield
-    finally:
-        if was == 0:
-            os.seteuid(0)
-        folder.chmod(0o755)
 
 
 def test_an_experiment_in_a_folder_that_cannot_be_written_is_read() -> None:

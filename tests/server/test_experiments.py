@@ -310,6 +310,28 @@ def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished:
     folder.unlink()
 
 
+def test_an_experiment_that_cannot_be_written_is_shown_with_its_report(workbench: Served, finished: str) -> None:
+    own = workbench.folder / ".workbench"
+    folder, made = own / "experiments" / "archived", own / "reports" / "archived"
+    shutil.copytree(own / "experiments" / finished, folder)
+    shutil.rmtree(folder / "report", ignore_errors=True)
+    for path in (*folder.iterdir(), folder):
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    now = state_of(workbench, "archived")
+    assert (now["state"], now["done"], now["report"]) == ("finished", 24, None)
+    path = "/api/experiments/archived"
+    assert workbench.get(f"{path}/rows").json()["total"] == 24
+    assert len(workbench.get(f"{path}/means?x=n&measure=rt").json()["points"]) == 3
+    answer = workbench.post(f"{path}/report", {"trust": True})
+    assert answer.status_code == 200, answer.text
+    assert state_of(workbench, "archived")["report"] == (made / "index.html").stat().st_mtime
+    assert workbench.get(f"{path}/report/index.html").content == (made / "index.html").read_bytes()
+    assert not (folder / "report").exists()
+    assert workbench.post(f"{path}/trial", {"number": 1, "trust": True}).status_code == 200
+    assert workbench.post(f"{path}/delete").status_code == 200
+    assert (folder.exists(), made.exists()) == (False, False)
+
+
 def test_errors_of_a_report_do_not_show_where_the_server_stores_it(workbench: Served, finished: str) -> None:
     report = workbench.folder / ".workbench" / "experiments" / finished / "report"
     kept = report.rename(report.with_name("kept")) if report.exists() else None
