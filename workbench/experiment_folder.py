@@ -35,6 +35,8 @@ class Notes(msgspec.Struct, frozen=True, kw_only=True):
     """The seal of this installation, with which it recognizes an experiment that it has made."""
     problem: str | None = None
     """Why its last run ended too early."""
+    workers: int | None = None
+    """The number of processes of its last run; None for one on each processor."""
 
 
 class ExperimentFolder:

@@ -111,7 +111,7 @@ def test_a_walk_into_the_wall_touches_it_and_stops() -> None:
 @pytest.mark.parametrize(("aside", "heading"), [(0.9, 0.0), (-0.5, 0.0), (0.5, 2.0)])
 def test_a_body_that_leans_against_the_wall_beside_the_doorway_has_no_clearance(aside: float, heading: float) -> None:
     """Contacts are soft: it is a few millimetres between the faces of the wall."""
-    across = {"across": -aside * math.sin(heading), "sideways": aside * math.cos(heading)}
+    across: dict[str, Any] = {"across": -aside * math.sin(heading), "sideways": aside * math.cos(heading)}
     simulation = walked(0.8, heading=heading, **across)
     result = result_of(simulation)
     assert (result.outcome, result.contacts > 0) == ("stopped", True)

@@ -64,6 +64,7 @@ def finished(workbench: Served) -> str:
     now = awaited(workbench, name, "finished")
     assert (now["done"], now["total"], now["failures"], now["problem"]) == (24, 24, 0, None)
     assert now["facts"]["factors"] == {"n": [1, 2, 5]}
+    assert {"n", "participant", "rt", "luck", "wall_s"} <= {*now["columns"]}
     return name
 
 
@@ -78,6 +79,7 @@ def test_designs_of_the_library_and_of_model_files_are_listed_without_running_th
     }
     assert listed["bad_design.py:bad"]["description"] == "Never runs."
     assert listed["warren_whang_1987"]["file"] is None
+    assert workbench.get("/api/designs").json()["most"] == {"participants": 1_000_000, "trials": 1_000_000, "workers": 256}
     assert "slow/counting_design.py:counting" in listed
     answer = workbench.post("/api/designs/check", {"design": "bad_design.py:bad"})
     assert answer.status_code == 422
@@ -182,8 +184,15 @@ def test_an_experiment_is_stopped_and_continued_while_sessions_go_on(workbench: 
     assert stopped["problem"] is None
     assert workbench.post(f"/api/experiments/{name}/stop").json()["error"] == "this experiment is not running"
     resumed = workbench.post(f"/api/experiments/{name}/resume", {"workers": 2}).json()
-    assert (resumed["state"], resumed["done"] >= stopped["done"]) == ("running", True)
+    assert (resumed["state"], resumed["done"] >= stopped["done"], resumed["processes"]) == ("running", True, 2)
     assert awaited(workbench, name, "running", done=stopped["done"] + 5)["total"] == 800
+    workbench.post(f"/api/experiments/{name}/stop")
+    before = awaited(workbench, name, "stopped")["done"]
+    workbench.post(f"/api/experiments/{name}/resume", {"workers": 1})
+    workbench.post(f"/api/experiments/{name}/stop")
+    awaited(workbench, name, "stopped")
+    assert workbench.post(f"/api/experiments/{name}/resume").json()["processes"] == 1  # of its last run, not all processors
+    assert awaited(workbench, name, "running", done=before + 1)["workers"] == 1
     workbench.post(f"/api/experiments/{name}/stop")
     awaited(workbench, name, "stopped")
 
