@@ -472,6 +472,8 @@ def test_a_folder_that_is_in_use_or_no_experiment_is_refused(tmp_path: Path) -> 
     specification = specify(str(write_experiment(tmp_path))).specification
     with pytest.raises(ExperimentError, match=r"is not empty"):
         Store.create(tmp_path, specification)
+    with pytest.raises(ExperimentError, match=r"counter\.py' is a file; name a new folder"):
+        Store.create(tmp_path / "counter.py", specification)
     Store.create(tmp_path / "out", specification).close()
     with pytest.raises(ExperimentError, match="holds an experiment already; continue it with --resume"):
         Store.create(tmp_path / "out", specification)

@@ -42,8 +42,8 @@ def write_report(
         ExperimentError: If a folder holds no experiment or no trials, the human data are not valid, or the report cannot be written.
     """
     final = Path(folder) / REPORT if out is None else Path(out)
-    _check_place(final)
     results = read_results(folder)
+    _check_place(final)
     parts = by_number(results)
     data, why = human_data_of(results.design, parts, human)
     people = None if data is None else beside_people(data, parts)
