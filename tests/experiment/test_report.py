@@ -271,6 +271,7 @@ def test_the_report_of_an_experiment_that_cannot_be_written_goes_elsewhere(capsy
         other = outer / "others"
         other.mkdir()
         other.chmod(0o777)
+        write_report(folder, out=outer / "first")  # imports the libraries, which not everybody may be able to read
         with not_writable(folder):
             assert main(["report", str(folder)]) == 1
             error = capsys.readouterr().err
