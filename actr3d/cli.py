@@ -311,13 +311,14 @@ def _add_report(commands: Any) -> None:
     report = commands.add_parser(
         "report",
         help="write the report of an experiment",
-        description="Writes a page with figures, tables and statistics of an experiment into its folder: report/index.html, which needs no "
+        description="Writes a page with figures, tables and statistics of an experiment: report/index.html in its folder, which needs no "
         "network, with each figure as PNG and SVG and each table as CSV beside it.",
         epilog="Exit codes: 0 the report is written; 1 it cannot be written, or the data are not valid; 2 a package is missing.",
     )
     report.add_argument("folder", metavar="FOLDER", help="the folder of an experiment")
     report.add_argument("--human", metavar="FILE", help="show these human data beside the model (default: those that the design names)")
     report.add_argument("--compare", metavar="FOLDER", help="show another experiment beside this one")
+    report.add_argument("--out", metavar="FOLDER", help="the folder for the report (default: report in that of the experiment)")
     report.set_defaults(function=_report)
 
 
@@ -402,7 +403,7 @@ def _fit(options: argparse.Namespace) -> int:
 def _report(options: argparse.Namespace) -> int:
     from actr3d.experiment.report import command
 
-    print(command.write_report(options.folder, human=options.human, compare=options.compare))
+    print(command.write_report(options.folder, human=options.human, compare=options.compare, out=options.out))
     return 0
 
 

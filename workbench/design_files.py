@@ -26,8 +26,9 @@ LIBRARY = Path(actr3d.__file__).parent / "experiment" / "designs"
 Identifier = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[A-Za-z_][A-Za-z0-9_]*$")]
 Whole = Annotated[int, Field(ge=-(2**63), lt=2**63)]
 Level = bool | Whole | Annotated[float, Field(allow_inf_nan=False)] | Annotated[str, Field(max_length=1_000)] | None
-Count = Annotated[int, Field(ge=1, le=1_000_000)]
-Workers = Annotated[int, Field(ge=1, le=256)]
+MOST = {"participants": 1_000_000, "trials": 1_000_000, "workers": 256}
+"""The greatest numbers that are taken, by the names of the fields; the page's form has them from `/api/designs`."""
+Workers = Annotated[int, Field(ge=1, le=MOST["workers"])]
 
 
 class NoSuchDesignError(Actr3dError):
@@ -122,9 +123,9 @@ class WantedDesign(PageMessage):
     """The name of one of the library's, or `FILE:NAME`."""
     values: dict[Identifier, Level | Annotated[list[Level], Field(max_length=200)]] = Field(default_factory=dict, max_length=100)
     """New levels of factors, or values of other parameters."""
-    participants: Count | None = None
+    participants: Annotated[int, Field(ge=1, le=MOST["participants"])] | None = None
     """The number of participants of each group; null for that of the design."""
-    trials: Count | None = None
+    trials: Annotated[int, Field(ge=1, le=MOST["trials"])] | None = None
     """The number of trials of each combination of levels; null for that of the design."""
 
     def options(self) -> list[str]:

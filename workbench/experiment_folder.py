@@ -13,12 +13,13 @@ import msgspec
 
 from actr3d.recording.key import is_sealed, make_key, seal
 from workbench.experiment_command import ExperimentFacts, ExperimentRunError
-from workbench.files import file_stamp, replace_file
+from workbench.files import file_stamp, is_writable, replace_file
 
 SPECIFICATION, FACTS, TABLE, LOCK, NOTES = "experiment.json", "facts.json", "trials.sqlite", "lock", "workbench.json"
 """The files of an experiment's folder; the workbench writes only the last one."""
-REPORT, PAGE = "report", "index.html"
-"""The folder of the report, and its page."""
+REPORT, PAGE, REPORTS = "report", "index.html", "reports"
+"""The folder of the report in that of the experiment, its page, and the folder beside all experiments for reports of those that cannot be
+written."""
 REPORT_FILES = {".html": "text/html; charset=utf-8", ".svg": "image/svg+xml", ".png": "image/png", ".csv": "text/csv; charset=utf-8"}
 """The media types of the files of a report."""
 LARGEST = 20_000_000
@@ -34,6 +35,8 @@ class Notes(msgspec.Struct, frozen=True, kw_only=True):
     """The seal of this installation, with which it recognizes an experiment that it has made."""
     problem: str | None = None
     """Why its last run ended too early."""
+    workers: int | None = None
+    """The number of processes of its last run; None for one on each processor."""
 
 
 class ExperimentFolder:
@@ -87,6 +90,16 @@ class ExperimentFolder:
         return None if table is None else file_stamp(table, table.with_name(f"{table.name}-wal"))
 
     @property
+    def elsewhere(self) -> Path:
+        """The folder for its report if its own folder cannot be written, as that of an archive."""
+        return self.path.parent.with_name(REPORTS) / self.path.name
+
+    @property
+    def report_folder(self) -> Path:
+        """The folder in which its report is made."""
+        return self.path / REPORT if is_writable(self.path) else self.elsewhere
+
+    @property
     def report_made(self) -> float | None:
         """When the report was made [s since 1970]; None if there is none."""
         page = self.report_file(PAGE)
@@ -98,7 +111,10 @@ class ExperimentFolder:
         Args:
             name: Its page, or a file in one of the folders of the report: `figures/NAME.svg`, `tables/NAME.csv`.
         """
-        path, here = self.path / REPORT / name, self.path / REPORT
+        here = self.report_folder
+        if here == self.elsewhere and not is_plain(here / PAGE):
+            here = self.path / REPORT  # it was made before the folder became one that cannot be written
+        path = here / name
         between = (here, path.parent)
         if path.suffix not in REPORT_FILES or path.parent not in (here, here / "figures", here / "tables"):
             return None

@@ -11,7 +11,7 @@ from fastapi.responses import Response
 from pydantic import Field, TypeAdapter, ValidationError
 
 from actr3d.values import escape_surrogates, to_json
-from workbench.design_files import Checking, Level, Starting, Workers, designs_of
+from workbench.design_files import MOST, Checking, Level, Starting, Workers, designs_of
 from workbench.experiment_command import ExperimentRunError
 from workbench.experiment_folder import PAGE, REPORT_FILES
 from workbench.experiments import Experiments
@@ -38,7 +38,7 @@ class Continuing(Trusting):
     """How an experiment is continued."""
 
     workers: Workers | None = None
-    """The number of processes that run trials; null for one on each processor."""
+    """The number of processes that run trials; null for that of its last run, or one on each processor if that is not known."""
 
 
 class TrialWanted(Trusting):
@@ -57,8 +57,12 @@ def experiments_of(request: Request) -> Experiments:
 
 @router.get("/designs")
 def designs(request: Request) -> dict[str, Any]:
-    """Lists the designs of the library and of the model files, without executing them; `processors` is how many this computer has."""
-    return {"designs": [asdict(outline) for outline in designs_of(sessions_of(request).folder)], "processors": os.cpu_count() or 1}
+    """Lists the designs of the library and of the model files, without executing them.
+
+    `processors` is how many this computer has, `most` the greatest numbers with which an experiment can be started.
+    """
+    outlines = [asdict(outline) for outline in designs_of(sessions_of(request).folder)]
+    return {"designs": outlines, "processors": os.cpu_count() or 1, "most": MOST}
 
 
 @router.post("/designs/check")

@@ -39,7 +39,7 @@ class TableError(Actr3dError):
 
 
 def counts(*paths: Path) -> list[dict[str, Any]]:
-    """Returns the numbers of finished and of failed trials of experiments; `problem` says why a table cannot be read.
+    """Returns the numbers of finished and of failed trials of experiments, and their columns; `problem` says why a table cannot be read.
 
     Args:
         paths: The tables.
@@ -50,9 +50,10 @@ def counts(*paths: Path) -> list[dict[str, Any]]:
             with closing(opened(path)) as file:
                 (done,) = file.execute("SELECT count(*) FROM trial").fetchone()
                 (failures,) = file.execute('SELECT count(*) FROM trial WHERE data LIKE \'%,"error":"%\'').fetchone()
-                found.append({"done": done, "failures": failures, "problem": None})
+                columns = [name for (name,) in file.execute("SELECT name FROM column ORDER BY place, name LIMIT ?", (MAX_COLUMNS,))]
+                found.append({"done": done, "failures": failures, "problem": None, "columns": columns and [*columns, "wall_s"]})
         except (Actr3dError, sqlite3.Error) as error:
-            found.append({"done": 0, "failures": 0, "problem": f"its table cannot be read: {error}"})
+            found.append({"done": 0, "failures": 0, "problem": f"its table cannot be read: {error}", "columns": []})
     return found
 
 

@@ -174,7 +174,9 @@ class Experiments:
         return sorted(found, key=lambda folder: (begun(folder.path), folder.path.name), reverse=True)[:MAX_LISTED]
 
     async def _summaries(self, folders: Sequence[ExperimentFolder]) -> list[dict[str, Any]]:
-        await self._count([folder for folder in folders if folder.path.name not in self._running])
+        # Of one that runs, the command reports the numbers, but not the columns.
+        counted = (folder.path.name for folder in folders if self._counts.get(folder.path.name, (None, _NOTHING))[1]["columns"])
+        await self._count([folder for folder in folders if folder.path.name not in {*self._running} & {*counted}])
         return [self._summary(folder) for folder in folders]
 
     def _summary(self, folder: ExperimentFolder) -> dict[str, Any]:
@@ -188,11 +190,12 @@ class Experiments:
             "total": total,
             "changed": {} if facts is None else facts.changed,
             "report": folder.report_made,
+            "processes": notes.workers,
             "problem": None,
         }
-        if name in self._running:
-            return {**found, **self._running[name].summary()}
         _, counted = self._counts.get(name, (None, _NOTHING))
+        if name in self._running:
+            return {**found, "columns": counted["columns"], **self._running[name].summary()}
         problem = counted["problem"] or notes.problem
         complete = total is not None and counted["done"] >= total
         state = "finished" if complete else "elsewhere" if folder.is_locked else "failed" if problem else "stopped"
@@ -276,7 +279,7 @@ class Experiments:
         argument = design_argument(self._models, wanted.design)
         name = f"{re.sub(r'[^A-Za-z0-9_]', '_', argument.rpartition(':')[2])[:60]}-{stamp()}"
         arguments = ["experiment", argument, "--json", "--out", str(self._made_root() / name), *wanted.options()]
-        await self._begin(name, [*arguments, *_workers(wanted.workers)], new=True)
+        await self._begin(name, arguments, wanted.workers, new=True)
         return name
 
     async def resume(self, name: str, workers: int | None, *, trust: bool) -> None:
@@ -284,7 +287,7 @@ class Experiments:
 
         Args:
             name: The experiment.
-            workers: The number of processes that run trials; None for one on each processor.
+            workers: The number of processes that run trials; None for that of its last run.
             trust: Whether its code may be run although this installation did not make it.
 
         Raises:
@@ -296,14 +299,16 @@ class Experiments:
         folder = self._trusted(name, trust=trust)
         if name in self._running or folder.is_locked:
             raise ExperimentRunError("this experiment is already running")
-        await self._begin(name, ["experiment", str(folder.path), "--json", "--resume", *_workers(workers)], new=False)
+        arguments = ["experiment", str(folder.path), "--json", "--resume"]
+        await self._begin(name, arguments, folder.notes.workers if workers is None else workers, new=False)
 
-    async def _begin(self, name: str, arguments: Sequence[str], *, new: bool) -> None:
+    async def _begin(self, name: str, arguments: Sequence[str], workers: int | None, *, new: bool) -> None:
         """Starts a command that runs an experiment, and waits until it has checked the design.
 
         Args:
             name: The experiment.
-            arguments: Those of the command.
+            arguments: Those of the command, without the number of processes.
+            workers: The number of processes that run trials; None for one on each processor.
             new: Whether the command makes the experiment; else it continues it.
         """
         if self._closed or len(self._running) + self._starting >= MAX_RUNNING:
@@ -312,26 +317,29 @@ class Experiments:
         facts = None if new else folder.facts
         self._starting += 1
         try:
-            command = await ExperimentCommand.start(arguments, self._made_root())
+            number = [] if workers is None else [f"--workers={workers}"]
+            command = await ExperimentCommand.start([*arguments, *number], self._made_root())
         finally:
             self._starting -= 1
         run = self._running[name] = RunningExperiment(command, facts, self._counts.get(name, (None, _NOTHING))[1]["done"])
         began: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        run.task = asyncio.create_task(self._follow(folder, run, began, new=new))
+        run.task = asyncio.create_task(self._follow(folder, run, began, workers, new=new))
         try:
             await asyncio.wait_for(asyncio.shield(began), START_TIME)
         except TimeoutError:
             run.task.cancel()
             raise RefusedDesignError(f"the design takes longer than {START_TIME:g} s") from None
 
-    async def _follow(self, folder: ExperimentFolder, run: RunningExperiment, began: asyncio.Future[None], *, new: bool) -> None:
+    async def _follow(
+        self, folder: ExperimentFolder, run: RunningExperiment, began: asyncio.Future[None], workers: int | None, *, new: bool
+    ) -> None:
         """Reads what a command reports until it has ended."""
         problem = None
         try:
             async for event in run.command.events():
                 run.take(event)
                 if isinstance(event, ExperimentFacts) and not began.done():
-                    folder.note(problem=None)
+                    folder.note(problem=None, workers=workers)
                     if new:
                         folder.seal()
                     began.set_result(None)
@@ -420,7 +428,7 @@ class Experiments:
         """
         folder = self._trusted(name, trust=trust)
         async with self._turns:
-            problem = await self._work(["report", str(folder.path)])
+            problem = await self._work(["report", str(folder.path), "--out", str(folder.report_folder)])
         if problem is not None:
             raise ExperimentRunError(problem)
 
@@ -449,6 +457,8 @@ class Experiments:
         folder = self.folder(name)
         if name in self._running or folder.is_locked:
             raise ExperimentRunError("this experiment runs: stop it, then delete it")
+        if folder.elsewhere.is_dir():
+            move_to_trash(self._models.root, folder.elsewhere)
         return move_to_trash(self._models.root, folder.path)
 
     def _trusted(self, name: str, *, trust: bool) -> ExperimentFolder:
@@ -472,13 +482,9 @@ class Experiments:
         return self._root
 
 
-_NOTHING: dict[str, Any] = {"done": 0, "failures": 0, "problem": None}
+_NOTHING: dict[str, Any] = {"done": 0, "failures": 0, "problem": None, "columns": []}
 
 
 def _end_late(run: RunningExperiment) -> None:
     if run.task is not None:
         run.task.cancel()
-
-
-def _workers(number: int | None) -> list[str]:
-    return [] if number is None else [f"--workers={number}"]

@@ -164,7 +164,7 @@ class ModelFolder:
             )
             raise ConflictError(f"'{path}' was not saved: {reason}")
         try:
-            if where.exists() and not _writable(where):
+            if where.exists() and not is_writable(where):
                 raise FileError(f"cannot write '{path}': it is read-only")
             where.parent.mkdir(parents=True, exist_ok=True)
             replace_file(where.resolve(), data)  # a link inside the folder stays a link
@@ -259,7 +259,7 @@ def move_to_trash(root: Path, path: Path) -> str:
     return path.rename(trash / f"{secrets.token_hex(2)}-{path.name}").relative_to(root).as_posix()
 
 
-def _writable(where: Path) -> bool:
+def is_writable(where: Path) -> bool:
     """Returns whether a file may be written; saving replaces the file, for which the system checks only the folder's permissions.
 
     Root may write every file, so a file without any write permission counts as read-only for root, too.

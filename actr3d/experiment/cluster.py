@@ -25,6 +25,7 @@ from distributed import Client, KilledWorker, LocalCluster, get_worker
 from distributed.utils import silence_logging_cmgr
 
 from actr3d.errors import ExperimentError
+from actr3d.experiment.measures import check_row
 from actr3d.experiment.specification import Experiment
 from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.trial import Row
@@ -124,6 +125,7 @@ def run_experiment(
     *,
     show: Callable[[Progress], object] = lambda _: None,
     stop: threading.Event | None = None,
+    sure: bool = True,
 ) -> None:
     """Runs all trials that have no row yet.
 
@@ -133,15 +135,17 @@ def run_experiment(
         client: The `distributed.Client` of the cluster.
         show: Called after each batch of trials.
         stop: Ends the run after the batches that have finished, when it is set by another thread.
+        sure: Whether the measures of the design are known to be right; else the run ends if the first trial lacks one.
 
     Raises:
+        DesignError: If the first trial lacks a measure.
         ExperimentError: If the versions of a worker are not those of the specification, the experiment cannot be loaded there,
             the cluster is lost, or the rows cannot be written.
     """
     total = len(experiment.design)
     with store.only_writer():
         left = store.missing(total)
-        run = _Run(experiment, store, client, show, stop or threading.Event(), store.count, store.failures)
+        run = _Run(experiment, store, client, show, stop or threading.Event(), store.count, store.failures, sure)
         run.all(left)
 
 
@@ -157,11 +161,12 @@ class _Run:
         stop: threading.Event,
         done: int,
         failures: int,
+        sure: bool,
     ) -> None:
         self._experiment, self._store, self._client, self._show, self._stop = experiment, store, client, show, stop
         self._json = experiment.specification.to_json()
         self._versions = ", ".join(f"{name} {text}" for name, text in versions().items())
-        self._done, self._failures, self._seconds = done, failures, BATCH
+        self._done, self._failures, self._seconds, self._sure = done, failures, BATCH, sure
         self._waiting: dict[Any, list[int]] = {}
         self._finished: SimpleQueue[Any] = SimpleQueue()
 
@@ -218,6 +223,8 @@ class _Run:
                 self._lost()
             self._submit(numbers)
             return
+        if not self._sure and batch.rows[0][0] == 0:
+            check_row(batch.rows[0][1])
         table = self._experiment.design.trial
         rows = [
             Finished(row={**table(number).columns, **row}, wall_s=round(wall, 4), worker=batch.worker) for number, row, wall in batch.rows

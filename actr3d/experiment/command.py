@@ -21,10 +21,12 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.text import Text
 
 from actr3d.errors import ExperimentError
+from actr3d.experiment.design import OWN_COLUMNS
+from actr3d.experiment.measures import check_measures, check_row, known_measures, try_measures
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import SPECIFICATION, Store, only_process, summary, write_whole
 from actr3d.experiment.table import export
-from actr3d.experiment.trial import PLAIN, check_measures, record_trial
+from actr3d.experiment.trial import PLAIN, record_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
 from actr3d.recording.schema import versions
 from actr3d.values import to_json
@@ -81,6 +83,7 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     """
     experiment = specify(name, participants=participants, trials=trials, values=values)
     design, total = experiment.design, len(experiment.design)
+    check_measures(experiment)
     facts = facts_of(experiment)
     out.event("facts", facts)
     process, text = TrialProcess(), experiment.specification.to_json()
@@ -91,6 +94,7 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
         seconds = time.perf_counter() - begin
     finally:
         process.end()
+    check_row(row)
     groups = {name: group.participants for name, group in design.groups.items()}
     about = {**facts, "seconds_a_trial": round(seconds, 3), "error": row["error"]}
     out.event("check", about)
@@ -142,7 +146,7 @@ def run(
     with ExitStack() as opened:
         # Before the folder is made: a cluster may not answer.
         cluster = None if scheduler is None else opened.enter_context(existing_cluster(scheduler))
-        experiment, store = _opened(opened, name, values, participants, trials, folder, resume=resume, any_version=any_version)
+        experiment, store, sure = _opened(opened, name, values, participants, trials, folder, resume=resume, any_version=any_version)
         total, begin, before = len(experiment.design), time.monotonic(), store.count
         facts = facts_of(experiment)
         store.write_facts({"event": "facts", **facts})
@@ -154,7 +158,7 @@ def run(
                 local_cluster(workers or os.cpu_count() or 1) if cluster is None else nullcontext(cluster) as client,
                 _progress(out, "", total) as show,
             ):
-                run_experiment(experiment, store, client, show=show, stop=stop)
+                run_experiment(experiment, store, client, show=show, stop=stop, sure=sure)
             took, ran = time.monotonic() - begin, store.count - before
             out.line(f"{ran:,} trials in {took:,.0f} s ({ran / max(took, 1e-9):,.1f} a second)")
         files = export(store)
@@ -192,13 +196,18 @@ def fit(
         Exception: Any error that the files of the design and of the model themselves raise.
     """
     from actr3d.experiment.cluster import existing_cluster, local_cluster
-    from actr3d.experiment.fit import Fit, Range, TargetMean, load_target, to_json
+    from actr3d.experiment.fit import Fit, Range, TargetMean, check_measure, load_target, to_json
 
     def means(experiment: Experiment, data: str | None, give: str) -> tuple[TargetMean, ...]:
         data = data or experiment.design.human
         if data is None:
             raise ExperimentError(f"design '{experiment.specification.name}': names no human data; give {give}")
-        return load_target(data, experiment, measure)
+        found, kept = load_target(data, experiment, measure), experiment.design.kept
+        if not check_measures(experiment) or (not kept and known_measures(experiment) is None):
+            row = try_measures(experiment)
+            if row is not None and not kept:
+                check_measure(found[0].measure, [name for name in row if name not in OWN_COLUMNS], experiment)
+        return found
 
     path = Path(folder or f"fit {Path(name).stem}")
     wanted = means(specify(name, values=values), target, "--target FILE")
@@ -312,8 +321,8 @@ def _opened(
     *,
     resume: bool,
     any_version: bool,
-) -> tuple[Experiment, Store]:
-    """Creates or opens the folder of an experiment, which `opened` closes."""
+) -> tuple[Experiment, Store, bool]:
+    """Creates or opens the folder of an experiment, which `opened` closes; also returns whether its measures are known to be right."""
     if is_folder(name):
         if values or participants is not None or trials is not None or folder is not None:
             raise ExperimentError(f"'{name}' is an experiment, whose design is fixed; name a design to run it with other values")
@@ -321,20 +330,20 @@ def _opened(
             raise ExperimentError(f"'{name}' is an experiment; continue it with --resume")
         store = opened.enter_context(Store(name))
         _check_versions(store.specification, any_version=any_version)
-        return Experiment(store.specification), store
+        return Experiment(store.specification), store, True
     experiment = specify(name, participants=participants, trials=trials, values=values)
     folder = folder or experiment.specification.name
     if not (resume and is_folder(folder)):
-        check_measures(experiment)
-        return experiment, opened.enter_context(Store.create(folder, experiment.specification))
+        sure = check_measures(experiment) or try_measures(experiment) is not None
+        return experiment, opened.enter_context(Store.create(folder, experiment.specification)), sure
     store = opened.enter_context(Store(folder))
     _check_versions(store.specification, any_version=any_version)
-    there, wanted = store.specification, replace(experiment.specification, versions=store.specification.versions)
-    if there.to_json() != wanted.to_json():
-        names = ("name", "design", "model", "participants", "trials", "values")
-        different = [one for one in names if getattr(there, one) != getattr(wanted, one)]
-        raise ExperimentError(f"'{folder}' is another experiment: {' and '.join(different)} differ; choose another --out")
-    return Experiment(there), store
+    there, wanted = store.specification, experiment.specification
+    if different := there.differences(wanted):
+        same = f"choose another --out, or continue it as it is: actr3d experiment {folder} --resume"
+        raise ExperimentError(f"'{folder}' is another experiment: {'; '.join(different)}; {same}")
+    # The files may be at another place now, and other files that the model reads beside them.
+    return Experiment(replace(wanted, versions=there.versions)), store, True
 
 
 @contextmanager

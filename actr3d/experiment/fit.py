@@ -21,7 +21,7 @@ import math
 import random
 import warnings
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass, field
 from hashlib import sha256
@@ -39,6 +39,7 @@ from actr3d.errors import ConfigurationError, DesignError, ExperimentError, Sett
 from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
 from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data
+from actr3d.experiment.measures import known_measures
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
 
@@ -323,8 +324,8 @@ class Fit:
             measure: The measure; None for that of the fit.
             target: The means with which it is compared; None for those of the fit.
         """
-        text = experiment.specification.to_json()
-        folder = self._folder / f"{kind} {sha256(text.encode('utf-8', 'surrogatepass')).hexdigest()[:12]}"
+        text = json.dumps(experiment.specification.content(), sort_keys=True)
+        folder = self._folder / f"{kind} {sha256(text.encode()).hexdigest()[:12]}"
         store = Store(folder) if (folder / SPECIFICATION).exists() else Store.create(folder, experiment.specification)
         with store:
             with self._progress(what, len(experiment.design)) as show:
@@ -522,6 +523,9 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
         if measure in measures:  # another one may be a text
             ignored |= {*measures} - {measure}
             measures = [measure]
+    trial_has = [one.name for one in design.kept] or list(known_measures(experiment) or ())
+    if trial_has and measure is None and len(set(measures)) == 1:
+        measures = trial_has  # the reader names the line with another one
     parameters = {factor_name(one.name): one for one in experiment.parameters if one.name in design.factors}
     schema = Schema(
         groups=list(design.groups),
@@ -546,7 +550,27 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     )
     if not found:
         raise ExperimentError(f"human data '{name}': have no means of '{measure}'; they have: {', '.join(data.measures) or 'none'}")
+    if measure is not None:
+        check_measure(measure, trial_has or (measure,), experiment)
     return found
+
+
+def check_measure(name: str, known: Collection[str], experiment: Experiment) -> None:
+    """Checks that the trials of a design have the measure that is fitted.
+
+    Args:
+        name: The measure.
+        known: The measures of a trial.
+        experiment: The experiment with the design.
+
+    Raises:
+        ExperimentError: If it is none of them.
+    """
+    if name not in known:
+        of = experiment.specification.name
+        raise ExperimentError(
+            f"--measure: the trials of the design '{of}' have no measure '{name}'{alternatives(name, known, 'they have:')}"
+        )
 
 
 def _check_conditions(target: Mapping[Cell, float], of: Design) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import itertools
 import json
 import pkgutil
 import re
@@ -77,6 +78,37 @@ class Specification(Configuration):
     def to_json(self) -> str:
         """Returns the specification as JSON."""
         return json.dumps(asdict(self), ensure_ascii=False, indent=1)
+
+    def content(self) -> dict[str, Any]:
+        """Returns all that determines the rows, as JSON has it: without the places of the files, and with the versions."""
+        content = json.loads(self.to_json())
+        for one in ("design", "model"):
+            del content[one]["file"]
+        return content
+
+    def differences(self, other: Specification) -> list[str]:
+        """Returns in words what determines the rows and is not the same in another specification, whatever versions both have."""
+        this, that = self.content(), other.content()
+        found: list[str] = []
+        if self.name != other.name:
+            found.append(f"the design is '{self.name}' there, '{other.name}' now")
+        for one in ("design", "model"):
+            if this[one]["text"] != that[one]["text"]:
+                lines = itertools.zip_longest(this[one]["text"].split("\n"), that[one]["text"].split("\n"))
+                first = next(number for number, (there, now) in enumerate(lines, start=1) if there != now)
+                found.append(f"the {one} differs from line {first} on ({getattr(other, one).file})")
+            modules = (this[one]["helpers"], that[one]["helpers"])
+            names = [name for name in {**modules[0], **modules[1]} if modules[0].get(name) != modules[1].get(name)]
+            found += [f"the module '{name}' beside the {one} differs" for name in names]
+        for number in ("participants", "trials"):
+            if this[number] != that[number]:
+                there, now = ("as designed" if given[number] is None else given[number] for given in (this, that))
+                found.append(f"{number}: {there} there, {now} now")
+        for name in {**this["values"], **that["values"]}:
+            there, now = (repr(given["values"][name]) if name in given["values"] else "as designed" for given in (this, that))
+            if there != now:
+                found.append(f"{name}: {there} there, {now} now")
+        return found
 
     @contextmanager
     def sealed(self) -> Generator[HelperTexts]:
@@ -368,7 +400,7 @@ def naming_the_line(source: Source, function: str, replaced: Mapping[str, Any]) 
     except (ConfigurationError, DesignError) as error:
         name = error.name if isinstance(error, DesignError) else str(error).partition(":")[0].rpartition(".")[2]
         place = f"--set {name}" if name in replaced else f"{source.file}:{line_of(source.text, function, name)}"
-        raise DesignError(f"{place}: {error}", name) from None
+        raise (type(error) if isinstance(error, DesignError) else DesignError)(f"{place}: {error}", name) from None
     except TypeError as error:
         found = re.fullmatch(r"(\w+)\.__init__\(\) got an unexpected keyword argument '(\w+)'", str(error))
         kind = next((one for one in (Design, Group, Measured, Normal, Uniform) if found is not None and one.__name__ == found[1]), None)

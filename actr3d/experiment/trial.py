@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -15,7 +15,7 @@ from actr3d.actr.loading import run_text
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sweep import with_values
-from actr3d.errors import DesignError, ExperimentError, did_you_mean
+from actr3d.errors import DesignError, ExperimentError, did_you_mean, followed
 from actr3d.experiment.design import LARGEST, OWN_COLUMNS, Measured, Trial, as_python
 from actr3d.experiment.specification import Experiment, load_blueprint, naming_the_line
 from actr3d.output import ModelOutput, printing_to
@@ -26,9 +26,15 @@ from actr3d.values import escape_surrogates
 
 PLAIN = (str, int, float, bool, type(None))
 """The types of measures."""
+NO_MEASURE = "no measure"
+"""What the column `end` says of a trial that lacks a measure of the design."""
 
 Row = dict[str, Any]
 """A row of the table of trials, or a part of one: values by column."""
+
+
+class MissingMeasureError(DesignError):
+    """A trial lacks a measure that its design names."""
 
 
 def run_trial(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> Row:
@@ -48,7 +54,8 @@ def run_trial(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> Row
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # noqa: BLE001 - every error of a model belongs in its row
-        return {"end": "error", "error": traceback_report(error).text.strip()}
+        end = NO_MEASURE if isinstance(error, MissingMeasureError) else "error"
+        return {"end": end, "error": traceback_report(error).text.strip()}
 
 
 def record_trial(experiment: Experiment, trial: Trial, file: Path | str, helpers: HelperTexts) -> Any:
@@ -70,7 +77,7 @@ def record_trial(experiment: Experiment, trial: Trial, file: Path | str, helpers
     model, built = experiment.specification.model, experiment.blueprint is not None
     text = model.text if built else with_values(model.text, parameters_for(experiment, trial))
     settings = parameters_for(experiment, trial) if built else None
-    return run_source(text, model.file, _limits(experiment, trial), settings=settings, record=file, helpers=helpers)
+    return run_source(text, model.file, limits_of(experiment, trial), settings=settings, record=file, helpers=helpers)
 
 
 def parameters_for(experiment: Experiment, trial: Trial) -> dict[str, Any]:
@@ -79,50 +86,30 @@ def parameters_for(experiment: Experiment, trial: Trial) -> dict[str, Any]:
     return {name: value for name, value in trial.values.items() if name in known}
 
 
-def check_measures(experiment: Experiment) -> None:
-    """Checks the names of measures against the result that the simulation of the first trial has before it runs.
-
-    Nothing is known before the run of a program, of a design with `results`, and of a simulation that cannot be built.
-
-    Raises:
-        DesignError: If the result has no measure of that name; names the file and the line.
-    """
-    design, blueprint, specification = experiment.design, experiment.blueprint, experiment.specification
-    if blueprint is None or design.results is not None or not design.kept:
-        return
-    trial = design.trial(0)
-    limits = _limits(experiment, trial)
-    try:
-        with printing_to(ModelOutput(lambda _: None)), unchecked(), limits, shared_random(limits.program_seed):
-            result = blueprint.build(parameters_for(experiment, trial))[0].result()
-    except Exception:  # noqa: BLE001 - the trial fails, with this error in its row
-        return
-    if result is not None:
-        with naming_the_line(specification.design, specification.name, specification.values):
-            for measure in design.kept:
-                _check_name(measure.name, asdict(result))
-
-
-def _check_name(name: str, given: Mapping[str, Any]) -> None:
+def check_name(name: str, known: Collection[str]) -> None:
     """Checks that a trial has a measure.
 
+    Args:
+        name: The name of the measure.
+        known: The names of all measures of the trial.
+
     Raises:
-        DesignError: If it has none of that name.
+        MissingMeasureError: If it is none of them.
     """
-    if name not in given:
-        has = f"it has: {', '.join(given)}" if given else "it has none; Design.results computes them from the simulation"
-        hint = did_you_mean(name, given) or f"; {has}"
-        raise DesignError(f"Design.measures: the trial has no measure '{name}'{hint}", name)
+    if name not in known:
+        has = f"it has: {', '.join(known)}" if known else "it has none; Design.results computes them from the simulation"
+        raise MissingMeasureError(f"Design.measures: the trial has no measure '{name}'{followed(did_you_mean(name, known), has)}", name)
 
 
-def _limits(experiment: Experiment, trial: Trial) -> RunLimits:
+def limits_of(experiment: Experiment, trial: Trial) -> RunLimits:
+    """Returns the seed of a trial, and its end."""
     return RunLimits(seed=trial.seed, until=experiment.design.until)
 
 
 def _run(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> tuple[str, Mapping[str, Any]]:
     """Runs a trial; returns what ended it, and all its measures."""
     design, model = experiment.design, experiment.specification.model
-    limits, values = _limits(experiment, trial), parameters_for(experiment, trial)
+    limits, values = limits_of(experiment, trial), parameters_for(experiment, trial)
     if experiment.blueprint is None:
         module = run_text(with_values(model.text, values), model.file, limits=limits, folder=Path(model.file).parent, helpers=helpers)
         end = "limits" if limits.ended else "end"
@@ -159,13 +146,20 @@ def _checked(measures: Any, experiment: Experiment, trial: Trial) -> Row:
     given = cast("Mapping[str, Any]", measures)
     kept: Row = {}
     for measure in experiment.design.kept or [Measured(name=name) for name in given]:
-        _check_name(measure.name, given)
+        if measure.name not in given:
+            with naming_the_line(experiment.specification.design, experiment.specification.name, {}):
+                check_name(measure.name, [name for name, value in given.items() if not name.startswith("_") and _is_value(value)])
         for name, value in measure.columns(given[measure.name]).items():
             if name in trial.columns or name in OWN_COLUMNS or name in kept:
                 raise ExperimentError(f"measure '{name}': is already a column of the trials; rename it")
             kept[name] = _plain(name, value)
             experiment.describe_column(name, measure)
     return kept
+
+
+def _is_value(value: Any) -> bool:
+    """Returns whether a value can be a measure, or the list of one."""
+    return isinstance(as_python(value), (*PLAIN, list, tuple))
 
 
 def _plain(name: str, value: Any) -> Any:

@@ -136,9 +136,14 @@ function Menus({ experiment, facts, columns, chosen }) {
   </div>`;
 }
 
+/** Returns the other experiments that have what is shown: the measure, and the columns of the axis and the lines. */
+function comparable(experiment, { x, by, measure, over }) {
+  const needed = [over ? `${measure}_1` : measure, ...[x, ...by].filter((name) => name !== over)];
+  return (experiments.value ?? []).filter(({ id, done, columns }) => id !== experiment.id && done > 0 && needed.every((name) => columns.includes(name)));
+}
+
 /** The choice of another experiment to draw beside this one. */
-function ComparedChoice({ experiment, other }) {
-  const others = (experiments.value ?? []).filter(({ id, done }) => id !== experiment.id && done > 0);
+function ComparedChoice({ others, other }) {
   if (others.length === 0) return null;
   return html`<select aria-label="Compare with" title="Draw another experiment beside it" value=${other?.id ?? ""} onChange=${(event) => (compared.value = event.currentTarget.value)}>
     <option value="">compare with …</option>
@@ -252,7 +257,8 @@ export function Figure({ experiment, facts, columns: all }) {
   const { done, failures } = experiment;
   const failed = done > 0 && failures === done;
   const chosen = chosenFor(experiment.name, facts, columns);
-  const other = (experiments.value ?? []).find(({ id, done }) => id === compared.value && id !== experiment.id && done > 0) ?? null;
+  const comparables = comparable(experiment, chosen);
+  const other = comparables.find(({ id }) => id === compared.value) ?? null;
   const own = useFresh(failed ? null : pathOf(experiment.id, chosen), experiment.done);
   const others = useFresh(other && pathOf(other.id, chosen), other?.done);
   const answer = own.answer;
@@ -275,7 +281,7 @@ export function Figure({ experiment, facts, columns: all }) {
     <${Problem} text=${error} />
     ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
     ${answer && lines.length > 0
-      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOf(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} experiment=${experiment} other=${other} /><//>`
+      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOf(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
       : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
   `;
 }

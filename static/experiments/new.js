@@ -14,7 +14,7 @@ const PAUSE = 700; // how long the user has not typed before the design is check
 const DESIGN = remembered("design", "");
 const NOTHING = { values: {}, participants: "", trials: "", workers: "" };
 
-/** The designs, and the number of processors: {designs: [{id, name, file, description}], processors}; null before they are known. */
+/** The designs, and the number of processors: {designs: [{id, name, file, description}], processors, most: {participants, trials, workers}}; null before they are known. */
 const known = signal(null);
 /** What was entered, by design: {values: {name: text}, participants, trials, workers}. */
 const drafts = signal({});
@@ -27,12 +27,9 @@ function change(design, changes) {
   drafts.value = { ...drafts.value, [design]: { ...draftOf(design), ...changes } };
 }
 
-/** The greatest numbers that the server takes. */
-const MOST = { participants: 1_000_000, trials: 1_000_000, workers: 256 };
-
-/** Returns the number of `name`, a whole number >= 1; null for an empty text, NaN for any other. */
+/** Returns the number of `name`, a whole number from 1 to what the server takes; null for an empty text, NaN for any other. */
 function readCount(name, text) {
-  return text.trim() === "" ? null : /^[1-9]\d{0,6}$/.test(text.trim()) && Number(text) <= MOST[name] ? Number(text) : NaN;
+  return text.trim() === "" ? null : /^[1-9]\d*$/.test(text.trim()) && Number(text) <= known.value.most[name] ? Number(text) : NaN;
 }
 
 /** Returns what the server is asked for, and the number of trials; `problem` says what is wrong. */
@@ -48,7 +45,7 @@ function wantedOf(design, facts) {
   }
   for (const [name, text] of Object.entries(counts)) {
     const count = readCount(name, text);
-    if (Number.isNaN(count)) problem ??= `${name === "workers" ? "processes" : name}: must be a whole number from 1 to ${MOST[name].toLocaleString("en")} (got '${text}')`;
+    if (Number.isNaN(count)) problem ??= `${name === "workers" ? "processes" : name}: must be a whole number from 1 to ${known.value.most[name].toLocaleString("en")} (got '${text}')`;
     else if (count !== null) wanted[name] = count;
   }
   if (!facts || problem) return { wanted, problem, trials: null };

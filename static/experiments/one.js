@@ -2,6 +2,7 @@
 
 import { html, useSignal, useEffect } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
+import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Prose } from "../parts/prose.js";
 import { whenInFull, whenText } from "../runs/wording.js";
@@ -18,11 +19,13 @@ function Actions({ experiment }) {
   const waits = busy.value !== null;
   return html`
     ${state === "running" || state === "stopping" ? html`<button disabled=${waits || state === "stopping"} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop</button>` : null}
-    ${(state === "stopped" || state === "failed") && (total === null || done < total) ? html`<button class="primary" disabled=${waits} title="Run the trials that are left" onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume</button>` : null}
+    ${(state === "stopped" || state === "failed") && (total === null || done < total) ? html`<button class="primary" disabled=${waits} title=${`Run the trials that are left, ${processesText(experiment)}`} onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume</button>` : null}
     ${done > 0 && !isRunning(experiment) ? html`<button disabled=${waits} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report</button>` : null}
     ${isRunning(experiment) || state === "elsewhere" ? null : html`<button class="danger bare" aria-label="Delete" title="Delete" disabled=${waits} onClick=${() => deleteExperiment(experiment)}><${Icon} name="trash" /></button>`}
   `;
 }
+
+const processesText = ({ processes }) => (processes ? `in ${counted(processes, "process", "processes")}` : "on all processors");
 
 function Progress({ experiment }) {
   const { done, total, failures, rate, left, state, workers } = experiment;

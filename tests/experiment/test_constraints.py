@@ -64,9 +64,11 @@ def test_a_turning_point_that_may_lie_beyond_the_trials_has_an_open_interval() -
 
 def test_equivalence_takes_small_differences_and_small_spread() -> None:
     near, far, wide = [20.0, 21.0, 22.0, 21.0, 20.5], [28.0, 29.0, 30.0, 29.0, 28.5], [5.0, 40.0, 12.0, 33.0, 16.0]
-    assert equivalence(near, [21.0, 20.0, 21.5, 20.5, 22.0], 5)[1] < 0.01
-    assert equivalence(far, near, 5) == (pytest.approx(8.0), pytest.approx(1, abs=0.01))
-    assert equivalence(wide, near, 5)[1] > 0.05
+    assert equivalence(near, [21.0, 20.0, 21.5, 20.5, 22.0], 5).p < 0.01
+    assert (equivalence(far, near, 5).difference, equivalence(far, near, 5).p) == (pytest.approx(8.0), pytest.approx(1, abs=0.01))
+    assert equivalence(wide, near, 5).p > 0.05
+    found = equivalence([20.0, 21.0, 22.0, 21.0, 20.5], [21.0, 23.0, 22.0, 24.0], 5)  # by statsmodels' `ttost_ind`:
+    assert (found.difference, found.df, found.p) == (pytest.approx(-1.6), pytest.approx(4.554990), pytest.approx(0.003420054))
 
 
 def good(group: str, agent: int, condition: str, aperture: float, number: int) -> Passing:

@@ -302,6 +302,28 @@ def test_targets_whose_conditions_are_not_clear_are_refused(tmp_path: Path, clie
         )
 
 
+@pytest.mark.parametrize(
+    ("measures", "column", "options", "says"),
+    [
+        ('measures=["y"]', "yy", [], "people.csv:2: column 'measure': must be one of: y (got 'yy'); did you mean 'y'?"),
+        ('measures=["y"]', "yy", ["--measure", "yy"], "--measure: the trials of the design 'line' have no measure 'yy'; did you mean 'y'?"),
+        ('measures=["yy"]', "yy", [], "line.py:30: Design.measures: the trial has no measure 'yy'; did you mean 'y'?"),
+        ("results=found", "zzz", [], "--measure: the trials of the design 'line' have no measure 'zzz'; did you mean 'zz'? They have: zz"),
+    ],
+)
+def test_a_misspelled_measure_of_a_fit_is_refused_before_any_candidate_runs(
+    tmp_path: Path, capsys: Any, measures: str, column: str, options: list[str], says: str
+) -> None:
+    model, people = tmp_path / "line.py", tmp_path / "people.csv"
+    found = "def found(program):\n    return {'zz': program.y}\n"
+    model.write_text(LINE.replace('measures=["y"]', measures, 1) + found, encoding="utf-8")
+    people.write_text(f"x,measure,mean,source\n1,{column},2.4,ours\n3,{column},5.2,ours\n", encoding="utf-8")
+    command = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit"), *options]
+    assert main(command) in (1, 2)
+    assert says in capsys.readouterr().err
+    assert not (tmp_path / "fit").exists()
+
+
 def test_a_model_that_is_determined_exactly_has_a_narrow_interval() -> None:
     """Of an exponential, which is no parabola but near its minimum."""
     points = np.concatenate([np.linspace(0.05, 0.95, 10), 0.2 + np.linspace(-0.02, 0.02, 9)])

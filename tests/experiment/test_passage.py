@@ -26,7 +26,7 @@ class Walker(Model):
     def start(self):
         yield 0.5
         if self.sideways:
-            self.body.set("teleport", 0.0, self.sideways)
+            self.body.set("teleport", self.across, self.sideways)
         if self.speed:
             self.body.set("walk", self.speed)
         yield 0.4
@@ -42,7 +42,7 @@ def walked(width: float, load: Load | None = None, trace: str = "none", heading:
     walker: Any = load_text(WALKER, "walker.py").Walker
 
     def mind() -> Any:
-        return walker(**{"turn": 0.0, "sideways": 0.0, "speed": 1.25, **given})
+        return walker(**{"turn": 0.0, "across": 0.0, "sideways": 0.0, "speed": 1.25, **given})
 
     at = (2.5 * math.cos(heading), 2.5 * math.sin(heading))
     aperture = Aperture(position=at, width=width, heading=heading)
@@ -106,6 +106,24 @@ def test_a_walk_into_the_wall_touches_it_and_stops() -> None:
     assert result.contacts >= 2
     assert result.max_force_n > 100
     assert (result.wall_angle_deg, result.clearance_left_m) == (None, pytest.approx(0, abs=2e-3)) or result.clearance_left_m is None
+
+
+@pytest.mark.parametrize(("aside", "heading"), [(0.9, 0.0), (-0.5, 0.0), (0.5, 2.0)])
+def test_a_body_that_leans_against_the_wall_beside_the_doorway_has_no_clearance(aside: float, heading: float) -> None:
+    """Contacts are soft: it is a few millimetres between the faces of the wall."""
+    across: dict[str, Any] = {"across": -aside * math.sin(heading), "sideways": aside * math.cos(heading)}
+    simulation = walked(0.8, heading=heading, **across)
+    result = result_of(simulation)
+    assert (result.outcome, result.contacts > 0) == ("stopped", True)
+    assert (result.clearance_left_m, result.clearance_right_m) == (None, None)
+    simulation.seek(3.0)
+    assert simulation.result().clearance_left_m is None
+
+
+def test_a_body_that_is_stuck_in_the_doorway_has_a_clearance() -> None:
+    result = result_of(walked(0.42))
+    assert (result.outcome, result.wall_angle_deg) == ("stopped", pytest.approx(0, abs=0.1))
+    assert (result.clearance_left_m, result.clearance_right_m) == (pytest.approx(0, abs=2e-3), pytest.approx(0, abs=2e-3))
 
 
 def test_the_energy_of_contacts_is_summed_by_contact() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 import shutil
+import tempfile
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -22,6 +23,7 @@ from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
 from tests.helpers.experiments import write_experiment
+from tests.helpers.folders import not_writable
 from tests.helpers.reports import store_rows, walk
 
 
@@ -254,6 +256,31 @@ def test_a_folder_that_is_no_report_is_not_replaced(tmp_path: Path) -> None:
     with pytest.raises(ExperimentError, match="is not a report; move it away"):
         write_report(folder)
     assert (folder / "report" / "thesis.tex").exists()
+    (folder / "report" / "index.html").write_text("<title>my own page</title>")
+    for place in (folder / "report", folder, folder / "trials.sqlite"):
+        with pytest.raises(ExperimentError, match="is not a report; move it away"):
+            write_report(folder, out=place)
+    assert (folder / "report" / "index.html").read_text() == "<title>my own page</title>"
+
+
+def test_the_report_of_an_experiment_that_cannot_be_written_goes_elsewhere(capsys: Any) -> None:
+    with tempfile.TemporaryDirectory() as place:  # pytest's own folders are closed to others
+        outer = Path(place)
+        outer.chmod(0o755)
+        folder = store_rows(outer / "out", str(write_experiment(outer, participants=1)), count)
+        other = outer / "others"
+        other.mkdir()
+        other.chmod(0o777)
+        write_report(folder, out=outer / "first")  # imports the libraries, which not everybody may be able to read
+        with not_writable(folder):
+            assert main(["report", str(folder)]) == 1
+            error = capsys.readouterr().err
+            assert f"error: '{folder}/report': cannot write the report (Permission denied); name another folder with --out\n" == error
+            for _ in range(2):  # the second one replaces the first
+                assert main(["report", str(folder), "--out", str(other / "new" / "mine")]) == 0
+                assert capsys.readouterr().out == f"{other}/new/mine/index.html\n"
+        assert {path.name for path in (other / "new" / "mine").iterdir()} == {"figures", "index.html", "tables"}
+        assert [path.name for path in (other / "new").iterdir()] == ["mine"]
 
 
 def test_a_design_can_add_sections_of_its_own(tmp_path: Path) -> None:
@@ -325,8 +352,7 @@ def test_starts_aside_and_aslant_have_a_figure_and_a_table(tmp_path: Path) -> No
     def misaligned(trial: Any) -> dict[str, Any]:
         if trial.values["start_aside"] < 0.2:
             return walk(trial)
-        # It leans against the wall beside the doorway, and its front is in the wall by the depth of a contact.
-        return {**walk(trial), "outcome": "stopped", "clearance_left_m": -0.002, "clearance_right_m": 0.8}
+        return {**walk(trial), "outcome": "stopped", "clearance_left_m": None, "clearance_right_m": None}
 
     folder = store_rows(tmp_path / "starts", "misaligned_start", misaligned, trials=2)
     write_report(folder)

@@ -13,6 +13,7 @@ import threading
 import time
 from collections.abc import Generator
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -333,7 +334,11 @@ def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFi
     Store.create(out, specify(str(path)).specification).close()
     for arguments, code, says in (
         ([str(path), "--out", out], 1, "holds an experiment already; continue it with --resume"),
-        ([str(path), "--out", out, "--resume", "--trials", "3"], 1, "is another experiment: trials differ; choose another --out"),
+        (
+            [str(path), "--out", out, "--resume", "--trials", "3"],
+            1,
+            "is another experiment: trials: as designed there, 3 now; choose another --out",
+        ),
         ([out, "--trials", "3"], 1, "is an experiment, whose design is fixed; name a design to run it with other values"),
         ([out, "--workers", "2"], 1, "is an experiment; continue it with --resume"),
         (["nothing"], 1, "no design or file 'nothing'"),
@@ -344,6 +349,48 @@ def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFi
         assert says in capsys.readouterr().err
     assert main(["experiment", out]) == 0
     assert "counting: 0 of 24 trials have finished\n" in capsys.readouterr().out
+
+
+def test_an_experiment_is_continued_where_its_files_were_moved_to(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, second = tmp_path / "first", tmp_path / "second"
+    first.mkdir()
+    (first / "more.txt").write_text("1", encoding="utf-8")
+    reads = f"{COUNTER}from pathlib import Path\nluck = int(Path(__file__).with_name('more.txt').read_text())\n"
+    write_experiment(first, participants=1, trials=1, model=reads)
+    monkeypatch.chdir(first)
+    Store.create("out", specify("counting_design.py").specification).close()
+    first.rename(second)
+    monkeypatch.chdir(tmp_path)
+    again = ["experiment", "second/counting_design.py", "--out", "second/out", "--resume", "--workers", "1"]
+    assert main([*again, "--set", "n=1,2"]) == 1
+    assert "'second/out' is another experiment: n: as designed there, [1, 2] now; choose another --out, or continue it as it is: " in (
+        capsys.readouterr().err
+    )
+    assert main(again) == 0
+    with Store("second/out") as store:
+        assert [(row["luck"], row["error"]) for row in store.rows()] == [(1, None)] * 3
+    capsys.readouterr()
+    (second / "counter.py").write_text(reads.replace("Counts to a number", "Counts"), encoding="utf-8")
+    assert main(again) == 1
+    assert "is another experiment: the model differs from line 1 on (second/counter.py); choose another" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "says"),
+    [
+        ("a", "a", []),
+        ("a", "b", ["the design is 'a' there, 'b' now"]),
+    ],
+)
+def test_specifications_differ_in_what_determines_the_rows_alone(tmp_path: Path, name: str, other: str, says: list[str]) -> None:
+    one = replace(specify(str(write_experiment(tmp_path))).specification, name=name, values={"n": (1, 2)})
+    changed = replace(one, name=other, versions={"python": "2"}, values={"n": [1, 2]}, model=replace(one.model, file="/elsewhere.py"))
+    assert one.differences(changed) == says
+    helped = replace(changed, model=replace(one.model, helpers={"pace": ["pace.py", ""]}), participants=3, values={"mode": "x"})
+    more = ["the module 'pace' beside the model differs", "participants: as designed there, 3 now"]
+    assert one.differences(helped) == [*says, *more, "n: [1, 2] there, as designed now", "mode: as designed there, 'x' now"]
 
 
 def test_texts_of_models_are_printed_as_they_are(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

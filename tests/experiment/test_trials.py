@@ -12,9 +12,9 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,12 +23,15 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
+from actr3d.experiment import measures
+from actr3d.experiment.measures import variables_set_in
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import run_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
 from tests.helpers.experiments import COUNTER, trial_processes, write_experiment
+from tests.helpers.folders import not_writable
 
 
 def rows_of(path: Path | str, **values: Any) -> list[dict[str, Any]]:
@@ -307,16 +310,81 @@ def test_a_trial_of_a_body_has_the_fields_of_its_result_and_their_units(tmp_path
         process.end()
 
 
-def test_a_misspelled_measure_of_a_body_is_refused_before_anything_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "walks.py"
-    path.write_text(
-        "from actr3d.experiment import Design, design\n\n\n@design\ndef walks():\n"
-        "    return Design(model='aperture_passage.py', measures=[\n        'outcome', 'wall_angel_deg'])\n"
-    )
-    assert main(["experiment", str(path), "--out", str(tmp_path / "out")]) == 2
-    says = "walks.py:7: Design.measures: the trial has no measure 'wall_angel_deg'; did you mean 'wall_angle_deg'?"
-    assert says in capsys.readouterr().err
+def misspelled(names: str, more: str = "") -> str:
+    head = "from actr3d.experiment import Design, design\n\n\n@design\ndef counting():\n"
+    return f"{head}    return Design(model='counter.py', {more}measures=[\n        {names}])\n"
+
+
+IN_BODY = misspelled("'outcome', 'wall_angel_deg'").replace("counter.py", "aperture_passage.py")
+RESULTS = "\n\ndef found(program):\n    return {'rt': program.rt, 'half': program.rt / 2}\n"
+
+
+@pytest.mark.parametrize(
+    ("design", "model", "says"),
+    [
+        pytest.param(IN_BODY, "", "'wall_angel_deg'; did you mean 'wall_angle_deg'? It has: outcome, ", id="of a body"),
+        pytest.param(
+            misspelled("'rt', 'lucky'"), "", "'lucky'; did you mean 'luck'? It has: n, mode, model, os, rt, luck", id="of a program"
+        ),
+        pytest.param(misspelled("'count'"), "", "'count'; it has: n, mode, model, os, rt, luck", id="a production"),
+        pytest.param(
+            misspelled("'half_'", "results=found, ") + RESULTS, "", "'half_'; did you mean 'half'? It has: rt, half", id="of results"
+        ),
+        pytest.param(
+            misspelled("'lucky'"), "globals()['more'] = 1\n", "'lucky'; did you mean 'luck'? It has: n, ", id="of a dynamic program"
+        ),
+    ],
+)
+def test_a_misspelled_measure_is_refused_before_anything_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], design: str, model: str, says: str
+) -> None:
+    write_experiment(tmp_path, model=COUNTER + model)
+    path = tmp_path / "counts.py"
+    path.write_text(design)
+    for more in (["--check"], []):
+        assert main(["experiment", str(path), "--out", str(tmp_path / "out"), *more]) == 2
+        assert f"counts.py:7: Design.measures: the trial has no measure {says}" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_measure_that_only_a_long_run_shows_ends_the_experiment_with_its_first_trial(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(measures, "PATIENCE", 0.05)
+    write_experiment(tmp_path, model=COUNTER.replace("model = Counter()", "import time\ntime.sleep(0.2)\nmodel = Counter()"))
+    path = tmp_path / "counts.py"
+    path.write_text(misspelled("'rtt'", "results=found, trials=1000, ") + RESULTS)
+    assert main(["experiment", str(path), "--out", str(tmp_path / "out"), "--workers", "1"]) == 2
+    assert "counts.py:7: Design.measures: the trial has no measure 'rtt'; did you mean 'rt'?" in capsys.readouterr().err
+    with Store(tmp_path / "out") as store:
+        assert store.count == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "variables"),
+    [
+        ("a = 1\nimport b, c as d\nfor e in x: pass\nwith y as f: g: int = 1\n", ("a", "b", "d", "e", "f", "g")),
+        ("def f(a):\n    global b\n    b = c = 1\n    def g():\n        global d\n        d += 1\nclass A:\n    e = 1\n", ("b", "d")),
+        ("if (a := 1): b, *c = x\n[d for d in x]\nmatch x:\n    case [e]: pass\n", ("a", "b", "c", "e")),
+        ("from actr3d.actr import *\nfrom ccm import *\nfrom b import a\n", ("a",)),
+        ("from b import *\n", None),
+        ("def f(**a):\n    globals().update(a)\n", None),
+        ("import __main__\n__main__.a = 1\n", None),
+    ],
+)
+def test_the_variables_of_a_program_are_those_that_its_text_sets(text: str, variables: tuple[str, ...] | None) -> None:
+    assert variables_set_in(text) == variables
+
+
+def test_a_measure_that_only_some_trials_have_fails_only_in_the_others(tmp_path: Path) -> None:
+    """The text of the program sets it."""
+    path = write_experiment(tmp_path, model=f"{COUNTER}if n == 1:\n    del luck\n", participants=1, trials=1)
+    assert main(["experiment", str(path), "--out", str(tmp_path / "out"), "--workers", "1"]) == 1
+    with Store(tmp_path / "out") as store:
+        ends = {row["n"]: (row["end"], row["error"]) for row in store.rows()}
+    assert ends[2] == ends[5] == ("end", None)
+    assert ends[1][0] == "no measure"
+    assert "counting_design.py:13: Design.measures: the trial has no measure 'luck'" in ends[1][1]
 
 
 # -- the store
@@ -404,6 +472,8 @@ def test_a_folder_that_is_in_use_or_no_experiment_is_refused(tmp_path: Path) -> 
     specification = specify(str(write_experiment(tmp_path))).specification
     with pytest.raises(ExperimentError, match=r"is not empty"):
         Store.create(tmp_path, specification)
+    with pytest.raises(ExperimentError, match=r"counter\.py' is a file; name a new folder"):
+        Store.create(tmp_path / "counter.py", specification)
     Store.create(tmp_path / "out", specification).close()
     with pytest.raises(ExperimentError, match="holds an experiment already; continue it with --resume"):
         Store.create(tmp_path / "out", specification)
@@ -412,22 +482,6 @@ def test_a_folder_that_is_in_use_or_no_experiment_is_refused(tmp_path: Path) -> 
     (tmp_path / "out" / "trials.sqlite").write_bytes(b"not a database" * 100)
     with pytest.raises(ExperimentError, match=r"trials\.sqlite: cannot be opened"):
         Store(tmp_path / "out")
-
-
-@contextmanager
-def not_writable(folder: Path) -> Generator[None]:
-    """Makes a folder one that nobody can write to, inside the block; root can write everywhere, and acts as somebody else."""
-    for path in (*folder.iterdir(), folder):
-        path.chmod(0o555 if path.is_dir() else 0o444)
-    was = os.geteuid()
-    try:
-        if was == 0:
-            os.seteuid(65_534)
-        yield
-    finally:
-        if was == 0:
-            os.seteuid(0)
-        folder.chmod(0o755)
 
 
 def test_an_experiment_in_a_folder_that_cannot_be_written_is_read() -> None:

@@ -64,6 +64,7 @@ def finished(workbench: Served) -> str:
     now = awaited(workbench, name, "finished")
     assert (now["done"], now["total"], now["failures"], now["problem"]) == (24, 24, 0, None)
     assert now["facts"]["factors"] == {"n": [1, 2, 5]}
+    assert {"n", "participant", "rt", "luck", "wall_s"} <= {*now["columns"]}
     return name
 
 
@@ -78,6 +79,7 @@ def test_designs_of_the_library_and_of_model_files_are_listed_without_running_th
     }
     assert listed["bad_design.py:bad"]["description"] == "Never runs."
     assert listed["warren_whang_1987"]["file"] is None
+    assert workbench.get("/api/designs").json()["most"] == {"participants": 1_000_000, "trials": 1_000_000, "workers": 256}
     assert "slow/counting_design.py:counting" in listed
     answer = workbench.post("/api/designs/check", {"design": "bad_design.py:bad"})
     assert answer.status_code == 422
@@ -182,8 +184,15 @@ def test_an_experiment_is_stopped_and_continued_while_sessions_go_on(workbench: 
     assert stopped["problem"] is None
     assert workbench.post(f"/api/experiments/{name}/stop").json()["error"] == "this experiment is not running"
     resumed = workbench.post(f"/api/experiments/{name}/resume", {"workers": 2}).json()
-    assert (resumed["state"], resumed["done"] >= stopped["done"]) == ("running", True)
+    assert (resumed["state"], resumed["done"] >= stopped["done"], resumed["processes"]) == ("running", True, 2)
     assert awaited(workbench, name, "running", done=stopped["done"] + 5)["total"] == 800
+    workbench.post(f"/api/experiments/{name}/stop")
+    before = awaited(workbench, name, "stopped")["done"]
+    workbench.post(f"/api/experiments/{name}/resume", {"workers": 1})
+    workbench.post(f"/api/experiments/{name}/stop")
+    awaited(workbench, name, "stopped")
+    assert workbench.post(f"/api/experiments/{name}/resume").json()["processes"] == 1  # of its last run, not all processors
+    assert awaited(workbench, name, "running", done=before + 1)["workers"] == 1
     workbench.post(f"/api/experiments/{name}/stop")
     awaited(workbench, name, "stopped")
 
@@ -308,6 +317,28 @@ def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished:
     folder.symlink_to(folder.parent)
     assert workbench.get(f"{path}/index.html").status_code == 404
     folder.unlink()
+
+
+def test_an_experiment_that_cannot_be_written_is_shown_with_its_report(workbench: Served, finished: str) -> None:
+    own = workbench.folder / ".workbench"
+    folder, made = own / "experiments" / "archived", own / "reports" / "archived"
+    shutil.copytree(own / "experiments" / finished, folder)
+    shutil.rmtree(folder / "report", ignore_errors=True)
+    for path in (*folder.iterdir(), folder):
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    now = state_of(workbench, "archived")
+    assert (now["state"], now["done"], now["report"]) == ("finished", 24, None)
+    path = "/api/experiments/archived"
+    assert workbench.get(f"{path}/rows").json()["total"] == 24
+    assert len(workbench.get(f"{path}/means?x=n&measure=rt").json()["points"]) == 3
+    answer = workbench.post(f"{path}/report", {"trust": True})
+    assert answer.status_code == 200, answer.text
+    assert state_of(workbench, "archived")["report"] == (made / "index.html").stat().st_mtime
+    assert workbench.get(f"{path}/report/index.html").content == (made / "index.html").read_bytes()
+    assert not (folder / "report").exists()
+    assert workbench.post(f"{path}/trial", {"number": 1, "trust": True}).status_code == 200
+    assert workbench.post(f"{path}/delete").status_code == 200
+    assert (folder.exists(), made.exists()) == (False, False)
 
 
 def test_errors_of_a_report_do_not_show_where_the_server_stores_it(workbench: Served, finished: str) -> None:

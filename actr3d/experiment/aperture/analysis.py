@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from actr3d.experiment.aperture.constraints import CRITICAL, MARGIN, PASSABLE, SAME, TURNED, WIDE, Constraint, Findings
+from actr3d.experiment.aperture.constraints import CRITICAL, MARGIN, PASSABLE, SAME, TURNED, WIDE, Constraint, Findings, equivalence
 from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
 from actr3d.experiment.aperture.original import original_bar_means, original_means
 from actr3d.experiment.aperture.passing import Passing, baseline_angle
 from actr3d.experiment.report.analyses import analysis
 from actr3d.experiment.report.beside import Beside, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
-from actr3d.experiment.report.libraries import noting_warnings, pandas, pingouin
+from actr3d.experiment.report.libraries import noting_warnings, pandas
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results
 from actr3d.experiment.report.statistics import agreement, bootstrap_interval, cell_means, in_order
@@ -319,18 +319,10 @@ class Rotation:
         scores, pair = self._findings.scores(), self._findings.pair
         if scores is None or pair is None:
             return []
-        large, small = scores
         with noting_warnings() as notes:
-            found = pingouin().tost(large, small, bound=SAME, paired=False, correction=True).iloc[0]
-        difference = float(np.mean(large) - np.mean(small))
-        row = {
-            "groups": f"{pair[1]} − {pair[0]}",
-            "difference": difference,
-            "bound": SAME,
-            "df": float(found["dof"]),
-            "p": float(found["pval"]),
-        }
-        row["result"] = "equivalent" if float(found["pval"]) < 0.05 else "not shown to be equivalent"
+            test = equivalence(*scores, SAME)
+        row = {"groups": f"{pair[1]} − {pair[0]}", "difference": test.difference, "bound": SAME, "df": test.df, "p": test.p}
+        row["result"] = "equivalent" if test.p < 0.05 else "not shown to be equivalent"
         note = (
             "Two one-sided Welch t tests on the mean angle of each participant at the common ratios from 1.0 to 1.4. A small p says that "
             "the groups differ by less than the bound."
@@ -579,10 +571,8 @@ def _starts(results: Results) -> Parts:
     keys = ["aperture", *by] if wide else by
     table = cell_means(rows, "passed", keys)[[*keys, "mean", "n", "trials"]].rename(columns={"mean": "passed"})
     table["untouched"] = cell_means(rows, "free", keys)["mean"]
-    # A walker that leans against the wall beside the doorway is in the wall by the depth of the contact, and has a clearance, too.
-    in_doorway = rows[["clearance_left_m", "clearance_right_m"]].max(axis=1) < rows["aperture"]
     for side in ("left", "right"):
-        rows[side] = 100 * rows[f"clearance_{side}_m"].where(in_doorway)
+        rows[side] = 100 * rows[f"clearance_{side}_m"]
         margins = cell_means(rows, side, keys).rename(columns={"mean": side})
         table = table.merge(margins[[*keys, side]], on=keys, how="left")
     units = {"start_aside": "m", "start_heading": "degrees", "left": "cm", "right": "cm"} | ({"aperture": "m"} if wide else {})

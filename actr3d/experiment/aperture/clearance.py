@@ -15,6 +15,9 @@ from actr3d.experiment.aperture.kernel import least_distances
 from actr3d.world.bounding_box import Extent
 from actr3d.world.scene_objects import Gap
 
+PRESSED = 1e-5
+"""Differences of distances below this are those of the algorithms that compute them [m]."""
+
 
 class Clearance:
     """Measures the distances of a body's geoms from the two segments of a wall.
@@ -44,14 +47,40 @@ class Clearance:
         return max(box.lower[0] - half, -half - box.upper[0])
 
     def rooms(self, held: Sequence[int] = ()) -> tuple[float, float] | None:
-        """Returns the smallest distances to the left and right segment [m]; None if no part of the body is between their faces."""
-        return None if self.before(held) > 0 else self.within(held)
+        """Returns the smallest distances to the left and right segment [m]; None if no part of the body is in the doorway."""
+        if self.before(held) > 0:
+            return None
+        room = self.within(held)
+        return room if self.is_inside(room, held) else None
 
     def within(self, held: Sequence[int] = ()) -> tuple[float, float]:
         """Returns the smallest distances to the left and right segment [m]."""
-        geoms = np.append(self._geoms, np.array(held, dtype=np.intp)) if held else self._geoms
-        left, right = (self._nearest(geoms, segment) for segment in self._gap.segments)
+        left, right = (self._nearest(self._all(held), segment) for segment in self._gap.segments)
         return left, right
+
+    def is_inside(self, room: tuple[float, float], held: Sequence[int] = ()) -> bool:
+        """Returns whether a body between the wall's faces is in the doorway, and not only pressed into a face by a contact: whether a part
+        of it is there farther than a segment pushes it back.
+
+        Args:
+            room: The distances of `within`.
+            held: More geoms that count as the body's: held objects.
+        """
+        if min(room) > 0:
+            return True
+        half, data = self._gap.thickness / 2, self._data
+        for geom in self._all(held).tolist():
+            middle = float((data.geom_xpos[geom] - self._middle) @ self._axes[:, 0])
+            if abs(middle) - self._model.geom_rbound[geom] >= half:
+                continue
+            box = Extent(self._model, data, np.array([geom])).box(self._middle, self._axes)
+            pressed = max(0.0, *(-mujoco.mj_geomDistance(self._model, data, geom, segment, 10.0, None) for segment in self._gap.segments))
+            if min(half - box.lower[0], half + box.upper[0]) > pressed + PRESSED:
+                return True
+        return False
+
+    def _all(self, held: Sequence[int]) -> NDArray[np.intp]:
+        return np.append(self._geoms, np.array(held, dtype=np.intp)) if held else self._geoms
 
     def _nearest(self, geoms: NDArray[Any], segment: int) -> float:
         """Returns the smallest distance of any of some geoms to a segment [m]."""

@@ -58,10 +58,10 @@ class PassageResult:
     the body. Each is the energy of the body at a speed that this impulse could stop."""
     clearance_left_m: float | None
     """Smallest distance between any part of the body and the left segment of the wall, while a part of the body was between its
-    faces [m]; None if none was."""
+    faces [m]; None if none was in the doorway."""
     clearance_right_m: float | None
     """Smallest distance between any part of the body and the right segment of the wall, while a part of the body was between its
-    faces [m]; None if none was."""
+    faces [m]; None if none was in the doorway."""
     speed_m_s: float | None
     """Mean walking speed [m/s], from setting out until it reached the wall, otherwise until the end."""
     time_s: float
@@ -103,7 +103,9 @@ class _Sample(NamedTuple):
     turned: float
     """The same without what gait adds to it [rad]."""
     room: tuple[float, float] | None
-    """To the left and right segment [m], while in the doorway."""
+    """To the left and right segment [m], while a part of the body is between the faces of the wall."""
+    entered: bool
+    """Whether a part of the body has been in the doorway; one that leans against the wall beside it is pressed between the faces, too."""
     duration: float
     """Of the physics step [s]."""
     forces: Forces
@@ -174,26 +176,29 @@ class Passage:
             self._start = x, y  # it was put elsewhere before it set out
         else:
             self._times.insert(number, end)
-            self._samples.insert(number, self._sample(end - ago, ago))
+            self._samples.insert(number, self._sample(end - ago, ago, entered=number > 0 and self._samples[number - 1].entered))
 
-    def _sample(self, time: float, ago: float) -> _Sample:
+    def _sample(self, time: float, ago: float, *, entered: bool) -> _Sample:
         """Returns the sample of a moment.
 
         Args:
             time: The time of the geometry [s].
             ago: By how much the joints are ahead of the geometry [s].
+            entered: Whether a part of the body has been in the doorway before.
         """
         before, angle, logged = posture()(self._axis, *self._shoulders, self._qpos, self._qvel, *self._turning, *self._middle, ago)
         turned = logged
         for name, share in self._stepping:
             turned -= share * self._body.hold.added_by_gait(name)
         room = self._room(time) if abs(before) < self._reach else None
+        if room is not None and not entered:
+            entered = self._clearance.is_inside(room, self._contacts.held())
         touches = self._contacts.touches()
         forces = {(touch.part, touch.other): touch.force for touch in touches} if touches else _NONE
-        return _Sample(time, before, angle, logged, turned, room, ago, forces)
+        return _Sample(time, before, angle, logged, turned, room, entered, ago, forces)
 
     def _room(self, time: float) -> tuple[float, float] | None:
-        """Returns the distances to the wall on both sides [m]; None if no part of the body is in the doorway, or could be there yet."""
+        """Returns the distances to the wall on both sides [m]; None if no part of the body is between its faces, or could be there yet."""
         left, back = self._away
         if left <= time < back:
             return None
@@ -210,7 +215,7 @@ class Passage:
         samples = self._samples[: bisect_right(self._times, now + TINY)]
         at_wall = next((sample for sample in samples if sample.before <= 0), None)
         onset = _onset(samples)
-        rooms = [sample.room for sample in samples if sample.room is not None]
+        rooms = [sample.room for sample in samples if sample.room is not None] if samples and samples[-1].entered else []
         impulses = _impulses(samples)
         last = at_wall or (samples[-1] if samples else None)
         way = samples[0].before - last.before if last is not None else 0.0

@@ -1,4 +1,4 @@
-"""The command `actr3d report`: writes the report of an experiment into its folder."""
+"""The command `actr3d report`: writes the report of an experiment into its folder, or another one."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from actr3d.experiment.report.analyses import find_analyses
 from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of
 from actr3d.experiment.report.figures import png, svg
 from actr3d.experiment.report.general import comparison_section, human_section, measure_sections, what_was_run
-from actr3d.experiment.report.page import page
+from actr3d.experiment.report.page import MADE_BY, page
 from actr3d.experiment.report.parts import Plot, Section, Table
 from actr3d.experiment.report.results import Results, by_number, read_results
 
@@ -24,21 +24,26 @@ DIGITS = "%.8g"
 """The format of numbers in tables: more digits would depend on the processor."""
 
 
-def write_report(folder: Path | str, *, human: Path | str | None = None, compare: Path | str | None = None) -> Path:
+def write_report(
+    folder: Path | str, *, human: Path | str | None = None, compare: Path | str | None = None, out: Path | str | None = None
+) -> Path:
     """Writes the report of an experiment, and returns its page.
 
-    The folder `report` of the experiment has the page `index.html`, `figures/NAME.svg` and `.png`, and `tables/NAME.csv`; an earlier
-    report there is replaced.
+    The folder of the report has the page `index.html`, `figures/NAME.svg` and `.png`, and `tables/NAME.csv`; an earlier report there
+    is replaced.
 
     Args:
         folder: The folder of the experiment.
         human: A file of human data; None for those that the design names. See `actr3d.experiment.human_data`.
         compare: The folder of another experiment to show beside this one.
+        out: The folder of the report; None for `report` in that of the experiment, which must be writable then.
 
     Raises:
         ExperimentError: If a folder holds no experiment or no trials, the human data are not valid, or the report cannot be written.
     """
+    final = Path(folder) / REPORT if out is None else Path(out)
     results = read_results(folder)
+    _check_place(final)
     parts = by_number(results)
     data, why = human_data_of(results.design, parts, human)
     people = None if data is None else beside_people(data, parts)
@@ -52,16 +57,33 @@ def write_report(folder: Path | str, *, human: Path | str | None = None, compare
     if other is not None:
         sections.append(comparison_section(results, other, parts, beside))
     sections += measure_sections(parts, others)
-    return _write(Path(folder), results, sections)
+    return _write(final, results, sections)
 
 
-def _write(folder: Path, results: Results, sections: Sequence[Section]) -> Path:
-    """Writes all files into a new folder, which then replaces the earlier report."""
-    final = folder / REPORT
+def _check_place(final: Path) -> None:
+    """Checks that the folder of a report is new, or empty, or holds an earlier report.
+
+    Raises:
+        ExperimentError: If it is something else, or cannot be read.
+    """
+    first = final / PAGE
     try:
-        if final.exists() and any(final.iterdir()) and not (final / PAGE).exists():
-            raise ExperimentError(f"'{final}' is not a report; move it away")
-        with tempfile.TemporaryDirectory(prefix=f".{REPORT} ", dir=folder, ignore_cleanup_errors=True) as place:
+        fine = not any(final.iterdir()) or (first.is_file() and MADE_BY in first.read_text(encoding="utf-8", errors="replace"))
+    except FileNotFoundError:
+        fine = True
+    except NotADirectoryError:
+        fine = False
+    except OSError as error:
+        raise ExperimentError(f"'{final}': cannot be read ({error.strerror or error})") from None
+    if not fine:
+        raise ExperimentError(f"'{final}' is not a report; move it away")
+
+
+def _write(final: Path, results: Results, sections: Sequence[Section]) -> Path:
+    """Writes all files into a new folder, which then replaces the earlier report."""
+    try:
+        final.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=f".{REPORT} ", dir=final.parent, ignore_cleanup_errors=True) as place:
             part = Path(place) / "new"
             for inner in ("figures", "tables"):
                 (part / inner).mkdir(parents=True)
@@ -79,7 +101,8 @@ def _write(folder: Path, results: Results, sections: Sequence[Section]) -> Path:
             (part / PAGE).write_text(_page(results, sections, drawings), encoding="utf-8")
             _replace(final, part, Path(place))
     except OSError as error:
-        raise ExperimentError(f"'{final}': cannot write the report ({error.strerror or error})") from None
+        elsewhere = "; name another folder with --out"
+        raise ExperimentError(f"'{final}': cannot write the report ({error.strerror or error}){elsewhere}") from None
     return final / PAGE
 
 

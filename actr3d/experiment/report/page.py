@@ -12,6 +12,8 @@ from actr3d.experiment.report.figures import inline_svg
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import name_with_unit
 
+MADE_BY = '<meta name="generator" content="actr3d report">'
+"""The line by which a page is known to be a report."""
 FOLDED = 40
 """A table with more rows is folded."""
 CSS = """
@@ -83,7 +85,7 @@ def page(title: str, lead: str, facts: Mapping[str, str], sections: Sequence[Sec
     body = "\n".join(_section(section, drawings) for section in sections)
     return (
         f'<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<meta name="viewport" content="width=device-width">\n'
-        f'<meta name="generator" content="actr3d report">\n<title>{_text(title)}</title>\n<style>{CSS}</style>\n</head>\n<body>\n<main>\n'
+        f"{MADE_BY}\n<title>{_text(title)}</title>\n<style>{CSS}</style>\n</head>\n<body>\n<main>\n"
         f'<h1>{_text(title)}</h1>\n<p class="lead">{_text(lead)}</p>\n<dl class="facts">{tiles}</dl>\n'
         f'<nav aria-label="Contents"><ul>{links}</ul></nav>\n{body}\n</main>\n</body>\n</html>\n'
     )

@@ -1,0 +1,112 @@
+"""The measures that a trial has, as far as they are known before an experiment runs, and checks of the names that a user gives."""
+
+from __future__ import annotations
+
+import ast
+import symtable
+from collections.abc import Iterator, Sequence
+from dataclasses import fields
+
+from actr3d.actr.compat.old_names import is_old_name
+from actr3d.actr.kernel.source_code import names_defined_in, syntax_tree
+from actr3d.actr.lint.checks import unchecked
+from actr3d.actr.loading.global_seed import shared_random
+from actr3d.errors import DesignError
+from actr3d.experiment.specification import Experiment, naming_the_line
+from actr3d.experiment.trial import NO_MEASURE, Row, check_name, limits_of, parameters_for
+from actr3d.experiment.trial_process import TrialProcess
+from actr3d.output import ModelOutput, printing_to
+
+PATIENCE = 60.0
+"""The maximum time for which a first trial runs whose measures are not known before [s]."""
+
+
+def known_measures(experiment: Experiment) -> tuple[str, ...] | None:
+    """Returns the names of the measures that a trial can have: the fields of the result that the simulation of the first trial has before
+    it runs, or the variables that the text of a program sets. None if only a run shows them: with a function `results`, for a simulation
+    that cannot be built or has no result yet, and for a program whose code may set other variables."""
+    design, model = experiment.design, experiment.specification.model
+    if design.results is not None:
+        return None
+    if experiment.blueprint is None:
+        helpers = [text for _, text in model.helpers.values()]
+        return None if any("__main__" in text for text in helpers) else variables_set_in(model.text)
+    trial = design.trial(0)
+    limits = limits_of(experiment, trial)
+    try:
+        with printing_to(ModelOutput(lambda _: None)), unchecked(), limits, shared_random(limits.program_seed):
+            result = experiment.blueprint.build(parameters_for(experiment, trial))[0].result()
+    except Exception:  # noqa: BLE001 - the trial fails, with this error in its row
+        return None
+    return None if result is None else tuple(field.name for field in fields(result))
+
+
+def check_measures(experiment: Experiment) -> bool:
+    """Checks the names of the design's measures before anything runs; returns whether they are known to be right.
+
+    Raises:
+        DesignError: If a trial can have no measure of that name; names the file and the line.
+    """
+    specification, kept = experiment.specification, experiment.design.kept
+    known = known_measures(experiment) if kept else ()
+    if known is None:
+        return False
+    with naming_the_line(specification.design, specification.name, {}):
+        for measure in kept:
+            check_name(measure.name, known)
+    return True
+
+
+def try_measures(experiment: Experiment) -> Row | None:
+    """Runs the first trial, for measures that only a run shows, and returns its row; None if it fails or takes too long.
+
+    Raises:
+        DesignError: If it has no measure of a name that the design gives; names the file and the line.
+        ExperimentError: If the experiment cannot be loaded.
+    """
+    process, design = TrialProcess(), experiment.design
+    try:
+        row = process.run(experiment.specification.to_json(), 0, min(design.limit, PATIENCE))
+    finally:
+        process.close()
+    check_row(row)
+    return row if row["error"] is None else None
+
+
+def check_row(row: Row) -> None:
+    """Checks that a trial has all measures of its design.
+
+    Raises:
+        DesignError: If it has not.
+    """
+    if row["end"] == NO_MEASURE:
+        raise DesignError(row["error"].removeprefix("error: "), "measures")
+
+
+def variables_set_in(text: str) -> tuple[str, ...] | None:
+    """Returns the variables that the text of a program sets at its top level, or in a function as `global`, without functions and
+    classes; None if its code may set others.
+
+    Raises:
+        SyntaxError: If it is not Python.
+    """
+    tree = syntax_tree(text)
+    if names_defined_in(tree) is None or "__main__" in text or any(_is_unknown(node) for node in ast.walk(tree)):
+        return None
+    whole = symtable.symtable(text, "<model>", "exec")
+    own = [one.get_name() for one in whole.get_symbols() if (one.is_assigned() or one.is_imported()) and not one.is_namespace()]
+    return tuple(dict.fromkeys([*own, *_globals_of(whole.get_children())]))
+
+
+def _is_unknown(node: ast.AST) -> bool:
+    """Returns whether a statement imports all names of a module that may have any."""
+    if not isinstance(node, ast.ImportFrom) or node.names[0].name != "*":
+        return False
+    root = (node.module or "").partition(".")[0]
+    return node.level > 0 or not (root == "actr3d" or is_old_name(root))
+
+
+def _globals_of(tables: Sequence[symtable.SymbolTable]) -> Iterator[str]:
+    for table in tables:
+        yield from (one.get_name() for one in table.get_symbols() if one.is_declared_global() and one.is_assigned())
+        yield from _globals_of(table.get_children())
