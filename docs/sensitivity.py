@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from math import cos, hypot, radians, sin
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,9 @@ REPETITIONS = 40
 """Number of simulated sets of data for each cost."""
 BELOW = 1.25
 """People turn before doorways below this many shoulder widths."""
+Likeness = Literal["room", "scaled room", "ratio", "widths"]
+"""What makes two passages alike: the room, seen minus felt width, as the model has it; room in shoulder widths; the ratio of seen and felt
+width; or both widths one by one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +56,7 @@ class Deciding:
     contact_cost: float = MODEL.CONTACT_COST
     turns: tuple[int, ...] = MODEL.TURNS
     walks: bool = True
+    likeness: Likeness = "room"
 
     def turns_before(
         self, shoulders: float, ratios: NDArray[Any], *, speed: float, pace: float | None = None, seed: int = 1
@@ -67,7 +71,8 @@ class Deciding:
             seed: The seed of their memories and of all noise.
         """
         known = experiences(walks=self.walks)
-        room, fast, energy = (np.array([one[slot] for one in known]) for slot in ("room", "speed", "energy"))
+        fast, energy = (np.array([one[slot] for one in known]) for slot in ("speed", "energy"))
+        passages = [np.array([one[slot] for one in known]) for slot in ("seen", "felt", "shoulders")]
         choice, noise = random.Random(seed), np.random.default_rng(seed)
         time = self.turning / Gait().steps_per_second(speed)
         widths = [shoulders * hypot(cos(radians(turn)), MODEL.CHEST * sin(radians(turn))) for turn in self.turns]
@@ -77,12 +82,28 @@ class Deciding:
             of = choice.sample(range(len(known)), min(self.memories, len(known)))
             costs: list[NDArray[Any]] = []
             for width, effort in zip(widths, efforts, strict=True):
-                far = np.abs(room[of] - (ratios[:, None] * shoulders - width)) / self.room + np.abs(fast[of] - (pace or speed)) / self.pace
+                now = self._compared(ratios[:, None] * shoulders, width, shoulders)
+                apart = sum(np.abs(there[of] - here) for there, here in zip(self._compared(*passages), now, strict=True))
+                far = apart / self.room + np.abs(fast[of] - (pace or speed)) / self.pace
                 activation = noise.logistic(0, self.noise, far.shape) - far if self.noise else -far
                 weights = np.exp((activation - activation.max(axis=1, keepdims=True)) / self.temperature)
                 costs.append(effort + self.contact_cost * (weights @ energy[of]) / weights.sum(axis=1))
             chosen.append(np.array(self.turns)[np.argmin(costs, axis=0)])
         return np.array(chosen)
+
+    def _compared(self, seen: Any, felt: Any, shoulders: Any) -> tuple[Any, ...]:
+        """Returns what is compared of passages [m], from their seen and felt widths and the walkers' shoulders [m].
+
+        Shoulder widths are multiplied by that of a body for which rooms are as similar as in metres.
+        """
+        unit = MODEL.BODY
+        compared: dict[Likeness, tuple[Any, ...]] = {
+            "room": (seen - felt,),
+            "scaled room": ((seen - felt) / shoulders * unit,),
+            "ratio": (seen / felt * unit,),
+            "widths": (seen, felt),
+        }
+        return compared[self.likeness]
 
     def critical_ratio(self, shoulders: float = CELLS[0][1], speed: float = CELLS[0][2]) -> float:
         """Returns the least ratio from which on fewer than half of the walkers turn."""
@@ -102,16 +123,29 @@ def effect_of_speed(shoulders: float, normal: float, fast: float) -> tuple[float
     return mean[fast, fast] - base, mean[fast, normal] - base, mean[normal, fast] - base
 
 
-def share_turned(cost: float, *, trials: int, seed: int) -> float:
-    """Returns the share of passages that are turned in the fitted cell, at a cost of contacts, of `WALKERS` with some trials each."""
+def share_turned(of: Deciding, *, trials: int, seed: int) -> float:
+    """Returns the share of passages that are turned in the fitted cell, of `WALKERS` with some trials each."""
     _, shoulders, normal, _ = CELLS[0]
-    return float((Deciding(contact_cost=cost).turns_before(shoulders, np.full(trials, FITTED), speed=normal, seed=seed) > 0).mean())
+    return float((of.turns_before(shoulders, np.full(trials, FITTED), speed=normal, seed=seed) > 0).mean())
+
+
+def fitted(likeness: Likeness) -> Deciding:
+    """Returns the decision by another likeness of passages, with the cost of contacts by which half of the fitted cell is turned."""
+    of = [Deciding(likeness=likeness, contact_cost=cost) for cost in COSTS]
+    return min(of, key=lambda one: abs(share_turned(one, trials=25, seed=0) - 0.5))
+
+
+def large_minus_small(of: Deciding) -> float:
+    """Returns how much more large walkers turn than small ones at the same ratio, at normal speed, below the critical ratio [degrees]."""
+    below = RATIOS[RATIOS < BELOW]
+    small, large = (of.turns_before(shoulders, below, speed=normal).mean() for _, shoulders, normal, _ in CELLS)
+    return float(large - small)
 
 
 @cache
 def shares_turned() -> NDArray[Any]:
     """Returns the share of turned passages at each of `COSTS`."""
-    return np.array([share_turned(cost, trials=25, seed=0) for cost in COSTS])
+    return np.array([share_turned(Deciding(contact_cost=cost), trials=25, seed=0) for cost in COSTS])
 
 
 def found_again(cost: float) -> tuple[float, float, float]:
@@ -119,7 +153,7 @@ def found_again(cost: float) -> tuple[float, float, float]:
 
     Data have as many passages as the fit of the walks: 200. A fit finds the cost whose share of turned passages is nearest.
     """
-    data = [share_turned(cost, trials=5, seed=seed) for seed in range(1, REPETITIONS + 1)]
+    data = [share_turned(Deciding(contact_cost=cost), trials=5, seed=seed) for seed in range(1, REPETITIONS + 1)]
     found = [COSTS[np.argmin(np.abs(shares_turned() - share))] for share in data]
     low, middle, high = np.quantile(found, (0.1, 0.5, 0.9))
     return float(middle), float(low), float(high)
@@ -137,6 +171,11 @@ def report() -> str:
     for room in (0.005, 0.01, 0.02):
         walks, glides = (replace(usual, room=room, walks=walks).critical_ratio() for walks in (True, False))
         lines.append(f"  room {room:g}: walking {walks:.2f}, gliding {glides:.2f}")
+    for likeness in get_args(Likeness):
+        of = fitted(likeness)
+        ratios = ", ".join(f"{of.critical_ratio(shoulders, speed):.2f}" for _, shoulders, *speeds in CELLS for speed in speeds)
+        lines.append(f"alike by {likeness}, contact_cost {of.contact_cost:.1f}: critical ratios {ratios}")
+        lines.append(f"  large minus small: {large_minus_small(of):+.1f} degrees")
     for name, shoulders, normal, fast in CELLS:
         both, effort, impact = effect_of_speed(shoulders, normal, fast)
         lines.append(f"{name}, fast minus normal: {both:+.1f} degrees; by effort alone {effort:+.1f}, by impact alone {impact:+.1f}")

@@ -52,12 +52,13 @@ What to try
   `predictive` one can.
 - Or move the slider of the aperture while the walker is on its way.
 
-The `predictive` variant without one of its parts:
+The `predictive` variant without one of its parts, or with another:
 
 - `variant = "predictive", gait = False`: no steps and no sway, now and in its memories.
 - `variant = "predictive", perceptual_noise = 0.0`: exact eyes, and an exactly felt width.
 - `variant = "predictive", impact = "any"`: each contact costs the same, whatever its energy.
 - `variant = "predictive", memories = 0`: no experience.
+- `variant = "predictive", units = "shoulders"`: it remembers how much room a passage had in shoulder widths, not in metres.
 """
 
 from dataclasses import dataclass
@@ -160,6 +161,9 @@ class Parameters(Configuration):
 
     impact: Literal["energy", "any"] = "energy"
     """Of the predictive walker: whether the cost of a contact grows with its energy, or is the same for any."""
+
+    units: Literal["metres", "shoulders"] = "metres"
+    """Of the predictive walker: the units in which it remembers how much room a passage had."""
 
     gait: bool = True
     """Of the predictive walker: whether it steps and sways, now and in its memories; the others glide."""
@@ -625,7 +629,7 @@ def predictive(parameters: Parameters) -> Simulation:
 
     p = parameters
     common = ("aperture", "task", "bar", "start_aside", "start_heading")
-    own = ("contact_cost", "perceptual_noise", "memory_noise", "memories", "impact", "gait")
+    own = ("contact_cost", "perceptual_noise", "memory_noise", "memories", "impact", "units", "gait")
     values = {name: getattr(p, name) for name in (*common, *own) if getattr(p, name) is not None}
     values |= {"shoulder_width": p.shoulder_width or WIDTHS[p.group], "speed": p.speed or SPEEDS[p.group, p.condition]}
     return predictive_walker.build(predictive_walker.Parameters(**values))

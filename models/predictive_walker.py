@@ -34,6 +34,7 @@ What to try
 - `closing = 0.065, aperture = 0.9`: the doorway closes while it walks there. It turns for a width that it saw before it decided.
 - `contact_cost = 10.0`: fears to touch the wall.
 - `gait = False`: glides, and so did all the bodies of its experience.
+- `units = "shoulders"`: compares passages by their room in shoulder widths. Then a large walker turns as much as a small one at the same ratio.
 - In the 3D view, the label above the walker has the turn that it plans, and the costs that it expects of turns; the overlay «handles» moves its
   start.
 """
@@ -95,6 +96,8 @@ INERTIA = 1.5
 ROOM, PACE, ANGLE, TEMPERATURE = 0.02, 0.3, 5.0, 1.0
 """Differences of room [m], speed [m/s] and angle [degrees] at which the similarity of two memories is -1; and the temperature of blending.
 The first one decides how much room it wants more than any other number (docs/results.md). Source: chosen for this model."""
+BODY = 0.4
+"""Of which shoulder width [m] rooms are as similar in metres as in shoulder widths. Source: chosen for this model."""
 LIKELY = 0.5
 """What it expects with a greater probability, it counts on. Source: chosen, as anything else would be a bias."""
 DISTANCE_NOISE, EDGE_NOISE, WIDTH_NOISE = 0.02, 0.002, 0.005
@@ -193,6 +196,9 @@ class Parameters(Configuration):
     impact: Literal["energy", "any"] = "energy"
     """What the cost of a contact grows with: its energy; or nothing, each costs as much as an impact of 10 J."""
 
+    units: Literal["metres", "shoulders"] = "metres"
+    """The units in which it remembers how much room a passage had: metres, or its own shoulder width."""
+
 
 class Similar(Partial):
     """Numbers are the more similar the nearer they are: the similarity is -1 at a difference that is given for each slot."""
@@ -285,7 +291,8 @@ class Planning(ACTR):
         if self.parent.always is not None:
             self.decide(f"turn:{turn} width:{width} middle:{middle} cost:0 free:1 passed:1")
             return
-        experience.request(f"event:passage room:{float(door) - float(width):.3f} speed:{self.parent.speed:.2f} energy:? free:? passed:?")
+        room = self.parent.room(door, width, self.parent.shoulders)
+        experience.request(f"event:passage room:{room} speed:{self.parent.speed:.2f} energy:? free:? passed:?")
         b_imagined.set(f"turn:{turn} door:{door} width:{width} middle:{middle} state:expected")
 
     def know_nothing(b_imagined="state:expected turn:?turn width:?width middle:?middle", experience="error:True"):
@@ -348,14 +355,16 @@ class Person(ACTR):
 
     def init():
         nearest.scales = {"torso_yaw": ANGLE}
-        alike.scales = {"room": ROOM, "speed": PACE}
+        alike.scales = {"room": ROOM if units == "metres" else ROOM / BODY, "speed": PACE}
         experience.temperature = TEMPERATURE
         activation_noise.noise = memory_noise
         vision.distance_noise, vision.edge_noise = noise * DISTANCE_NOISE, noise * EDGE_NOISE
         motor.size_noise = noise * WIDTH_NOISE
         known = experiences(walks=walks, hands=hands) if always is None else ()
         for passage in self.random.sample(known, min(memories, len(known))):
-            experience.add("event:passage " + " ".join(f"{slot}:{value}" for slot, value in passage.items()))
+            room = self.room(passage["seen"], passage["felt"], passage["shoulders"])
+            outcome = " ".join(f"{slot}:{passage[slot]}" for slot in ("speed", "energy", "free", "passed"))
+            experience.add(f"event:passage room:{room} {outcome}")
         self.side = self.random.choice([1, -1])
         self.rate, self.turned, self.middle, self.obstacle, self.looks_around = 0.0, 0, 0.0, None, False
         self.taken, self.nearest, self.patient_until = 0.0, inf, 0.0
@@ -394,6 +403,11 @@ class Person(ACTR):
 
     # -- judging
 
+    def room(self, seen, felt, shoulders):
+        """Returns how much room a doorway leaves to a body [m], or in shoulder widths, to three decimals."""
+        room = float(seen) - float(felt)
+        return f"{room if self.units == 'metres' else room / shoulders:.3f}"
+
     def look(b_goal="do:look", motor="busy:False"):
         vision.request(DOOR)
         b_goal.set("do:judge" if self.only_judges else "do:start")
@@ -406,7 +420,7 @@ class Person(ACTR):
     def remember_passages(b_goal="do:judge", b_visual="feature:opening width:?wide", motor="width:?width"):
         """Has it passed such a doorway without touching it, at whatever speed?"""
         b_visual.clear()
-        experience.request(f"event:passage room:{float(wide) - float(width):.3f} free:?")
+        experience.request(f"event:passage room:{self.room(wide, width, self.shoulders)} free:?")
         b_goal.set("do:say")
 
     def say(b_goal="do:say", b_experience="free:?free"):
@@ -522,7 +536,7 @@ class Person(ACTR):
         b_goal.set("do:look")
 
     def commit(b_goal="do:walk", b_door="width:?wide near:True free:True", b_plan="turn:?turn width:?width passed:?passed"):
-        self.committed = {"room": round(float(wide) - float(width), 4), "speed": self.speed}
+        self.committed = {"seen": float(wide), "felt": float(width), "speed": self.speed}
         b_goal.set("do:decline" if float(passed) <= LIKELY else f"do:turn turn:{turn}")
 
     def decline(b_goal="do:decline"):
@@ -557,11 +571,12 @@ class Person(ACTR):
 def person(parameters: Parameters, name: str = "walker") -> Person:
     """Returns an agent."""
     p = parameters
-    given = {field: getattr(p, field) for field in ("contact_cost", "memory_noise", "memories", "impact")}
+    given = {field: getattr(p, field) for field in ("contact_cost", "memory_noise", "memories", "impact", "units")}
     task = {"always": p.turn, "only_judges": p.task == "judge", "noise": p.perceptual_noise}
     remembered = {"walks": p.gait, "hands": "empty" if p.bar is None else "bar"}
     who = "" if p.scene != "two people" else f"{name} "
-    agent = Person(judged=None, chosen=None, committed=None, who=who, usual=p.speed, **given, **task, **remembered)
+    body = {"shoulders": p.shoulder_width, "who": who, "usual": p.speed}
+    agent = Person(judged=None, chosen=None, committed=None, **body, **given, **task, **remembered)
     agent.pace.wanted = agent.pace.kept = p.speed
     agent.go_at(p.speed)
     return agent

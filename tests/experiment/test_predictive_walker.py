@@ -15,7 +15,7 @@ import pytest
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.experiment.aperture import PassageResult, experiences
-from actr3d.experiment.aperture.experience import MASS, passage_remembered
+from actr3d.experiment.aperture.experience import MASS, MEASURES, passage_remembered
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.trial import run_trial
 from actr3d.runner.model_factory import build
@@ -187,6 +187,17 @@ def test_with_a_bar_its_memories_are_of_passages_with_bars(model: Any) -> None:
         assert {float(chunk["room"]) for chunk in remembered} <= rooms[hands]
 
 
+def test_it_remembers_room_in_metres_or_in_shoulder_widths(model: Any) -> None:
+    known = experiences()
+    for units, rooms in (
+        ("metres", {one["room"] for one in known}),
+        ("shoulders", {round((one["seen"] - one["felt"]) / one["shoulders"], 3) for one in known}),
+    ):
+        _, walker = walked(model, task="judge", aperture=1.5, units=units)
+        remembered = walker.experience.find_matching_chunks("event:passage")
+        assert {float(chunk["room"]) for chunk in remembered} <= rooms
+
+
 def test_a_bar_is_part_of_the_body_that_it_feels(model: Any) -> None:
     assert chosen(model, 2, aperture=0.95) == 0
     assert chosen(model, 2, aperture=0.95, bar=0.9) > 10
@@ -228,7 +239,8 @@ def test_a_turn_that_is_given_is_made(model: Any) -> None:
     result, walker = walked(model, aperture=0.9, turn=40.0)
     assert walker.chosen == 40
     assert result.wall_angle_deg == pytest.approx(40, abs=8)
-    assert walker.committed["room"] == pytest.approx(0.9 - 0.34, abs=0.08)
+    assert walker.committed["seen"] == pytest.approx(0.9, abs=0.05)
+    assert walker.committed["felt"] == pytest.approx(0.34, abs=0.03)
 
 
 @pytest.mark.daily(1)
@@ -361,6 +373,12 @@ def test_the_room_that_it_wants_follows_from_what_counts_as_similar_more_than_fr
     assert replace(usual, walks=False).critical_ratio() < usual.critical_ratio() - 0.02
 
 
+def test_large_walkers_turn_as_much_as_small_ones_at_the_same_ratio_if_room_is_remembered_in_units_of_the_body(sensitivity: Any) -> None:
+    assert sensitivity.large_minus_small(sensitivity.Deciding()) < -4
+    for likeness in ("scaled room", "ratio"):
+        assert sensitivity.large_minus_small(sensitivity.Deciding(likeness=likeness)) == pytest.approx(0, abs=1.5)
+
+
 def test_effort_and_impact_each_make_fast_walkers_turn_less(sensitivity: Any) -> None:
     """People turn more when they walk fast. A turn in one step takes less time then, and the body sways less: with a little room, it is
     free more often."""
@@ -416,18 +434,20 @@ def test_the_shipped_experiences_are_those_of_their_designs(practice: str, hands
     specification = specify(practice, values={"gait": walks}).specification
     with specification.sealed() as helpers:
         experiment = Experiment(specification, helpers)
-        rows = [run_trial(experiment, experiment.design.trial(number), helpers) for number in range(2)]
+        trials = [experiment.design.trial(number) for number in range(2)]
+        rows = [trial.values | run_trial(experiment, trial, helpers) for trial in trials]
     assert all(row["error"] is None for row in rows)
-    made = [{slot: row[slot] for slot in ("room", "energy", "free", "passed")} for row in rows]
-    assert made == [{slot: one[slot] for slot in made[0]} for one in experiences(walks=walks, hands=hands)[:2]]
+    made = [{name: row[name] for name in ("turn", *MEASURES)} for row in rows]
+    assert made == [{name: one[name] for name in made[0]} for one in experiences(walks=walks, hands=hands)[:2]]
 
 
 def test_the_energy_of_an_impact_is_at_most_that_of_the_walk() -> None:
     with pytest.raises(ValueError, match="did not come to the doorway"):
         passage_remembered(None, result_with(0.0, 0))
-    committed = {"room": 0.01, "speed": 2.0}
-    assert passage_remembered(committed, result_with(0.0, 0)) == {"room": 0.01, "energy": 0.0, "free": 1.0, "passed": 1.0}
-    assert passage_remembered(committed, result_with(6.0, 2)) == {"room": 0.01, "energy": 6.0, "free": 0.0, "passed": 1.0}
+    committed = {"seen": 0.41, "felt": 0.4, "speed": 2.0}
+    widths = {"seen": 0.41, "felt": 0.4}
+    assert passage_remembered(committed, result_with(0.0, 0)) == {**widths, "energy": 0.0, "free": 1.0, "passed": 1.0}
+    assert passage_remembered(committed, result_with(6.0, 2)) == {**widths, "energy": 6.0, "free": 0.0, "passed": 1.0}
     assert passage_remembered(committed, result_with(900.0, 9))["energy"] == MASS * 2.0**2 / 2
 
 

@@ -21,7 +21,8 @@ def write(folders: list[str]) -> None:
                 for row in store.rows():
                     if row["error"] is None:
                         hands = "bar" if row.get("bar") else "empty"
-                        rows.writerow({**row, "gait": gait, "hands": hands, "speed": round(row["speed"], 3)})
+                        body = {"hands": hands, "shoulders": round(row["shoulder_width"], 3), "speed": round(row["speed"], 3)}
+                        rows.writerow({**row, "gait": gait, **body})
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What a walker remembers of passages: how much room it had, how fast it walked, and what came of it."""
+"""What a walker remembers of passages: the widths that it saw and felt, its turn, how fast it walked, and what came of it."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from actr3d.experiment.aperture.passage import PassageResult
 from actr3d.world import Mannequin
 
 FILE = Path(__file__).with_name("experience.csv")
-SLOTS = ("room", "speed", "energy", "free", "passed")
-COLUMNS = ("gait", "hands", *SLOTS)
+MEASURES = ("seen", "felt", "energy", "free", "passed")
+COLUMNS = ("gait", "hands", "shoulders", "turn", "speed", *MEASURES)
 MASS: float = Mannequin.mass
 """Of the walker [kg]."""
 
@@ -24,7 +24,8 @@ def passage_remembered(committed: Mapping[str, float] | None, result: PassageRes
     Its energy is that of all contacts (`PassageResult.impact_j`), and at most that of the walk.
 
     Args:
-        committed: What the walker saw and did: `room` [m] and `speed` [m/s]; None if it came to no decision.
+        committed: What the walker saw and felt: `seen`, the width of the doorway [m]; `felt`, its own in the posture that it is about to
+            take, with what it holds [m]; and its `speed` [m/s]. None if it came to no decision.
         result: What came of it.
     """
     if committed is None:
@@ -32,17 +33,25 @@ def passage_remembered(committed: Mapping[str, float] | None, result: PassageRes
     moving = MASS * committed["speed"] ** 2 / 2
     energy = min(result.impact_j, moving)
     passed = result.outcome == "passed"
-    return {"room": committed["room"], "energy": round(energy, 2), "free": float(passed and result.contacts == 0), "passed": float(passed)}
+    return {
+        "seen": committed["seen"],
+        "felt": committed["felt"],
+        "energy": round(energy, 2),
+        "free": float(passed and result.contacts == 0),
+        "passed": float(passed),
+    }
 
 
 @cache
 def experiences(*, walks: bool = True, hands: Literal["empty", "bar"] = "empty") -> tuple[dict[str, float], ...]:
     """Returns the memories of simulated passages, of a body that walks or of one that glides, with empty hands or with a bar.
 
-    By slot: `room` [m], `speed` [m/s], `energy` [J], `free` (nothing was touched) and `passed`, 1 or 0.
+    By name: the width of the `shoulders` [m], their `turn` [degrees], the `speed` [m/s], what `passage_remembered` returns, and `room`,
+    the seen minus the felt width [m].
 
     Source: the rows of the designs `doorway_practice` and `bar_practice`; see `experience.csv`.
     """
     with FILE.open(encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if (row["gait"], row["hands"]) == (str(walks), hands)]
-    return tuple({slot: float(row[slot]) for slot in SLOTS} for row in rows)
+    numbers = [{name: float(row[name]) for name in COLUMNS[2:]} for row in rows]
+    return tuple(one | {"room": round(one["seen"] - one["felt"], 3)} for one in numbers)

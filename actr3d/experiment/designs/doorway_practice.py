@@ -24,7 +24,8 @@ def doorway_practice() -> Design:
         groups={"all": Group(participants=160, parameters={**BODIES, "aperture": Uniform(low=0.25, high=0.75)})},
         results=remembered,
         measures=[
-            Measured(name="room", unit="m", meaning="Seen width of the doorway minus felt width of the turned body, with what it holds."),
+            Measured(name="seen", unit="m", meaning="Seen width of the doorway."),
+            Measured(name="felt", unit="m", meaning="Felt width of the turned body, with what it holds."),
             Measured(name="energy", unit="J", meaning="Energy of all contacts, at most that of the walk."),
             Measured(name="free", meaning="Whether it passed and touched nothing."),
             Measured(name="passed", meaning="Whether it passed."),
