@@ -201,8 +201,10 @@ def main(folder: str) -> None:
     for number in (0, 1, 2):
         os.dup2(nothing, number)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the client ends this process
+    asked = _Questions(questions, folder)
     with suppress(BrokenPipeError):
-        _answer(_Questions(questions, folder), answers)
+        _answer(asked, answers)
+    asked.reader.join()  # it ends this process
 
 
 def _answer(asked: _Questions, answers: BinaryIO) -> None:
@@ -252,7 +254,8 @@ class _Questions:
         self._folder = folder
         self._there = threading.Condition()
         self._waiting: list[str | int] = []
-        threading.Thread(target=self._read, daemon=True).start()
+        self.reader = threading.Thread(target=self._read, daemon=True)
+        self.reader.start()
 
     def next(self) -> str | int:
         """Waits for the next question and returns it."""
@@ -265,7 +268,8 @@ class _Questions:
             with self._there:
                 self._waiting.append(json.loads(line))
                 self._there.notify()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        for _ in range(ATTEMPTS):  # what runs here may be making a file
+            shutil.rmtree(self._folder, ignore_errors=True)
         os.killpg(0, signal.SIGKILL)  # this process, and those that its models have started
 
 

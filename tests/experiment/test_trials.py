@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import json
 import os
 import shutil
 import signal
@@ -192,6 +193,25 @@ def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:
         time.sleep(0.05)
     assert time.monotonic() < deadline, "it ran on without its worker"
     assert not list(temporary.iterdir())
+
+
+@pytest.mark.slow
+def test_a_process_of_trials_whose_answers_nobody_reads_leaves_no_files(tmp_path: Path) -> None:
+    specification = specify(str(write_experiment(tmp_path))).specification.to_json()
+    folder = tmp_path / "temporary"
+    folder.mkdir()
+    command = [sys.executable, "-m", "actr3d.experiment.trial_process", str(folder)]
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True)
+    assert process.stdin is not None
+    assert process.stdout is not None
+    process.stdout.close()
+    process.stdin.write(json.dumps(specification).encode() + b"\n")
+    process.stdin.flush()
+    with suppress(subprocess.TimeoutExpired):
+        process.wait(3)  # it loads the experiment, and cannot say so
+    process.stdin.close()
+    process.wait(60)
+    assert not folder.exists()
 
 
 def test_nothing_is_left_of_processes_that_were_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
