@@ -377,7 +377,14 @@ def design_in(module: ModuleType, name: str, source: Source) -> Design:
     if name not in known:
         raise ExperimentError(f"{source.file}: has no design '{name}'{alternatives(name, known, 'it has:')}")
     with naming_the_line(source, name, {}):
-        found = known[name]()
+        try:
+            inspect.signature(known[name]).bind()
+        except TypeError as error:
+            raise DesignError(f"{name}() must be a function without arguments ({error})") from None
+        try:
+            found = known[name]()
+        except SystemExit as error:
+            raise DesignError(f"{name}() must return a Design (it ended with {error!r})") from None
         if not isinstance(found, Design):
             raise DesignError(f"{name}() must return a Design (returned {found!r})")
     return found
