@@ -422,7 +422,7 @@ def test_viser_is_behind_the_login_and_nowhere_else(server: Served) -> None:
         bearer = {"authorization": f"Bearer {server.token}"}
         with pytest.raises(websockets.InvalidStatus):
             await websockets.connect(address, subprotocols=protocol, additional_headers=bearer, origin="http://evil.example")  # type: ignore[arg-type] # pyright: ignore[reportArgumentType]
-        async with websockets.connect(address, subprotocols=protocol, additional_headers=bearer, max_size=None) as socket:
+        async with websockets.connect(address, subprotocols=protocol, additional_headers=bearer, max_size=None, open_timeout=60) as socket:
             assert socket.subprotocol == protocol[0]
             assert isinstance(await socket.recv(), bytes)
         if sys.platform == "linux":
