@@ -424,8 +424,6 @@ def _soak(options: argparse.Namespace) -> int:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    if arguments is None and sys.argv[1:2] and sys.argv[1] in RUNNING:
-        _order_sets()
     if sys.stdout is None:  # it was closed before the command started
         sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - it stays open until the end
     parser = _parser()
@@ -451,22 +449,3 @@ def _check_run(options: argparse.Namespace, words: list[str], arguments: list[st
     elif words and arguments.index(words[0]) < arguments.index(file):
         options.parser.error(f"{words[0]} is not an option of every run; those of the model file come after its name")
     options.words = words
-
-
-RUNNING = ("run", "replay", "experiment")
-"""The commands that run a model in their own process."""
-
-
-def _order_sets() -> None:
-    """Restarts the command if the order of sets of texts would differ between two runs with one seed.
-
-    Models run with PYTHONHASHSEED=0, whatever its value is. A Python that ignores the environment (`-E`, `-I`) cannot be
-    restarted in this way.
-    """
-    if sys.flags.hash_randomization and not sys.flags.ignore_environment:
-        os.environ["PYTHONHASHSEED"] = "0"
-        os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
+from importlib import import_module
 from pathlib import Path
 from types import FunctionType
 from typing import Any, ParamSpec, TypeVar, cast
@@ -16,14 +18,33 @@ OPTIONS: Any = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_
 """Division by zero gives infinity; no compiled function allocates memory, so that no references need to be counted."""
 
 
+BLAS = "scipy.linalg.cython_blas"
+
+
 _inner: set[FunctionType] = set()
 """The functions that are marked with `compiled`."""
 
 
-def _njit(**options: Any) -> Any:
-    import numba  # takes a third of a second
+@cache
+def _numba() -> Any:
+    """Returns numba, which takes a third of a second to load.
 
-    return cast("Any", numba).njit(**options)
+    Before it compiles anything, it loads SciPy's linear algebra, which takes as long again, to know whether it is there. Here it does not
+    find it: no function of the library needs it, and a function that does, such as one of a model, still loads it when it is compiled.
+    """
+    found = sys.modules.get(BLAS)
+    sys.modules[BLAS] = cast("Any", None)
+    try:
+        import_module("numba.np.arraymath")
+    finally:
+        sys.modules.pop(BLAS, None)
+        if found is not None:
+            sys.modules[BLAS] = found
+    return import_module("numba")
+
+
+def _njit(**options: Any) -> Any:
+    return _numba().njit(**options)
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:

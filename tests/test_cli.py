@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 
-import actr3d as actr3d_package
+import actr3d
 from actr3d.cli import main
+from tests.helpers.commands import run_command
 
 COMMAND = [sys.executable, "-c", "import sys; from actr3d.cli import main; sys.exit(main(sys.argv[1:]))"]
 
@@ -60,16 +61,10 @@ Broken().run()
 """
 
 
-def actr3d(folder: Path, *words: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Runs the command in a folder."""
-    env = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8", **environment}
-    return subprocess.run([*COMMAND, *words], cwd=folder, env=env, capture_output=True, encoding="utf-8", timeout=120, check=False)
-
-
 def run(folder: Path, source: str, *words: str) -> subprocess.CompletedProcess[str]:
     """Runs a model's text."""
     (folder / "model.py").write_text(source, encoding="utf-8")
-    return actr3d(folder, "run", "model.py", *words)
+    return run_command("run", "model.py", *words, folder=folder)
 
 
 def test_a_seed_gives_the_same_bytes(tmp_path: Path) -> None:
@@ -172,7 +167,7 @@ def test_an_error_while_matching_names_the_modellers_lines_and_the_production(tm
 
 @pytest.mark.parametrize("folder", ["actr3d-models", "actr3d/models"])
 def test_a_model_beside_the_library_or_installed_with_it_is_no_part_of_it(tmp_path: Path, folder: str) -> None:
-    shutil.copytree(Path(actr3d_package.__file__).parent, tmp_path / "actr3d", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(Path(actr3d.__file__).parent, tmp_path / "actr3d", ignore=shutil.ignore_patterns("__pycache__"))
     model = tmp_path / folder / "model.py"
     model.parent.mkdir()
     model.write_text(ENDLESS.replace("print('on')", "1 / 0") + "display(model)\nmodel.run()\n")
@@ -215,9 +210,10 @@ def test_a_closed_pipe_is_no_error(tmp_path: Path) -> None:
 
 def test_what_the_terminal_cannot_show_does_not_end_a_run(tmp_path: Path) -> None:
     (tmp_path / "model.py").write_text("print('\u2211')", encoding="utf-8")
-    done = actr3d(tmp_path, "run", "model.py", PYTHONIOENCODING="ascii")
-    assert (done.returncode, done.stdout) == (0, "\\u2211\n")
-    done = actr3d(tmp_path, "run", "model.py", "--json", PYTHONIOENCODING="ascii")
+    command, env = [*COMMAND, "run", "model.py"], {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, timeout=60, check=True)
+    assert done.stdout == b"\\u2211\n"
+    done = subprocess.run([*command, "--json"], cwd=tmp_path, env=env, capture_output=True, timeout=60, check=True)
     assert json.loads(done.stdout)["data"] == {"text": "\u2211"}
 
 
@@ -239,14 +235,14 @@ def test_what_the_terminal_cannot_show_does_not_end_a_run(tmp_path: Path) -> Non
     ],
 )
 def test_bad_options_are_refused(tmp_path: Path, words: list[str], message: str) -> None:
-    done = actr3d(tmp_path, *words)
+    done = run_command(*words, folder=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     assert message in done.stderr
 
 
 def test_a_missing_file_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "counting.py").touch()
-    done = actr3d(tmp_path, "run", "countng.py")
+    done = run_command("run", "countng.py", folder=tmp_path)
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == "error: no model file 'countng.py'; did you mean 'counting.py'?\n"
 
@@ -345,7 +341,7 @@ def test_the_package_is_the_command(tmp_path: Path) -> None:
     file.write_text("import random\nprint('said', {'a', 'b', 'c', 'd', 'e'}, random.random())\n", encoding="utf-8")
     said = {
         subprocess.run([sys.executable, *program, "run", str(file), "--seed", "1"], check=True, capture_output=True, timeout=60).stdout
-        for program in (["-m", "actr3d"], ["-m", "actr3d"], ["-m", "actr3d.cli"])
+        for program in (["-m", "actr3d"], ["-m", "actr3d"], [str(Path(sys.executable).with_name("actr3d"))])
     }
     assert len(said) == 1
     assert said.pop().startswith(b"said {")

@@ -113,10 +113,11 @@ def files() -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Returns a copy of the project with the files of the page."""
+    """Returns a copy of the project, with what of it is compiled, and with the files of the page."""
     folder = tmp_path_factory.mktemp("contributing")
+    being_written = shutil.ignore_patterns("*.pyc.*", "*.tmp.*")
     for package in ("actr3d", "workbench", "static"):
-        shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(ROOT / package, folder / package, ignore=being_written)
     for name, text in files().items():
         assert not (folder / name).exists()
         (folder / name).write_text(text, encoding="utf-8")

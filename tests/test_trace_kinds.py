@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 import threading
 from pathlib import Path
 from typing import Any
@@ -21,6 +19,7 @@ from actr3d.errors import ParameterError
 from actr3d.experiment.aperture import Passage
 from actr3d.trace import Trace, TraceEvent
 from actr3d.trace_kinds import KINDS, LEVELS
+from tests.helpers.commands import run_command
 from tests.helpers.motor_bodies import moving
 from tests.helpers.vision_scenes import seeing_for
 from tests.helpers.walkers import driving
@@ -91,8 +90,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[TraceEvent]:
     changed.run(0.1)
     file = tmp_path_factory.mktemp("model") / "everything.py"
     file.write_text(EVERYTHING + "\nAgent().run(1)\nprint('seen')\n", encoding="utf-8")
-    arguments = [sys.executable, "-m", "actr3d.cli", "run", str(file), "--json", "--seed", "1"]
-    done = subprocess.run(arguments, capture_output=True, text=True, check=True, timeout=60)
+    done = run_command("run", str(file), "--json", "--seed", "1")
     printed = [TraceEvent(0, line["source"], line["kind"], line["data"]) for line in map(json.loads, done.stdout.splitlines())]
     simulation = driving("all")
     simulation.measure(Passage("walker"))

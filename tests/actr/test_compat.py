@@ -44,6 +44,7 @@ def test_tutorial_models_print_what_they_print_under_python_actr(program: Progra
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("program", "seed"), cases(*PROGRAMS, *TUTORIAL_PROGRAMS))
-def test_python_actr_prints_what_is_recorded(program: Program, seed: int) -> None:
+@pytest.mark.parametrize("program", [*PROGRAMS, *TUTORIAL_PROGRAMS], ids=lambda program: program.name)
+def test_python_actr_prints_what_is_recorded(program: Program) -> None:
+    seed = program.seeds[-1]
     assert run_peer(program.text, seed, program.file.name) == program.recorded(seed)

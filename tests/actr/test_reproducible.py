@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 from random import Random
 
@@ -12,6 +10,7 @@ import pytest
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text, run_text
 from actr3d.trace import Trace
+from tests.helpers.commands import run_command
 
 ROOT = Path(__file__).parents[2]
 NOISY = """
@@ -136,7 +135,6 @@ def test_a_run_in_pieces_is_the_run_in_one(library: str) -> None:
 
 
 def test_the_command_prints_the_same_bytes_twice() -> None:
-    command = [sys.executable, "-m", "actr3d.cli", "run", "models/counting.py", "--seed", "1", "--json"]
-    runs = [subprocess.run(command, capture_output=True, cwd=ROOT, check=True, timeout=60).stdout for _ in range(2)]
-    assert runs[0].count(b"\n") > 20
+    runs = [run_command("run", "models/counting.py", "--seed", "1", "--json", folder=ROOT).stdout for _ in range(2)]
+    assert runs[0].count("\n") > 20
     assert runs[0] == runs[1]

@@ -141,11 +141,12 @@ window.fetch = (what, how) => !String(what).includes("/means?") ? fetched(what, 
 
 
 @pytest.mark.slow
-def test_a_figure_fills_in_although_its_means_take_longer_than_new_trials(
+def test_a_figure_fills_in_although_its_means_take_long_and_stays_while_the_server_does_not_answer(
     pages: Callable[..., Page], workbench: Served, design: str
 ) -> None:
+    """They take longer than new trials."""
     name = workbench.post("/api/experiments", {"design": design, "trials": 1000, "workers": 1}).json()["id"]
-    page = pages("counting.py", tab="experiments")
+    page = pages("counting.py", tab="experiments", refusals=True)
     page.evaluate(SLOWLY)
     page.locator(f"tr[data-experiment='{name}']").click()
 
@@ -157,15 +158,6 @@ def test_a_figure_fills_in_although_its_means_take_longer_than_new_trials(
     expect(page.locator(".point")).not_to_have_count(0)
     before = trials()
     until(page, lambda: trials() > before)
-    workbench.post(f"/api/experiments/{name}/stop")
-    expect(page.locator(".tools .state")).to_have_text("stopped")
-
-
-@pytest.mark.slow
-def test_a_figure_stays_while_the_server_does_not_answer(pages: Callable[..., Page], workbench: Served, design: str) -> None:
-    name = workbench.post("/api/experiments", {"design": design, "trials": 1000, "workers": 1}).json()["id"]
-    page = pages("counting.py", tab="experiments", refusals=True)
-    page.locator(f"tr[data-experiment='{name}']").click()
     expect(page.locator(".point")).to_have_count(3)
     page.route("**/means?*", lambda route: route.fulfill(status=409, json={"error": "no worker can be started"}))
     expect(page.get_by_text("no worker can be started")).to_be_visible()

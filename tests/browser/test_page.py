@@ -14,7 +14,6 @@ from tests.helpers.workbench_server import Served
 NAME = "async () => (await part('address.js')).page"
 
 
-@pytest.mark.scene
 def test_run_step_and_the_aperture(page: Page) -> None:
     shows(page, "#time", "0.00 s")
     page.click("#step")
@@ -27,8 +26,6 @@ def test_run_step_and_the_aperture(page: Page) -> None:
     shows(page, "#width", "90 cm *A/S 2.00")
     open_tab(page, "Parameters")
     expect(page.get_by_label("width", exact=True)).to_have_value("0.9")
-    scene = page.frame_locator("iframe[title='3D view']")
-    expect(scene.locator("canvas").first).to_be_visible()
     open_tab(page, "Productions")
     page.get_by_label("Filter the trace").fill("turn")
     page.click("#run")
@@ -39,8 +36,6 @@ def test_run_step_and_the_aperture(page: Page) -> None:
     shows(page, "#width", "50 cm *A/S 1.11")
     page.click("#run")
     shows(page, "#events", "turns")
-    picture = page.screenshot()
-    assert len(set(picture)) > 100  # and a person has looked at it
 
 
 def test_a_second_tab_and_a_reload_show_the_same(pages: Callable[..., Page], workbench: Served) -> None:

@@ -277,6 +277,13 @@ def test_the_library_is_imported_without_the_camera() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout == "[]\n"
 
 
+def test_linear_algebra_is_loaded_for_functions_that_need_it_only() -> None:
+    lines = ("import sys, numba, numpy; from actr3d.jit import kept", "loaded = lambda: 'scipy.linalg' in sys.modules")
+    lines += ("print(kept(lambda a: a + 1)(1), loaded())", "print(numba.njit(lambda a: a @ a)(numpy.eye(1))[0, 0], loaded())")
+    done = subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True, capture_output=True, text=True)
+    assert done.stdout == "2 False\n1.0 True\n"
+
+
 def test_code_that_cannot_be_kept_on_disk_runs_all_the_same(tmp_path: Path) -> None:
     lines = ("from actr3d.jit import kept", "add = kept(lambda a, b: a + b)", "print(add(1, 2), type(add._cache).__name__)")
     (tmp_path / "adding.py").write_text("\n".join(lines))

@@ -57,24 +57,26 @@ def angles(model: Any, apertures: tuple[float, ...], **given: Any) -> list[float
 @pytest.mark.parametrize("condition", ["normal", "fast"])
 def test_people_turn_below_the_critical_ratio_the_more_the_narrower(model: Any, group: str, condition: str) -> None:
     shoulders = model.WIDTHS[group]
-    ratios = (0.95, 1.1, 1.25, 1.35, 1.6)
+    ratios = (0.95, 1.1, 1.25, 1.35)
     given = {"group": group, "condition": condition, "noise": 0.0}
-    narrowest, narrow, barely, wide, wider = angles(model, tuple(ratio * shoulders for ratio in ratios), **given)
+    narrowest, narrow, barely, wide = angles(model, tuple(ratio * shoulders for ratio in ratios), **given)
     assert narrowest > narrow + 5
     assert narrow > barely + 5
     assert barely > 5
     assert wide == pytest.approx(0, abs=0.1)
-    assert wider == pytest.approx(0, abs=0.1)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("group", "least", "most"), [("small", 0.055, 0.075), ("large", 0.06, 0.09)])
 @pytest.mark.parametrize("aperture", [0.4, 0.45])
-def test_hips_that_turn_leave_the_margin_where_it_is_narrow(model: Any, group: str, least: float, most: float, aperture: float) -> None:
+def test_hips_that_turn_leave_the_margin_where_it_is_narrow_and_wide_shoulders_turn_more(model: Any, aperture: float) -> None:
     """0.30 of the shoulders' width, as at wider doorways (Human data); hips that face ahead would leave 5 cm and less at 40 cm."""
-    results = [passed(model, seed, group=group, aperture=aperture) for seed in (1, 2)]
-    margin = sum((result.clearance_left_m or 0) + (result.clearance_right_m or 0) for result in results) / 4
-    assert least < margin < most
+    turns: list[float] = []
+    for group, least, most in (("small", 0.055, 0.075), ("large", 0.06, 0.09)):
+        results = [passed(model, seed, group=group, aperture=aperture) for seed in (1, 2)]
+        margin = sum((result.clearance_left_m or 0) + (result.clearance_right_m or 0) for result in results) / 4
+        assert least < margin < most
+        turns.append(sum(result.wall_angle_deg or 0 for result in results) / 2)
+    assert turns[1] > turns[0] + 5
 
 
 def test_hips_turn_with_the_shoulders_and_the_eye_looks_ahead(model: Any) -> None:
@@ -85,12 +87,6 @@ def test_hips_turn_with_the_shoulders_and_the_eye_looks_ahead(model: Any) -> Non
     side = 1 if turned["stance"] > 0 else -1
     assert turned == {"stance": side * 80, "pelvis": 0, "torso": 0, "head": -side * 60, "eye": -side * 20}
     assert body.get("pose").heading == pytest.approx(0, abs=0.01)
-
-
-@pytest.mark.slow
-def test_wide_shoulders_turn_more_at_equal_width(model: Any) -> None:
-    small, large = (angles(model, (0.45, 0.55), group=group, noise=0.0) for group in ("small", "large"))
-    assert all(b > a + 5 for a, b in zip(small, large, strict=True))
 
 
 def test_it_walks_at_the_speed_it_was_given(model: Any) -> None:
@@ -106,10 +102,9 @@ def test_a_slow_walker_has_turned_in_time_too(model: Any, speed: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("speed", [0.1, 0.3])
-def test_a_slow_walker_turns_in_time_too(model: Any, speed: float) -> None:
+def test_a_very_slow_walker_turns_in_time_too(model: Any) -> None:
     """1.6 s before the wall, the doorway's edges are beside a slow walker's eye; it used to walk into the wall."""
-    assert (passed(model, aperture=0.4, speed=speed).wall_angle_deg or 0.0) > 30
+    assert (passed(model, aperture=0.4, speed=0.1).wall_angle_deg or 0.0) > 30
 
 
 @pytest.mark.parametrize(
@@ -242,7 +237,7 @@ def test_a_speed_may_change_while_it_turns_back(model: Any, variant: str) -> Non
 @pytest.mark.slow
 def test_a_doorway_whose_edges_are_out_of_sight_is_not_doubted(model: Any) -> None:
     """Where little room is left, the eye is beside the middle, and looks again until the doorway's edges are beside it."""
-    for seed in range(1, 7):
+    for seed in range(1, 4):
         result = shrunk(model, 4.5, 0.26, seed, aperture=0.6, condition="fast")
         assert (result.outcome, result.contacts) == ("passed", 0)
 
@@ -258,7 +253,7 @@ def test_a_walker_that_is_held_gives_up(model: Any) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("aperture", [0.55, 0.7])
 def test_the_replication_turns_before_any_doorway(model: Any, aperture: float) -> None:
-    turns = [passed(model, seed, variant="replication", aperture=aperture).logged_angle_deg or 0 for seed in range(1, 6)]
+    turns = [passed(model, seed, variant="replication", aperture=aperture).logged_angle_deg or 0 for seed in range(1, 4)]
     assert sum(turns) / len(turns) == pytest.approx(18, abs=4)
 
 
@@ -266,7 +261,7 @@ def test_the_replication_turns_before_any_doorway(model: Any, aperture: float) -
 def test_the_replication_begins_where_the_original_did(model: Any) -> None:
     """Source: 1.17 m (small) and 1.44 m (large) before the wall, on average over apertures (docs/human-data.md)."""
     for group, distance in (("small", 1.17), ("large", 1.44)):
-        begun = [passed(model, seed, variant="replication", aperture=0.6, group=group).onset_distance_m or 0 for seed in range(1, 5)]
+        begun = [passed(model, seed, variant="replication", aperture=0.6, group=group).onset_distance_m or 0 for seed in range(1, 4)]
         assert sum(begun) / len(begun) == pytest.approx(distance, abs=0.12)
 
 
@@ -313,10 +308,8 @@ def test_renaming_every_object_changes_no_byte(model: Any, variant: str) -> None
     assert not any("aperture" in line.replace("aperture_passage", "") for line in lines)
 
 
-@pytest.mark.daily(1)
-@pytest.mark.parametrize("variant", ["descriptive", "replication"])
-def test_a_seed_gives_the_same_bytes_however_it_is_run(model: Any, variant: str) -> None:
-    straight, stepped, wandering = (scene_with(model, ("floor", "aperture", "walker"), variant) for _ in range(3))
+def test_a_seed_gives_the_same_bytes_however_it_is_run(model: Any) -> None:
+    straight, stepped, wandering = (scene_with(model, ("floor", "aperture", "walker"), "descriptive") for _ in range(3))
     straight.run()
     seen: list[float] = []
     stepped.observe(lambda glimpse: seen.append(float(glimpse.mj_data.qpos[0])))
@@ -338,10 +331,9 @@ def test_another_seed_is_another_trial(model: Any) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("variant", ["descriptive", "replication"])
-def test_it_is_recorded_and_replayed(variant: str, tmp_path: Path, capsys: Any) -> None:
+def test_it_is_recorded_and_replayed(tmp_path: Path, capsys: Any) -> None:
     recording = tmp_path / "run"
-    assert main(["run", str(FILE), "--variant", variant, "--aperture", "0.45", "--seed", "1", "--record", str(recording)]) == 0
+    assert main(["run", str(FILE), "--variant", "replication", "--aperture", "0.45", "--seed", "1", "--record", str(recording)]) == 0
     said = capsys.readouterr().out
     assert "can pass turned" in said
     assert "passed after" in said

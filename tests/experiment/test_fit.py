@@ -216,7 +216,7 @@ FAILING = LINE.replace("slope = 2.0", "slope = 1.0").replace(
 @pytest.mark.slow
 def test_candidates_at_which_the_model_fails_are_bad_ones(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client, "slope=0..3", line=FAILING.replace("FAILS", "slope > 1.8"))
-    result = fit.run(STARTING + 2, recover=2)
+    result = fit.run(STARTING + 2, recover=1)
     assert result.candidates == STARTING + 2
     assert result.parameters[0].value == pytest.approx(1.4, abs=0.3)
     assert result.fit.cells == 5

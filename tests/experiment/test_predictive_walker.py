@@ -44,7 +44,7 @@ def walked(model: Any, seed: int = 1, until: float = 60, **given: Any) -> tuple[
 
 @pytest.mark.daily(2)
 @pytest.mark.parametrize("heading", [-20.0, 0.0, 20.0])
-@pytest.mark.parametrize("aside", [-1.0, -0.5, 0.0, 0.5, 1.0])
+@pytest.mark.parametrize("aside", [-1.0, 0.0, 1.0])
 def test_it_steers_through_a_doorway_from_any_start_and_touches_nothing(model: Any, aside: float, heading: float) -> None:
     result, walker = walked(model, aperture=0.8, start_aside=aside, start_heading=heading)
     assert result.outcome == "passed"
@@ -114,7 +114,7 @@ def test_of_two_people_one_waits_while_the_other_passes_the_doorway(model: Any, 
 
 
 @pytest.mark.daily(2)
-@pytest.mark.parametrize("seed", [4, 1, 5, 18, *range(30, 50)])
+@pytest.mark.parametrize("seed", [4, 1, 5, 18, *range(30, 36)])
 def test_before_a_doorway_that_has_closed_it_stops_and_gives_up(model: Any, capsys: Any, seed: int) -> None:
     """It sees no doorway any more; or it sees a slit, expects to pass it in no posture, and declines."""
     result, walker = walked(model, seed, aperture=0.9, closing=0.15)
@@ -140,7 +140,7 @@ def test_a_doorway_is_the_same_if_its_width_changes(model: Any, capsys: Any) -> 
 # -- deciding
 
 
-def chosen(model: Any, seeds: int = 4, **given: Any) -> float:
+def chosen(model: Any, seeds: int = 3, **given: Any) -> float:
     """Returns the mean turn that it chooses [degrees]; each walk is over as soon as it has chosen."""
     turns: list[float] = []
     for seed in range(seeds):
@@ -244,7 +244,7 @@ def test_a_turn_that_is_given_is_made(model: Any) -> None:
 
 
 @pytest.mark.daily(1)
-@pytest.mark.parametrize("seed", range(1, 7))
+@pytest.mark.parametrize("seed", range(1, 4))
 def test_the_onset_of_a_turn_is_when_it_was_commanded_however_the_body_sways(model: Any, capsys: Any, seed: int) -> None:
     result, _ = walked(model, seed, aperture=0.9, turn=40.0)
     commanded = float(capsys.readouterr().out.split(" s: turns by")[0])
@@ -258,7 +258,7 @@ def test_the_onset_of_a_turn_is_when_it_was_commanded_however_the_body_sways(mod
 def test_walks_reach_the_doorway_in_all_phases_of_the_stride(model: Any) -> None:
     """With the same start, the body is over the left foot at the doorway as often as over the right one, and between both."""
     places: list[float] = []
-    for seed in range(16):
+    for seed in range(10):
         with RunLimits(seed=seed, until=60):
             simulation: Simulation = model.build(model.Parameters(aperture=0.9, turn=0.0))
             data, body = simulation.world.mj_data, simulation.world.bodies["walker"]

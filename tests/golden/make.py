@@ -66,7 +66,7 @@ def record(name: str, *words: str) -> bytes:
         RuntimeError: If it fails, or complains of anything.
     """
     environment = {**os.environ, "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8"}
-    arguments = [sys.executable, "-m", "actr3d.cli", *command(name, *words)]
+    arguments = [sys.executable, "-m", "actr3d", *command(name, *words)]
     done = subprocess.run(arguments, capture_output=True, cwd=ROOT, env=environment, timeout=60, check=False)
     if done.returncode != 0 or done.stderr:
         raise RuntimeError(f"{name} ended with {done.returncode}:\n{done.stderr.decode()}")

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 import random
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +13,7 @@ from actr3d.actr.loading import load_text
 from actr3d.recording import Recorded
 from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene
+from tests.helpers.commands import run_command
 from tests.helpers.motor_bodies import during, moving, until
 from tests.helpers.small_agents import near
 from tests.helpers.walkers import digest
@@ -116,7 +115,7 @@ def build(parameters: Parameters) -> Simulation:
 """
     file.write_text(RESTLESS + building, encoding="utf-8")
     for command in (["run", str(file), "--seed", "2", "--until", "0.5", "--record", str(recording)], ["replay", str(recording)]):
-        done = subprocess.run([sys.executable, "-m", "actr3d.cli", *command], capture_output=True, text=True, timeout=120)
+        done = run_command(*command)
         assert done.returncode == 0, done.stdout + done.stderr
     assert "agrees" in done.stdout or "every byte" in done.stdout, done.stdout
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from actr3d.cli import main
+from tests.helpers.commands import run_command
 from tests.helpers.recording_forgery import forge
 
 PROGRAM = """import atexit, os, signal, sys, threading
@@ -127,7 +128,7 @@ def test_what_ends_the_command_ends_the_replay(sign: signal.Signals, path: Path,
 def test_a_replay_goes_through_sets_as_the_run_did(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = path.with_name("sets.py")
     file.write_text("print(list({'one', 'two', 'three', 'four', 'five', 'six', 'seven'}))\n", encoding="utf-8")
-    subprocess.run([sys.executable, "-m", "actr3d", "run", str(file), "--record", str(path)], check=True, capture_output=True)
+    assert run_command("run", str(file), "--record", str(path)).returncode == 0
     assert main(["replay", str(path)]) == 0
     assert "every byte agrees: 1 events" in capsys.readouterr().out
 

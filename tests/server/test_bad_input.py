@@ -12,10 +12,11 @@ import httpx
 import pytest
 
 from tests.helpers.asgi_client import GATE
-from tests.helpers.workbench_server import Served, served
+from tests.helpers.workbench_server import Served
 from workbench.app import make_app
 
-DESCRIPTION: dict[str, Any] = make_app(Path("/tmp"), GATE).openapi()
+APP = make_app(Path("/tmp"), GATE)
+DESCRIPTION: dict[str, Any] = APP.openapi()
 OPERATIONS = [(method, path) for path, operations in DESCRIPTION["paths"].items() for method in operations]
 HALF = r'"\ud800"'
 """A half character, as JSON can say it."""
@@ -27,12 +28,6 @@ BODIES = (*map(str.encode, VALUES), b"1" * 5000, b"", b"{", b"\xff", b'"\xed\xa0
 EACH_ITS_OWN = httpx.Limits(max_keepalive_connections=0)
 """On a connection that is kept, each small body waits 40 ms for the system."""
 IN_ADDRESS = ("%ED%A0%80", "a%ED%A0%80.py", "%FF", "NaN", "1e400", "1" * 400, "%00")
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("served") / "models") as running:
-        yield running
 
 
 @pytest.fixture(scope="module")

@@ -249,27 +249,20 @@ def check_program(talk: Talk, moments: int) -> None:
         assert [name for name in now if now[name] != seen[time][name]] == [], f"at {time} s"
 
 
-@pytest.mark.parametrize("name", ["compilation", "sgoms", "two_agents"])
-def test_every_answer_is_that_of_its_moment_for_tutorial_models(desk: Desk, tmp_path: Path, name: str) -> None:
-    check_program(desk.begin(tmp_path, (MODELS / f"tutorial/{name}.py").read_text(encoding="utf-8")), 3)
+DAILY = ("compilation", "sgoms", "two_agents")
+TUTORIAL = [
+    pytest.param(path, marks=() if path.stem in DAILY else pytest.mark.slow, id=path.stem)
+    for path in sorted((MODELS / "tutorial").glob("*.py"))
+]
+
+
+@pytest.mark.parametrize("path", TUTORIAL)
+def test_every_answer_is_that_of_its_moment_for_tutorial_models(desk: Desk, tmp_path: Path, path: Path) -> None:
+    check_program(desk.begin(tmp_path, path.read_text(encoding="utf-8")), 3)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", sorted((MODELS / "tutorial").glob("*.py")), ids=lambda path: path.stem)
-def test_every_answer_is_that_of_its_moment_for_all_tutorial_models(desk: Desk, tmp_path: Path, path: Path) -> None:
-    check_program(desk.begin(tmp_path, path.read_text(encoding="utf-8")), 6)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("variant", "aperture"), [("descriptive", 0.4), ("replication", 0.55)])
-def test_every_answer_is_that_of_its_moment_in_whole_runs(variant: str, aperture: float) -> None:
+def test_every_answer_is_that_of_its_moment_in_a_whole_run() -> None:
     source = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
-    with shown_of(source, 1, variant=variant, aperture=aperture) as shown:
+    with shown_of(source, 1, aperture=0.4) as shown:
         check_going_back(shown, 1_300, 6, random_seed=1)
-
-
-@pytest.mark.slow
-def test_every_answer_is_that_of_its_moment_in_long_runs_of_other_models() -> None:
-    for source in ((MODELS / "doorway.py").read_text(encoding="utf-8"), LOOKING):
-        with shown_of(source, 1) as shown:
-            check_going_back(shown, 600, 8, random_seed=1)

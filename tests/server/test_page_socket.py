@@ -5,23 +5,16 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 import websockets
 
-from tests.helpers.workbench_server import Served, served
+from tests.helpers.workbench_server import Served
 from tests.server.test_live import attached, heard, opened
 from workbench.page_commands import COMMANDS
 from workbench.page_commands.session import Restart, Stop
 from workbench.sockets import LONGEST, MAX_PAGES
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("rough") / "models") as running:
-        yield running
 
 
 @pytest.fixture(scope="module")

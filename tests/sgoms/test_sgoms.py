@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 import shutil
-import subprocess
-import sys
 from collections import Counter
 from itertools import pairwise
 from pathlib import Path
@@ -14,6 +12,7 @@ from typing import Any
 import pytest
 
 from actr3d.actr.loading import load_text
+from tests.helpers.commands import run_command
 from tests.helpers.sgoms_agents import HEAD, cooking, fired, told
 from tests.helpers.small_agents import near
 
@@ -240,6 +239,5 @@ class Agent(Base):
 @pytest.mark.parametrize("name", ["planning_units", "sgoms_patrol", "sgoms_rows"])
 def test_models_with_buffers_of_their_own_run_without_a_word(name: str, tmp_path: Path) -> None:
     copy = shutil.copy(ROOT / "tests" / "models" / f"{name}.py", tmp_path)
-    command = [sys.executable, "-m", "actr3d.cli", "run", str(copy), "--seed", "1"]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=60, check=True)
-    assert done.stderr == ""
+    done = run_command("run", str(copy), "--seed", "1", folder=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +9,7 @@ import pytest
 
 from actr3d.actr.loading import load_text
 from actr3d.simulation import Simulation
+from tests.helpers.commands import run_command
 from tests.helpers.sgoms_agents import HEAD, cooking
 from tests.helpers.walkers import digest, scene_of
 
@@ -115,7 +114,7 @@ def test_a_recording_is_replayed_byte_for_byte(kind: str, tmp_path: Path) -> Non
     file, recording = tmp_path / "model.py", tmp_path / "run.actr3d"
     file.write_text(text, encoding="utf-8")
     for words in (["run", str(file), "--seed", "5", "--until", "3", "--record", str(recording)], ["replay", str(recording)]):
-        done = subprocess.run([sys.executable, "-m", "actr3d.cli", *words], capture_output=True, text=True, timeout=120, check=False)
+        done = run_command(*words)
         assert done.returncode == 0, done.stderr
 
 

@@ -187,7 +187,7 @@ def test_parts_hold_a_ball_inside_a_bowl(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_parts_are_the_same_in_every_process(tmp_path: Path) -> None:
-    path = written(tmp_path, creation.annulus(0.3, 0.5, 0.4, sections=12), "stl")
+    path = written(tmp_path, creation.annulus(0.3, 0.5, 0.4, sections=8), "stl")
     code = (
         "import hashlib, sys; from actr3d.world import *\n"
         "world = World(Scene(parts=(Mesh(name='m', path=sys.argv[1], collision='parts', seed=4),)))\n"

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from actr3d.experiment.aperture.experience import passage_remembered
 from actr3d.experiment.design import Design, Group, Measured, Uniform, design
 
 BODIES = {"shoulder_width": Uniform(low=0.36, high=0.52), "speed": Uniform(low=0.8, high=2.0)}
@@ -50,4 +49,6 @@ def aperture(values: Mapping[str, Any]) -> dict[str, float]:
 
 def remembered(simulation: Any) -> dict[str, Any]:
     """Returns what the walker remembers of its passage."""
+    from actr3d.experiment.aperture.experience import passage_remembered  # loads the world, which to list the designs does without
+
     return passage_remembered(simulation.agents["walker"].committed, simulation.result())
