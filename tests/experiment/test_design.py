@@ -369,7 +369,10 @@ def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_run
             r"must define one design \(found 2\); there are: a, b; name one as '.*d\.py:NAME'",
         ),
         ("from actr3d.experiment import *\n@design\ndef a(): return 3\n", r"d\.py:3: a\(\) must return a Design \(returned 3\)"),
-        ("from actr3d.experiment import *\n@design\ndef a(x): pass\n", r"d\.py:3: a\(\) must be a function without arguments \(missing a required argument: 'x'\)"),
+        (
+            "from actr3d.experiment import *\n@design\ndef a(x): pass\n",
+            r"d\.py:3: a\(\) must be a function without arguments \(missing .* 'x'\)",
+        ),
         ("from actr3d.experiment import *\n@design\ndef a(): exit(1)\n", r"d\.py:3: a\(\) must return .* ended with SystemExit\(1\)"),
         (
             "from actr3d.experiment import *\n@design\ndef a():\n  return Design(model='counting.pi')\n",

@@ -435,7 +435,7 @@ def test_the_shipped_experiences_are_those_of_their_designs(practice: str, hands
     with specification.sealed() as helpers:
         experiment = Experiment(specification, helpers)
         trials = [experiment.design.trial(number) for number in range(2)]
-        rows = [trial.values | run_trial(experiment, trial, helpers) for trial in trials]
+        rows = [{**trial.values, **run_trial(experiment, trial, helpers)} for trial in trials]
     assert all(row["error"] is None for row in rows)
     made = [{name: row[name] for name in ("turn", *MEASURES)} for row in rows]
     assert made == [{name: one[name] for name in made[0]} for one in experiences(walks=walks, hands=hands)[:2]]
