@@ -340,7 +340,7 @@ def _opened(
     _check_versions(store.specification, any_version=any_version)
     there, wanted = store.specification, experiment.specification
     if different := there.differences(wanted):
-        same = f"choose another --out, or continue it as it is: actr3d experiment {folder} --resume"
+        same = f"choose another --out, or continue it unchanged: actr3d experiment {folder} --resume"
         raise ExperimentError(f"'{folder}' is another experiment: {'; '.join(different)}; {same}")
     # The files may be at another place now, and other files that the model reads beside them.
     return Experiment(replace(wanted, versions=there.versions)), store, True

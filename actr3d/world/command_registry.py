@@ -140,7 +140,7 @@ def number(value: Any, what: str, least: float = -math.inf, most: float = math.i
 
 
 def checked_angle(value: Any, what: str, turns: int = 1) -> float:
-    """Returns an angle [rad] of at most so many full turns to either side: a greater number is one of degrees.
+    """Returns an angle [rad], at most some full turns to either side: a greater number is surely meant in degrees.
 
     Raises:
         WorldError: If it is none.

@@ -365,7 +365,7 @@ def test_an_experiment_is_continued_where_its_files_were_moved_to(
     monkeypatch.chdir(tmp_path)
     again = ["experiment", "second/counting_design.py", "--out", "second/out", "--resume", "--workers", "1"]
     assert main([*again, "--set", "n=1,2"]) == 1
-    assert "'second/out' is another experiment: n: as designed there, [1, 2] now; choose another --out, or continue it as it is: " in (
+    assert "'second/out' is another experiment: n: as designed there, [1, 2] now; choose another --out, or continue it unchanged: " in (
         capsys.readouterr().err
     )
     assert main(again) == 0

@@ -67,9 +67,6 @@ NEAR = 0.8
 class WithParameters:
     """A module whose parameters may be set later; it warns if one is set under a misspelt name."""
 
-    _elsewhere = ""
-    """Which other module of the same name a modeller may have meant."""
-
     def __setattr__(self, name: str, value: Any) -> None:
         if name not in self.__dict__:
             warn_of_slip(self, name)
@@ -92,10 +89,13 @@ class WithParameters:
         return {*inspect.signature(kind.__init__).parameters, *(name for name in vars(self) if name[0] != "_")} - {"self"}
 
 
+ELSEWHERE: dict[type, str] = {}
+"""By kind of module: which other module of the same name a modeller may have meant."""
+
+
 def elsewhere(module: object) -> str:
     """Returns which other module of its name may be meant, for the end of an error about what a module does not know; empty if none."""
-    words = module._elsewhere if isinstance(module, WithParameters) else ""  # pyright: ignore[reportPrivateUsage] # models log public names
-    return words and f"; {words}"
+    return next((f"; {ELSEWHERE[kind]}" for kind in type(module).__mro__ if kind in ELSEWHERE), "")
 
 
 def settable_of(part: WithParameters) -> set[str]:

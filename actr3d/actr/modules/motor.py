@@ -7,7 +7,7 @@ from typing import Any
 
 from actr3d.actr.kernel.log import log_line
 from actr3d.actr.kernel.model import Model
-from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import ELSEWHERE, WithParameters, named_parameters
 from actr3d.actr.modules.registry import module
 
 
@@ -20,8 +20,6 @@ class Motor(WithParameters, Model):
 
     Source: ACT-R's times: 0.25 s preparation, 0.05 s initiation, 0.1 s until the key is struck, 0.15 s to finish.
     """
-
-    _elsewhere = "for an agent with a body: from actr3d.motor import Motor, after from actr3d.actr import *"
 
     @named_parameters
     def __init__(self) -> None:
@@ -58,3 +56,6 @@ class Motor(WithParameters, Model):
             where = "the agent is in no environment" if environment is None else f"the environment '{environment.name}' has none"
             raise AttributeError(f"Motor '{self.name}' calls key_pressed(key) of the environment, but {where}")
         return environment
+
+
+ELSEWHERE[Motor] = "for an agent with a body: from actr3d.motor import Motor, after from actr3d.actr import *"

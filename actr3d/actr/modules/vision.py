@@ -11,7 +11,7 @@ from actr3d.actr.declarative.finst import Finst
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.log import log_line
 from actr3d.actr.kernel.model import Model
-from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import ELSEWHERE, WithParameters, named_parameters
 from actr3d.actr.modules.registry import module
 
 
@@ -30,8 +30,6 @@ class Vision(WithParameters, Model):
 
     Source: ACT-R's onset span of 0.5 s, and 0.085 s for an attention shift.
     """
-
-    _elsewhere = "for an agent with a body: from actr3d.vision import Vision, after from actr3d.actr import *"
 
     @named_parameters
     def __init__(self, visual: Buffer, location: Buffer) -> None:
@@ -149,3 +147,6 @@ class Vision(WithParameters, Model):
 
     def _visible(self) -> list[Any]:
         return [o for o in self._children_of_environment() if hasattr(o, "x") and hasattr(o, "y") and getattr(o, "visible", True)]
+
+
+ELSEWHERE[Vision] = "for an agent with a body: from actr3d.vision import Vision, after from actr3d.actr import *"
