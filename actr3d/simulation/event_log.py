@@ -119,6 +119,11 @@ class EventLog:
         return None if self.trace is None or not self.trace.runs else self.trace.runs[-1]
 
     @property
+    def number(self) -> int | None:
+        """The number of the simulation among the runs of its program; None outside a program."""
+        return None if self._program is None else self._program.number
+
+    @property
     def recorded(self) -> bool:
         """Whether everything is being recorded."""
         return self._recording is not None

@@ -48,26 +48,27 @@ class ProgramRun:
             Exception: What the recorder raises.
         """
         if self._recorder is not None:
-            self._recorder.state(self._number, tick, world.state_bytes(), contacts)
+            self._recorder.state(self.number, tick, world.state_bytes(), contacts)
 
     def answer(self, tick: int, request: Request, value: Any) -> None:
         """Passes the answer of a body in a tick on."""
         if self._recorder is not None:
-            self._recorder.answer(self._number, tick, request.body, request.word, value)
+            self._recorder.answer(self.number, tick, request.body, request.word, value)
 
     def command(self, command: Command) -> None:
         """Passes a command of a user on."""
         if self._recorder is not None:
-            self._recorder.command(self._number, command.tick, command.to_data())
+            self._recorder.command(self.number, command.tick, command.to_data())
 
     @property
-    def _number(self) -> int:
+    def number(self) -> int:
+        """Its number among the runs of the program, from 1 on."""
         if not self._run_number:
             self._run_number = self._trace.begin(self)
         return self._run_number
 
     def _pass_on(self, event: TraceEvent, trace: Trace) -> None:
-        data = event.data if self._number == 1 else self._renamed(event.data)
+        data = event.data if self.number == 1 else self._renamed(event.data)
         trace.emit(event.time_us, self._name(event.source), event.kind, data)
 
     def _renamed(self, data: Any) -> Any:
@@ -81,8 +82,8 @@ class ProgramRun:
         return data
 
     def _name(self, source: str) -> str:
-        top = top_path(self._number)
-        return source if self._number == 1 else top if source == "top" else f"{top}.{source}"
+        top = top_path(self.number)
+        return source if self.number == 1 else top if source == "top" else f"{top}.{source}"
 
     # -- for the trace
 

@@ -57,6 +57,7 @@ for width in (0.6, 0.9):
     Simulation(Scene(parts=parts), {"walker": Walker}).run(0.4)
 """
 )
+UNSTEPPED = TRIALS.replace("Silent().run(0.1)", "Simulation(Scene(parts=(Floor(), Mannequin(name='walker'))), {'walker': Walker}).run(0)")
 KINDS = ("frustum", "edges", "features", "path", "posture")
 
 
@@ -125,7 +126,7 @@ def test_its_steps_are_ticks_and_what_it_was_is_shown_again_where_it_goes_back(d
     assert told(talk) == seen[0.01]
 
 
-@pytest.mark.parametrize("source", [ONE, TRIALS])
+@pytest.mark.parametrize("source", [ONE, TRIALS, UNSTEPPED])
 def test_an_opened_recording_has_the_curves_of_the_simulation_that_is_shown_to_its_end(desk: Desk, tmp_path: Path, source: str) -> None:
     talk = desk.begin(tmp_path, source, record=True)
     talk.say("run")

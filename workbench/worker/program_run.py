@@ -159,7 +159,7 @@ class ProgramRun(ControlledRun):
         self._kept: dict[int, Kept] = {}
         """What is kept of the past of simulations, by number; it outlives that the program is run again."""
         self._ahead: dict[int, Past] = {}
-        """By the number of a simulation that has not begun yet, its states in the recording that is run again."""
+        """By its number among all runs, the states of a simulation that has not begun yet in the recording that is run again."""
         self._commands = [RecordedCommand(*command) for command in start.commands]
         """The changes of users, which each pass through the program repeats."""
         self._changes = ProgramChanges(self._limits, self._commands)
@@ -202,15 +202,17 @@ class ProgramRun(ControlledRun):
                     ahead.setdefault(state.run, Past()).add(state.tick, state.data, state.contacts)
 
             known_run = KnownRun(Path(recorded), keep)
-            self._ahead = dict(enumerate(ahead.values(), 1))
+            self._ahead = ahead
             if self._shown is not None:
                 self._take_ahead(self._shown)
             self._furthest = max(self._furthest, known_run.time)
             self._controller.repeat_recorded(known_run)
 
     def _take_ahead(self, shown: Shown) -> None:
-        """Gives the simulation that has begun last what is recorded of its past and future."""
-        shown.kept.states = self._ahead.pop(self._begun, shown.kept.states)
+        """Gives a simulation what is recorded of its past and future."""
+        number = shown.simulation.event_log.number
+        if number is not None:
+            shown.kept.states = self._ahead.pop(number, shown.kept.states)
 
     def _introduce(self) -> None:
         """Informs the server that the run has begun; for a program that makes a simulation, once this simulation is at its start."""
