@@ -84,17 +84,21 @@ def check_row(row: Row) -> None:
 
 
 def variables_set_in(text: str) -> tuple[str, ...] | None:
-    """Returns the variables that the text of a program sets at its top level, or in a function as `global`, without functions and
-    classes; None if its code may set others.
+    """Returns the variables that the text of a program sets at its top level, or in a function as `global`, without those that are
+    nothing but functions, classes and modules; None if its code may set others.
 
     Raises:
         SyntaxError: If it is not Python.
     """
     tree = syntax_tree(text)
-    if names_defined_in(tree) is None or "__main__" in text or any(_is_unknown(node) for node in ast.walk(tree)):
+    nodes = list(ast.walk(tree))
+    if names_defined_in(tree) is None or "__main__" in text or ".modules" in text or any(map(_is_unknown, nodes)):
         return None
     whole = symtable.symtable(text, "<model>", "exec")
-    own = [one.get_name() for one in whole.get_symbols() if (one.is_assigned() or one.is_imported()) and not one.is_namespace()]
+    stored = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    modules = {alias.asname or alias.name.partition(".")[0] for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    bound = [one for one in whole.get_symbols() if one.is_assigned() or one.is_imported()]
+    own = [one.get_name() for one in bound if one.get_name() in stored or not (one.is_namespace() or one.get_name() in modules)]
     return tuple(dict.fromkeys([*own, *_globals_of(whole.get_children())]))
 
 

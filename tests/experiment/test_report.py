@@ -253,14 +253,29 @@ def test_a_folder_that_is_no_report_is_not_replaced(tmp_path: Path) -> None:
     folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
     (folder / "report").mkdir()
     (folder / "report" / "thesis.tex").write_text("years of work")
-    with pytest.raises(ExperimentError, match="is not a report; move it away"):
+    with pytest.raises(ExperimentError, match=r"holds 'thesis\.tex', which a new report would replace; move it away"):
         write_report(folder)
     assert (folder / "report" / "thesis.tex").exists()
+    (folder / "report" / "thesis.tex").unlink()
     (folder / "report" / "index.html").write_text("<title>my own page</title>")
-    for place in (folder / "report", folder, folder / "trials.sqlite"):
-        with pytest.raises(ExperimentError, match="is not a report; move it away"):
-            write_report(folder, out=place)
+    for place, says in (("report", "is not a report"), (".", "holds '"), ("trials.sqlite", "is a file")):
+        with pytest.raises(ExperimentError, match=says):
+            write_report(folder, out=folder / place)
     assert (folder / "report" / "index.html").read_text() == "<title>my own page</title>"
+
+
+def test_a_report_replaces_an_earlier_one_and_no_file_of_a_user(tmp_path: Path) -> None:
+    folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
+    (tmp_path / "place").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "place")
+    for _ in range(2):
+        assert write_report(folder, out=tmp_path / "link") == tmp_path / "place" / "index.html"
+    mine = tmp_path / "place" / "figures" / "mine" / "notes.svg"
+    mine.parent.mkdir()
+    mine.touch()
+    with pytest.raises(ExperimentError, match=r"'.*/place' holds 'figures/mine', which a new report would replace"):
+        write_report(folder, out=tmp_path / "place")
+    assert mine.exists()
 
 
 def test_the_report_of_an_experiment_that_cannot_be_written_goes_elsewhere(capsys: Any) -> None:

@@ -383,13 +383,15 @@ def test_a_measure_that_only_a_long_run_shows_ends_the_experiment_with_its_first
 @pytest.mark.parametrize(
     ("text", "variables"),
     [
-        ("a = 1\nimport b, c as d\nfor e in x: pass\nwith y as f: g: int = 1\n", ("a", "b", "d", "e", "f", "g")),
+        ("a = 1\nimport b, c as d\nfor e in x: pass\nwith y as f: g: int = 1\n", ("a", "e", "f", "g")),
+        ("import a\na = a.a\ndef b(): pass\nb = b()\n", ("a", "b")),
         ("def f(a):\n    global b\n    b = c = 1\n    def g():\n        global d\n        d += 1\nclass A:\n    e = 1\n", ("b", "d")),
         ("if (a := 1): b, *c = x\n[d for d in x]\nmatch x:\n    case [e]: pass\n", ("a", "b", "c", "e")),
         ("from actr3d.actr import *\nfrom ccm import *\nfrom b import a\n", ("a",)),
         ("from b import *\n", None),
         ("def f(**a):\n    globals().update(a)\n", None),
         ("import __main__\n__main__.a = 1\n", None),
+        ("import sys\nsys.modules[__name__].a = 1\n", None),
     ],
 )
 def test_the_variables_of_a_program_are_those_that_its_text_sets(text: str, variables: tuple[str, ...] | None) -> None:

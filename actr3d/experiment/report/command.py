@@ -41,7 +41,7 @@ def write_report(
     Raises:
         ExperimentError: If a folder holds no experiment or no trials, the human data are not valid, or the report cannot be written.
     """
-    final = Path(folder) / REPORT if out is None else Path(out)
+    final = (Path(folder) / REPORT if out is None else Path(out)).resolve()
     results = read_results(folder)
     _check_place(final)
     parts = by_number(results)
@@ -61,22 +61,25 @@ def write_report(
 
 
 def _check_place(final: Path) -> None:
-    """Checks that the folder of a report is new, or empty, or holds an earlier report.
+    """Checks that the folder of a report is new, or empty, or holds nothing but an earlier report.
 
     Raises:
-        ExperimentError: If it is something else, or cannot be read.
+        ExperimentError: If it holds something else, or cannot be read.
     """
-    first = final / PAGE
     try:
-        fine = not any(final.iterdir()) or (first.is_file() and MADE_BY in first.read_text(encoding="utf-8", errors="replace"))
-    except FileNotFoundError:
-        fine = True
-    except NotADirectoryError:
-        fine = False
+        if not final.is_dir():
+            if final.exists():
+                raise ExperimentError(f"'{final}' is a file; name a folder for the report")
+            return
+        files = [path.relative_to(final) for path in sorted(final.rglob("*")) if not path.is_dir() or path.parent != final]
+        own = {f"figures/*{ending}" for ending in (".svg", ".png")} | {"tables/*.csv", PAGE}
+        others = [file for file in files if not any(file.match(pattern) and len(file.parts) == 1 + pattern.count("/") for pattern in own)]
+        first = final / PAGE
+        if files and (others or not first.is_file() or MADE_BY not in first.read_text(encoding="utf-8", errors="replace")):
+            what = f"holds '{others[0]}'" if others else "is not a report"
+            raise ExperimentError(f"'{final}' {what}, which a new report would replace; move it away, or name another folder with --out")
     except OSError as error:
         raise ExperimentError(f"'{final}': cannot be read ({error.strerror or error})") from None
-    if not fine:
-        raise ExperimentError(f"'{final}' is not a report; move it away")
 
 
 def _write(final: Path, results: Results, sections: Sequence[Section]) -> Path:
