@@ -87,7 +87,7 @@ class Specification(Configuration):
         return content
 
     def differences(self, other: Specification) -> list[str]:
-        """Returns in words what determines the rows and is not the same in another specification, whatever versions both have."""
+        """Returns the differences from another specification in words, without those of versions."""
         this, that = self.content(), other.content()
         found: list[str] = []
         if self.name != other.name:

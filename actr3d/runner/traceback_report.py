@@ -64,9 +64,11 @@ def traceback_report(error: BaseException, hidden: str | None = None) -> Traceba
 
 def _hint(error: BaseException, message: str) -> str:
     """Returns a hint such as `"; did you mean 'x'?"` for a name that nothing defines; an empty string if Python has one itself, or none."""
+    if "id you mean" in message:
+        return ""
     if isinstance(error, AttributeError):
         return elsewhere(error.obj)
-    if not isinstance(error, NameError) or not str(error) or error.__traceback__ is None or "id you mean" in message:
+    if not isinstance(error, NameError) or not str(error) or error.__traceback__ is None:
         return ""
     *_, (frame, _) = traceback.walk_tb(error.__traceback__)
     return hint_for(error, {**frame.f_builtins, **frame.f_globals, **frame.f_locals})

@@ -140,7 +140,7 @@ def number(value: Any, what: str, least: float = -math.inf, most: float = math.i
 
 
 def checked_angle(value: Any, what: str, turns: int = 1) -> float:
-    """Returns an angle [rad], at most some full turns to either side: a greater number is surely meant in degrees.
+    """Returns an angle [rad], at most some full turns to either side: a greater number is most often meant in degrees.
 
     Raises:
         WorldError: If it is none.
@@ -149,7 +149,8 @@ def checked_angle(value: Any, what: str, turns: int = 1) -> float:
     if abs(given) > turns * FULL_TURN:
         bound = f"{'<=' if given > 0 else '>='} {math.copysign(turns * FULL_TURN, given):g} rad"
         full = "a full turn" if turns == 1 else f"{turns} full turns"
-        raise WorldError(f"{what}: must be {bound}, {full} (got {value!r}); did you mean {given:g} degrees, math.radians({given:g})?")
+        degrees, rest = f"{given:g} degrees, math.radians({given:g})", f"math.remainder({given:g}, math.tau)"
+        raise WorldError(f"{what}: must be {bound}, {full} (got {value!r}); did you mean {degrees}? Without full turns it is {rest}")
     return given
 
 

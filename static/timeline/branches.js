@@ -22,7 +22,7 @@ import { span } from "./view.js";
 const open = remembered("branches open", true);
 
 /** Returns a function from a run of the list to it and all from which it comes, one after the other: [{id, run, left}]. `run` is undefined for
- * a recording that was deleted; `left` is when the first went another way [s].
+ * a recording that was deleted; `left` is until when the first run is the same as this one [s].
  *
  * What lay ahead of a run is kept when its past is changed. If that happens again later, at an earlier time, the former copy follows the new
  * one, which has the run's way until then. */

@@ -357,7 +357,7 @@ def test_an_angle_beyond_the_limit_is_refused() -> None:
         ("rotate", (np.array([1, 2]), "yaw"), r"walker has no jointed part array\(\[1, 2\]\)"),
         ("feel", (object(),), r"feel: name: must be a name for the posture \(got <object"),
         ("feel", (" ",), r"feel: name: must be a name for the posture \(got ' '\)"),
-        ("turn", (1000,), r"turn: angle: must be <= 720 \(got 1000\)"),
+        ("turn", (2000,), r"turn: angle: must be <= 1080 \(got 2000\)"),
         ("walk", ("fast",), r"walk: speed: must be a number \(got 'fast'\)"),
     ],
 )

@@ -165,7 +165,7 @@ def test_a_wrong_change_names_what_is_wrong(command: tuple[str, ...], problem: s
     [
         (World.move, ("walker", math.nan, 0), r"move: x: must be a finite number \(got nan\)"),
         (World.move, ("wall", 0, 1e300), r"move: y: must be <= 10000 \(got 1e\+300\)"),
-        (World.move, ("box", 1, 2, -1e300), r"move: heading: must be >= -6.28319 rad, a full turn \(got -1e\+300\)"),
+        (World.move, ("box", 1, 2, -1e300), r"move: heading: must be >= -6.2832 rad, a full turn \(got -1e\+300\)"),
         (World.move, ("box", "here", 2), r"move: x: must be a number \(got 'here'\)"),
         (World.move, ("box", True, 2), r"move: x: must be a number \(got True\)"),
         (World.move, (["box"], 1, 2), r"no object '\['box'\]' to move; there are: walker, wall, pole, box"),
@@ -190,7 +190,7 @@ def test_a_body_is_not_teleported_farther_than_scenes_reach() -> None:
     for values, problem in (
         ((1e300, 0), "x: must be <= 10000"),
         ((0, -1e5), "y: must be >= -10000"),
-        ((0, 0, 1e4), "heading: must be <= 6.28319 rad, a full turn"),
+        ((0, 0, 1e4), "heading: must be <= 6.2832 rad, a full turn"),
     ):
         with pytest.raises(WorldError, match=f"teleport: {problem} "):
             body.set("teleport", *values)

@@ -45,7 +45,7 @@ def named_parameters(init: Callable[Concatenate[Self, P], None]) -> Callable[Con
         kind = type(self).__name__
         unknown = [key for key in keys if key not in names]
         if unknown and not any(p.kind is p.VAR_KEYWORD for p in signature.parameters.values()):
-            raise ParameterError(f"{kind} has no parameter '{unknown[0]}'{alternatives(unknown[0], names, 'it has:')}")
+            raise ParameterError(f"{kind} has no parameter '{unknown[0]}'{alternatives(unknown[0], names, 'it has:')}{elsewhere(self)}")
         try:
             given: dict[str, Any] = signature.bind(self, *args, **keys).arguments
         except TypeError as error:
@@ -95,7 +95,8 @@ ELSEWHERE: dict[type, str] = {}
 
 def elsewhere(module: object) -> str:
     """Returns which other module of its name may be meant, for the end of an error about what a module does not know; empty if none."""
-    return next((f"; {ELSEWHERE[kind]}" for kind in type(module).__mro__ if kind in ELSEWHERE), "")
+    words = ELSEWHERE.get(type(module), "")
+    return words and f"; {words}"
 
 
 def settable_of(part: WithParameters) -> set[str]:

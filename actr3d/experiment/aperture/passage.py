@@ -58,10 +58,10 @@ class PassageResult:
     the body. Each is the energy of the body at a speed that this impulse could stop."""
     clearance_left_m: float | None
     """Smallest distance between any part of the body and the left segment of the wall, while a part of the body was between its
-    faces [m]; None if none was in the doorway."""
+    faces [m]; None if no part of it entered the doorway: a body that leans against the wall beside it did not."""
     clearance_right_m: float | None
     """Smallest distance between any part of the body and the right segment of the wall, while a part of the body was between its
-    faces [m]; None if none was in the doorway."""
+    faces [m]; None if no part of it entered the doorway: a body that leans against the wall beside it did not."""
     speed_m_s: float | None
     """Mean walking speed [m/s], from setting out until it reached the wall, otherwise until the end."""
     time_s: float

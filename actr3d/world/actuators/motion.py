@@ -22,8 +22,8 @@ from actr3d.world.objects import place
 MODERATE = 2.0
 """Default speed of joints [rad/s]. Source: the order of the original ACT-R 3D's 120 degrees a second (docs/human-data.md)."""
 
-MOST_TURNS = 2
-"""How far a turn goes at most, in full turns. Source: chosen for this library; to go on turning is `walk`."""
+MOST_TURNS = 3
+"""How far a turn goes at most, in full turns; `walk(0, turn=...)` turns without an end. Source: chosen for this library."""
 
 SACCADE, SACCADE_PER_RAD = 0.02, 0.002 * math.degrees(1)
 """Duration of a saccade: 20 ms, and 2 ms for each degree, [s] and [s/rad]. Source: EMMA (Salvucci 2001; docs/human-data.md)."""
@@ -70,7 +70,7 @@ def turn(body: Body, angle: float, speed: float = MODERATE) -> None:
     """Turns the whole body by an angle [rad, left is positive] at a speed [rad/s], also while it walks.
 
     Raises:
-        WorldError: If a value is not a number, the angle is more than two full turns, or the speed is not > 0 or is too fast.
+        WorldError: If a value is not a number, the angle is more than three full turns, or the speed is not > 0 or is too fast.
     """
     angle, speed = checked_angle(angle, "turn: angle", MOST_TURNS), number(speed, "turn: speed", 1e-6, body.fastest()[1])
     body.motion.forget_course()
