@@ -49,8 +49,8 @@ class Summary:
     origin: str | None = None
     """For a branch: the recording that has the other way of its run."""
     ancestors: tuple[tuple[str, float], ...] = ()
-    """For a branch: the recordings from which its origin comes, the nearest first, each with the time at which the recording before it in this list left it [s]. Any
-    of them may have been deleted since."""
+    """For a branch: the recordings from which its origin comes, the nearest first, each with the time at which the recording before
+    it in this list left it [s]. Any of them may have been deleted since."""
     kept: float | None = None
     """For a copy of what lay ahead of a run when its past was changed: when that was [s since 1970]."""
     ended: str | None = None

@@ -269,7 +269,9 @@ def test_a_report_replaces_an_earlier_one_and_no_file_of_a_user(tmp_path: Path) 
     (tmp_path / "place").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "place")
     for _ in range(2):
-        assert write_report(folder, out=tmp_path / "link") == tmp_path / "place" / "index.html"
+        assert write_report(folder, out=tmp_path / "link") == tmp_path / "link" / "index.html"
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "place" / "index.html").exists()
     mine = tmp_path / "place" / "figures" / "mine" / "notes.svg"
     mine.parent.mkdir()
     mine.touch()

@@ -41,7 +41,8 @@ def write_report(
     Raises:
         ExperimentError: If a folder holds no experiment or no trials, the human data are not valid, or the report cannot be written.
     """
-    final = (Path(folder) / REPORT if out is None else Path(out)).resolve()
+    named = Path(folder) / REPORT if out is None else Path(out)
+    final = named.resolve()  # a link leads to the same folder afterwards
     results = read_results(folder)
     _check_place(final)
     parts = by_number(results)
@@ -57,7 +58,8 @@ def write_report(
     if other is not None:
         sections.append(comparison_section(results, other, parts, beside))
     sections += measure_sections(parts, others)
-    return _write(final, results, sections)
+    _write(final, results, sections)
+    return named / PAGE
 
 
 def _check_place(final: Path) -> None:
@@ -82,7 +84,7 @@ def _check_place(final: Path) -> None:
         raise ExperimentError(f"'{final}': cannot be read ({error.strerror or error})") from None
 
 
-def _write(final: Path, results: Results, sections: Sequence[Section]) -> Path:
+def _write(final: Path, results: Results, sections: Sequence[Section]) -> None:
     """Writes all files into a new folder, which then replaces the earlier report."""
     try:
         final.parent.mkdir(parents=True, exist_ok=True)
@@ -106,7 +108,6 @@ def _write(final: Path, results: Results, sections: Sequence[Section]) -> Path:
     except OSError as error:
         elsewhere = "; name another folder with --out"
         raise ExperimentError(f"'{final}': cannot write the report ({error.strerror or error}){elsewhere}") from None
-    return final / PAGE
 
 
 def _replace(final: Path, part: Path, place: Path) -> None:
