@@ -79,10 +79,17 @@ class Desk:
 
     def close(self) -> None:
         """Ends everything."""
-        self.do(self.workers.close())
+        self.do(self._close())
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
         self._loop.close()
+
+    async def _close(self) -> None:
+        await self.workers.close()
+        rest = asyncio.all_tasks() - {asyncio.current_task()}  # such as the end of a worker that has read a recording
+        for task in rest:
+            task.cancel()
+        await asyncio.gather(*rest, return_exceptions=True)
 
 
 class Talk:

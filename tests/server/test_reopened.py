@@ -209,6 +209,25 @@ def test_what_runs_past_the_end_of_a_recording_is_kept_as_a_branch_of_it(desk: D
     assert (last.branched, last.origin, last.ancestors) == (0.5, branch, ((name, 0.3),))
 
 
+def test_a_branch_that_is_changed_before_it_left_its_origin_has_left_it_earlier(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, BUILT, record=True)
+    talk.say("until", time=0.6)
+    talk.until("paused", time=0.6)
+    origin = talk.facts["recording"]
+    again = reopened(talk)
+    for at, width in ((0.4, 0.5), (0.1, 0.7)):
+        again.say("seek", time=at)
+        again.until("paused", time=at)
+        again.say("command", word="aperture", values=[width])
+        again.wait(lambda at=at: again.facts["branched"] is not None and again.facts["branched"]["at"] == at)
+        again.say("until", time=0.6)
+        again.until("paused", time=0.6)
+    branch, kept = again.session.recording or "", again.facts["branched"]["recording"]
+    before, now = talk.summary(kept), talk.summary(branch)
+    assert (before.branched, before.origin, before.ancestors) == (0.4, origin, ())
+    assert (now.branched, now.origin, now.ancestors) == (0.1, kept, ((origin, 0.4),))
+
+
 @pytest.mark.parametrize("ahead", [False, True], ids=["at its end", "in its past"])
 def test_a_recording_that_is_deleted_while_it_is_open_is_open_still_and_a_change_of_it_is_kept(
     desk: Desk, tmp_path: Path, ahead: bool

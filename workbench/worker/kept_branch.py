@@ -32,6 +32,9 @@ class KeptBranch:
         self._at, self._until = seconds(clock), seconds(furthest)
         self._ahead = furthest > clock
         self._branch: Path | None = None
+        self._ancestors = controller.run.ancestors
+        self._left_later = bool(self._ancestors) and self._ancestors[0][1] > self._at
+        """Whether the run has left the recording that it comes from at a later time."""
         # A run that repeats a recording is kept by that recording.
         self._repeated = Path(start.recorded) if start.recorded is not None and controller.repeats_recording else None
         self._is_gone = self._repeated is not None and not self._repeated.is_file()
@@ -45,9 +48,10 @@ class KeptBranch:
                 return None
             why = "the recording that this run repeats has been deleted" if self._is_gone else "the run is not recorded"
             raise SimulationError(f"{why}: {ahead} would be lost; go to its newest moment, or allow it with `drop`")
-        path = new_branch(Path(self._start.record), self._at)
+        path, origin = new_branch(Path(self._start.record), self._at), Path(self._start.record).stem
         try:
-            recording.copy_to(path, branched=self._at, origin=Path(self._start.record).stem, ancestors=self._controller.run.ancestors)
+            # The copy has the way of the run: if the run itself left another recording later than now, the copy did.
+            recording.copy_to(path, **({} if self._left_later else {"branched": self._at, "origin": origin, "ancestors": self._ancestors}))
         except Actr3dError as error:
             if drop:
                 return None
@@ -70,6 +74,8 @@ class KeptBranch:
         elif self._branch is not None:
             for old in superfluous_branches(Path(self._start.record or "")):
                 old.unlink(missing_ok=True)
+            if self._left_later:
+                self._controller.run.become_branch(self._branch.stem, self._at, self._ancestors)
             self._controller.run.flush()  # pages list recordings again when they hear of the branch
             self._controller.channel.post(Branched(recording=self._branch.stem, at=self._at, until=self._until))
         is_in_recording = self._repeated is not None and not self._is_gone
