@@ -343,10 +343,8 @@ RESULTS = "\n\ndef found(program):\n    return {'rt': program.rt, 'half': progra
     ("design", "model", "says"),
     [
         pytest.param(IN_BODY, "", "'wall_angel_deg'; did you mean 'wall_angle_deg'? It has: outcome, ", id="of a body"),
-        pytest.param(
-            misspelled("'rt', 'lucky'"), "", "'lucky'; did you mean 'luck'? It has: n, mode, model, os, rt, luck", id="of a program"
-        ),
-        pytest.param(misspelled("'count'"), "", "'count'; it has: n, mode, model, os, rt, luck", id="a production"),
+        pytest.param(misspelled("'rt', 'lucky'"), "", "'lucky'; did you mean 'luck'? It has: n, mode, model, rt, luck", id="of a program"),
+        pytest.param(misspelled("'count'"), "", "'count'; it has: n, mode, model, rt, luck", id="a production"),
         pytest.param(
             misspelled("'half_'", "results=found, ") + RESULTS, "", "'half_'; did you mean 'half'? It has: rt, half", id="of results"
         ),

@@ -344,12 +344,13 @@ def test_an_experiment_that_cannot_be_written_is_shown_with_its_report(workbench
 def test_errors_of_a_report_do_not_show_where_the_server_stores_it(workbench: Served, finished: str) -> None:
     report = workbench.folder / ".workbench" / "experiments" / finished / "report"
     kept = report.rename(report.with_name("kept")) if report.exists() else None
-    (report / "figures").mkdir(parents=True)
+    report.mkdir(parents=True)
+    (report / "mine.txt").touch()
     answer = workbench.post(f"/api/experiments/{finished}/report", {})
     assert answer.status_code == 409
-    assert answer.json() == {"error": f"'.workbench/experiments/{finished}/report' is not a report; move it away"}
-    (report / "figures").rmdir()
-    report.rmdir()
+    says = f"'.workbench/experiments/{finished}/report' holds 'mine.txt', which a new report would replace; move it away"
+    assert answer.json() == {"error": says}
+    shutil.rmtree(report)
     if kept is not None:
         kept.rename(report)
 

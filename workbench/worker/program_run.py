@@ -202,6 +202,8 @@ class ProgramRun(ControlledRun):
                     ahead.setdefault(state.run, Past()).add(state.tick, state.data, state.contacts)
 
             known_run = KnownRun(Path(recorded), keep)
+            for past in ahead.values():
+                past.recorded = True
             self._ahead = ahead
             if self._shown is not None:
                 self._take_ahead(self._shown)

@@ -109,6 +109,7 @@ class SimulationRun(ControlledRun):
             helpers.heard = partial(self._recording.fact, "helpers")  # an agent may import one later
         if start.recorded is not None:
             self._known_run = known_run = KnownRun(Path(start.recorded), self._keep)
+            self._shown.kept.states.recorded = True
             if self._recording is not None:
                 for command in start.commands:
                     self._recording.command(*command)

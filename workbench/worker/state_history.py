@@ -42,8 +42,8 @@ class Kept:
         return self.states.furthest
 
     def keep(self, tick: int, world: World, contacts: Contacts) -> None:
-        """Stores the end of a tick, or the start of the run (tick 0); known ticks are skipped."""
-        if tick > self.furthest:
+        """Stores the end of a tick, or the start of the run (tick 0); ticks that are known for sure are skipped."""
+        if tick > self.furthest or self.states.recorded:
             self.states.add(tick, world.state_bytes(), contacts)
         self.walked.keep(tick, world)
 
@@ -58,6 +58,8 @@ class Past:
     present after it has gone back."""
 
     def __init__(self) -> None:
+        self.recorded = False
+        """Whether those that the run has not reached come from a recording, from which it may differ."""
         self._states: list[bytes] = []
         self._contacts: dict[int, Contacts] = {}
         """By the number of a state, and of the one to come: the contacts since the state before."""
@@ -71,9 +73,13 @@ class Past:
         return self._last[0]
 
     def add(self, tick: int, state: bytes, contacts: Contacts) -> None:
-        """Stores the state at the end of a tick, or at the start of the run (tick 0), and the contacts in it; known ticks are skipped."""
+        """Stores the state at the end of a tick, or at the start of the run (tick 0), and the contacts in it; known ticks are skipped.
+        What a recording has from a different state on is removed."""
         if tick <= self.furthest:
-            return
+            if not self.recorded or tick % self.every or self._states[tick // self.every] == state:
+                return
+            self.recorded = False
+            self.cut(tick - self.every)
         self._last = tick, state, contacts
         self._add_contacts(-(-tick // self.every), contacts)
         if tick % self.every:
@@ -96,7 +102,7 @@ class Past:
             del self._states[tick // self.every + 1 :]
             kept = len(self._states) - 1
             self._contacts = {number: contacts for number, contacts in self._contacts.items() if number <= kept}
-            self._last = self._stored(kept)
+            self._last = self._stored(kept) if self._states else (-1, b"", {})
 
     def contacts(self, tick: int) -> Contacts:
         """Returns the contacts in a tick; if not every tick is stored, those since the state before."""

@@ -79,7 +79,7 @@ def _check_place(final: Path) -> None:
         first = final / PAGE
         if files and (others or not first.is_file() or MADE_BY not in first.read_text(encoding="utf-8", errors="replace")):
             what = f"holds '{others[0]}'" if others else "is not a report"
-            raise ExperimentError(f"'{final}' {what}, which a new report would replace; move it away, or name another folder with --out")
+            raise ExperimentError(f"'{final}' {what}, which a new report would replace; move it away")
     except OSError as error:
         raise ExperimentError(f"'{final}': cannot be read ({error.strerror or error})") from None
 
