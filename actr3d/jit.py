@@ -19,7 +19,7 @@ OPTIONS: Any = {"error_model": "numpy", "nogil": True, "_nrt": False, "no_cfunc_
 
 
 BLAS = "scipy.linalg.cython_blas"
-
+"""The module of SciPy for which numba looks."""
 
 _inner: set[FunctionType] = set()
 """The functions that are marked with `compiled`."""
@@ -32,14 +32,12 @@ def _numba() -> Any:
     Before it compiles anything, it loads SciPy's linear algebra, which takes as long again, to know whether it is there. Here it does not
     find it: no function of the library needs it, and a function that does, such as one of a model, still loads it when it is compiled.
     """
-    found = sys.modules.get(BLAS)
-    sys.modules[BLAS] = cast("Any", None)
-    try:
-        import_module("numba.np.arraymath")
-    finally:
-        sys.modules.pop(BLAS, None)
-        if found is not None:
-            sys.modules[BLAS] = found
+    if BLAS not in sys.modules:
+        sys.modules[BLAS] = cast("Any", None)
+        try:
+            import_module("numba.np.arraymath")
+        finally:
+            del sys.modules[BLAS]
     return import_module("numba")
 
 

@@ -62,9 +62,9 @@ function nameOf({ alive, loading, kind, stuck, signal, status, furthest, ending 
 }
 
 /**
- * The status of the run: {is, line, text}. `is` means: the workbench of the run was started again; no run is shown; it is loading; it cannot be loaded, see Messages; it is ready,
- * running, busy with something that does not end, halted by a signal, or paused; it has ended by itself; the model has failed; a user
- * has stopped it with its process; its process is lost.
+ * The status of the run: {is, line, text}. `is` means: the workbench of the run was started again; no run is shown; it is loading; it
+ * cannot be loaded, see Messages; it is ready, running, busy with something that does not end, halted by a signal, or paused; it has ended
+ * by itself; the model has failed; a user has stopped it with its process; its process is lost.
  */
 export const runStatus = computed(() => {
   const facts = known();

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from actr3d.errors import WorldError, alternatives
 from actr3d.world.body import Body
 from actr3d.world.command_registry import checked_angle, number
-from actr3d.world.frames import FULL_TURN
 from actr3d.world.physics import Physics
 from actr3d.world.scene_objects import yaw_quaternion
 
@@ -23,9 +22,6 @@ at less than 3 m/s, but fling away, or crush without bounds, what is deeper. Sou
 
 FARTHEST = 10_000.0
 """Greatest coordinate of a place [m]: there, the numbers of 32 bits with which scenes are drawn still distinguish millimetres."""
-
-MAX_TURN = FULL_TURN
-"""Greatest heading [rad]: a greater number is one of degrees."""
 
 MAX_FORCE = 1e5
 """Greatest force of a push along an axis [N]. Source: chosen for this library."""

@@ -20,7 +20,7 @@ class ControlledRun(ABC):
 
     _recording: Recording | None = None
     ancestors: Sequence[Sequence[Any]] = ()
-    """The recordings from which the run comes, the nearest first, and when the way of the one before left each [s]."""
+    """The recordings from which the run comes, the nearest first, each with the time at which the one before it left it [s]."""
 
     @property
     @abstractmethod

@@ -199,11 +199,9 @@ class ProgramRun(ControlledRun):
 
             def keep(state: RecordedState) -> None:
                 if state.run in ahead or len(ahead) < MAX_SIMULATIONS:
-                    ahead.setdefault(state.run, Past()).add(state.tick, state.data, state.contacts)
+                    ahead.setdefault(state.run, Past()).add_recorded(state)
 
             known_run = KnownRun(Path(recorded), keep)
-            for past in ahead.values():
-                past.recorded = True
             self._ahead = ahead
             if self._shown is not None:
                 self._take_ahead(self._shown)

@@ -17,7 +17,6 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
-from actr3d.recording.writer import State as RecordedState
 from actr3d.runner.facts import built_facts
 from actr3d.runner.model_factory import build
 from actr3d.runner.model_stdout import BuiltOutput
@@ -108,8 +107,7 @@ class SimulationRun(ControlledRun):
             self._recording = simulation.record(start.record, **facts)
             helpers.heard = partial(self._recording.fact, "helpers")  # an agent may import one later
         if start.recorded is not None:
-            self._known_run = known_run = KnownRun(Path(start.recorded), self._keep)
-            self._shown.kept.states.recorded = True
+            self._known_run = known_run = KnownRun(Path(start.recorded), self._shown.kept.states.add_recorded)
             if self._recording is not None:
                 for command in start.commands:
                     self._recording.command(*command)
@@ -119,9 +117,6 @@ class SimulationRun(ControlledRun):
                 self._end = known_run.ticks, str(ended["by"])
             if known_run.facts.get("failed") is not None:
                 self._failed_at = known_run.time
-
-    def _keep(self, state: RecordedState) -> None:
-        self._shown.kept.states.add(state.tick, state.data, state.contacts)
 
     def _facts(self, limits: RunLimits, parameters: dict[str, Any]) -> Facts:
         return Facts(

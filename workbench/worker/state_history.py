@@ -12,6 +12,7 @@ import numpy as np
 from mujoco import MjData
 
 from actr3d.actr.kernel.run_limits import Contacts
+from actr3d.recording.writer import State as RecordedState
 from actr3d.world import World
 from workbench.curves import INTEGRATION, Moment, harder
 
@@ -91,6 +92,11 @@ class Past:
             known, self._contacts = self._contacts, {}
             for number, contacts in known.items():
                 self._add_contacts(-(-number // 2), contacts)
+
+    def add_recorded(self, state: RecordedState) -> None:
+        """Stores a state of a recording that the run repeats, and may differ from."""
+        self.add(state.tick, state.data, state.contacts)
+        self.recorded = True
 
     def _add_contacts(self, number: int, contacts: Contacts) -> None:
         if contacts:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import itertools
+import re
 import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -20,6 +21,8 @@ from actr3d.experiment.report.results import Results, by_number, read_results
 
 REPORT, PAGE = "report", "index.html"
 """The folder of a report in that of the experiment, and the name of its page."""
+OWN = re.compile(r"index\.html|figures(/[^/]+\.(svg|png))?|tables(/[^/]+\.csv)?")
+"""What a report consists of: its files and folders."""
 DIGITS = "%.8g"
 """The format of numbers in tables: more digits would depend on the processor."""
 
@@ -73,9 +76,8 @@ def _check_place(final: Path) -> None:
             if final.exists():
                 raise ExperimentError(f"'{final}' is a file; name a folder for the report")
             return
-        files = [path.relative_to(final) for path in sorted(final.rglob("*")) if not path.is_dir() or path.parent != final]
-        own = {f"figures/*{ending}" for ending in (".svg", ".png")} | {"tables/*.csv", PAGE}
-        others = [file for file in files if not any(file.match(pattern) and len(file.parts) == 1 + pattern.count("/") for pattern in own)]
+        files = [path.relative_to(final).as_posix() for path in sorted(final.rglob("*"))]
+        others = [file for file in files if not OWN.fullmatch(file)]
         first = final / PAGE
         if files and (others or not first.is_file() or MADE_BY not in first.read_text(encoding="utf-8", errors="replace")):
             what = f"holds '{others[0]}'" if others else "is not a report"

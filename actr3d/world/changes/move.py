@@ -9,7 +9,8 @@ from annotated_types import Ge, Le
 
 from actr3d.change import change
 from actr3d.world.changes.world_change import WorldChange
-from actr3d.world.objects import FARTHEST, MAX_TURN
+from actr3d.world.objects import FARTHEST
+from actr3d.world.scene_objects import Heading
 from actr3d.world.world import World
 
 
@@ -29,7 +30,7 @@ class MoveObject(WorldChange):
     """The place along the x axis of the world [m]; at a heading of 0, a body faces along this axis."""
     y: Annotated[float, Ge(-FARTHEST), Le(FARTHEST)]
     """The place along the y axis of the world [m]: to the left of the x axis, seen from above."""
-    heading: Annotated[float, Ge(-MAX_TURN), Le(MAX_TURN)] | None = None
+    heading: Heading | None = None
     """The angle from the x axis of the world to the left [rad]; empty: it keeps its heading."""
 
     def carry_out(self, on: World) -> None:
