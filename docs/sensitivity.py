@@ -76,7 +76,7 @@ class Deciding:
         choice, noise = random.Random(seed), np.random.default_rng(seed)
         time = self.turning / Gait().steps_per_second(speed)
         widths = [shoulders * hypot(cos(radians(turn)), MODEL.CHEST * sin(radians(turn))) for turn in self.turns]
-        efforts = [self.inertia * ((radians(turn) / time) ** 2 + (radians(turn) / MODEL.FEELING) ** 2) for turn in self.turns]
+        efforts = [MODEL.work(turn, speed, time, self.inertia) for turn in self.turns]
         chosen: list[NDArray[Any]] = []
         for _ in range(WALKERS):
             of = choice.sample(range(len(known)), min(self.memories, len(known)))

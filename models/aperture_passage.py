@@ -58,7 +58,7 @@ The `predictive` variant without one of its parts, or with another:
 - `variant = "predictive", perceptual_noise = 0.0`: exact eyes, and an exactly felt width.
 - `variant = "predictive", impact = "any"`: each contact costs the same, whatever its energy.
 - `variant = "predictive", memories = 0`: no experience.
-- `variant = "predictive", units = "shoulders"`: it remembers how much room a passage had in shoulder widths, not in metres.
+- `variant = "predictive", units = "metres"`: it remembers how much room a passage had in metres, not in shoulder widths.
 """
 
 from dataclasses import dataclass
@@ -162,7 +162,7 @@ class Parameters(Configuration):
     impact: Literal["energy", "any"] = "energy"
     """Of the predictive walker: whether the cost of a contact grows with its energy, or is the same for any."""
 
-    units: Literal["metres", "shoulders"] = "metres"
+    units: Literal["metres", "shoulders"] = "shoulders"
     """Of the predictive walker: the units in which it remembers how much room a passage had."""
 
     gait: bool = True

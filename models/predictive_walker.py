@@ -3,7 +3,8 @@
 No ratio, margin or judgement is put in. The walker has passed doorways before, with empty hands or with a bar as now. It remembers of
 150 passages how much wider than its body the doorway looked, how fast it walked, and what came of it: nothing, a brush, or a hit, and
 how hard. For each turn of its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by
-blending its memories what the passage will cost. It chooses the turn whose effort and expected impact are cheapest together.
+blending its memories what the passage will cost. It chooses the turn whose effort and expected impact are cheapest together. The effort
+is the work of turning, and of walking more slowly and then fast again.
 
 The body walks with a gait (`actr3d.world.Gait`): it sways, and its steps vary. So it needs more room than its width, and the less room
 it has the more often it touches the wall. The eyes see the doorway with noise, less when it is near; and the felt width has noise.
@@ -16,7 +17,8 @@ Four parallel systems:
   something comes, before it or behind it, as near to it as the walker is: for as long as that comes nearer, and then until its patience
   ends. Then it looks for a doorway again, and goes on; if there is none, it gives up.
 - *Planning* imagines one turn after the other, and keeps the cheapest. It goes on until two steps before the doorway.
-- *Walking* turns the shoulders in one of these two steps, about half a step before the doorway, and turns them back behind it.
+- *Walking* turns the shoulders in one of these two steps, about half a step before the doorway, and turns them back behind it. With
+  turned hips its steps are shorter, so it walks more slowly meanwhile.
 
 What to expect
 --------------
@@ -34,7 +36,7 @@ What to try
 - `closing = 0.065, aperture = 0.9`: the doorway closes while it walks there. It turns for a width that it saw before it decided.
 - `contact_cost = 10.0`: fears to touch the wall.
 - `gait = False`: glides, and so did all the bodies of its experience.
-- `units = "shoulders"`: compares passages by their room in shoulder widths. Then a large walker turns as much as a small one at the same ratio.
+- `units = "metres"`: compares passages by their room in metres. Then a large walker turns less than a small one at the same ratio.
 - In the 3D view, the label above the walker has the turn that it plans, and the costs that it expects of turns; the overlay «handles» moves its
   start.
 """
@@ -97,7 +99,7 @@ ROOM, PACE, ANGLE, TEMPERATURE = 0.02, 0.3, 5.0, 1.0
 """Differences of room [m], speed [m/s] and angle [degrees] at which the similarity of two memories is -1; and the temperature of blending.
 The first one decides how much room it wants more than any other number (docs/results.md). Source: chosen for this model."""
 BODY = 0.4
-"""Of which shoulder width [m] rooms are as similar in metres as in shoulder widths. Source: chosen for this model."""
+"""Of which shoulder width [m] rooms are as similar in shoulder widths as in metres. Source: chosen for this model."""
 LIKELY = 0.5
 """What it expects with a greater probability, it counts on. Source: chosen, as anything else would be a bias."""
 DISTANCE_NOISE, EDGE_NOISE, WIDTH_NOISE = 0.02, 0.002, 0.005
@@ -196,8 +198,27 @@ class Parameters(Configuration):
     impact: Literal["energy", "any"] = "energy"
     """What the cost of a contact grows with: its energy; or nothing, each costs as much as an impact of 10 J."""
 
-    units: Literal["metres", "shoulders"] = "metres"
-    """The units in which it remembers how much room a passage had: metres, or its own shoulder width."""
+    units: Literal["metres", "shoulders"] = "shoulders"
+    """The units in which it remembers how much room a passage had: its own shoulder width, or metres."""
+
+
+def forward(speed, turn):
+    """Returns the speed along the way [m/s] of somebody who walks at a speed [m/s] and has turned the shoulders by an angle [degrees].
+
+    Steps go as far along the way as the hips face it. That people slow down the more the more they turn is from Wilmut & Barnett (2010),
+    Hum Mov Sci 29; how much follows here from the share of the hips.
+    """
+    return speed * cos(radians(HIPS * turn))
+
+
+def work(turn, speed, seconds, inertia=INERTIA):
+    """Returns the effort of turning the shoulders by an angle [degrees] at a walking speed [m/s]: the work of all movements [J].
+
+    These are the turn, in a time [s], the turn back, slowing down, and walking at the speed again. Each starts and stops something: its
+    kinetic energy is put in once, and taken out once.
+    """
+    turning = inertia * sum((radians(turn) / time) ** 2 for time in (seconds, FEELING))
+    return turning + Mannequin.mass * (speed**2 - forward(speed, turn) ** 2)
 
 
 class Similar(Partial):
@@ -454,7 +475,7 @@ class Person(ACTR):
         if way.state == "on":
             self.pass_in(max(0, self.through_at - self.now()) * before / self.speed)
         if motor.walking:
-            motor.walk(self.speed)
+            motor.walk(forward(self.speed, self.turned))
 
     def go_at(self, speed):
         """Sets the walking speed [m/s], and with it the length of a step and the time for a turn, which takes one step."""
@@ -508,7 +529,7 @@ class Person(ACTR):
         """Returns where the doorway must be, by its own movement since it knew it last: distance [m] and direction [degrees]."""
         far, left = float(self.b_door["far"]), radians(float(self.b_door["direction"]))
         elapsed = self.now() - self.seen_at
-        ahead = far * cos(left) - (self.speed * elapsed if self.motor.walking else 0)
+        ahead = far * cos(left) - (forward(self.speed, self.turned) * elapsed if self.motor.walking else 0)
         aside = far * sin(left)
         return hypot(ahead, aside), degrees(atan2(aside, ahead) - self.rate * elapsed)
 
@@ -517,8 +538,8 @@ class Person(ACTR):
         self.motor.turn(speed=degrees(rate) if abs(rate) > SLOWEST else 0)
 
     def effort(self, turn):
-        """Returns the work of turning the shoulders by an angle [degrees], as `turn` and back as `leave` [J]: each starts and stops."""
-        return INERTIA * sum((radians(turn) / seconds) ** 2 for seconds in (self.turning_time, FEELING))
+        """Returns the effort of turning the shoulders by an angle [degrees], as `turn` and `leave` do [J]."""
+        return work(turn, self.speed, self.turning_time)
 
     def wait(b_goal="do:!wait", b_door="free:False"):
         """Stops for somebody or something at the doorway."""
@@ -550,7 +571,8 @@ class Person(ACTR):
         self.judged = "turned" if float(turn) else "as it is"
         self.chosen = float(turn)
         self.turn_shoulders(float(turn), self.turning_time)
-        self.pass_in((float(far) + BEHIND) / self.speed)
+        motor.walk(forward(self.speed, self.turned))
+        self.pass_in((float(far) + BEHIND) / forward(self.speed, self.turned))
         b_goal.set("do:pass")
 
     def leave(b_goal="do:pass", way="state:over"):
