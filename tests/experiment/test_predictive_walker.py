@@ -216,19 +216,25 @@ def test_it_judges_from_experience_whether_it_can_pass_as_it_is(model: Any) -> N
 
 
 def test_the_effort_of_a_turn_is_the_work_of_the_movements_that_it_makes(model: Any) -> None:
-    """A moment of inertia that starts and stops twice; the speeds are those of the simulated shoulders."""
+    """A moment of inertia that starts and stops twice, and a mass that slows down and will walk as fast again; the speeds are those of the
+    simulated shoulders and base."""
     for turn in (20.0, 60.0):
         with RunLimits(seed=1, until=60):
             simulation: Simulation = model.build(model.Parameters(aperture=1.2, turn=turn, gait=False))
             walker, body = simulation.agents["walker"], simulation.world.bodies["walker"]
             turning = [body.joints[f"{part}_yaw"].v for part in ("stance", "torso")]
             speeds: list[float] = []
+            walks: list[float] = []
             simulation.run(until=lambda _, walker=walker: walker.chosen is not None)
             while simulation.time < 10 and not (walker.b_goal["do"] == "stand" and not walker.motor.busy):
                 simulation.run(0.01)
                 speeds.append(float(simulation.world.mj_data.qvel[turning].sum()))
-        work = model.INERTIA * (max(speeds) ** 2 + min(speeds) ** 2)
+                if walker.b_goal["do"] == "pass":
+                    walks.append(body.base.speed[0])
+        work = model.INERTIA * (max(speeds) ** 2 + min(speeds) ** 2) + MASS * (1.29**2 - min(walks) ** 2)
         assert walker.effort(turn) == pytest.approx(work, rel=0.05)
+        assert model.forward(1.29, turn) == pytest.approx(min(walks), abs=0.01)
+        assert min(walks) < 1.28
 
 
 def test_without_memories_it_does_not_turn(model: Any) -> None:
