@@ -31,15 +31,15 @@ CELLS = (("small", 0.404, 1.29, 1.61), ("large", 0.484, 1.28, 1.77))
 """Groups with their shoulder width [m], and their normal and fast speed [m/s]. Source: Warren & Whang (1987)."""
 FITTED = 1.30
 """The ratio of the fitted cell [shoulder widths]."""
-COSTS = np.geomspace(1.0, 40.0, 60)
+COSTS = np.geomspace(5.0, 200.0, 60)
 """The costs of contacts among which a fit of simulated data chooses."""
 REPETITIONS = 40
 """Number of simulated sets of data for each cost."""
 BELOW = 1.25
 """People turn before doorways below this many shoulder widths."""
-Likeness = Literal["room", "scaled room", "ratio", "widths"]
-"""What makes two passages alike: the room, seen minus felt width, as the model has it; room in shoulder widths; the ratio of seen and felt
-width; or both widths one by one."""
+Likeness = Literal["room", "room in metres", "ratio", "widths"]
+"""What makes two passages alike: the room, seen minus felt width, in shoulder widths, as the model has it; room in metres; the ratio of seen
+and felt width; or both widths one by one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,8 +98,8 @@ class Deciding:
         """
         unit = MODEL.BODY
         compared: dict[Likeness, tuple[Any, ...]] = {
-            "room": (seen - felt,),
-            "scaled room": ((seen - felt) / shoulders * unit,),
+            "room": ((seen - felt) / shoulders * unit,),
+            "room in metres": (seen - felt,),
             "ratio": (seen / felt * unit,),
             "widths": (seen, felt),
         }
@@ -179,7 +179,7 @@ def report() -> str:
     for name, shoulders, normal, fast in CELLS:
         both, effort, impact = effect_of_speed(shoulders, normal, fast)
         lines.append(f"{name}, fast minus normal: {both:+.1f} degrees; by effort alone {effort:+.1f}, by impact alone {impact:+.1f}")
-    for cost in (3.0, 5.0, 8.0, 13.0):
+    for cost in (15.0, 30.0, 45.0, 70.0):
         lines.append("contact_cost {:g} put in: found {:.1f}, from {:.1f} to {:.1f}".format(cost, *found_again(cost)))
     return "\n".join(lines) + "\n"
 

@@ -215,7 +215,8 @@ def work(turn, speed, seconds, inertia=INERTIA):
     """Returns the effort of turning the shoulders by an angle [degrees] at a walking speed [m/s]: the work of all movements [J].
 
     These are the turn, in a time [s], the turn back, slowing down, and walking at the speed again. Each starts and stops something: its
-    kinetic energy is put in once, and taken out once.
+    kinetic energy is put in once, and taken out once. What changes of speed cost people fits a model of their kinetic energy, among others
+    (Seethapathi & Srinivasan 2015, Biol Lett 11).
     """
     turning = inertia * sum((radians(turn) / time) ** 2 for time in (seconds, FEELING))
     return turning + Mannequin.mass * (speed**2 - forward(speed, turn) ** 2)

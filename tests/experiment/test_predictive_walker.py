@@ -380,8 +380,8 @@ def test_the_room_that_it_wants_follows_from_what_counts_as_similar_more_than_fr
 
 
 def test_large_walkers_turn_as_much_as_small_ones_at_the_same_ratio_if_room_is_remembered_in_units_of_the_body(sensitivity: Any) -> None:
-    assert sensitivity.large_minus_small(sensitivity.Deciding()) < -4
-    for likeness in ("scaled room", "ratio"):
+    assert sensitivity.large_minus_small(sensitivity.Deciding(likeness="room in metres")) < -4
+    for likeness in ("room", "ratio"):
         assert sensitivity.large_minus_small(sensitivity.Deciding(likeness=likeness)) == pytest.approx(0, abs=1.5)
 
 
@@ -396,7 +396,7 @@ def test_effort_and_impact_each_make_fast_walkers_turn_less(sensitivity: Any) ->
 
 @pytest.mark.slow
 def test_simulated_data_determine_the_cost_that_was_put_in(sensitivity: Any) -> None:
-    for cost in (3.0, 8.0):
+    for cost in (15.0, 45.0):
         middle, low, high = sensitivity.found_again(cost)
         assert low < cost < high
         assert middle == pytest.approx(cost, rel=0.1)
