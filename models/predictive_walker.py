@@ -34,7 +34,7 @@ What to try
 - `scene = "two doorways", aperture = 1.0`: chooses one of two.
 - `scene = "two people", aperture = 0.8`: somebody comes from the other side; both wait, and the one whose patience ends first goes first.
 - `closing = 0.065, aperture = 0.9`: the doorway closes while it walks there. It turns for a width that it saw before it decided.
-- `contact_cost = 10.0`: fears to touch the wall.
+- `contact_cost = 60.0`: fears to touch the wall.
 - `gait = False`: glides, and so did all the bodies of its experience.
 - `units = "metres"`: compares passages by their room in metres. Then a large walker turns less than a small one at the same ratio.
 - In the 3D view, the label above the walker has the turn that it plans, and the costs that it expects of turns; the overlay «handles» moves its
@@ -56,7 +56,7 @@ from actr3d.simulation import Simulation
 from actr3d.vision import Vision
 from actr3d.world import Aperture, Floor, Gait, Load, Mannequin, Scene, Wall
 
-CONTACT_COST = 5.5
+CONTACT_COST = 28.0
 """The one free parameter: fitted with `actr3d fit critical_ratio`, so that half of the passages at 1.30 shoulder widths are turned."""
 PERCEPTUAL_NOISE, MEMORY_NOISE = 1.0, 0.1
 """The factor of the noise of what it sees and feels, and the noise of the activation of memories. Source: chosen for this model, before
