@@ -44,7 +44,7 @@ class Parameter:
 
     name: str
     takes: str
-    """`number`, `whole number`, `text`, `switch`, `choice`, or the text of any other declared type."""
+    """`number`, `whole number`, `text`, `switch`, `choice`, or the text of any other declared type; `value` if none is declared."""
     required: bool = False
     """Whether it has no default."""
     default: Any = None
@@ -103,13 +103,18 @@ class Parameter:
         if value is None and self.optional:
             return
         if self.takes in ("number", "whole number"):
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+            split = self.takes == "whole number" and isinstance(value, float)
+            if split or isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
                 raise ConfigurationError(f"{self.name}: must be a {self.takes} (got {value!r})")
             for sign, limit, holds in self._bounds:
                 if not holds(value, limit):
                     raise ConfigurationError(f"{self.name}: must be {sign} {limit} (got {value!r})")
         elif self.choices is not None and value not in self.choices:
             raise ConfigurationError(f"{self.name}: must be one of {', '.join(map(repr, self.choices))} (got {value!r})")
+        elif (self.takes == "switch" and not isinstance(value, bool)) or (self.takes == "text" and not isinstance(value, str)):
+            raise ConfigurationError(f"{self.name}: must be {self.domain()} (got {value!r})")
+        elif value == "" and self.takes == "value" and self.known and not isinstance(self.default, (str, NoneType)):
+            raise ConfigurationError(f"{self.name}: must be a value such as {self.default!r} (got {value!r})")
 
 
 def literal(text: str) -> Any:

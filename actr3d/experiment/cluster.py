@@ -135,10 +135,10 @@ def run_experiment(
         client: The `distributed.Client` of the cluster.
         show: Called after each batch of trials.
         stop: Ends the run after the batches that have finished, when it is set by another thread.
-        sure: Whether the measures of the design are known to be right; else the run ends if the first trial lacks one.
+        sure: Whether the measures of the design are known to be those of some trials; else the run ends if the first trial lacks one.
 
     Raises:
-        DesignError: If the first trial lacks a measure.
+        DesignError: If the first trial lacks a measure, or has one that cannot be a measure.
         ExperimentError: If the versions of a worker are not those of the specification, the experiment cannot be loaded there,
             the cluster is lost, or the rows cannot be written.
     """
@@ -223,8 +223,8 @@ class _Run:
                 self._lost()
             self._submit(numbers)
             return
-        if not self._sure and batch.rows[0][0] == 0:
-            check_row(batch.rows[0][1])
+        if batch.rows[0][0] == 0:
+            check_row(batch.rows[0][1], sure=self._sure)
         table = self._experiment.design.trial
         rows = [
             Finished(row={**table(number).columns, **row}, wall_s=round(wall, 4), worker=batch.worker) for number, row, wall in batch.rows

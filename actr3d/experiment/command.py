@@ -22,7 +22,7 @@ from rich.text import Text
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment.design import OWN_COLUMNS
-from actr3d.experiment.measures import check_measures, check_row, known_measures, try_measures
+from actr3d.experiment.measures import check_measures, check_row, try_measures
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import SPECIFICATION, Store, only_process, summary, write_whole
 from actr3d.experiment.table import export
@@ -203,7 +203,7 @@ def fit(
         if data is None:
             raise ExperimentError(f"design '{experiment.specification.name}': names no human data; give {give}")
         found, kept = load_target(data, experiment, measure), experiment.design.kept
-        if not check_measures(experiment) or (not kept and known_measures(experiment) is None):
+        if not check_measures(experiment):
             row = try_measures(experiment)
             if row is not None and not kept:
                 check_measure(found[0].measure, [name for name in row if name not in OWN_COLUMNS], experiment)
@@ -263,7 +263,7 @@ def facts_of(experiment: Experiment) -> dict[str, Any]:
         "seed": design.seed,
         "model": specification.model.file,
         "parameters": [
-            {"name": one.name, "help": one.help, "unit": one.unit, "default": one.default, "choices": one.choices}
+            {"name": one.name, "help": one.help, "unit": one.unit, "default": one.default if one.known else None, "choices": one.choices}
             for one in experiment.parameters
         ],
     }
@@ -338,12 +338,12 @@ def _opened(
         return experiment, opened.enter_context(Store.create(folder, experiment.specification)), sure
     store = opened.enter_context(Store(folder))
     _check_versions(store.specification, any_version=any_version)
-    there, wanted = store.specification, experiment.specification
-    if different := there.differences(wanted):
+    there, now = store.specification, experiment.specification
+    if different := experiment.differences(there):
         same = f"choose another --out, or continue it unchanged: actr3d experiment {folder} --resume"
         raise ExperimentError(f"'{folder}' is another experiment: {'; '.join(different)}; {same}")
     # The files may be at another place now, and other files that the model reads beside them.
-    return Experiment(replace(wanted, versions=there.versions)), store, True
+    return Experiment(replace(there, design=now.design, model=now.model)), store, True
 
 
 @contextmanager

@@ -394,6 +394,25 @@ class Design(Configuration):
         number = self.trials if trials is None else trials
         return replace(self, factors=factors, groups=groups, settings=settings, trials=number, **own)
 
+    def _changeable(self) -> dict[str, Any]:
+        """Returns all that `changed` can change: numbers by their options, and values by name."""
+        own = {name: getattr(self, name) for name in OWN_NUMBERS}
+        of_groups: dict[str, dict[str, Any]] = {"--participants": {}}
+        for group_name, group in self.groups.items():
+            for name, value in {"--participants": group.participants, **group.parameters}.items():
+                of_groups.setdefault(name, {})[group_name] = value
+        return {**of_groups, "--trials": self.trials, **self.factors, **self.settings, **own}
+
+    def differences(self, other: Design) -> list[str]:
+        """Returns in words how this design ("there") and another one of the same text ("now") were changed differently; see `changed`."""
+        this, that = self._changeable(), other._changeable()
+        found: list[str] = []
+        for name in {**this, **that}:
+            if name not in this or name not in that or _key(this[name]) != _key(that[name]):
+                there, now = (repr(given[name]) if name in given else "not set" for given in (this, that))
+                found.append(f"{name}: {there} there, {now} now")
+        return found
+
     # -- checks against the model
 
     def check(self, parameters: Sequence[Parameter], which: str = "") -> None:
@@ -520,9 +539,13 @@ def _check_names(names: Iterable[Any], where: str) -> None:
             raise DesignError(f"{where}: names must be texts of printable characters (got {name!r})", where.rpartition(".")[2])
 
 
-def _key(level: Any) -> Any:
-    """Returns what two levels have in common that are the same: equal numbers are, 1 and True are not."""
-    return level if isinstance(level, (int, float)) and not isinstance(level, bool) else repr(level)
+def _key(value: Any) -> Any:
+    """Returns what two values have in common that are the same: equal numbers are, 1 and True are not."""
+    if isinstance(value, (list, tuple)):
+        return tuple(map(_key, cast("Sequence[Any]", value)))
+    if isinstance(value, Mapping):
+        return tuple((name, _key(one)) for name, one in cast("Mapping[str, Any]", value).items())
+    return value if isinstance(value, (int, float)) and not isinstance(value, bool) else repr(value)
 
 
 def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False, several: bool = False) -> None:

@@ -15,6 +15,7 @@ Bioinformatics 25(15), for profile likelihoods.
 from __future__ import annotations
 
 import csv
+import io
 import itertools
 import json
 import math
@@ -38,7 +39,7 @@ from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, SettingError, alternatives, did_you_mean
 from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
-from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data
+from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data, read_human_text
 from actr3d.experiment.measures import known_measures
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
@@ -503,13 +504,12 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     """
     design, known = experiment.design, library_human_data()
     path = known.get(name, Path(name))
-    if not path.is_file():
+    if not path.exists():
         raise ExperimentError(f"human data '{name}': no such file{alternatives(name, known, 'the library has:')}")
     names = {factor_name(name): name for name in (*design.factors, *(one.over for one in design.kept if one.over is not None))}
     levels: Any = {shown: plain_levels(design.factors.get(name, ())) for shown, name in names.items()}
     texts = {(shown, plain_text(level)): level for shown, name in names.items() for level in design.factors.get(name, ())}
-    with path.open(encoding="utf-8-sig", errors="replace", newline="") as file:
-        lines = [row for row in csv.reader(file) if row and not row[0].lstrip().startswith("#")]
+    lines = [row for row in csv.reader(io.StringIO(read_human_text(path))) if row and not row[0].lstrip().startswith("#")]
     head = [cell.strip() for cell in lines[0]] if lines else []
     ignored = {*OWN_COLUMNS, *design.trial(0).columns} - {"participant", "group", *names.values()}
     if "measure" in head:

@@ -124,13 +124,22 @@ def read_human_data(path: Path | str, schema: Schema) -> HumanData:
         ExperimentError: If the file cannot be read, or does not follow the schema: each error names file, line and column, what was
             given and what would be right.
     """
-    file = Path(path)
+    return _Reader(str(path), read_human_text(path), schema).read(Path(path).name)
+
+
+def read_human_text(path: Path | str) -> str:
+    """Returns the text of a file of human data.
+
+    Raises:
+        ExperimentError: If it cannot be read.
+    """
     try:
-        text = file.read_text(encoding="utf-8-sig")
+        return Path(path).read_text(encoding="utf-8-sig")
+    except IsADirectoryError:
+        why = "it is a folder; name a file"
     except (OSError, UnicodeDecodeError) as error:
         why = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
-        raise ExperimentError(f"{path}: cannot be read as human data ({why})") from None
-    return _Reader(str(path), text, schema).read(file.name)
+    raise ExperimentError(f"{path}: cannot be read as human data ({why})")
 
 
 class _Reader:

@@ -13,14 +13,16 @@ from actr3d.actr.lint.checks import unchecked
 from actr3d.actr.loading.global_seed import shared_random
 from actr3d.errors import DesignError
 from actr3d.experiment.specification import Experiment, naming_the_line
-from actr3d.experiment.trial import NO_MEASURE, Row, check_name, limits_of, parameters_for
+from actr3d.experiment.trial import NO_MEASURE, WRONG_MEASURE, Row, check_name, limits_of, parameters_for
 from actr3d.experiment.trial_process import TrialProcess
 from actr3d.output import ModelOutput, printing_to
+from actr3d.weak_cache import weak_cache
 
 PATIENCE = 60.0
 """The maximum time for which a first trial runs whose measures are not known before [s]."""
 
 
+@weak_cache
 def known_measures(experiment: Experiment) -> tuple[str, ...] | None:
     """Returns the names of the measures that a trial can have: the fields of the result that the simulation of the first trial has before
     it runs, or the variables that the text of a program sets. None if only a run shows them: with a function `results`, for a simulation
@@ -42,17 +44,16 @@ def known_measures(experiment: Experiment) -> tuple[str, ...] | None:
 
 
 def check_measures(experiment: Experiment) -> bool:
-    """Checks the names of the design's measures before anything runs; returns whether they are known to be right.
+    """Checks the names of the design's measures before anything runs; returns whether the measures of its trials are known.
 
     Raises:
         DesignError: If a trial can have no measure of that name; names the file and the line.
     """
-    specification, kept = experiment.specification, experiment.design.kept
-    known = known_measures(experiment) if kept else ()
+    specification, known = experiment.specification, known_measures(experiment)
     if known is None:
         return False
     with naming_the_line(specification.design, specification.name, {}):
-        for measure in kept:
+        for measure in experiment.design.kept:
             check_name(measure.name, known)
     return True
 
@@ -61,7 +62,7 @@ def try_measures(experiment: Experiment) -> Row | None:
     """Runs the first trial, for measures that only a run shows, and returns its row; None if it fails or takes too long.
 
     Raises:
-        DesignError: If it has no measure of a name that the design gives; names the file and the line.
+        DesignError: If a measure is missing, or cannot be one; names the file and the line.
         ExperimentError: If the experiment cannot be loaded.
     """
     process, design = TrialProcess(), experiment.design
@@ -73,13 +74,17 @@ def try_measures(experiment: Experiment) -> Row | None:
     return row if row["error"] is None else None
 
 
-def check_row(row: Row) -> None:
+def check_row(row: Row, *, sure: bool = False) -> None:
     """Checks that a trial has all measures of its design.
 
+    Args:
+        row: The row of the trial.
+        sure: Whether other trials have measures that this one lacks.
+
     Raises:
-        DesignError: If it has not.
+        DesignError: If one is missing, or cannot be a measure.
     """
-    if row["end"] == NO_MEASURE:
+    if row["end"] == WRONG_MEASURE or (row["end"] == NO_MEASURE and not sure):
         raise DesignError(row["error"].removeprefix("error: "), "measures")
 
 

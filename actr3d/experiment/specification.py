@@ -35,7 +35,7 @@ from actr3d.experiment import designs
 from actr3d.experiment.design import Design, Group, Measured, Normal, Uniform, is_design
 from actr3d.experiment.human_data import library_human_data
 from actr3d.output import ModelOutput, printing_to
-from actr3d.parameter_schema import Parameter
+from actr3d.parameter_schema import Parameter, default_of
 from actr3d.recording.schema import versions
 from actr3d.runner.build_check import check_build, has_build
 
@@ -87,7 +87,7 @@ class Specification(Configuration):
         return content
 
     def differences(self, other: Specification) -> list[str]:
-        """Returns the differences from another specification in words, without those of versions."""
+        """Returns the differences of the texts from those of another specification in words."""
         this, that = self.content(), other.content()
         found: list[str] = []
         if self.name != other.name:
@@ -100,14 +100,6 @@ class Specification(Configuration):
             modules = (this[one]["helpers"], that[one]["helpers"])
             names = [name for name in {**modules[0], **modules[1]} if modules[0].get(name) != modules[1].get(name)]
             found += [f"the module '{name}' beside the {one} differs" for name in names]
-        for number in ("participants", "trials"):
-            if this[number] != that[number]:
-                there, now = ("as designed" if given[number] is None else given[number] for given in (this, that))
-                found.append(f"{number}: {there} there, {now} now")
-        for name in {**this["values"], **that["values"]}:
-            there, now = (repr(given["values"][name]) if name in given["values"] else "as designed" for given in (this, that))
-            if there != now:
-                found.append(f"{name}: {there} there, {now} now")
         return found
 
     @contextmanager
@@ -158,11 +150,9 @@ class Experiment:
         self.specification = specification
         source, model = specification.design, specification.model
         self._module = load_quietly(source, helpers)
-        self.design = design_in(self._module, specification.name, source)
+        self._written = design_in(self._module, specification.name, source)
         with naming_the_line(source, specification.name, specification.values):
-            self.design = self.design.changed(
-                participants=specification.participants, trials=specification.trials, values=specification.values
-            )
+            self.design = self._changed_as(specification)
         compile_source(model.text, model.file)
         check_build(model.text, model.file)
         self.blueprint: Blueprint | None = None
@@ -173,7 +163,10 @@ class Experiment:
         self.parameters: tuple[Parameter, ...] = (
             self.blueprint.fields
             if self.blueprint is not None
-            else tuple(Parameter(name=name, takes="value", line=node.lineno) for name, node in variables_of(model.text).items())
+            else tuple(
+                Parameter(name=name, takes="value", line=node.lineno, **default_of(node.value, {}))
+                for name, node in variables_of(model.text).items()
+            )
         )
         """The parameters of the model: the fields of its dataclass, or the variables that the first lines of a program set."""
         self.about: dict[str, dict[str, str | None]] = {}
@@ -184,6 +177,15 @@ class Experiment:
             self.design.check(self.parameters, first)
             if self.blueprint is None and self.design.results is None and not self.design.measures:
                 raise DesignError("Design.measures: must name the variables of the program that are its measures (got none)", "measures")
+
+    def _changed_as(self, specification: Specification) -> Design:
+        """Returns the design of the file with the numbers and values of a specification."""
+        return self._written.changed(participants=specification.participants, trials=specification.trials, values=specification.values)
+
+    def differences(self, there: Specification) -> list[str]:
+        """Returns the differences of an experiment that is there from this one in words, without those of versions. Designs are compared
+        as they result, however their numbers and values were given."""
+        return there.differences(self.specification) or self._changed_as(there).differences(self.design)
 
     @property
     def description(self) -> str:

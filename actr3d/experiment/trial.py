@@ -26,8 +26,8 @@ from actr3d.values import escape_surrogates
 
 PLAIN = (str, int, float, bool, type(None))
 """The types of measures."""
-NO_MEASURE = "no measure"
-"""What the column `end` says of a trial that lacks a measure of the design."""
+NO_MEASURE, WRONG_MEASURE = "no measure", "wrong measure"
+"""What the column `end` says of a trial that lacks a measure of the design, or has one that cannot be a measure."""
 
 Row = dict[str, Any]
 """A row of the table of trials, or a part of one: values by column."""
@@ -54,7 +54,7 @@ def run_trial(experiment: Experiment, trial: Trial, helpers: HelperTexts) -> Row
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # noqa: BLE001 - every error of a model belongs in its row
-        end = NO_MEASURE if isinstance(error, MissingMeasureError) else "error"
+        end = NO_MEASURE if isinstance(error, MissingMeasureError) else WRONG_MEASURE if isinstance(error, DesignError) else "error"
         return {"end": end, "error": traceback_report(error).text.strip()}
 
 
@@ -139,21 +139,23 @@ def _checked(measures: Any, experiment: Experiment, trial: Trial) -> Row:
     """Returns the measures to keep, as plain values.
 
     Raises:
-        ExperimentError: If one is missing, has another type, or has the name of another column.
+        DesignError: If one is missing, has another type, or has the name of another column; names the file and the line.
+        ExperimentError: If a value cannot be stored.
     """
-    if not isinstance(measures, Mapping):
-        raise ExperimentError(f"Design.results: must return measures by name (returned {measures!r})")
-    given = cast("Mapping[str, Any]", measures)
+    design, source = experiment.design, experiment.specification.design
     kept: Row = {}
-    for measure in experiment.design.kept or [Measured(name=name) for name in given]:
-        if measure.name not in given:
-            with naming_the_line(experiment.specification.design, experiment.specification.name, {}):
+    with naming_the_line(source, experiment.specification.name, {}):
+        if not isinstance(measures, Mapping):
+            raise DesignError(f"Design.results: must return measures by name (returned {measures!r})", "results")
+        given = cast("Mapping[str, Any]", measures)
+        for measure in design.kept or [Measured(name=name) for name in given]:
+            if measure.name not in given:
                 check_name(measure.name, [name for name, value in given.items() if not name.startswith("_") and _is_value(value)])
-        for name, value in measure.columns(given[measure.name]).items():
-            if name in trial.columns or name in OWN_COLUMNS or name in kept:
-                raise ExperimentError(f"measure '{name}': is already a column of the trials; rename it")
-            kept[name] = _plain(name, value)
-            experiment.describe_column(name, measure)
+            for name, value in measure.columns(given[measure.name]).items():
+                if name in trial.columns or name in OWN_COLUMNS or name in kept:
+                    raise DesignError(f"measure '{name}': is already a column of the trials; rename it", measure.name)
+                kept[name] = _plain(name, value, measure)
+                experiment.describe_column(name, measure)
     return kept
 
 
@@ -162,11 +164,12 @@ def _is_value(value: Any) -> bool:
     return isinstance(as_python(value), (*PLAIN, list, tuple))
 
 
-def _plain(name: str, value: Any) -> Any:
-    """Returns a value of a measure as a plain one; None if it is not finite.
+def _plain(name: str, value: Any, measure: Measured) -> Any:
+    """Returns a value of a column of a measure as a plain one; None if it is not finite.
 
     Raises:
-        ExperimentError: If it has another type.
+        DesignError: If it has another type.
+        ExperimentError: If it cannot be stored.
     """
     value = as_python(value)
     if isinstance(value, int) and not -LARGEST <= value < LARGEST:
@@ -177,5 +180,5 @@ def _plain(name: str, value: Any) -> Any:
         raise ExperimentError(f"measure '{name}': must be a text of characters that can be stored (got {value!r})")
     if type(value) not in PLAIN:
         lists = "; of a list, give Design.measures a Measured with over=" if isinstance(value, (list, tuple)) else ""
-        raise ExperimentError(f"measure '{name}': must be a number, text, True, False or None (got {value!r}){lists}")
+        raise DesignError(f"measure '{name}': must be a number, text, True, False or None (got {value!r}){lists}", measure.name)
     return None if isinstance(value, float) and not math.isfinite(value) else value

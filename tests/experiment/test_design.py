@@ -361,6 +361,14 @@ def test_levels_out_of_the_bounds_of_a_parameter_are_refused_before_anything_run
 
 
 @pytest.mark.parametrize(
+    ("name", "value", "right"), [("gait", "", "True or False"), ("memories", 1.5, "a whole number"), ("task", "", "one of")]
+)
+def test_values_of_a_wrong_type_are_refused_before_anything_runs(name: str, value: Any, right: str) -> None:
+    with pytest.raises(DesignError, match=rf"--set {name}: Design, small 1: {name}: must be {right}.* \(got {value!r}\)"):
+        specify("warren_whang_1987", values={name: value})
+
+
+@pytest.mark.parametrize(
     ("text", "says"),
     [
         ("x = 1\n", r"must define one design \(found 0\); mark a function with @design"),

@@ -31,6 +31,7 @@ from actr3d.experiment.fit import (
 )
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store, only_process
+from actr3d.runner.model_factory import Blueprint
 from tests.helpers.experiments import COUNTER, write_experiment
 
 LINE = """
@@ -322,6 +323,25 @@ def test_a_misspelled_measure_of_a_fit_is_refused_before_any_candidate_runs(
     assert main(command) in (1, 2)
     assert says in capsys.readouterr().err
     assert not (tmp_path / "fit").exists()
+
+
+def test_the_measures_of_a_fit_are_found_by_building_one_simulation(tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, people = tmp_path / "walks.py", tmp_path / "people.csv"
+    path.write_text(
+        "from actr3d.experiment import Design, design\n\n\n@design\ndef walks():\n    return Design(model='aperture_passage.py')\n"
+    )
+    people.write_text("measure,mean,source\nspeed_m_s,1.2,ours\n", encoding="utf-8")
+    built: list[Any] = []
+    build = Blueprint.build
+
+    def counted(self: Blueprint, settings: Any) -> Any:
+        built.append(settings)
+        return build(self, settings)
+
+    monkeypatch.setattr(Blueprint, "build", counted)
+    assert main(["fit", str(path), "--parameter", "speed", "--target", str(people)]) == 2  # the range is read next
+    assert "--parameter: must be NAME=LOW..HIGH (got 'speed')" in capsys.readouterr().err
+    assert len(built) == 1
 
 
 def test_a_model_that_is_determined_exactly_has_a_narrow_interval() -> None:

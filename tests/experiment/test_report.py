@@ -15,10 +15,13 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
+from actr3d.experiment.aperture.analysis import passing_apertures
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.command import write_report
 from actr3d.experiment.report.figures import legend_columns
+from actr3d.experiment.report.libraries import pingouin
+from actr3d.experiment.report.results import read_results
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
@@ -113,6 +116,19 @@ def test_apertures_have_their_own_sections(walked: Path) -> None:
     for side in ("left", "right"):
         assert any(float(row[f"{side}_mean"]) > 6.8 for row in margins), "no side is the narrower one in each trial"
     assert "Starts aside" not in page(walked)
+
+
+def test_the_equivalence_of_groups_is_tested_once(walked: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tested: list[Any] = []
+    tost = pingouin().tost
+
+    def counted(*given: Any, **named: Any) -> Any:
+        tested.append(given)
+        return tost(*given, **named)
+
+    monkeypatch.setattr(pingouin(), "tost", counted)
+    passing_apertures(read_results(walked), [])
+    assert len(tested) == 1
 
 
 @pytest.mark.slow
@@ -239,6 +255,10 @@ def test_what_has_no_report_says_why(tmp_path: Path, capsys: Any) -> None:
     assert "the first one with: ValueError: never\n" in capsys.readouterr().err
     assert main(["report", str(tmp_path)]) == 1
     assert "holds no experiment" in capsys.readouterr().err
+    counted = store_rows(tmp_path / "counted", str(path), count)
+    for command in (["report", str(counted), "--human"], ["fit", str(path), "--parameter", "n=1..3", "--target"]):
+        assert main([*command, str(empty)]) == 1
+        assert f"{empty}: cannot be read as human data (it is a folder; name a file)" in capsys.readouterr().err
 
 
 def test_reports_that_are_written_at_once_do_not_disturb_one_another(tmp_path: Path) -> None:
@@ -278,6 +298,19 @@ def test_a_report_replaces_an_earlier_one_and_no_file_of_a_user(tmp_path: Path) 
     with pytest.raises(ExperimentError, match=r"'.*/place' holds 'figures/mine', which a new report would replace"):
         write_report(folder, out=tmp_path / "place")
     assert mine.exists()
+
+
+@pytest.mark.parametrize("inner", [".", "figures"])
+def test_the_folder_in_which_the_shell_is_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inner: str) -> None:
+    folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
+    place = write_report(folder, out=tmp_path / "place").parent
+    before = place.stat().st_ino
+    monkeypatch.chdir(place / inner)
+    with pytest.raises(ExperimentError, match=r"'.*/place': a new report would replace the folder in which you are; leave it, or name"):
+        write_report(folder, out=place)
+    assert place.stat().st_ino == before
+    monkeypatch.chdir(tmp_path)
+    write_report(folder, out="place")
 
 
 def test_the_report_of_an_experiment_that_cannot_be_written_goes_elsewhere(capsys: Any) -> None:

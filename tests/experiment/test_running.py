@@ -337,12 +337,13 @@ def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFi
         (
             [str(path), "--out", out, "--resume", "--trials", "3"],
             1,
-            "is another experiment: trials: as designed there, 3 now; choose another --out",
+            "is another experiment: --trials: 4 there, 3 now; choose another --out",
         ),
         ([out, "--trials", "3"], 1, "is an experiment, whose design is fixed; name a design to run it with other values"),
         ([out, "--workers", "2"], 1, "is an experiment; continue it with --resume"),
         (["nothing"], 1, "no design or file 'nothing'"),
         ([str(path), "--set", "m=3"], 2, "--set m: Design: the model has no parameter 'm'"),
+        ([str(path), "--set", "n="], 2, "--set n: Design, all 1: n: must be a value such as 3 (got '')"),
         ([str(path), "--set", "m"], 2, "a parameter is set by name=value (got 'm')"),
     ):
         assert main(["experiment", *arguments]) == code
@@ -365,7 +366,7 @@ def test_an_experiment_is_continued_where_its_files_were_moved_to(
     monkeypatch.chdir(tmp_path)
     again = ["experiment", "second/counting_design.py", "--out", "second/out", "--resume", "--workers", "1"]
     assert main([*again, "--set", "n=1,2"]) == 1
-    assert "'second/out' is another experiment: n: as designed there, [1, 2] now; choose another --out, or continue it unchanged: " in (
+    assert "'second/out' is another experiment: n: [1, 2, 5] there, [1, 2] now; choose another --out, or continue it unchanged: " in (
         capsys.readouterr().err
     )
     assert main(again) == 0
@@ -377,6 +378,29 @@ def test_an_experiment_is_continued_where_its_files_were_moved_to(
     assert "is another experiment: the model differs from line 1 on (second/counter.py); choose another" in capsys.readouterr().err
 
 
+def test_an_experiment_is_continued_however_the_same_design_is_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = str(write_experiment(tmp_path, participants=2, trials=1))
+
+    def resumed(folder: Path, *options: str) -> str:
+        """Returns the error of a command that continues an experiment whose trials have finished; "" for none."""
+        code = main(["experiment", path, "--out", str(folder), "--resume", *options])
+        error = capsys.readouterr().err
+        assert code == bool(error)
+        return error
+
+    whole = store_rows(tmp_path / "whole", path, lambda _: {"rt": 0.1, "luck": 0.5})
+    for options in ("--participants 2", "--trials 1", "--set n=1,2,5", "--set n=[1,2.0,5]", "--set seed=1 --set until=60"):
+        assert resumed(whole, *options.split()) == "", options
+    assert "is another experiment: n: [1, 2, 5] there, [1, True, 5] now" in resumed(whole, "--set", "n=1,True,5")
+    part = store_rows(tmp_path / "part", path, lambda _: {"rt": 0.1, "luck": 0.5}, participants=1, values={"n": 3, "mode": "count"})
+    for options in ("n=3", "n=3.0", "n=3,"):
+        assert resumed(part, "--participants", "1", "--set", options, "--set", "mode=count") == "", options
+    with Store(part) as store:
+        assert store.specification.values == {"n": 3, "mode": "count"}, "it goes on as it was begun"
+    assert "is another experiment: --participants: {'all': 1} there, {'all': 2} now" in resumed(part, "--set", "n=3", "--set", "mode=count")
+    assert "is another experiment: mode: 'count' there, not set now" in resumed(part, "--participants", "1", "--set", "n=3")
+
+
 @pytest.mark.parametrize(
     ("name", "other", "says"),
     [
@@ -385,12 +409,15 @@ def test_an_experiment_is_continued_where_its_files_were_moved_to(
     ],
 )
 def test_specifications_differ_in_what_determines_the_rows_alone(tmp_path: Path, name: str, other: str, says: list[str]) -> None:
-    one = replace(specify(str(write_experiment(tmp_path))).specification, name=name, values={"n": (1, 2)})
+    experiment = specify(str(write_experiment(tmp_path)), values={"n": (1, 2)})
+    one = replace(experiment.specification, name=name)
     changed = replace(one, name=other, versions={"python": "2"}, values={"n": [1, 2]}, model=replace(one.model, file="/elsewhere.py"))
     assert one.differences(changed) == says
-    helped = replace(changed, model=replace(one.model, helpers={"pace": ["pace.py", ""]}), participants=3, values={"mode": "x"})
-    more = ["the module 'pace' beside the model differs", "participants: as designed there, 3 now"]
-    assert one.differences(helped) == [*says, *more, "n: [1, 2] there, as designed now", "mode: as designed there, 'x' now"]
+    helped = replace(changed, model=replace(one.model, helpers={"pace": ["pace.py", ""]}))
+    assert one.differences(helped) == [*says, "the module 'pace' beside the model differs"]
+    there = replace(experiment.specification, versions={"python": "2"}, participants=3, values={"mode": "x"})
+    more = ["--participants: {'all': 3} there, {'all': 2} now", "n: [1, 2, 5] there, [1, 2] now", "mode: 'x' there, not set now"]
+    assert experiment.differences(there) == more
 
 
 def test_texts_of_models_are_printed_as_they_are(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

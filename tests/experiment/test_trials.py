@@ -379,6 +379,38 @@ def test_a_measure_that_only_a_long_run_shows_ends_the_experiment_with_its_first
 
 
 @pytest.mark.parametrize(
+    ("names", "value", "says"),
+    [
+        pytest.param("'half'", "math", "counts.py:7: measure 'half': must be a number, {} (got <module 'math'", id="a module"),
+        pytest.param(
+            "", "[1]", "counts.py:5: measure 'half': must be a number, {} (got [1]); of a list, give Design.measures", id="a list"
+        ),
+        pytest.param("'half', 'rt'", "{'a': 1}", "counts.py:7: measure 'half': must be a number, {} (got {'a': 1})", id="a dict"),
+    ],
+)
+def test_a_measure_of_a_wrong_type_is_refused_before_anything_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], names: str, value: str, says: str
+) -> None:
+    write_experiment(tmp_path)
+    path = tmp_path / "counts.py"
+    path.write_text(f"{misspelled(names, 'results=found, ')}{RESULTS.replace('program.rt / 2', value)}\nimport math\n")
+    assert main(["experiment", str(path), "--out", str(tmp_path / "out"), "--workers", "1"]) == 2
+    assert says.replace("{}", "text, True, False or None") in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_variable_that_is_no_measure_ends_the_experiment_with_its_first_trial(tmp_path: Path, capsys: Any) -> None:
+    """Its name is known before, and its type is not."""
+    write_experiment(tmp_path, model=f"{COUNTER}answer = model\n")
+    path = tmp_path / "counts.py"
+    path.write_text(misspelled("'rt', 'answer'", "trials=1000, "))
+    assert main(["experiment", str(path), "--out", str(tmp_path / "out"), "--workers", "1"]) == 2
+    assert "counts.py:7: measure 'answer': must be a number, text, True, False or None (got <" in capsys.readouterr().err
+    with Store(tmp_path / "out") as store:
+        assert store.count == 0
+
+
+@pytest.mark.parametrize(
     ("text", "variables"),
     [
         ("a = 1\nimport b, c as d\nfor e in x: pass\nwith y as f: g: int = 1\n", ("a", "e", "f", "g")),

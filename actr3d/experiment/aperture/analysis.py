@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from actr3d.experiment.aperture.constraints import CRITICAL, MARGIN, PASSABLE, SAME, TURNED, WIDE, Constraint, Findings, equivalence
+from actr3d.experiment.aperture.constraints import CRITICAL, MARGIN, PASSABLE, SAME, TURNED, WIDE, Constraint, Findings
 from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
 from actr3d.experiment.aperture.original import original_bar_means, original_means
 from actr3d.experiment.aperture.passing import Passing, baseline_angle
 from actr3d.experiment.report.analyses import analysis
 from actr3d.experiment.report.beside import Beside, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
-from actr3d.experiment.report.libraries import noting_warnings, pandas
+from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results
 from actr3d.experiment.report.statistics import agreement, bootstrap_interval, cell_means, in_order
@@ -316,11 +316,9 @@ class Rotation:
         return Table(name="agreement", title="Agreement", frame=frame, units={"rmse": "degrees"}, digits=digits, note=note)
 
     def _equivalence(self) -> Parts:
-        scores, pair = self._findings.scores(), self._findings.pair
-        if scores is None or pair is None:
+        test, pair = self._findings.ratio_test, self._findings.pair
+        if test is None or pair is None:
             return []
-        with noting_warnings() as notes:
-            test = equivalence(*scores, SAME)
         row = {"groups": f"{pair[1]} − {pair[0]}", "difference": test.difference, "bound": SAME, "df": test.df, "p": test.p}
         row["result"] = "equivalent" if test.p < 0.05 else "not shown to be equivalent"
         note = (
@@ -335,7 +333,7 @@ class Rotation:
             digits={"difference": 2},
             note=note,
         )
-        return [table, *notes]
+        return [table, *test.notes]
 
     def _aic(self) -> Parts:
         if not self._by_aperture or self._findings.pair is None:

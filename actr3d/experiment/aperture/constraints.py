@@ -10,6 +10,7 @@ import math
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from statistics import mean, stdev
 
@@ -56,6 +57,8 @@ class Equivalence:
     """Degrees of freedom of the t tests; NaN without any variance."""
     p: float
     """The greater p of both tests; NaN if they cannot be computed."""
+    notes: Sequence[str]
+    """What the library warned of."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -211,13 +214,17 @@ class Findings:
         small, large = ([score(group, one) for one in self.people(group)] for group in self.pair)
         return large, small
 
+    @cached_property
+    def ratio_test(self) -> Equivalence | None:
+        """The test that the groups agree on the ratio; None if they cannot be compared."""
+        scores = self.scores()
+        return None if scores is None else equivalence(*scores, SAME)
+
     def same_ratio(self) -> Constraint:
         """3: the groups agree on the ratio: two one-sided t tests of participants."""
-        says, scores = "groups coincide on A/S", self.scores()
-        if scores is None:
+        says, test = "groups coincide on A/S", self.ratio_test
+        if test is None:
             return _untested(3, says, "it needs two groups of three or more participants, and common ratios between 1.0 and 1.4")
-        with noting_warnings():  # the section on equivalence shows them
-            test = equivalence(*scores, SAME)
         found = f"large minus small {test.difference:.1f} degrees, within {SAME:g}: p = {test.p:.3g}"
         return Constraint(number=3, says=says, met=test.p < 0.05, found=found)
 
@@ -373,8 +380,9 @@ def _listed(values: Iterable[float]) -> str:
 
 def equivalence(one: Sequence[float], other: Sequence[float], bound: float) -> Equivalence:
     """Returns how sure it is that two means differ by less than a bound: two one-sided Welch t tests (TOST)."""
-    found = pingouin().tost(one, other, bound=bound, correction=True).iloc[0]
-    return Equivalence(difference=mean(one) - mean(other), df=float(found["dof"]), p=float(found["pval"]))
+    with noting_warnings() as notes:
+        found = pingouin().tost(one, other, bound=bound, correction=True).iloc[0]
+    return Equivalence(difference=mean(one) - mean(other), df=float(found["dof"]), p=float(found["pval"]), notes=notes)
 
 
 def above_zero(value: float, error: float, freedom: float) -> float:

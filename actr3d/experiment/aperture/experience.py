@@ -46,12 +46,10 @@ def passage_remembered(committed: Mapping[str, float] | None, result: PassageRes
 def experiences(*, walks: bool = True, hands: Literal["empty", "bar"] = "empty") -> tuple[dict[str, float], ...]:
     """Returns the memories of simulated passages, of a body that walks or of one that glides, with empty hands or with a bar.
 
-    By name: the width of the `shoulders` [m], their `turn` [degrees], the `speed` [m/s], what `passage_remembered` returns, and `room`,
-    the seen minus the felt width [m].
+    By name: the width of the `shoulders` [m], their `turn` [degrees], the `speed` [m/s], and what `passage_remembered` returns.
 
     Source: the rows of the designs `doorway_practice` and `bar_practice`; see `experience.csv`.
     """
     with FILE.open(encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if (row["gait"], row["hands"]) == (str(walks), hands)]
-    numbers = [{name: float(row[name]) for name in COLUMNS[2:]} for row in rows]
-    return tuple(one | {"room": round(one["seen"] - one["felt"], 3)} for one in numbers)
+    return tuple({name: float(row[name]) for name in COLUMNS[2:]} for row in rows)

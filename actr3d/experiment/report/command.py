@@ -82,6 +82,8 @@ def _check_place(final: Path) -> None:
         if files and (others or not first.is_file() or MADE_BY not in first.read_text(encoding="utf-8", errors="replace")):
             what = f"holds '{others[0]}'" if others else "is not a report"
             raise ExperimentError(f"'{final}' {what}, which a new report would replace; move it away")
+        if Path.cwd().is_relative_to(final):
+            raise ExperimentError(f"'{final}': a new report would replace the folder in which you are; leave it, or name another --out")
     except OSError as error:
         raise ExperimentError(f"'{final}': cannot be read ({error.strerror or error})") from None
 
