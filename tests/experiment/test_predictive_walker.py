@@ -186,7 +186,7 @@ def test_a_larger_body_turns_more(model: Any) -> None:
 def test_with_a_bar_its_memories_are_of_passages_with_bars(model: Any) -> None:
     rooms = {hands: set(map(room, experiences(hands=hands))) for hands in ("empty", "bar")}
     for bar, hands in ((None, "empty"), (0.9, "bar")):
-        _, walker = walked(model, task="judge", aperture=1.5, bar=bar)
+        _, walker = walked(model, task="judge", aperture=1.5, bar=bar, units="metres")
         remembered = walker.experience.find_matching_chunks("event:passage")
         assert len(remembered) > 100
         assert {float(chunk["room"]) for chunk in remembered} <= rooms[hands]
