@@ -77,6 +77,7 @@ _KINDS = {
     "failed": _Kind("a text, or null", lambda value: value is None or isinstance(value, str)),
     "whole": _Kind("true, or null", lambda value: value is True or value is None),
     "branched": _Kind("a number >= 0, or null", lambda value: value is None or _number(value)),
+    "named": _TEXT,
     "origin": _TEXT,
     "ancestors": _Kind("pairs of a text and a number >= 0", _ancestors),
     "reached": _Kind("a number >= 0", _number),

@@ -16,7 +16,7 @@ from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, RecordingError
 from actr3d.output import ModelOutput, printing_to
 from actr3d.recording import Recorded
-from actr3d.runner.facts import CHECKED_BEFORE, END, REACHED, UNCHECKED, built_facts, first_difference, program_facts
+from actr3d.runner.facts import CHECKED_BEFORE, END, NAMED, REACHED, UNCHECKED, built_facts, first_difference, program_facts
 from actr3d.runner.model_stdout import BuiltOutput, ProgramOutput
 from actr3d.runner.program_changes import ProgramChanges, of_user
 from actr3d.runner.replay_diff import Comparator, Comparison, Differs
@@ -242,7 +242,7 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
     """Returns the facts that running a recording again cannot check, and says so of those that it has."""
     then, now = recorded.facts, comparator.facts
     from_code = then["kind"] == "program" or bool(now.get("built"))
-    named, silent = set(UNCHECKED), {*CHECKED_BEFORE, REACHED}
+    named, silent = set(UNCHECKED), {*CHECKED_BEFORE, NAMED, REACHED}
     if not from_code:  # `make` has other code, and what its program has recorded is unknown
         named |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})
     said: dict[str, Any] = then.get("ended") or {}

@@ -20,7 +20,7 @@ from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.recording.reader import RecordedCommand
 from actr3d.recording.writer import State as RecordedState
-from actr3d.runner.facts import REACHED, program_facts
+from actr3d.runner.facts import NAMED, REACHED, program_facts
 from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.runner.program_changes import ProgramChanges
 from actr3d.runner.traceback_report import failure
@@ -179,7 +179,8 @@ class ProgramRun(ControlledRun):
             self._introduce()
         try:
             if start.record is not None:
-                self._recording = Recording(start.record, program_facts(start.path, self._source, self._seed, None))
+                facts = program_facts(start.path, self._source, self._seed, None)
+                self._recording = Recording(start.record, {**facts, NAMED: Path(start.record).stem})
             while not controller.leaving:
                 self._run_once()
                 with suppress(_Again):
