@@ -16,6 +16,7 @@ from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, RecordingError
 from actr3d.output import ModelOutput, printing_to
 from actr3d.recording import Recorded
+from actr3d.recording.schema import is_of_simulation
 from actr3d.runner.facts import CHECKED_BEFORE, END, NAMED, REACHED, UNCHECKED, built_facts, first_difference, program_facts
 from actr3d.runner.model_stdout import BuiltOutput, ProgramOutput
 from actr3d.runner.program_changes import ProgramChanges, of_user
@@ -243,6 +244,8 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
     then, now = recorded.facts, comparator.facts
     from_code = then["kind"] == "program" or bool(now.get("built"))
     named, silent = set(UNCHECKED), {*CHECKED_BEFORE, NAMED, REACHED}
+    # An interrupted recording may end where a simulation begins, and earlier versions have recorded no scenes of programs.
+    silent |= {name for name in then.keys() ^ now.keys() if is_of_simulation(name)}
     if not from_code:  # `make` has other code, and what its program has recorded is unknown
         named |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})
     said: dict[str, Any] = then.get("ended") or {}

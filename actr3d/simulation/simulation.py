@@ -86,7 +86,7 @@ class Simulation:
         self.event_log = EventLog(trace, self.world)
         """Passes all events on; for recorders and runners."""
         if limits is not None and limits.trace is not None:
-            self.event_log.join_program(limits.trace, limits.recorder)
+            self.event_log.join_program(limits.trace, limits.recorder, self._period)
         self._random = GlobalRandom()
         self._submitted: deque[tuple[Future[None], Callable[[], None]]] = deque()
         self._observers = Observers(self._random, self.world)

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.sessions import Desk, RefusedError, Talk
+from workbench.exports import curves_of
 
 EXAMPLE = """from actr3d.actr import *
 from actr3d.simulation import BodyPort, Simulation
@@ -132,6 +133,8 @@ def test_an_opened_recording_has_the_curves_of_the_simulation_that_is_shown_to_i
     talk.say("run")
     talk.until("ended")
     curves = talk.say("curves", most=5_000)
+    path = talk.sessions.recordings.path(talk.session.recording or "")
+    assert curves_of(path, names=None, first=0.0, most=5_000) == curves
     opened = Talk(desk, desk.do(talk.sessions.reopen(talk.session.recording or "")), talk.sessions)
     opened.until("paused", time=0)
     opened.say("until", time=0.12)
