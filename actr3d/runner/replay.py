@@ -244,8 +244,9 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
     then, now = recorded.facts, comparator.facts
     from_code = then["kind"] == "program" or bool(now.get("built"))
     named, silent = set(UNCHECKED), {*CHECKED_BEFORE, NAMED, REACHED}
-    # An interrupted recording may end where a simulation begins, and earlier versions have recorded no scenes of programs.
-    silent |= {name for name in then.keys() ^ now.keys() if is_of_simulation(name)}
+    simulations = {name for name in {*then, *now} if is_of_simulation(name)}
+    if not simulations & then.keys():  # earlier versions have not recorded them
+        silent |= simulations
     if not from_code:  # `make` has other code, and what its program has recorded is unknown
         named |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})
     said: dict[str, Any] = then.get("ended") or {}
@@ -253,6 +254,7 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
         # The recorded run did not end by itself, so an end of the replay is a difference.
         goes_on = then["kind"] == "program" or now.get("ended") is None or (recorded.ticks == 0 and now["ended"] != {"by": "limits"})
         silent |= {"failed", "whole"} | ({"ended"} if goes_on or not from_code else set())
+        silent |= simulations - (then.keys() & now.keys())  # it may end where one of them begins
     elif not from_code and said.get("by") not in ("stop", "done", None):
         named.add("ended")  # it was not run to its end by this library, but by a program that says so
     helpers, used = then.get("helpers", {}), now.get("helpers", {})
