@@ -105,6 +105,17 @@ def test_the_view_follows_the_first_agent_of_the_model_as_the_live_view_does(tmp
     assert followed(tmp_path, parts, "second", "first") == pytest.approx([0, -2], abs=0.05)
 
 
+@pytest.mark.parametrize(("parts", "scenes"), [((Floor(),), [0]), ((), [])], ids=["floor", "nothing"])
+def test_a_world_without_bodies_has_no_shapes(parts: Sequence[Any], scenes: list[int], tmp_path: Path) -> None:
+    simulation = Simulation(Scene(parts=parts), bodiless={"waiting": Waiting}, seed=1)
+    simulation.traced()
+    with simulation.record(tmp_path / "run.sqlite"):
+        simulation.run(0.05)
+    write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    told = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))
+    assert [len(scene["shapes"]) for scene in told["scenes"]] == scenes
+
+
 ZOO = """
 <mujoco>
   <asset>

@@ -51,7 +51,7 @@ def write_replay(path: Path, to: Path, *, models: str | None = None) -> None:
     """
     with Recorded(path) as recorded:
         facts, events = _facts(recorded, models), _events(recorded)
-        found = simulations_of(recorded)
+        found = [one for one in simulations_of(recorded) if one.mj_model.ngeom > 0]
         scenes = [_scene(one, _agents(events["rows"], one.number), len(found)) for one in found]
         content = {**facts, "palette": palette(), "events": events, "scenes": scenes}
     # No text from a model can close the HTML element that contains it.
