@@ -106,7 +106,7 @@ def test_the_view_follows_the_first_agent_of_the_model_as_the_live_view_does(tmp
 
 
 @pytest.mark.parametrize(("parts", "scenes"), [((Floor(),), [0]), ((), [])], ids=["floor", "nothing"])
-def test_a_world_without_bodies_has_no_shapes(parts: Sequence[Any], scenes: list[int], tmp_path: Path) -> None:
+def test_a_world_without_bodies_has_no_shapes(parts: tuple[Any, ...], scenes: list[int], tmp_path: Path) -> None:
     simulation = Simulation(Scene(parts=parts), bodiless={"waiting": Waiting}, seed=1)
     simulation.traced()
     with simulation.record(tmp_path / "run.sqlite"):
