@@ -16,6 +16,7 @@ from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.values import to_json
 from actr3d.world.compiled import from_text, loaded
+from workbench.recorded_simulations import facts_of_simulation
 
 _FREE, _BALL, _SLIDE = (int(kind) for kind in (mjtJoint.mjJNT_FREE, mjtJoint.mjJNT_BALL, mjtJoint.mjJNT_SLIDE))
 _TURN = ("qw", "qx", "qy", "qz")
@@ -48,18 +49,18 @@ def write_states_csv(path: Path, to: Path) -> None:
     with Recorded(path) as recorded:
         if recorded.state_count == 0:
             raise RecordingError("the recording has no states: no simulation has run in it")
-        period: int | None = recorded.facts.get("period_us")
-        scene = recorded.facts.get("compiled")
-        names = None if scene is None else state_columns(loaded(from_text(scene)))
-        _write(to, None, _state_rows(recorded, names, period))
+        _write(to, None, _state_rows(recorded))
 
 
-def _state_rows(recorded: Recorded, names: list[str] | None, period: int | None) -> Iterator[tuple[Any, ...]]:
+def _state_rows(recorded: Recorded) -> Iterator[tuple[Any, ...]]:
+    period: int | None = recorded.facts.get("period_us")
     time_columns = ("run", "tick") if period is None else ("time [s]",)
     for run, tick, state, _, contacts in recorded.states():
         numbers = array("d", state)
         if tick == 0:
-            known = names if names is not None and len(names) == len(numbers) else [f"state_{number}" for number in range(len(numbers))]
+            facts = facts_of_simulation(recorded, run)
+            names = [] if facts is None else state_columns(loaded(from_text(facts["compiled"])))
+            known = names if len(names) == len(numbers) else [f"state_{number}" for number in range(len(numbers))]
             yield *time_columns, *known, "contacts"
         listed = to_json([(*contact, force) for contact, force in contacts.items()]) if contacts else ""
         times = (run, tick) if period is None else (seconds(tick * period),)

@@ -7,8 +7,9 @@ must not harm the server.
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +17,11 @@ from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.recording.opening import opened
 from actr3d.values import to_json
-from actr3d.world.compiled import from_text, loaded
 from workbench.csv_files import write_events_csv, write_states_csv
-from workbench.curves import NOTHING, CurveReader, Moment, stretch, thinned
+from workbench.curves import CurveReader, joined, stretch, thinned
 from workbench.experiment_table import Table, counts
 from workbench.html_replay.make import write_replay
+from workbench.recorded_simulations import RecordedSimulation, simulations_of
 from workbench.recorded_start import beginning_of, written
 from workbench.recording_diff import compare
 
@@ -55,18 +56,13 @@ def curves_of(path: Path, *, names: Sequence[str] | None, first: float, most: in
         RecordingError: If the recording cannot be read.
     """
     with Recorded(path) as recorded:
-        facts = recorded.facts
-        if "compiled" not in facts:
-            return NOTHING
-        begin, end = stretch(first, last, facts["period_us"])
+        found = simulations_of(recorded)
 
-        def known() -> Iterator[Moment]:
-            for _, tick, state, _, contacts in recorded.states():
-                if begin <= tick and (end is None or tick <= end):
-                    yield tick, state, contacts
+    def sampled(one: RecordedSimulation) -> dict[str, Any]:
+        known = partial(one.past.between, *stretch(first, last, one.period, one.begin))
+        return CurveReader(one.mj_model, one.facts["world"]).sampled(thinned(known, most, one.past.every), names, one.period, one.begin)
 
-        reader = CurveReader(loaded(from_text(facts["compiled"])), facts["world"])
-        return reader.sampled(thinned(known, most), names, facts["period_us"])
+    return joined(map(sampled, found))
 
 
 def _from_table(what: Callable[..., Any]) -> Callable[..., Any]:

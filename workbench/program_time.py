@@ -11,6 +11,7 @@ from struct import unpack_from
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
+from actr3d.recording.writer import State
 from actr3d.trace import TraceEvent
 
 
@@ -32,14 +33,27 @@ def events_both_ways(recorded: Recorded) -> Iterator[tuple[TraceEvent, TraceEven
     if recorded.facts.get("kind") != "program":
         yield from ((event, event) for event in recorded.events())
         return
+    for thing, time in timed(recorded):
+        if isinstance(thing, TraceEvent):
+            yield thing, TraceEvent(time, *thing[1:])
+
+
+def timed(recorded: Recorded) -> Iterator[tuple[TraceEvent | State, int]]:
+    """Yields the events and the states of a program in their order, each with the time since the start of the program [us].
+
+    Raises:
+        RecordingError: If the recording is damaged.
+    """
     clock = _Clock()
     states = chain(recorded.states(), repeat(None))
     state = next(states)
-    for number, event in enumerate(recorded.events()):
-        while state is not None and state.events <= number:
-            clock.advance(state.run, _time_of(state.data))
+    for number, event in enumerate(chain(recorded.events(), repeat(None))):
+        while state is not None and (event is None or state.events <= number):
+            yield state, clock.advance(state.run, _time_of(state.data))
             state = next(states)
-        yield event, TraceEvent(clock.at(event), *event[1:])
+        if event is None:
+            return
+        yield event, clock.at(event)
 
 
 def _time_of(state: bytes) -> int:

@@ -15,7 +15,7 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
-from actr3d.runner.facts import REACHED
+from actr3d.runner.facts import NAMED, REACHED
 from actr3d.values import to_json
 from workbench.files import ModelFolder
 from workbench.loader import listing_of
@@ -37,6 +37,8 @@ class Summary:
     """Holds what a list shows of a recording."""
 
     id: str
+    named: str = ""
+    """The name that the recording was given first; branches know it by this name."""
     model: str = ""
     """The model file as pages name it; see `ModelFolder.shown`."""
     kind: str = ""
@@ -47,7 +49,7 @@ class Summary:
     branched: float | None = None
     """For a branch: the time at which the past of its run was changed [s]."""
     origin: str | None = None
-    """For a branch: the recording that has the other way of its run."""
+    """For a branch: the recording that has the other way of its run, by the name that it was given first; so are `ancestors`."""
     ancestors: tuple[tuple[str, float], ...] = ()
     """For a branch: the recordings from which its origin comes, the nearest first, each with the time at which the recording before
     it in this list left it [s]. Any of them may have been deleted since."""
@@ -109,7 +111,7 @@ def _without_surrogates(text: str) -> str:
 
 def unreadable(path: Path, reason: str) -> Summary:
     """Returns the summary of a file that cannot be read."""
-    return Summary(id=path.stem, size=size_of(path), made=begun(path), problem=reason.removeprefix("it is ")[:2_000])
+    return Summary(id=path.stem, named=path.stem, size=size_of(path), made=begun(path), problem=reason.removeprefix("it is ")[:2_000])
 
 
 def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
@@ -120,8 +122,10 @@ def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
     ]  # the result is recorded at the very end
     parameters = dict(facts.get("parameters", {}))
     file = str(facts.get("file", ""))
+    named = str(facts.get(NAMED, path.stem))
     return Summary(
         id=path.stem,
+        named=named,
         model=models.shown(file),
         kind=str(facts["kind"]),
         seed=facts.get("program_seed", facts.get("seed")),
@@ -130,7 +134,7 @@ def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
         branched=facts.get("branched"),
         origin=facts.get("origin"),
         ancestors=tuple((str(name), float(time)) for name, time in facts.get("ancestors", ())),
-        kept=None if branched_at(path) is None else written(path),
+        kept=None if branched_at(path.with_name(f"{named}.sqlite")) is None else written(path),
         ended=None if ended is None else str(ended["by"]),
         failed=None if facts.get("failed") is None else str(facts["failed"]),
         result=_result(last),

@@ -8,6 +8,7 @@ from math import isfinite
 from typing import Any, cast
 
 from actr3d.errors import RecordingError
+from actr3d.recording.schema import is_of_simulation
 
 LARGEST = 2**63
 """No number of a recording is as large."""
@@ -51,6 +52,15 @@ def _ancestors(value: Any) -> bool:
     )
 
 
+def _simulation(value: Any) -> bool:
+    if value is None:
+        return True
+    return isinstance(value, dict) and all(_KINDS[name].fits(cast("dict[str, Any]", value).get(name)) for name in IN_SIMULATION)
+
+
+IN_SIMULATION = ("period_us", "compiled", "world")
+"""What the fact of a simulation of a program holds."""
+_SIMULATION = _Kind(f"values of {', '.join(IN_SIMULATION)}, or null", _simulation)
 _TEXT = _Kind("a text", lambda value: isinstance(value, str))
 _TEXTS = _Kind("texts by their names, without NUL characters", _texts)
 _SEED = _Kind("a whole number or a text", lambda value: isinstance(value, str) or type(value) is int)
@@ -77,6 +87,7 @@ _KINDS = {
     "failed": _Kind("a text, or null", lambda value: value is None or isinstance(value, str)),
     "whole": _Kind("true, or null", lambda value: value is True or value is None),
     "branched": _Kind("a number >= 0, or null", lambda value: value is None or _number(value)),
+    "named": _TEXT,
     "origin": _TEXT,
     "ancestors": _Kind("pairs of a text and a number >= 0", _ancestors),
     "reached": _Kind("a number >= 0", _number),
@@ -92,7 +103,7 @@ def check_fact(name: str, value: Any) -> None:
     Raises:
         RecordingError: If it is another value.
     """
-    kind = _KINDS.get(name)
+    kind = _SIMULATION if is_of_simulation(name) else _KINDS.get(name)
     if kind is not None and not kind.fits(value):
         shown = repr(value)
         shown = shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}..."

@@ -14,11 +14,14 @@ CHECKED_BEFORE = frozenset({"form", "versions"})
 """Facts that are not compared here: a file of another format is not opened, and other versions are refused or allowed before the run."""
 UNCHECKED = frozenset({"branched", "origin", "ancestors"})
 """Facts that running a recording again cannot show: when a user of the workbench made another way of a run (`branched`), which
-recording has the other one (`origin`), and from which that comes, with the time at which each left the next (`ancestors`)."""
+recording has the other one (`origin`, the name that it was given first), and from which that comes, with the time at which each left the
+next (`ancestors`)."""
+NAMED = "named"
+"""The name that the workbench gave the file. Branches know the recording by it, so that the file can be renamed. It is not compared."""
 REACHED = "reached"
 """The time that the runs of a program have reached together in the workbench [s]: after the last event, it shows nowhere else. It is not
 compared, because the command line does not record it."""
-PROGRAM = frozenset({"kind", "file", "sources", "seed", "until", "helpers", "failed", "ended", REACHED}) | CHECKED_BEFORE | UNCHECKED
+PROGRAM = frozenset({"kind", "file", "sources", "seed", "until", "helpers", "failed", "ended", NAMED, REACHED}) | CHECKED_BEFORE | UNCHECKED
 """The facts that the recording of a program can have."""
 BUILT = PROGRAM | {"whole", "parameters", "built", "program_seed", "period_us", "timestep_us", "scene", "compiled", "world"}
 """The facts that the recording of a simulation that a model file builds can have."""

@@ -16,7 +16,8 @@ from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, RecordingError
 from actr3d.output import ModelOutput, printing_to
 from actr3d.recording import Recorded
-from actr3d.runner.facts import CHECKED_BEFORE, END, REACHED, UNCHECKED, built_facts, first_difference, program_facts
+from actr3d.recording.schema import is_of_simulation
+from actr3d.runner.facts import CHECKED_BEFORE, END, NAMED, REACHED, UNCHECKED, built_facts, first_difference, program_facts
 from actr3d.runner.model_stdout import BuiltOutput, ProgramOutput
 from actr3d.runner.program_changes import ProgramChanges, of_user
 from actr3d.runner.replay_diff import Comparator, Comparison, Differs
@@ -242,7 +243,10 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
     """Returns the facts that running a recording again cannot check, and says so of those that it has."""
     then, now = recorded.facts, comparator.facts
     from_code = then["kind"] == "program" or bool(now.get("built"))
-    named, silent = set(UNCHECKED), {*CHECKED_BEFORE, REACHED}
+    named, silent = set(UNCHECKED), {*CHECKED_BEFORE, NAMED, REACHED}
+    simulations = {name for name in {*then, *now} if is_of_simulation(name)}
+    if not simulations & then.keys():  # earlier versions have not recorded them
+        silent |= simulations
     if not from_code:  # `make` has other code, and what its program has recorded is unknown
         named |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})
     said: dict[str, Any] = then.get("ended") or {}
@@ -250,6 +254,7 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
         # The recorded run did not end by itself, so an end of the replay is a difference.
         goes_on = then["kind"] == "program" or now.get("ended") is None or (recorded.ticks == 0 and now["ended"] != {"by": "limits"})
         silent |= {"failed", "whole"} | ({"ended"} if goes_on or not from_code else set())
+        silent |= simulations - (then.keys() & now.keys())  # it may end where one of them begins
     elif not from_code and said.get("by") not in ("stop", "done", None):
         named.add("ended")  # it was not run to its end by this library, but by a program that says so
     helpers, used = then.get("helpers", {}), now.get("helpers", {})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from actr3d.errors import RecordingError, UntrustedError
 from actr3d.recording import Recorded
-from actr3d.recording.schema import versions
+from actr3d.recording.schema import is_of_simulation, versions
 from actr3d.runner.facts import BUILT, PROGRAM
 
 _NEEDED = {
@@ -51,7 +51,9 @@ def _check_facts(recorded: Recorded) -> None:
     if missing:
         raise RecordingError(f"the recording '{recorded.path}' cannot be run again: it lacks {', '.join(missing)}")
     if facts["kind"] == "program" or facts.get("built"):
-        unknown = sorted(facts.keys() - (PROGRAM if facts["kind"] == "program" else BUILT))
+        is_program = facts["kind"] == "program"
+        known = PROGRAM | {name for name in facts if is_of_simulation(name)} if is_program else BUILT
+        unknown = sorted(facts.keys() - known)
         if unknown:
             names = ", ".join(f"'{name}'" for name in unknown)
             raise RecordingError(f"the recording '{recorded.path}' cannot be run again: such a run cannot have the fact {names}")

@@ -103,12 +103,18 @@ class EventLog:
         if self._contacts is None:
             self._contacts = TickContacts(self._world)
 
-    def join_program(self, trace: Trace, recorder: Recorder | None) -> None:
-        """Passes to the trace of the whole program the events of its level, and all other events to its recorder."""
+    def join_program(self, trace: Trace, recorder: Recorder | None, period: int) -> None:
+        """Passes to the trace of the whole program the events of its level, and all other events to its recorder.
+
+        Args:
+            trace: The trace.
+            recorder: The recorder; None for none.
+            period: Length of a tick [us].
+        """
         self.raise_level(trace.level)
         if trace.level != "none":
             log = ref(self)  # the program's trace does not keep the simulation alive
-            self._program = ProgramRun(trace, recorder, lambda: (here := log()) and here.run)
+            self._program = ProgramRun(trace, recorder, period, lambda: (here := log()) and here.run)
             self.listen(self._program.take)
         if recorder is not None:
             self._watch_contacts()

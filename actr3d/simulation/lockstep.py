@@ -57,6 +57,11 @@ class Lockstep:
         self._phase = "ready"
 
     @property
+    def done(self) -> bool:
+        """Whether no agent has anything left to do, now or ever, and no body is on its way to where a command sends it."""
+        return self.agents.done and not any(body.motion.under_way for body in self._world.bodies.values())
+
+    @property
     def broken(self) -> bool:
         """Whether it cannot continue from here: a tick is incomplete."""
         return self._phase != "ready"

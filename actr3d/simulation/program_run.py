@@ -7,11 +7,14 @@ from typing import Any, cast
 
 from actr3d.actr.kernel.run_limits import Contacts, Recorder
 from actr3d.actr.modules.port import Request
+from actr3d.recording.schema import SIMULATION
 from actr3d.simulation.commands import Command
+from actr3d.simulation.surroundings import surroundings
 from actr3d.trace import Run, Trace, TraceEvent, top_path
 from actr3d.trace_kinds import KINDS, LEVELS
 from actr3d.values import Naming
 from actr3d.world import World
+from actr3d.world.compiled import saved, to_text
 
 
 class ProgramRun:
@@ -20,12 +23,14 @@ class ProgramRun:
     Args:
         trace: The trace of the program.
         recorder: The recorder of the program; None for none.
+        period: Length of a tick [us].
         present: Returns the simulation's run in its own trace; None if there is none.
     """
 
-    def __init__(self, trace: Trace, recorder: Recorder | None, present: Callable[[], Run | None]) -> None:
+    def __init__(self, trace: Trace, recorder: Recorder | None, period: int, present: Callable[[], Run | None]) -> None:
         self._trace = trace
         self._recorder = recorder
+        self._period = period
         self._present = present
         self._rank = LEVELS.index(trace.level)
         self._run_number = 0
@@ -42,12 +47,15 @@ class ProgramRun:
         self._trace.raise_failures()
 
     def state(self, tick: int, world: World, contacts: Contacts) -> None:
-        """Passes the physics state at the end of a tick on, and the contacts in that tick.
+        """Passes the physics state at the end of a tick on, and the contacts in that tick; before the first one, the scene.
 
         Raises:
             Exception: What the recorder raises.
         """
         if self._recorder is not None:
+            if tick == 0:
+                scene = {"compiled": to_text(saved(world.mj_model)), "world": surroundings(world)}
+                self._recorder.fact(SIMULATION.format(self.number), {"period_us": self._period, **scene})
             self._recorder.state(self.number, tick, world.state_bytes(), contacts)
 
     def answer(self, tick: int, request: Request, value: Any) -> None:

@@ -16,7 +16,7 @@ class RunReport:
     """Summary of a call of `run`. Results never depend on it; its text holds only what is the same whenever the run is repeated."""
 
     ended_by: Ending
-    """`seconds` have passed; `until` came true; an agent called `stop`; the agents were `done`, with nothing left to do; the
+    """`seconds` have passed; `until` came true; an agent called `stop`; the run was `done`, with nothing left to do; the
     `limits` of the program (`--until`) left no time for another tick."""
     ticks: int
     """Number of ticks."""

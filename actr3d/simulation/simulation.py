@@ -86,7 +86,7 @@ class Simulation:
         self.event_log = EventLog(trace, self.world)
         """Passes all events on; for recorders and runners."""
         if limits is not None and limits.trace is not None:
-            self.event_log.join_program(limits.trace, limits.recorder)
+            self.event_log.join_program(limits.trace, limits.recorder, self._period)
         self._random = GlobalRandom()
         self._submitted: deque[tuple[Future[None], Callable[[], None]]] = deque()
         self._observers = Observers(self._random, self.world)
@@ -140,8 +140,8 @@ class Simulation:
 
     @property
     def done(self) -> bool:
-        """Whether no agent has anything left to do, now or ever, and no command of a user waits."""
-        return self.timeline.lockstep.agents.done and not self._submitted and self.ticks >= self.timeline.furthest
+        """Whether no agent has anything left to do, now or ever, no body is on its way, and no command of a user waits."""
+        return self.timeline.lockstep.done and not self._submitted and self.ticks >= self.timeline.furthest
 
     @property
     def over(self) -> Literal["stop", "done"] | None:
@@ -220,11 +220,12 @@ class Simulation:
     def run(
         self, seconds: float | None = None, *, until: Callable[[Glimpse], bool] | None = None, real_time: float | None = None
     ) -> RunReport:
-        """Runs until a time has passed, a condition is true, an agent calls `stop`, or no agent has anything left to do.
+        """Runs until a time has passed, a condition is true, an agent calls `stop`, or nothing is left to do.
 
-        The last of these ends a run only if neither a time nor a condition is given. An agent that calls `stop` ends the
-        run after the present tick and its tock. The limits of the program (`actr3d run --until`) cut a run after the last
-        whole tick that they leave time for.
+        The last of these ends a run only if neither a time nor a condition is given: no agent has anything left to do, and no body
+        is on its way to a point, a heading or a posture. A movement that something blocks does not count. An agent that calls
+        `stop` ends the run after the present tick and its tock. The limits of the program (`actr3d run --until`) cut a run after
+        the last whole tick that they leave time for.
 
         Args:
             seconds: Duration [s from now]; a whole number of ticks.
@@ -445,8 +446,8 @@ class Simulation:
         """Returns the result of the measure up to now; None without one."""
         if self._measure is None:
             return None
-        agents = self.timeline.lockstep.agents
-        return self._measure.result(over=agents.stopped or agents.done)
+        lockstep = self.timeline.lockstep
+        return self._measure.result(over=lockstep.agents.stopped or lockstep.done)
 
     def conclude(self) -> Any:
         """Returns the result, and traces it; the run must not continue."""

@@ -16,6 +16,9 @@ THERE = 3e-4
 """Distance from its target below which a joint or the base is put there exactly after a tick [m] or [rad]: more than the error that
 the pull of other limbs causes in that tick, and less than anyone sees."""
 
+MOVES = 0.01
+"""Share of its commanded speed below which something blocks a movement. Source: chosen for this library."""
+
 ASTRAY = 0.1
 """Direction error above which a body that walks to a point stops and turns first [rad]. Source: chosen for this library."""
 
@@ -65,12 +68,22 @@ class MotionCommands:
         """Where the body walks to: x, y, speed, speed of turning, [m] [m] [m/s] [rad/s]."""
         self.brake = 0.0
         """Position of the brake pedal, 0 to 1."""
+        self._before = self._movements()
+        """The movements at the start of the last step."""
 
     def __bool__(self) -> bool:
         return bool(self.targets) or self.waypoint is not None or self.brake > 0
 
+    @property
+    def under_way(self) -> bool:
+        """Whether a movement that has an end is not there yet, and nothing blocks it."""
+        if not self.targets and self.waypoint is None:
+            return False
+        return self._before != self._movements() or self._base_moves() or any(self._joint_moves(name) for name in self.targets)
+
     def before_step(self, duration: float) -> None:
         """Sets the speeds for the next `duration` [s]."""
+        self._before = self._movements()
         for name in tuple(self.targets):
             if name in (HEADING, TURN):
                 self._turn(name, duration)
@@ -110,12 +123,30 @@ class MotionCommands:
 
     def state(self) -> tuple[Any, ...]:
         """Returns all commands as plain values."""
-        return (tuple(self.targets.items()), self.waypoint, self.brake)
+        return (*self._movements(), self.brake, self._before)
 
     def restore(self, state: tuple[Any, ...]) -> None:
         """Restores commands that `state` returned."""
-        targets, self.waypoint, self.brake = state
+        targets, self.waypoint, self.brake, self._before = state
         self.targets = dict(targets)
+
+    def _movements(self) -> tuple[Any, ...]:
+        """Returns the commands of movements that have an end."""
+        return (tuple(self.targets.items()), self.waypoint)
+
+    def _base_moves(self) -> bool:
+        """Returns whether the base is on its way to a point or a heading."""
+        if self.waypoint is None and not {HEADING, TURN} & self.targets.keys():
+            return False
+        return math.hypot(*self._base.speed) > MOVES * math.hypot(*self._hold.base_command)
+
+    def _joint_moves(self, name: str) -> bool:
+        """Returns whether a joint is on its way to its target."""
+        if name in (HEADING, TURN):
+            return False
+        joint = self._joints[name]
+        rest, speed = abs(self.targets[name][0] - joint.position), self._hold.joint_speed(joint)
+        return rest > THERE and abs(joint.velocity) > MOVES * abs(speed)
 
     def _arrived(self, name: str) -> bool:
         """Returns whether a joint or the heading is at its target; then moves it there exactly and stops it."""

@@ -4,6 +4,7 @@ import { effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
 import { call, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
+import { withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
 import { travel } from "../timeline/seek.js";
@@ -67,7 +68,7 @@ async function holderOf(id, time) {
   const copied = addressed("copied");
   if (copied === null) return id;
   const { recordings } = await call("GET", "/api/recordings?first=0&most=250");
-  const since = recordings.filter(({ origin, kept, branched }) => origin === id && kept !== null && kept >= Number(copied) && branched < time);
+  const since = withPresentNames(recordings).filter(({ origin, kept, branched }) => origin === id && kept !== null && kept >= Number(copied) && branched < time);
   return since.toSorted((one, other) => one.kept - other.kept)[0]?.id ?? id;
 }
 

@@ -20,8 +20,23 @@ export const loading = signal(false);
 /** The recording that the current run writes; null if there is none. */
 export const present = computed(() => session.value?.recording ?? null);
 
+/** Whether all recordings of the server are in `runs`. */
+export const isComplete = computed(() => runs.value !== null && runs.value.length >= total.value);
+
 let asked = 0;
 let tries = 0;
+
+/** Returns summaries in which `origin` and `ancestors` are present names: branches know a recording by its first name (`named`). */
+export function withPresentNames(list) {
+  const present = new Map([...list.map(({ id, named }) => [named, id]), ...list.filter(({ id, named }) => id === named).map(({ id }) => [id, id])]);
+  const nameOf = (name) => present.get(name) ?? name;
+  return list.map((run) => ({ ...run, origin: nameOf(run.origin), ancestors: run.ancestors.map(([name, at]) => [nameOf(name), at]) }));
+}
+
+/** Returns whether a recording is a branch of one that was deleted. */
+export function isOrphan(run) {
+  return run.origin !== null && isComplete.value && !runs.value.some(({ id }) => id === run.origin);
+}
 
 /** Reads the list again, in parts; known entries stay on screen until they are replaced. */
 export async function listRuns() {
@@ -38,11 +53,11 @@ export async function listRuns() {
         total.value = page.total;
         problem.value = null;
         warning.value = page.warning;
-        if (runs.value === null || runs.value.length <= found.size) runs.value = [...found.values()];
+        if (runs.value === null || runs.value.length <= found.size) runs.value = withPresentNames([...found.values()]);
       });
       if (page.recordings.length < PART) break;
     } while (found.size < total.value);
-    runs.value = [...found.values()];
+    runs.value = withPresentNames([...found.values()]);
   } catch (error) {
     if (mine === asked) problem.value = error.message;
   }

@@ -2,6 +2,7 @@
 
 import { valueText } from "../parts/chunk.js";
 import { unitOf } from "../parts/units.js";
+import { isOrphan } from "./list.js";
 
 const ENDED = {
   stop: "the model called stop()",
@@ -43,8 +44,10 @@ export function branchText(run) {
 
 /** Returns when, and of which run in a list of recordings, a recording is a branch; a dash if it is none. */
 export function originText(run, list) {
-  const origin = list?.find(({ id }) => id === run.origin);
-  return run.branched === null ? "–" : `at ${run.branched.toFixed(2)} s${origin ? ` of ${nameOf(origin)}` : ""}`;
+  if (run.branched === null) return "–";
+  const listed = list?.find(({ id }) => id === run.id) ?? run;
+  const origin = list?.find(({ id }) => id === listed.origin);
+  return `at ${run.branched.toFixed(2)} s${origin ? ` of ${nameOf(origin)}` : isOrphan(listed) ? " of a recording that was deleted" : ""}`;
 }
 
 /** Returns how long ago something was, as text. */

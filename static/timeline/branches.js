@@ -8,7 +8,7 @@ import { openTab } from "../open_tab.js";
 import { Icon } from "../parts/icon.js";
 import { deleteRuns, openRun } from "../runs/actions.js";
 import { labelRun } from "../runs/label.js";
-import { follow, runs } from "../runs/list.js";
+import { follow, isOrphan, runs } from "../runs/list.js";
 import { outcomeText, whenText } from "../runs/wording.js";
 import { counted } from "../parts/count.js";
 import { chooseLive } from "../bar/models.js";
@@ -134,13 +134,13 @@ function Row({ run, depth, width }) {
   const end = mine && run.session === session.value?.id ? Math.max(furthest.value, state.value?.time ?? 0) : run.time;
   const [from, to] = [inside(placeOf(run.branched ?? 0, view)), inside(placeOf(end, view))];
   const name = branchName(run);
-  const title = `${name}: ${outcomeText(run)}, ${end.toFixed(2)} s${run.label?.note ? `\n${run.label.note}` : ""}`;
+  const title = `${name}: ${outcomeText(run)}, ${end.toFixed(2)} s${isOrphan(run) ? "\nthe recording that it is a branch of was deleted" : ""}${run.label?.note ? `\n${run.label.note}` : ""}`;
   const remove = async () => {
     await deleteRuns([run]);
     if (document.activeElement === document.body) document.querySelector(".branches-head, .timeline-stage")?.focus(); // its button is gone
   };
   return html`<li class=${mine ? "mine" : ""} data-branch=${run.id}>
-    <button class="branch-name" style=${{ width: `${view.column}px`, paddingLeft: `${8 + 10 * depth}px` }} aria-current=${mine} title=${mine ? `${title}\nshown` : `${title}\nShow it`} disabled=${Boolean(run.problem)} onClick=${() => mine || show(run)}>${depth > 0 ? "└ " : ""}${name}</button>
+    <button class="branch-name" style=${{ width: `${view.column}px`, paddingLeft: `${8 + 10 * depth}px` }} aria-current=${mine} title=${mine ? `${title}\nshown` : `${title}\nShow it`} disabled=${Boolean(run.problem)} onClick=${() => mine || show(run)}>${depth > 0 ? "└ " : ""}${name}${isOrphan(run) ? html` <small>origin gone</small>` : null}</button>
     <span class="branch-way" style=${{ left: `${from}px`, width: `${Math.max(2, to - from)}px` }} aria-hidden="true"></span>
     <span class="branch-actions">
       ${mine ? null : html`<button class="bare" title="Compare with the shown run" onClick=${() => compare(run)}>Compare</button>`}

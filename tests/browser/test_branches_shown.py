@@ -49,6 +49,24 @@ def test_a_branch_below_a_deleted_recording_follows_the_nearest_one_that_it_come
       return [treeOf(both, "e").map(({ run, depth }) => depth + run.id), sameUntil(both, "e", "f")];
     }"""
     assert page.evaluate(siblings) == [["0f", "0e"], 2]
+    renamed = """async () => {
+      const [{ treeOf }, { runs, total, withPresentNames }, { originText }] = await Promise.all(
+        ["timeline/branches.js", "runs/list.js", "runs/wording.js"].map((name) => part(name)),
+      );
+      const same = { ancestors: [], kept: null, made: 0 };
+      const run = (id, named, origin = null, branched = null) => ({ ...same, id, named, origin, branched, model: id });
+      const all = [run("new", "old"), run("b", "b", "old", 3), run("c", "c", "gone", 2)];
+      const known = withPresentNames(all);
+      const trees = ["b", "c"].map((id) => treeOf(known, id).map(({ run, depth }) => depth + run.id));
+      runs.value = known;
+      const said = (of) => {
+        total.value = of;
+        return all.slice(1).map((run) => originText(run, known).replace(/ of new .*/, " of new"));
+      };
+      return [...trees, said(4), said(3)];
+    }"""
+    told = [["at 3.00 s of new", "at 2.00 s"], ["at 3.00 s of new", "at 2.00 s of a recording that was deleted"]]
+    assert page.evaluate(renamed) == [["0new", "1b"], ["0c"], *told]  # while the list is read, the others may be in the rest of it
 
 
 @pytest.mark.slow

@@ -15,8 +15,12 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
 
+from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.recording import Recording
+from actr3d.runner.facts import program_facts
 from actr3d.simulation import Simulation
-from actr3d.world import Floor, Mannequin, Scene
+from actr3d.trace import Trace
+from actr3d.world import Floor, Mannequin, Scene, Wall
 from tests.helpers.page import PATIENCE, drawn, until
 from tests.helpers.workbench_server import served
 from tests.server.test_html_replay import ZOO, Waiting
@@ -43,9 +47,11 @@ def replay(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_was_not_over(browser: Browser, tmp_path: Path) -> None:
-    simulation = Simulation(Scene(parts=(Floor(), Mannequin())), bodiless={"waiting": Waiting}, trace="all")
-    with simulation.record(tmp_path / "run.sqlite"):
-        simulation.run(1)
+    trace = Trace("all")
+    with Recording(tmp_path / "run.sqlite", program_facts("two.py", "", 1, None)) as recording, RunLimits(trace=trace, recorder=recording):
+        trace.listen(recording.event_alone)
+        for parts in ((), (Wall(name="wall", start=(2, -1), end=(2, 1)),)):
+            Simulation(Scene(parts=(Floor(), Mannequin(), *parts)), bodiless={"waiting": Waiting}).run(0.5)
     make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
     with browser.new_context(viewport={"width": 690, "height": 500}, offline=True) as context:
         page = context.new_page()
@@ -60,6 +66,10 @@ def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_w
             assert scene["height"] > 150
             assert filter_box is not None
             assert filter_box["width"] >= 190  # what can be written there is shown whole
+        page.get_by_label("follow").uncheck()
+        shapes = "[0.2, 0.7, 0.3].map((time) => { goTo(time); return [drawing.shapes.length, drawing.camera.following]; })"
+        (one, _), (other, _), again = page.evaluate(shapes)
+        assert (other, again) == (one + 1, [one, False])  # the second simulation has a wall more; the view is as it was chosen
 
 
 @pytest.mark.slow

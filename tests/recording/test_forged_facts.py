@@ -124,6 +124,8 @@ FORGERIES: list[tuple[str, tuple[Forgery, ...]]] = [
     ("program", (put("failed", "ValueError: no"),)),
     ("program", (put("whole", True),)),
     ("program", (put("parameters", {}),)),
+    ("program", (put("simulation 7", {"period_us": 10_000, "compiled": "eA==", "world": {}}),)),
+    ("program", (put("simulation 7", {"period_us": 0, "compiled": "eA==", "world": {}}),)),
 ]
 
 

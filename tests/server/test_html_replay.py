@@ -67,7 +67,7 @@ def test_scene_and_trace_are_those_of_the_recording(walked: Path, tmp_path: Path
     with Recorded(walked) as recorded:
         assert [row[:3] for row in told["events"]["rows"]] == [[event.time, event.source, event.kind] for event in recorded.events()]
     assert [row[3] for row in told["events"]["rows"] if row[2] == "fire"][:2] == ["look", "wait"]
-    scene = told["scene"]
+    (scene,) = told["scenes"]
     times, poses = numbers(scene["times"]), numbers(scene["poses"]).reshape(-1, len(scene["shapes"]), 7)
     assert (times[0], times[-1]) == (0, 1)
     assert 25 <= len(times) <= 40
@@ -91,7 +91,7 @@ def followed(folder: Path, parts: Sequence[Any], *agents: str) -> Any:
     with simulation.record(folder / "run.sqlite"):
         simulation.run(0.05)
     write_replay(folder / "run.sqlite", folder / "replay.html")
-    scene = inside((folder / "replay.html").read_text(encoding="utf-8"))["scene"]
+    (scene,) = inside((folder / "replay.html").read_text(encoding="utf-8"))["scenes"]
     return numbers(scene["poses"]).reshape(-1, len(scene["shapes"]), 7)[0, scene["stage"]["follow"], :2]
 
 
@@ -103,6 +103,17 @@ def test_the_view_follows_the_agent_s_body_whatever_else_moves(tmp_path: Path) -
 def test_the_view_follows_the_first_agent_of_the_model_as_the_live_view_does(tmp_path: Path) -> None:
     parts = Mannequin(name="first", position=(0, 2)), Mannequin(name="second", position=(0, -2))
     assert followed(tmp_path, parts, "second", "first") == pytest.approx([0, -2], abs=0.05)
+
+
+@pytest.mark.parametrize(("parts", "scenes"), [((Floor(),), [0]), ((), [])], ids=["floor", "nothing"])
+def test_a_world_without_bodies_has_no_shapes(parts: tuple[Any, ...], scenes: list[int], tmp_path: Path) -> None:
+    simulation = Simulation(Scene(parts=parts), bodiless={"waiting": Waiting}, seed=1)
+    simulation.traced()
+    with simulation.record(tmp_path / "run.sqlite"):
+        simulation.run(0.05)
+    write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    told = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))
+    assert [len(scene["shapes"]) for scene in told["scenes"]] == scenes
 
 
 ZOO = """
@@ -155,7 +166,7 @@ def test_nothing_is_loaded_and_nothing_a_model_says_is_run(desk: Desk, tmp_path:
     page = (tmp_path / "replay.html").read_text(encoding="utf-8")
     assert EVIL not in page
     assert [row[3] for row in inside(page)["events"]["rows"] if row[2] == "output"] == [EVIL]
-    assert inside(page)["scene"] is None
+    assert inside(page)["scenes"] == []
     assert "default-src 'none'" in page
     data = re.search(r'<script type="application/json".*?</script>', page, re.DOTALL)
     assert data is not None
@@ -167,8 +178,8 @@ def test_long_runs_and_large_scenes_have_bounds(walked: Path, tmp_path: Path, mo
     monkeypatch.setattr(make, "MAX_EVENTS", 5)
     write_replay(walked, tmp_path / "replay.html")
     told = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))
-    assert len(numbers(told["scene"]["times"])) <= 10
-    assert numbers(told["scene"]["times"])[-1] == 1
+    assert len(numbers(told["scenes"][0]["times"])) <= 10
+    assert numbers(told["scenes"][0]["times"])[-1] == 1
     assert len(told["events"]["rows"]) == 5
     assert told["events"]["more"] > 50
     monkeypatch.setattr(shapes, "MAX_CORNERS", 100)

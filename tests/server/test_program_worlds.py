@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.helpers.sessions import Desk, RefusedError, Talk
+from tests.server.test_html_replay import inside, numbers
+from workbench.csv_files import write_states_csv
+from workbench.exports import curves_of
+from workbench.html_replay.make import write_replay
 
 EXAMPLE = """from actr3d.actr import *
 from actr3d.simulation import BodyPort, Simulation
@@ -126,12 +131,28 @@ def test_its_steps_are_ticks_and_what_it_was_is_shown_again_where_it_goes_back(d
     assert told(talk) == seen[0.01]
 
 
-@pytest.mark.parametrize("source", [ONE, TRIALS, UNSTEPPED])
-def test_an_opened_recording_has_the_curves_of_the_simulation_that_is_shown_to_its_end(desk: Desk, tmp_path: Path, source: str) -> None:
+@pytest.mark.parametrize(("source", "begun"), [(ONE, [0]), (TRIALS, [0.1, 0.5]), (UNSTEPPED, [0, 0.4])], ids=["one", "trials", "unstepped"])
+def test_a_recording_has_the_curves_of_the_simulations_of_its_program_opened_or_not(
+    desk: Desk, tmp_path: Path, source: str, begun: list[float]
+) -> None:
     talk = desk.begin(tmp_path, source, record=True)
     talk.say("run")
     talk.until("ended")
     curves = talk.say("curves", most=5_000)
+    path = talk.sessions.recordings.path(talk.session.recording or "")
+    assert curves_of(path, names=None, first=0.0, most=5_000) == curves
+    write_replay(path, tmp_path / "replay.html")
+    scenes = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))["scenes"]
+    times = [numbers(scene["times"]) for scene in scenes]
+    assert [time[0] for time in times] == pytest.approx(begun)
+    walked = [value for value in curves["curves"]["walker x"] if value is not None]
+    poses = numbers(scenes[-1]["poses"]).reshape(len(times[-1]), -1, 7)
+    assert (times[-1][-1], poses[-1, scenes[-1]["stage"]["follow"], 0]) == pytest.approx((curves["times"][-1], walked[-1]), abs=1e-4)
+    write_states_csv(path, tmp_path / "states.csv")
+    with (tmp_path / "states.csv").open(encoding="utf-8", newline="") as file:
+        heads = [row for row in csv.reader(file) if row[0] == "run"]
+    assert len(heads) == len(begun) + (source is UNSTEPPED)
+    assert [name for head in heads for name in head if name.startswith("state_")] == []  # every number has a name
     opened = Talk(desk, desk.do(talk.sessions.reopen(talk.session.recording or "")), talk.sessions)
     opened.until("paused", time=0)
     opened.say("until", time=0.12)

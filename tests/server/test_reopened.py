@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 
 from actr3d.errors import Actr3dError
+from actr3d.recording import Recorded
+from actr3d.runner.replay import replay
 from tests.helpers.sessions import Desk, Talk
 from tests.helpers.workbench_server import MODELS
 
@@ -226,6 +228,33 @@ def test_a_branch_that_is_changed_before_it_left_its_origin_has_left_it_earlier(
     before, now = talk.summary(kept), talk.summary(branch)
     assert (before.branched, before.origin, before.ancestors) == (0.4, origin, ())
     assert (now.branched, now.origin, now.ancestors) == (0.1, kept, ((origin, 0.4),))
+
+
+@pytest.mark.parametrize("source", [BUILT, COUNTING], ids=["built", "program"])
+def test_a_renamed_recording_is_known_to_its_branches_by_its_first_name(desk: Desk, tmp_path: Path, source: str) -> None:
+    talk = desk.begin(tmp_path, source, record=True)
+    talk.say("until", time=0.3)
+    talk.until("paused", time=0.3)
+    first = str(talk.facts["recording"])
+    if source == BUILT:
+        talk.say("seek", time=0.2)
+        talk.say("command", word="aperture", values=[0.5])
+    kept = talk.facts["branched"]["recording"] if source == BUILT else None
+    desk.do(talk.sessions.close(talk.session.name))
+    talk.sessions.recordings.rename(first, "renamed")
+    again = Talk(desk, desk.do(talk.sessions.reopen("renamed")), talk.sessions)
+    again.say("until", time=0.5)
+    again.until("paused", time=0.5)
+    branch = talk.summary(again.session.recording or "")
+    assert (talk.summary("renamed").named, branch.origin, branch.named) == (first, first, branch.id)
+    if kept is not None:
+        before = talk.summary(kept)
+        talk.sessions.recordings.rename(kept, "kept")
+        renamed = talk.summary("kept")
+        assert (renamed.named, renamed.origin, renamed.kept) == (kept, first, before.kept)
+    with Recorded(talk.sessions.recordings.path("renamed")) as recorded:
+        compared = replay(recorded)
+    assert (compared.difference, [note for note in compared.notes if "named" in note]) == (None, [])
 
 
 @pytest.mark.parametrize("ahead", [False, True], ids=["at its end", "in its past"])

@@ -16,6 +16,7 @@ from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, An
 from tests.helpers.counters import counter_text
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.app import make_app
+from workbench.exports import curves_of
 from workbench.labels import Label
 from workbench.program_time import timed_events
 from workbench.recordings import Recordings
@@ -34,6 +35,22 @@ def build() -> Simulation:
     return Simulation(Scene(parts=(Floor(),)), bodiless={"mind": Counter})
 """
 )
+JUDGING = """from actr3d.actr import *
+from actr3d.simulation import Simulation
+from actr3d.world import Aperture, Floor, Mannequin, Scene
+
+class Judge(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("wide")
+
+judge = Judge()
+judge.run(0.2)
+apertures = [Aperture(name=f"aperture{n}", position=(3 + n, 0)) for n in range(2)]
+for some in ([apertures] if "narrow" in str(judge.goal.chunk) else [apertures[:1]] * 2):
+    Simulation(Scene(parts=(Floor(), Mannequin(name="walker"), *some))).run(0.1)
+"""
+"""What its agent has in mind decides which simulations it makes."""
 MODELS = {"program": (PROGRAM, "top", ""), "simulation": (BUILT, "mind", "mind.")}
 """By kind of model: its text, the path of its agent, and the start of the paths of its parts."""
 
@@ -328,6 +345,30 @@ def test_changes_during_a_run_and_while_it_goes_back_are_repeated_exactly(kind: 
     desk.do(talk.session.close())
     with Recorded(path) as recorded:
         assert replay(recorded).difference is None
+
+
+def test_a_changed_program_has_the_scenes_of_the_simulations_that_it_makes_now(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, JUDGING, record=True)
+    talk.say("run")
+    talk.until("ended")
+    path = recording(talk)
+    curves = talk.say("curves", names=["walker x"])
+    assert list(curves["curves"]) == ["walker x"]
+    talk.say("seek", time=0.1)
+    talk.until("paused", time=0.1)
+    change(talk, "set_buffer", buffer="goal", chunk="narrow")
+    (kept,) = [one for one in path.parent.glob("*.sqlite") if branched_at(one) is not None]
+    talk.say("run")
+    talk.until("ended")
+    desk.do(talk.session.close())
+    widths: list[list[float]] = []
+    for one in (kept, path):
+        with Recorded(one) as recorded:
+            worlds = [recorded.facts[name]["world"] for name in ("simulation 2", "simulation 3") if recorded.facts.get(name)]
+            widths.append([len(world["apertures"]) for world in worlds])
+            assert replay(recorded).difference is None
+    assert widths == [[1, 1], [2]]
+    assert curves_of(kept, names=["walker x"], first=0.0, most=5_000) == curves
 
 
 def test_a_program_says_what_cannot_be_changed(desk: Desk, tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ from actr3d.errors import Actr3dError, SimulationError, WorldError
 from actr3d.simulation import Glimpse, Simulation, agents, timeline
 from actr3d.simulation.agents import Environment
 from actr3d.trace import Trace
-from actr3d.world import Body, Floor, Scene
+from actr3d.world import Body, Floor, Mannequin, Scene, Wall
 from tests.helpers.small_agents import near
 from tests.helpers.walkers import Driver, digest, driving, scene_of
 
@@ -314,6 +314,30 @@ def test_a_run_without_limits_ends_when_no_agent_has_anything_left_to_do() -> No
     assert report.ended_by == "done"
     assert simulation.agents["walker"].times[-1][0] == "nothing"
     assert Simulation(Scene(), bodiless={"idle": MINDS.Idle}).run(0.05).ticks == 5
+
+
+def test_a_run_without_limits_goes_on_until_bodies_are_where_commands_send_them() -> None:
+    simulation = Simulation(scene_of("walker", "other"))
+    walker, other = simulation.world.bodies.values()
+    simulation.command("waypoint", 0.2, 0, speed=1.0, body="walker")
+    simulation.command("position", "head_yaw", 0.5, body="other")
+    assert simulation.advance(2) is None
+    assert (simulation.run().ended_by, simulation.ticks) == ("done", 25)
+    assert (*walker.base.place[:2], other.joints["head_yaw"].position) == near((0.2, 0, 0.5))
+    simulation.command("walk", 0.5, body="walker")  # has no end
+    assert simulation.run().ticks == 0
+
+
+def test_a_movement_that_something_blocks_does_not_keep_a_run_going() -> None:
+    wall = Wall(name="wall", start=(0.6, -1), end=(0.6, 1), height=1.5)
+    simulation = Simulation(Scene(parts=(Floor(), wall, Mannequin(name="walker"))))
+    walker = simulation.world.bodies["walker"]
+    simulation.command("waypoint", 2, 0.1)
+    assert simulation.run().ended_by == "done"
+    assert 0.1 < walker.base.place[0] < 0.6
+    simulation.command("waypoint", 0, 0)  # it is still at rest, but it can go there
+    assert simulation.run().ended_by == "done"
+    assert walker.base.place[:2] == near((0, 0))
 
 
 def test_until_is_asked_after_each_tock() -> None:

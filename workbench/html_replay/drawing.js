@@ -28,23 +28,35 @@ void main() {
 const parts = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
 
 class Drawing {
-  constructor(canvas, scene, palette) {
+  constructor(canvas, scenes, palette) {
     this.canvas = canvas;
     this.palette = palette;
     this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
     if (!this.gl) throw new Error("this browser has no WebGL 2, which the 3D scene needs");
-    this.scene = scene;
-    this.times = unpacked(scene.times, Float32Array);
-    this.poses = unpacked(scene.poses, Float32Array);
     this.shaded = this.program(SHAPE_VERTEX, SHAPE_FRAGMENT);
     this.grounded = this.program(GROUND_VERTEX, GROUND_FRAGMENT);
-    const meshes = scene.meshes.map(({ places, faces }) => ({ places: unpacked(places, Float32Array), faces: unpacked(faces, Uint32Array) }));
-    this.shapes = scene.shapes.map((parts) => this.shape(joined(parts, meshes)));
     this.square = this.array(this.grounded, { place: [new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]), 2, this.gl.FLOAT, false] });
-    this.camera = new Camera(scene.stage);
+    this.scenes = scenes.map((scene) => this.drawable(scene));
+    this.end = this.scenes.at(-1).times.at(-1);
+    this.choose(0);
     this.now = 0;
     this.dark = matchMedia("(prefers-color-scheme: dark)");
     this.listen();
+  }
+
+  // Returns what is drawn of a scene.
+  drawable(scene) {
+    const meshes = scene.meshes.map(({ places, faces }) => ({ places: unpacked(places, Float32Array), faces: unpacked(faces, Uint32Array) }));
+    const shapes = scene.shapes.map((parts) => this.shape(joined(parts, meshes)));
+    const [times, poses] = [scene.times, scene.poses].map((numbers) => unpacked(numbers, Float32Array));
+    return { scene, times, poses, shapes, camera: new Camera(scene.stage) };
+  }
+
+  // Sets the scene of a time: that of the simulation which has begun last.
+  choose(time) {
+    const now = this.scenes.filter(({ times }) => times[0] <= time).at(-1) || this.scenes[0];
+    if (this.camera) now.camera.following = this.camera.following;
+    Object.assign(this, now);
   }
 
   program(vertex, fragment) {
@@ -102,6 +114,7 @@ class Drawing {
   draw(time) {
     const gl = this.gl, canvas = this.canvas;
     this.now = time;
+    this.choose(time);
     const wide = Math.max(1, Math.round(canvas.clientWidth * devicePixelRatio)), high = Math.max(1, Math.round(canvas.clientHeight * devicePixelRatio));
     if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
     gl.viewport(0, 0, wide, high);
@@ -143,18 +156,18 @@ class Drawing {
   }
 
   listen() {
-    const canvas = this.canvas, camera = this.camera;
+    const canvas = this.canvas;
     canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
     canvas.addEventListener("pointermove", (event) => {
       if (!event.buttons) return;
-      if (event.shiftKey || event.buttons > 1) camera.shift(event.movementX / canvas.clientHeight, event.movementY / canvas.clientHeight);
-      else camera.swing(event.movementX, event.movementY);
+      if (event.shiftKey || event.buttons > 1) this.camera.shift(event.movementX / canvas.clientHeight, event.movementY / canvas.clientHeight);
+      else this.camera.swing(event.movementX, event.movementY);
       this.draw(this.now);
     });
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
-      camera.near(event.deltaY);
+      this.camera.near(event.deltaY);
       this.draw(this.now);
     }, { passive: false });
     new ResizeObserver(() => this.draw(this.now)).observe(canvas);

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
@@ -13,15 +13,15 @@ import numpy as np
 
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.recording import Recorded
-from actr3d.trace import TraceEvent
+from actr3d.trace import TraceEvent, run_of, top_path
 from actr3d.values import to_json
-from actr3d.world.compiled import from_text, loaded
 from workbench.curves import stride
 from workbench.files import ModelFolder
 from workbench.geom_colours import dress
 from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
 from workbench.palette import palette
 from workbench.program_time import timed_events
+from workbench.recorded_simulations import RecordedSimulation, simulations_of
 from workbench.scene_framing import SceneFraming
 
 RATE = 30
@@ -51,8 +51,9 @@ def write_replay(path: Path, to: Path, *, models: str | None = None) -> None:
     """
     with Recorded(path) as recorded:
         facts, events = _facts(recorded, models), _events(recorded)
-        agents = list(dict.fromkeys(source.partition(".")[0] for _, source, _, _ in events["rows"]))
-        content = {**facts, "palette": palette(), "events": events, "scene": _scene(recorded, agents)}
+        found = [one for one in simulations_of(recorded) if one.mj_model.ngeom > 0]
+        scenes = [_scene(one, _agents(events["rows"], one.number), len(found)) for one in found]
+        content = {**facts, "palette": palette(), "events": events, "scenes": scenes}
     # No text from a model can close the HTML element that contains it.
     data = msgspec.json.encode(content).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     folder = Path(__file__).parent
@@ -129,34 +130,33 @@ def _word(value: Any) -> str:
     return value if isinstance(value, str) else to_json(value)
 
 
-def _scene(recorded: Recorded, agents: Sequence[str]) -> dict[str, Any] | None:
-    """Returns the shapes and their poses in each stored frame; None without a world.
+def _agents(rows: Sequence[tuple[float, str, str, str]], number: int) -> list[str]:
+    """Returns the names of the agents of a simulation, in the order of their first events, which is the model's."""
+    prefix = "" if number == 1 else f"{top_path(number)}."
+    sources = [source for _, source, _, _ in rows if run_of(source) == number]
+    return list(dict.fromkeys(source.removeprefix(prefix).partition(".")[0] for source in sources))
+
+
+def _scene(simulation: RecordedSimulation, agents: Sequence[str], scenes: int) -> dict[str, Any]:
+    """Returns the shapes of a simulation and their poses in each stored frame.
 
     Args:
-        recorded: The recording.
-        agents: The names of the agents, in the order of their first events, which is the model's; the view follows the first one.
+        simulation: The simulation.
+        agents: The names of its agents; the view follows the first one.
+        scenes: How many scenes there are, which share the frames.
     """
-    facts = recorded.facts
-    if "compiled" not in facts:
-        return None
-    model, period = loaded(from_text(facts["compiled"])), facts["period_us"]
-    bodies_by_name = facts["world"]["bodies"]
+    model, period, past = simulation.mj_model, simulation.period, simulation.past
+    bodies_by_name = simulation.facts["world"]["bodies"]
     roots = [bodies_by_name[name]["root"] for name in agents if name in bodies_by_name]
     dress(model, roots)
     shapes = Shapes(model)
     bodies = shapes.bodies
-    ticks = recorded.ticks
-    most = max(2, min(MAX_FRAMES, MAX_NUMBERS // (7 * max(1, len(bodies)))))
+    ticks = past.furthest
+    most = max(2, min(MAX_FRAMES, MAX_NUMBERS // (7 * max(1, len(bodies)))) // scenes)
     every = max(1, round(MICROSECONDS / RATE / period), stride(ticks + 1, most - 1))
-    times: list[float] = []
-
-    def states() -> Iterator[bytes]:
-        for _, tick, state, *_ in recorded.states():
-            if tick % every == 0 or tick == ticks:
-                times.append(seconds(tick * period))
-                yield state
-
-    poses = poses_of(model, bodies, states())
+    frames = [(tick, state) for tick, state, _ in past.between(0, None) if tick % every == 0 or tick == ticks]
+    times = [seconds(simulation.begin + tick * period) for tick, _ in frames]
+    poses = poses_of(model, bodies, (state for _, state in frames))
     return {
         "shapes": shapes.parts,
         "meshes": shapes.meshes,

@@ -24,7 +24,7 @@ const ENDINGS = { stop: "the model called stop()", done: "no agent had anything 
 
 let drawing = null;
 try {
-  if (data.scene) drawing = new Drawing(get("canvas"), data.scene, data.palette);
+  if (data.scenes.length) drawing = new Drawing(get("canvas"), data.scenes, data.palette);
 } catch (error) {
   get("empty").textContent = error.message;
 }
@@ -36,7 +36,7 @@ if (!drawing) {
 
 let now = 0, playing = false, before = 0;
 const rows = data.events.rows;
-const end = Math.max(drawing ? drawing.times[drawing.times.length - 1] : 0, rows.length ? rows[rows.length - 1][0] : 0);
+const end = Math.max(drawing ? drawing.end : 0, rows.length ? rows[rows.length - 1][0] : 0);
 const events = new Events(data.events, (time) => goTo(time));
 get("time").max = end;
 const over = data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : `Shown up to ${end.toFixed(2)} s: ${data.failed ? "the run has failed" : "the run was not over"} then.`;

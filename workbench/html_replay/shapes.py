@@ -131,4 +131,4 @@ def poses_of(model: MjModel, bodies: list[int], states: Iterable[bytes]) -> Any:
         mujoco.mj_setState(model, data, np.frombuffer(state), INTEGRATION)
         mujoco.mj_kinematics(model, data)
         poses.append(np.concatenate((data.xpos[bodies], data.xquat[bodies]), axis=1, dtype=np.float32))
-    return np.array(poses, dtype=np.float32).reshape(-1, len(bodies), 7)
+    return np.array(poses, dtype=np.float32).reshape(len(poses), len(bodies), 7)

@@ -154,7 +154,7 @@ class ControlledRun(ABC):
         """Records that the run has repeated another recording up to a time [s], and is a branch of it from then on.
 
         Args:
-            recording: The name of the recording.
+            recording: The name that the recording was given first.
             time: The time [s].
             before: The recordings from which that one comes; see `ancestors`.
         """

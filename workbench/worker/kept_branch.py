@@ -7,6 +7,7 @@ from pathlib import Path
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError, SimulationError
 from actr3d.recording import Recording
+from actr3d.runner.facts import NAMED
 from workbench.retention import new_branch, superfluous_branches
 from workbench.worker.messages import Branched
 from workbench.worker.run_controller import RunController
@@ -51,7 +52,8 @@ class KeptBranch:
         path, origin = new_branch(Path(self._start.record), self._at), Path(self._start.record).stem
         try:
             # The copy has the way of the run: if the run itself left another recording later than now, the copy did.
-            recording.copy_to(path, **({} if self._left_later else {"branched": self._at, "origin": origin, "ancestors": self._ancestors}))
+            tie = {} if self._left_later else {"branched": self._at, "origin": origin, "ancestors": self._ancestors}
+            recording.copy_to(path, **{NAMED: path.stem, **tie})
         except Actr3dError as error:
             if drop:
                 return None

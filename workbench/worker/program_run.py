@@ -20,7 +20,7 @@ from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.recording.reader import RecordedCommand
 from actr3d.recording.writer import State as RecordedState
-from actr3d.runner.facts import REACHED, program_facts
+from actr3d.runner.facts import NAMED, REACHED, program_facts
 from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.runner.program_changes import ProgramChanges
 from actr3d.runner.traceback_report import failure
@@ -40,14 +40,12 @@ from workbench.worker.names import Names, Top, names_of_program
 from workbench.worker.program_times import ProgramTimes
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.shown import Kept, Shown
-from workbench.worker.state_history import Past
+from workbench.worker.state_history import MAX_SIMULATIONS, Past
 
 PERIOD = 10_000
 """The length of a step [us]: that of a tick of a simulation."""
 MAX_RUNS = 8
 """How many of the models that a program makes are shown: the latest ones."""
-MAX_SIMULATIONS = 4
-"""How many of its simulations keep their past."""
 
 
 class _Again(EndOfRun):
@@ -59,11 +57,15 @@ class _RecordedOnce:
 
     Args:
         recording: The recording with the items of earlier passes.
+        known: The names of the facts of simulations that are recorded; passes share it.
         left: Returns whether the program is being left: what it does then, as in `finally`, is not recorded.
     """
 
-    def __init__(self, recording: Recording, left: Callable[[], bool]) -> None:
+    def __init__(self, recording: Recording, known: set[str], left: Callable[[], bool]) -> None:
         self._recording = recording
+        self._known = known
+        self._begun: set[str] = set()
+        """The names of those that have begun in this pass."""
         self._left = left
         self._counts: Counter[str] = Counter()
         self._held: list[Callable[[], object]] | None = None
@@ -78,6 +80,9 @@ class _RecordedOnce:
             yield
             if recording.events > counts["event"] or recording.commands > counts["command"]:
                 recording.cut(self._counts["state"] - 1, counts["event"], self._counts["answer"], counts["command"])
+            for name in self._known - self._begun:
+                recording.fact(name, None)
+            self._known &= self._begun
         except BaseException:
             self._held.clear()
             raise
@@ -90,6 +95,12 @@ class _RecordedOnce:
         """Counts an item of a sort; returns whether it is to be recorded, given how many are recorded already."""
         self._counts[sort] += 1
         return self._counts[sort] > recorded and not self._left()
+
+    def fact(self, name: str, value: Any) -> None:
+        self._begun.add(name)
+        if name not in self._known and not self._left():
+            self._known.add(name)
+            self._recording.fact(name, value)
 
     def event(self, event: TraceEvent) -> None:
         new = self._is_new("event", self._recording.events)
@@ -164,6 +175,8 @@ class ProgramRun(ControlledRun):
         """The changes of users, which each pass through the program repeats."""
         self._changes = ProgramChanges(self._limits, self._commands)
         self._recorded: _RecordedOnce | None = None
+        self._recorded_simulations: set[str] = set()
+        """The names of the facts of simulations that are recorded."""
         self._waits: tuple[Scheduler, int, int] | None = None
         """While a model without a body waits for its time to pass: its scheduler, the time of its latest event [us], and the time of the
         program then [us]."""
@@ -179,7 +192,8 @@ class ProgramRun(ControlledRun):
             self._introduce()
         try:
             if start.record is not None:
-                self._recording = Recording(start.record, program_facts(start.path, self._source, self._seed, None))
+                facts = program_facts(start.path, self._source, self._seed, None)
+                self._recording = Recording(start.record, {**facts, NAMED: Path(start.record).stem})
             while not controller.leaving:
                 self._run_once()
                 with suppress(_Again):
@@ -255,7 +269,7 @@ class ProgramRun(ControlledRun):
         trace.listen(self._note_time)
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
-            limits.recorder = self._recorded = again = _RecordedOnce(self._recording, lambda: self._left)
+            limits.recorder = self._recorded = again = _RecordedOnce(self._recording, self._recorded_simulations, lambda: self._left)
             trace.listen(again.event)
         self._changes = ProgramChanges(limits, self._commands)
         if not self._listing.simulates:  # otherwise it continues until its simulation is at its start

@@ -16,6 +16,7 @@ from actr3d.actr.kernel.run_limits import EndOfRun
 from actr3d.clock import seconds
 from actr3d.errors import Actr3dError
 from actr3d.output import ModelOutput
+from actr3d.runner.facts import NAMED
 from actr3d.trace import Trace
 from actr3d.values import to_json
 from workbench.worker.channel import Channel
@@ -218,7 +219,8 @@ class RunController:
         self._known_run = None
         recording = Path(self.channel.start.recorded or "").stem
         before = [[facts["origin"], facts["branched"]], *facts.get("ancestors", ())] if facts.get("origin") else []
-        self.run.become_branch(recording, at, before)  # first, as pages list recordings again when they hear of the branch
+        # First, as pages list recordings again when they hear of the branch.
+        self.run.become_branch(facts.get(NAMED, recording), at, before)
         self.channel.post(Branched(recording=recording, at=at, until=until))
 
     # -- commands from users

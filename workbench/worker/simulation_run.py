@@ -17,7 +17,7 @@ from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
-from actr3d.runner.facts import built_facts
+from actr3d.runner.facts import NAMED, built_facts
 from actr3d.runner.model_factory import build
 from actr3d.runner.model_stdout import BuiltOutput
 from actr3d.runner.traceback_report import failure
@@ -104,7 +104,7 @@ class SimulationRun(ControlledRun):
         simulation.traced()
         if start.record is not None:
             facts = built_facts(start.path, start.source, parameters, limits.program_seed, limits.until, helpers.loaded)
-            self._recording = simulation.record(start.record, **facts)
+            self._recording = simulation.record(start.record, **{**facts, NAMED: Path(start.record).stem})
             helpers.heard = partial(self._recording.fact, "helpers")  # an agent may import one later
         if start.recorded is not None:
             self._known_run = known_run = KnownRun(Path(start.recorded), self._shown.kept.states.add_recorded)

@@ -18,6 +18,8 @@ from workbench.curves import INTEGRATION, Moment, harder
 
 MAX_BYTES = 48_000_000
 """Above this size every second state is dropped, so that memory use stays bounded for long runs; a walker's state takes 1.8 kB."""
+MAX_SIMULATIONS = 4
+"""How many simulations of a program keep their past."""
 STEP = 50_000
 """Interval between two points of a path [us]."""
 CONTACTS = 500

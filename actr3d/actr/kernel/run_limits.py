@@ -35,6 +35,10 @@ Contacts = Mapping[tuple[str, str, str], float]
 class Recorder(Protocol):
     """Records what the simulations of a program do besides events; `run` is the number in the program's trace."""
 
+    def fact(self, name: str, value: Any) -> None:
+        """Records a fact of the program: plain values."""
+        ...
+
     def state(self, run: int, tick: int, data: bytes, contacts: Contacts) -> None:
         """Records the physics state at the start of a run, or at the end of a tick, and the contacts in that tick."""
         ...
