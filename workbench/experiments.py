@@ -42,7 +42,7 @@ START_TIME = 180.0
 WORK_TIME = 1_800.0
 """How long a trial that is tried or recorded, or a report, may take [s]."""
 END_TIME = 12.0
-"""How long an experiment may take to end in order when the server ends [s]."""
+"""How long an experiment may take to end normally when the server ends [s]."""
 STOP_TIME = 120.0
 """How long it may take when a user stops it [s]: at the end, its table is exported."""
 WINDOW = 30.0
@@ -371,7 +371,7 @@ class Experiments:
             asyncio.get_running_loop().call_later(STOP_TIME, _end_late, run)
 
     async def close(self) -> None:
-        """Stops all experiments in order; those that take too long are killed."""
+        """Ends all experiments normally; kills those that take too long."""
         self._closed = True
         tasks: list[asyncio.Task[None]] = []
         for run in self._running.values():

@@ -10,7 +10,7 @@ from typing import Any, cast
 from actr3d.errors import RecordingError
 
 LARGEST = 2**63
-"""No number of a recording is as large."""
+"""All numbers of a recording are smaller."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ _SHOWN = 60
 
 
 def check_fact(name: str, value: Any) -> None:
-    """Raises an error where a fact is not what the readers of recordings expect; nothing is expected of others than theirs.
+    """Checks a fact that this library reads; other facts may have any value.
 
     Raises:
         RecordingError: If it is another value.

@@ -61,7 +61,7 @@ class Vision(WithParameters, Searching):
         distance_noise: That of all distances of one view together, as a fraction.
         encoding: Additional time to encode the feature of a top-down request: a time [s], such as 0.085 for a shift of
             attention; or `emma`, or an `Emma`, whose time grows with the angle from the line of sight.
-        saccades: Whether the eye turns to the feature of a top-down request, within its limits; the chunk then arrives not before.
+        saccades: Whether the eye turns to the feature of a top-down request, within its limits; the chunk then waits for it.
             Without it, EMMA's times are as if the eye turned there and back.
         private_view: Whether other ports of the agent are refused the raw view (`body.request("view")`), and the pictures `image`
             and `depth`. With False they receive them: the agent then bypasses vision, and the trace shows this.
