@@ -193,6 +193,9 @@ def test_onlookers_see_everything_and_change_nothing() -> None:
         glimpse.mj_data.qpos[:] = 0  # its own copy
         seen.append((glimpse.tick, glimpse.time, glimpse.mj_data.ncon))
         glimpse.state().mj_state[:] = 0
+        for mj_model in (glimpse.mj_model, glimpse.mj_data.model):
+            mj_model.opt.gravity[:] = 0
+            mj_model.body_mass[:] = 1
 
     watched.observe(look)
     watched.listen(events.append)
