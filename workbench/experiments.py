@@ -273,7 +273,7 @@ class Experiments:
         Raises:
             Actr3dError: If there is no such design.
             RefusedDesignError: If the design is not valid.
-            ExperimentRunError: If too many experiments run.
+            ExperimentRunError: If too many experiments run, or the workbench is closing.
             OSError: If no process can be started.
         """
         argument = design_argument(self._models, wanted.design)
@@ -293,7 +293,8 @@ class Experiments:
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
             UntrustedError: If its code may not be run.
-            ExperimentRunError: If it is already running, cannot be continued, or too many experiments run.
+            ExperimentRunError: If it is already running, cannot be continued, too many experiments run, or the workbench is
+                closing.
             OSError: If no process can be started.
         """
         folder = self._trusted(name, trust=trust)
@@ -311,7 +312,9 @@ class Experiments:
             workers: The number of processes that run trials; None for one on each processor.
             new: Whether the command makes the experiment; else it continues it.
         """
-        if self._closed or len(self._running) + self._starting >= MAX_RUNNING:
+        if self._closed:
+            raise ExperimentRunError("the workbench is closing")
+        if len(self._running) + self._starting >= MAX_RUNNING:
             raise ExperimentRunError(f"{MAX_RUNNING} experiments are already running: stop one, or wait for its end")
         folder = ExperimentFolder(self._root / name)
         facts = None if new else folder.facts

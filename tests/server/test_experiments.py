@@ -18,7 +18,11 @@ import httpx
 import pytest
 
 from tests.helpers.experiments import COUNTER, write_experiment
+from tests.helpers.sessions import Desk
 from tests.helpers.workbench_server import Served, served
+from workbench.design_files import Starting
+from workbench.experiment_command import ExperimentRunError
+from workbench.experiments import Experiments
 
 pytestmark = pytest.mark.long
 
@@ -208,6 +212,13 @@ def test_no_more_than_two_run_at_once(workbench: Served) -> None:
         awaited(workbench, name, "stopped")
         assert workbench.post(f"/api/experiments/{name}/delete").json()["trash"].startswith(".workbench/trash/")
         assert workbench.get(f"/api/experiments/{name}").status_code == 404
+
+
+def test_none_starts_while_the_workbench_closes(tmp_path: Path, desk: Desk) -> None:
+    experiments = Experiments(desk.sessions(tmp_path))
+    desk.do(experiments.close())
+    with pytest.raises(ExperimentRunError, match="^the workbench is closing"):
+        desk.do(experiments.start(Starting(design="fan_effect")))
 
 
 @pytest.mark.slow
