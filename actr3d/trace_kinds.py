@@ -123,7 +123,7 @@ trace_kind(
     meaning="a chosen production no longer matches, and does not fire",
     group="fire",
     title="no longer",
-    text="{production} was chosen, but matches no longer",
+    text="{production} was chosen, but no longer matches",
 )
 trace_kind(
     "withdrawn",

@@ -66,7 +66,7 @@ class Planner(SGOMS):
 class World(Model):
     def start(self):
         yield 0.12
-        self.agent.goal.set('other')   # a production was chosen that matches no longer
+        self.agent.goal.set('other')   # a production was chosen that no longer matches
         self.ball = Model(x=1)
         self.ball.parent = None
         self.agent.memory.clear()

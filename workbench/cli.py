@@ -48,21 +48,21 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--name", action="append", default=[], metavar="NAME", help="another name by which browsers may call this server")
     parser.add_argument("--no-browser", action="store_true", help="do not open the browser")
     parser.add_argument(
-        "--memory", type=_count, default=MEMORY, metavar="MB", help=f"how much memory a model may take (default {MEMORY}; 0: any)"
+        "--memory", type=_count, default=MEMORY, metavar="MB", help=f"how much memory a model may take (default {MEMORY}; 0: no limit)"
     )
     parser.add_argument(
         "--recordings",
         type=_count,
         default=MAX_RECORDINGS,
         metavar="N",
-        help=f"how many recordings are kept (default {MAX_RECORDINGS}; 0: any number)",
+        help=f"how many recordings are kept (default {MAX_RECORDINGS}; 0: no limit)",
     )
     parser.add_argument(
         "--recordings-size",
         type=_count,
         default=MAX_MEGABYTES,
         metavar="MB",
-        help=f"and how much of them (default {MAX_MEGABYTES}; 0: any size); the oldest that nobody has named go at the start",
+        help=f"maximum size of all recordings (default {MAX_MEGABYTES}; 0: no limit); the oldest unnamed ones are deleted at the start",
     )
     return parser
 

@@ -104,7 +104,7 @@ class Motion(Source):
         return x, y, math.hypot(*self._speeds[3:5].tolist())
 
 
-class Room(Source):
+class ClearanceCurves(Source):
     """Computes a body's clearance in a doorway, as `PassageResult` measures it but without objects held in the hands.
 
     Args:
@@ -220,7 +220,7 @@ def _sources(model: MjModel, data: MjData, world: dict[str, Any]) -> Iterable[So
         geoms = np.flatnonzero(np.isin(model.geom_bodyid, _members(model, body["root"])))
         yield Motion(model, data, name, body["root"])
         for at, wall in walls.items():
-            yield Room(model, data, name, geoms, wall, "" if len(walls) == 1 else f" of {at}")
+            yield ClearanceCurves(model, data, name, geoms, wall, "" if len(walls) == 1 else f" of {at}")
         yield Force(name)
 
 

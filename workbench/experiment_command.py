@@ -80,7 +80,7 @@ class ExperimentProgress(ExperimentEvent, frozen=True, kw_only=True, tag="progre
 
 
 class ExperimentEnd(ExperimentEvent, frozen=True, kw_only=True, tag="end"):
-    """An experiment has ended in order: all trials have run, or it was stopped."""
+    """An experiment has ended normally: all trials have run, or it was stopped."""
 
     done: int
     total: int
@@ -180,7 +180,7 @@ class ExperimentCommand:
         return code
 
     def interrupt(self) -> None:
-        """Asks it to end in order, as Ctrl-C does; only once, because a second time would break it off."""
+        """Asks it to end normally, as Ctrl-C does; only once, because a second time would abort it."""
         if not self._interrupted and self._process.returncode is None:
             self._interrupted = True
             with suppress(ProcessLookupError):

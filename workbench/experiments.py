@@ -42,7 +42,7 @@ START_TIME = 180.0
 WORK_TIME = 1_800.0
 """How long a trial that is tried or recorded, or a report, may take [s]."""
 END_TIME = 12.0
-"""How long an experiment may take to end in order when the server ends [s]."""
+"""How long an experiment may take to end normally when the server ends [s]."""
 STOP_TIME = 120.0
 """How long it may take when a user stops it [s]: at the end, its table is exported."""
 WINDOW = 30.0
@@ -273,7 +273,7 @@ class Experiments:
         Raises:
             Actr3dError: If there is no such design.
             RefusedDesignError: If the design is not valid.
-            ExperimentRunError: If too many experiments run.
+            ExperimentRunError: If too many experiments run, or the workbench is closing.
             OSError: If no process can be started.
         """
         argument = design_argument(self._models, wanted.design)
@@ -293,7 +293,8 @@ class Experiments:
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
             UntrustedError: If its code may not be run.
-            ExperimentRunError: If it is already running, cannot be continued, or too many experiments run.
+            ExperimentRunError: If it is already running, cannot be continued, too many experiments run, or the workbench is
+                closing.
             OSError: If no process can be started.
         """
         folder = self._trusted(name, trust=trust)
@@ -311,7 +312,9 @@ class Experiments:
             workers: The number of processes that run trials; None for one on each processor.
             new: Whether the command makes the experiment; else it continues it.
         """
-        if self._closed or len(self._running) + self._starting >= MAX_RUNNING:
+        if self._closed:
+            raise ExperimentRunError("the workbench is closing")
+        if len(self._running) + self._starting >= MAX_RUNNING:
             raise ExperimentRunError(f"{MAX_RUNNING} experiments are already running: stop one, or wait for its end")
         folder = ExperimentFolder(self._root / name)
         facts = None if new else folder.facts
@@ -371,7 +374,7 @@ class Experiments:
             asyncio.get_running_loop().call_later(STOP_TIME, _end_late, run)
 
     async def close(self) -> None:
-        """Stops all experiments in order; those that take too long are killed."""
+        """Ends all experiments normally; kills those that take too long."""
         self._closed = True
         tasks: list[asyncio.Task[None]] = []
         for run in self._running.values():

@@ -131,7 +131,7 @@ def branched_at(path: Path) -> float | None:
 
 
 def superfluous_branches(recording: Path) -> list[Path]:
-    """Returns the oldest branches of a run beyond the number that is kept; those with a label do not count. None if labels are missing."""
+    """Returns the oldest branches of a run beyond the number that is kept; those with a label do not count. Empty if labels are missing."""
     labels = Labels(recording.parent)
     if labels.problem is not None:
         return []

@@ -35,7 +35,7 @@ class Session(Broadcast, Receiver):
         workers: The pool that starts workers.
         recording: Returns a new file for a recording of a model with the given name.
         shown_path: The model's path as pages show it.
-        tell_lists: Called whenever lists of recordings must be read again because of a run of this session.
+        lists_changed: Called whenever lists of recordings must be read again because of a run of this session.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class Session(Broadcast, Receiver):
         workers: Workers,
         recording: Callable[[str], Path],
         shown_path: str,
-        tell_lists: Callable[[], None],
+        lists_changed: Callable[[], None],
     ) -> None:
         super().__init__(name)
         self.path = path
@@ -65,8 +65,9 @@ class Session(Broadcast, Receiver):
         self._shown: LaunchedRun | None = None
         """The run on screen, even after its worker has ended."""
         self._loading: LaunchedRun | None = None
-        self._launching = False
         """The run that is being built."""
+        self._launching = False
+        """Whether a worker is being started."""
         self._attempt = 0
         """The number of the latest attempt to start a run."""
         self._notice_number = 0
@@ -87,7 +88,7 @@ class Session(Broadcast, Receiver):
         """Whether runs with a body go in real time; until a user chooses a speed."""
         self._workers = workers
         self._new_recording = recording
-        self._tell_lists = tell_lists
+        self._lists_changed = lists_changed
         self._listed: tuple[Any, ...] = ()
         """What lists show of the run on screen."""
         self._beginning = asyncio.Lock()
@@ -277,7 +278,7 @@ class Session(Broadcast, Receiver):
         listed = (self.run, self.alive, self.state is not None and self.state.status in ENDED, self.branched)
         if listed != self._listed:
             self._listed = listed
-            self._tell_lists()
+            self._lists_changed()
 
     @property
     def is_loading(self) -> bool:
@@ -315,7 +316,7 @@ class Session(Broadcast, Receiver):
             await worker.stop()
             if useless is not None:
                 erase(Path(useless))
-            self._tell_lists()
+            self._lists_changed()
 
         self.run_task(end())
 
@@ -559,7 +560,7 @@ class Session(Broadcast, Receiver):
         self.changed(facts=True)
         return feed
 
-    def part(self, feed: Feed) -> None:
+    def leave(self, feed: Feed) -> None:
         """Removes a browser that has left."""
         self.feeds.remove(feed)
         if feed.name == self._controlled_by and all(other.name != feed.name for other in self.feeds):

@@ -117,7 +117,7 @@ class _Page:
                 attach, request, problem = _read(text)
                 if attach is not None:
                     if feed is not None:
-                        session.part(feed)
+                        session.leave(feed)
                         feed = None
                     if sending is not None:
                         sending.cancel()
@@ -141,7 +141,7 @@ class _Page:
                     feed.reply(_reply(_number_of(text), error=problem or "too many requests are waiting for their results"))
         finally:
             if feed is not None:
-                session.part(feed)
+                session.leave(feed)
             for task in (*self._tasks, *([sending] if sending is not None else ())):
                 task.cancel()
 

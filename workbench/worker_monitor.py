@@ -22,7 +22,7 @@ LAST_WORDS = 1.0
 """How long messages of a worker are still read after it has ended [s]."""
 
 _MEANINGS = {
-    "SIGKILL": ", which it sent itself, or another program did, or the system for want of memory",
+    "SIGKILL": ", sent by itself, by another program, or by the system when memory ran out",
     "SIGSEGV": ": a crash in compiled code",
 }
 """Explanations of signals, added to their names."""

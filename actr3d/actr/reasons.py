@@ -71,7 +71,7 @@ class ProductionReason:
                 f"      expected {self.expected}, found {self.found}{source}{bound}",
             ]
         if self.selected:
-            lines[0] += f"  <- {self.verdict or 'selected'}{'' if self.matches else ', but it matches no longer'}"
+            lines[0] += f"  <- {self.verdict or 'selected'}{'' if self.matches else ', but it no longer matches'}"
         elif self.matches and self.verdict is not None:
             lines.append(f"      {self.verdict}")
         utility = "unknown" if self.utility is None else f"{self.utility:.4g}"

@@ -56,12 +56,12 @@ class BodyPart:
         Raises:
             WorldError: If there is none of that name.
         """
-        all_parts = {part.name: part for part in self.line()}
+        all_parts = {part.name: part for part in self.subtree()}
         return all_parts[known(name, all_parts, self.name, "part")]
 
-    def line(self) -> tuple[BodyPart, ...]:
+    def subtree(self) -> tuple[BodyPart, ...]:
         """Returns this part and all that it carries, each after the one that carries it."""
-        return (self, *(inner for part in self.parts for inner in part.line()))
+        return (self, *(inner for part in self.parts for inner in part.subtree()))
 
 
 class Limbs:
@@ -167,7 +167,7 @@ class Limbs:
             return sides[None]
         return sides[known(side, [str(of) for of in sides if of is not None], f"{self.plan.name}: {name}", "side")]
 
-    def possible(self, call: str, speed: float, kind: int, unit: float) -> None:
+    def check_speed(self, call: str, speed: float, kind: int, unit: float) -> None:
         """Checks that the body can reach a speed.
 
         Args:

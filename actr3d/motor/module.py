@@ -49,7 +49,7 @@ class Motor(WithParameters, Port):
     and `middle`, how far the middle of that width is to the left of the base [m].
     Unknown names and invalid values raise errors.
 
-    The module learns what the body consists of in the first tick; earlier commands begin 10 ms after the start. While
+    The module learns what the body consists of in the first tick; earlier commands begin after it. While
     something moves, it feels the body at the end of each tick, and a run without an end continues; at other times it does nothing.
 
     Angles are degrees in commands, attributes and posture chunks, radians in `body` and `joint()`. Numbers may be text.
@@ -199,7 +199,7 @@ class Motor(WithParameters, Port):
 
     def _walk(self, speed: float, site: CallSite | None) -> None:
         self._need("walk")
-        self._known().possible("walk", speed, 0, 1.0)
+        self._known().check_speed("walk", speed, 0, 1.0)
         walk = self._under_way.get("walk")
         if speed == 0:
             self._accept()
@@ -209,7 +209,7 @@ class Motor(WithParameters, Port):
 
     def _turn(self, angle: float | None, rate: float, site: CallSite | None) -> None:
         self._need("walk")
-        self._known().possible("turn", rate, 1, radians(1))
+        self._known().check_speed("turn", rate, 1, radians(1))
         turn = self._under_way.get("turn")
         if rate == 0:
             self._accept()
@@ -361,7 +361,7 @@ class Motor(WithParameters, Port):
         for joint, target in ways.items():
             if not limbs.joints[joint].driven:
                 raise WorldError(f"{limbs.plan.name}: joint '{joint}' has no muscles that could move it")
-            limbs.possible(name, pace * limbs.unit[joint], 2, limbs.unit[joint])
+            limbs.check_speed(name, pace * limbs.unit[joint], 2, limbs.unit[joint])
             if abs(target) < INFINITE and not limbs.inside(joint, target):
                 self._refuse(name, "limit")
                 return
@@ -369,7 +369,7 @@ class Motor(WithParameters, Port):
         movements: dict[str, Movement] = {}
         for group, targets in by_group.items():
             speed = abs(pace) * limbs.unit[next(iter(targets))]
-            movements[group] = JointMovement(name, group, speed, site, ways=targets, order=limbs.order, to_limit=to_limit)
+            movements[group] = JointMovement(name, group, speed, site, targets=targets, order=limbs.order, to_limit=to_limit)
         self._begin(movements)
 
     def _speed(self, call: str, speed: Any, bounded: bool) -> float:
@@ -575,7 +575,7 @@ class Motor(WithParameters, Port):
             self._further = None
         for movement, end in ended:
             if isinstance(movement, JointMovement):
-                self._store(movement.name, end, next(joint for joint in limbs.order if joint in movement.ways))
+                self._store(movement.name, end, next(joint for joint in limbs.order if joint in movement.targets))
         if self._wanted:
             wanted, self._wanted = self._wanted, []
             for name in wanted:

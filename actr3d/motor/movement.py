@@ -11,8 +11,9 @@ from actr3d.world.sensors.motion import AT_LIMIT
 from actr3d.world.sensors.proprioception import Proprioception
 
 HELD = 0.25
-"""A movement that covers less than this fraction of its way, and no more than in the period before, makes no progress: pressed joints
-yield by about a tenth, and legs in contact with something need some 0.2 s to start. Source: chosen for this library."""
+"""A movement that covers less than this fraction of the distance at its speed, and no more than in the period before, makes no
+progress: pressed joints yield by about a tenth, and legs in contact with something need some 0.2 s to start. Source: chosen for this
+library."""
 
 FASTER = 1.2
 """Factor above which progress counts as more than before. Source: chosen for this library."""
@@ -67,8 +68,8 @@ class Movement:
         end = self._arrived(step)
         if end is not None:
             return end
-        if self._felt:  # of the first step, some may have been before it began
-            self._gone += self._way(step)
+        if self._felt:  # it may have begun within the first step
+            self._gone += self._distance(step)
             self._time += step.duration
         self._felt = True
         if patience is None or self._time < patience:
@@ -77,7 +78,7 @@ class Movement:
         self._before, self._gone, self._time = self._gone, 0.0, 0.0
         if not slow:
             return None
-        return "done" if self._rest(step) <= self.pace * step.duration else "blocked"
+        return "done" if self._remaining(step) <= self.pace * step.duration else "blocked"
 
     def trace_data(self) -> dict[str, Any]:
         """Returns its data for the trace."""
@@ -87,12 +88,12 @@ class Movement:
         """Returns how it has ended, except «blocked»."""
         raise NotImplementedError
 
-    def _way(self, step: Step) -> float:
-        """Returns its way in a step [rad] or [m]."""
+    def _distance(self, step: Step) -> float:
+        """Returns the distance moved in a step [rad] or [m]."""
         raise NotImplementedError
 
-    def _rest(self, step: Step) -> float:
-        """Returns the rest of its way [rad] or [m]; a blocked movement within one tick of its target counts as done."""
+    def _remaining(self, step: Step) -> float:
+        """Returns the remaining distance [rad] or [m]; a blocked movement within one tick of its target counts as done."""
         return INFINITE
 
 
@@ -104,23 +105,31 @@ class JointMovement(Movement):
         group: The muscle group.
         pace: Its speed [rad/s] or [m/s].
         site: Where the modeller gives the command.
-        ways: By joint, its target [rad] or [m]; infinite without an end.
+        targets: By joint, its target [rad] or [m]; infinite without an end.
         order: The joints of the body in its order.
         to_limit: Whether the target is its limit.
     """
 
     def __init__(
-        self, name: str, group: str, pace: float, site: CallSite | None, *, ways: Mapping[str, float], order: Sequence[str], to_limit: bool
+        self,
+        name: str,
+        group: str,
+        pace: float,
+        site: CallSite | None,
+        *,
+        targets: Mapping[str, float],
+        order: Sequence[str],
+        to_limit: bool,
     ) -> None:
         super().__init__(name, group, pace, site)
-        self.ways = ways
+        self.targets = targets
         self.to_limit = to_limit
-        self._number = {joint: order.index(joint) for joint in ways}
-        self._left = set(ways)
+        self._number = {joint: order.index(joint) for joint in targets}
+        self._left = set(targets)
 
     def begin(self) -> Iterable[Order]:
-        """Yields the commands that begin it. A limit in its way is its target, so that it is reached exactly."""
-        for joint, target in self.ways.items():
+        """Yields the commands that begin it. A limit on its way is its target, so that it is reached exactly."""
+        for joint, target in self.targets.items():
             if abs(target) < INFINITE:
                 yield "position", (joint, target, self.pace), {}
             else:
@@ -128,28 +137,28 @@ class JointMovement(Movement):
 
     def halt(self) -> Iterable[Order]:
         """Yields the commands that end it at once."""
-        for joint in self.ways:
+        for joint in self.targets:
             yield "joint", (joint, 0.0), {}
 
     def trace_data(self) -> dict[str, Any]:
         """Returns its data for the trace."""
-        ends = {joint: target if abs(target) < INFINITE else None for joint, target in self.ways.items()}
+        ends = {joint: target if abs(target) < INFINITE else None for joint, target in self.targets.items()}
         return {"movement": self.name, "group": self.group, "to": ends, "speed": self.pace}
 
     def _arrived(self, step: Step) -> str | None:
         self._left.intersection_update(step.reading.moving)
         if self._left:
             return None
-        if any(abs(step.reading.positions[self._number[joint]] - target) > AT_LIMIT for joint, target in self.ways.items()):
+        if any(abs(step.reading.positions[self._number[joint]] - target) > AT_LIMIT for joint, target in self.targets.items()):
             return "stopped"  # by another command, such as the user's
         return "limit" if self.to_limit else "done"
 
-    def _way(self, step: Step) -> float:
+    def _distance(self, step: Step) -> float:
         before, now = step.before, step.reading.positions
         return max([abs(now[n] - before[n]) for n in (self._number[joint] for joint in self._left)])
 
-    def _rest(self, step: Step) -> float:
-        return max(abs(step.reading.positions[self._number[joint]] - self.ways[joint]) for joint in self._left)
+    def _remaining(self, step: Step) -> float:
+        return max(abs(step.reading.positions[self._number[joint]] - self.targets[joint]) for joint in self._left)
 
 
 class Walk(Movement):
@@ -168,7 +177,7 @@ class Walk(Movement):
     def _arrived(self, step: Step) -> str | None:
         return None if step.reading.walking else "stopped"
 
-    def _way(self, step: Step) -> float:
+    def _distance(self, step: Step) -> float:
         return step.reading.speed[0] * step.duration * (1 if self.speed > 0 else -1)
 
 
@@ -195,7 +204,7 @@ class Turn(Movement):
             return None
         return "done" if not self._felt or abs(before) <= 1.5 * self.pace * step.duration else "stopped"
 
-    def _way(self, step: Step) -> float:
+    def _distance(self, step: Step) -> float:
         rest = self.rate if self.rest is None else self.rest
         return step.reading.speed[2] * step.duration * (1 if rest > 0 else -1)
 

@@ -43,10 +43,10 @@ class BodySchema:
     def feel(self, positions: Mapping[str, float]) -> Sequence[str]:
         """Updates the felt positions of some joints [rad] or [m], and their values on the grid.
 
-        Rounding keeps the order of numbers: a position between two others with one value has the same value, and is not a new extreme.
+        A position between two felt ones with the same grid value has that value too, and is no new extreme.
 
         Returns:
-            The joints whose positions are not between such others.
+            The joints with positions outside such a range.
         """
         least, most = self._from, self._to
         new = {joint: at for joint, at in positions.items() if not least[joint] <= at <= most[joint]}

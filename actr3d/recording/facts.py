@@ -11,7 +11,7 @@ from actr3d.errors import RecordingError
 from actr3d.recording.schema import is_of_simulation
 
 LARGEST = 2**63
-"""No number of a recording is as large."""
+"""All numbers of a recording are smaller."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ _SHOWN = 60
 
 
 def check_fact(name: str, value: Any) -> None:
-    """Raises an error where a fact is not what the readers of recordings expect; nothing is expected of others than theirs.
+    """Checks a fact that this library reads; other facts may have any value.
 
     Raises:
         RecordingError: If it is another value.

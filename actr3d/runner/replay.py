@@ -260,7 +260,7 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
     helpers, used = then.get("helpers", {}), now.get("helpers", {})
     early = comparator.commands > 0 or not (recorded.over or _failed(recorded))
     if early and {name: helpers[name] for name in used if name in helpers} == used:
-        # A run that went back and another way, or was interrupted, may have loaded more than its recording needs.
+        # A run that went back and continued differently, or was interrupted, may have loaded more than its recording needs.
         (named if len(used) < len(helpers) else silent).add("helpers")
     names = [f"'{name}'" for name in sorted(named) if then.get(name) is not None]
     return named | silent, [f"not checked: {', '.join(names)}"] if names else []

@@ -37,12 +37,13 @@ class Agents:
         bodies: The names of those agents that have bodies.
         seed: The seed of all random choices, those of `random` and `numpy.random` included.
         trace: Receives the events.
+        tick: Length of a tick [us].
 
     Raises:
         SimulationError: If a factory makes no agent, or the same one twice, or a name is taken.
     """
 
-    def __init__(self, factories: Mapping[str, Factory], bodies: frozenset[str], seed: int | str, trace: Trace | None) -> None:
+    def __init__(self, factories: Mapping[str, Factory], bodies: frozenset[str], seed: int | str, trace: Trace | None, tick: int) -> None:
         self.outbox: list[Request] = []
         self.stopped = False
         """Whether an agent called `stop` in the last tick."""
@@ -55,7 +56,7 @@ class Agents:
                 if hasattr(self.environment, name) or name in _LATER:
                     raise SimulationError(f"an agent cannot be named '{name}': every environment has something of that name")
                 if name in bodies:
-                    Embodiment(name, self.outbox).join(agent)
+                    Embodiment(name, self.outbox, tick).join(agent)
                 setattr(self.environment, name, agent)
             ensure_converted(self.environment)
         self._sch = self.environment.sch

@@ -49,7 +49,7 @@ class Lockstep:
         """Its trace; None if nothing is traced."""
         self._stdout = log.stdout
         with self._stdout:
-            self.agents = Agents(factories, bodies, seed, self.trace)
+            self.agents = Agents(factories, bodies, seed, self.trace, period)
         self.ticks = 0
         """Number of completed ticks."""
         self.commands = 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
+from copy import copy
 
 import mujoco
 from mujoco import MjData, MjModel
@@ -21,12 +22,13 @@ class Glimpse:
         tick: Number of completed ticks.
     """
 
-    __slots__ = ("_data", "_world", "tick")
+    __slots__ = ("_data", "_model", "_world", "tick")
 
     def __init__(self, world: World, tick: int) -> None:
         self._world = world
         self.tick = tick
         self._data: MjData | None = None
+        self._model: MjModel | None = None
 
     @property
     def time(self) -> float:
@@ -35,16 +37,18 @@ class Glimpse:
 
     @property
     def mj_model(self) -> MjModel:
-        """The compiled scene itself; read only."""
-        return self._world.mj_model
+        """A copy of the compiled scene."""
+        if self._model is None:
+            self._model = copy(self._world.mj_model)
+        return self._model
 
     @property
     def mj_data(self) -> MjData:
         """A copy of the state, with positions, contacts and rays of this moment."""
         if self._data is None:
-            self._data = MjData(self._world.mj_model)
-            mujoco.mj_copyData(self._data, self._world.mj_model, self._world.mj_data)
-            mujoco.mj_fwdPosition(self._world.mj_model, self._data)
+            self._data = MjData(self.mj_model)  # `mj_data.model` is the model that it is made with
+            mujoco.mj_copyData(self._data, self.mj_model, self._world.mj_data)
+            mujoco.mj_fwdPosition(self.mj_model, self._data)
         return self._data
 
     def state(self) -> WorldState:

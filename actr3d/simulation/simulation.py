@@ -203,7 +203,7 @@ class Simulation:
                 self.tock()
 
     def advance(self, most: int) -> Literal["stop", "done"] | None:
-        """Runs up to a number of ticks, fewer if the run is over before; returns why it is, as `over` does. One tick always runs.
+        """Runs up to `most` ticks, at least one unless `most` is 0; stops when the run is over, and returns `over`.
 
         Raises:
             SimulationError: If the number is not a whole number, or is negative; and as `tick` does.
@@ -287,7 +287,7 @@ class Simulation:
         if threading.get_ident() != self._owner:
             raise SimulationError("a simulation belongs to the thread that made it; another one may use submit")
         if self._observers.looking:
-            raise SimulationError("an observer only looks, as a listener and `until` do: it cannot step or change the simulation")
+            raise SimulationError("observers, listeners and `until` cannot step or change the simulation")
 
     # -- commands
 
@@ -324,7 +324,7 @@ class Simulation:
             SimulationError: If the run has begun already.
         """
         if self.timeline.begun:
-            raise SimulationError("commands are planned before the run begins, and this one has begun already")
+            raise SimulationError("plan() must be called before the run starts")
         self.timeline.plan(commands, ticks)
 
     def forget_ahead(self) -> None:
@@ -426,7 +426,7 @@ class Simulation:
             ParameterError: If the level is unknown.
         """
         if self.timeline.begun:
-            raise SimulationError("a trace holds a run from its start on, and this one has begun already")
+            raise SimulationError("traced() must be called before the run starts")
         self.event_log.raise_level(level, keep=True)
 
     def measure(self, measure: Measure) -> None:
@@ -469,7 +469,7 @@ class Simulation:
             RecordingError: If the file exists, or cannot be made, or a fact cannot be recorded.
         """
         if self.timeline.begun:
-            raise SimulationError("a recording holds a run from its start on, and this one has begun already")
+            raise SimulationError("record() must be called before the run starts")
         if self.event_log.recorded:
             raise SimulationError("this run is being recorded already; what records it holds everything")
         recording = Recording(path, self.facts(**facts))

@@ -74,7 +74,7 @@ class History:
         return last, self._states[last]
 
     def cut(self, tick: int, commands: int) -> None:
-        """Forgets what was after a tick, and all commands but the first few."""
+        """Forgets what was after a tick, and all but the first `commands`."""
         del self.commands[commands:]
         self.ticks = tick
         self.simulated = min(self.simulated, tick)

@@ -98,7 +98,7 @@ def slot_names(kind: type[Feature]) -> tuple[str, ...]:
     return tuple(field.name for field in fields(kind))
 
 
-def sound(feature: Any, kind: type[Feature]) -> Feature:
+def checked(feature: Any, kind: type[Feature]) -> Feature:
     """Returns a feature of a modeller's detector with plain numbers: no text and no object may enter a chunk this way.
 
     Raises:
@@ -124,7 +124,7 @@ def sound(feature: Any, kind: type[Feature]) -> Feature:
 
 
 def off_sight(axes: NDArray[np.float64], feature: Feature) -> tuple[float, float, float]:
-    """Returns the turn of the eye towards a feature, to the left and up, and the angle between [rad].
+    """Returns the turn of the eye to a feature (left, up), and its eccentricity [rad].
 
     Args:
         axes: The axes of the view, see `View.axes`.

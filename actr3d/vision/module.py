@@ -23,8 +23,6 @@ from actr3d.vision.search import Search
 from actr3d.vision.validation import CAMERA, check_camera, check_numbers, encoding_of, saliences_of
 from actr3d.world.command_registry import number
 
-TICK = 10_000
-"""Time after which a body answers [us]; see `actr3d.simulation`."""
 BITS = 64
 """Bits of the seed of a view's noise."""
 
@@ -61,7 +59,7 @@ class Vision(WithParameters, Searching):
         distance_noise: That of all distances of one view together, as a fraction.
         encoding: Additional time to encode the feature of a top-down request: a time [s], such as 0.085 for a shift of
             attention; or `emma`, or an `Emma`, whose time grows with the angle from the line of sight.
-        saccades: Whether the eye turns to the feature of a top-down request, within its limits; the chunk then arrives not before.
+        saccades: Whether the eye turns to the feature of a top-down request, within its limits; the chunk then waits for it.
             Without it, EMMA's times are as if the eye turned there and back.
         private_view: Whether other ports of the agent are refused the raw view (`body.request("view")`), and the pictures `image`
             and `depth`. With False they receive them: the agent then bypasses vision, and the trace shows this.
@@ -284,8 +282,10 @@ class Vision(WithParameters, Searching):
             self._end(search, search.begun)
             return
         sch.call_at(search.due, self._end, (search, search.begun))
-        if self.rule == "sos" and search.feature is not None and search.due >= sch.now_us + TICK:
-            sch.call_at(search.due - TICK + 1, self._ask_again, (search, search.begun))
+        if self.rule == "sos" and search.feature is not None:
+            tick = self._joined("view").tick
+            if search.due >= sch.now_us + tick:
+                sch.call_at(search.due - tick + 1, self._ask_again, (search, search.begun))
 
     def _ask_again(self, search: Search, begun: int) -> None:
         """Requests a second view, at the end of the last tick before a search is over."""

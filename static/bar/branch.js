@@ -1,4 +1,4 @@
-// Where a run goes another way: its previous future is kept as a branch, or the user is asked whether it may be lost.
+// Where a run continues differently: its previous future is kept as a branch, or the user is asked whether it may be lost.
 
 import { html, signal, useEffect } from "../vendor/preact.js";
 import { confirmed } from "../parts/dialog.js";
@@ -53,7 +53,7 @@ export function Branch() {
   const where = `the recording ${recording}, which is listed in Runs`;
   const open = () => openRun({ id: recording, model, made });
   if (opened) {
-    const title = `From ${seconds(at)} on it goes another way than ${where}, or further: that is recorded as a branch of it.`;
+    const title = `From ${seconds(at)} on it differs from ${where}, or goes beyond it; this is recorded as a branch.`;
     return html`<${Notice} key=${which} which=${which} title=${title}>
       <button class="link" onClick=${open}>The recording</button> keeps the run up to ${seconds(until)}
     <//>`;

@@ -47,8 +47,8 @@ async function runAgain() {
 }
 
 const BUTTONS = [
-  { id: "back", text: "Step back by one tick of 10 ms", key: "ArrowLeft", what: { type: "back" }, say: orderThere },
-  { id: "step", text: "Step by one tick of 10 ms", key: "ArrowRight", what: { type: "step" }, say: orderThere },
+  { id: "back", text: "Step back by one tick", key: "ArrowLeft", what: { type: "back" }, say: orderThere },
+  { id: "step", text: "Step by one tick", key: "ArrowRight", what: { type: "step" }, say: orderThere },
   { id: "cycle", text: "Step until the next production fires", key: "c", what: { type: "cycle" }, say: orderThere },
   { id: "restart", text: "Restart with the same seed", key: "r", what: { type: "restart" } },
   { id: "new-seed", icon: "seed", text: "Restart with a new seed", key: "Shift+r", what: { type: "restart", new_seed: true } },

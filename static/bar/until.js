@@ -31,9 +31,9 @@ export function productionNames() {
 /** Returns the problem with an entry, such as an invalid time or a missing name; an empty text if it can be sent. */
 function missing() {
   const text = time.value.trim();
-  if (kind.value === "time" && (text === "" || !(Number(text) >= 0) || Number(text) >= 1e9)) return "a number of seconds is wanted, such as 1.5";
-  if (kind.value === "production" && !production.value) return "the name of a production is wanted";
-  return kind.value === "buffer" && !buffer.value ? "the name of a buffer is wanted" : "";
+  if (kind.value === "time" && (text === "" || !(Number(text) >= 0) || Number(text) >= 1e9)) return "enter a number of seconds, such as 1.5";
+  if (kind.value === "production" && !production.value) return "enter the name of a production";
+  return kind.value === "buffer" && !buffer.value ? "enter the name of a buffer" : "";
 }
 
 commandsOf(() => productionNames().map((name) => ({ text: `${breakpoints.value.includes(name) ? "Remove the breakpoint" : "Breakpoint"} on ${name}`, group: "Run", work: () => toggleBreakpoint(name) })));

@@ -27,7 +27,7 @@ function lastCycles(filtered, end, time) {
 
 function comesOf({ select, fire, changed, conflict }) {
   if (fire) return html`<b class="mono">${fire.production}</b> fired at ${timeText(fire.time)} s`;
-  if (changed) return html`<b class="mono">${changed.production}</b> was chosen, but matched no longer at ${timeText(changed.time)} s`;
+  if (changed) return html`<b class="mono">${changed.production}</b> was chosen, but no longer matched at ${timeText(changed.time)} s`;
   if (select) return html`<b class="mono">${select.production}</b> ${chosenText(at.value === null)}`;
   return conflict.threshold === undefined ? "nothing is chosen yet" : "none reaches the threshold";
 }
@@ -60,7 +60,7 @@ function Cycle({ cycle, agents }) {
           <tr>
             <th><span class="unseen">Chosen</span></th><th>Production</th><th class="number">Utility</th>
             ${names.length && !own ? html`<th class="number">base</th>` : null}
-            ${names.map((name) => html`<th key=${name} class="number" title=${conflict.drawn?.includes(name) ? "Drawn by lot" : ""}>${name}${conflict.drawn?.includes(name) ? " (noise)" : ""}</th>`)}
+            ${names.map((name) => html`<th key=${name} class="number" title=${conflict.drawn?.includes(name) ? "Drawn at random" : ""}>${name}${conflict.drawn?.includes(name) ? " (noise)" : ""}</th>`)}
             <th>Bound</th>
           </tr>
         </thead>

@@ -15,7 +15,7 @@ export function howItStands(reason) {
   if (reason.matches === null) return ["unknown", "?", "unknown here"];
   if (reason.selected) {
     const text = chosenText(at.value === null);
-    return ["selected", "▸", reason.matches ? `matches, and ${text}` : `${text}, though it matches no longer`];
+    return ["selected", "▸", reason.matches ? `matches, and ${text}` : `${text}, though it no longer matches`];
   }
   return reason.matches ? ["matches", "✓", "matches"] : ["no", "–", "does not match"];
 }

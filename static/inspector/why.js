@@ -29,7 +29,7 @@ function Conditions({ reason }) {
   const failing = reason.conditions.findIndex(({ holds }) => holds !== true);
   return html`<table class="conditions" aria-label="Conditions of ${reason.name}">
     <thead>
-      <tr><th><span class="unseen">Holds</span></th><th>Condition</th><th>What there is</th></tr>
+      <tr><th><span class="unseen">Holds</span></th><th>Condition</th><th>Found</th></tr>
     </thead>
     <tbody>
       ${reason.conditions.map((one, n) => html`<${ConditionRow} key=${n} one=${one} first=${n === failing} />`)}

@@ -170,7 +170,7 @@ function Parameters() {
       <label for="parameter-seed-of-run">seed</label>
       <span class="control"><input id="parameter-seed-of-run" aria-invalid=${Boolean(problem)} inputmode="numeric" placeholder=${String(shown.seed ?? "")} value=${seed.value} onInput=${(event) => (seed.value = event.currentTarget.value)} /></span>
       <span class="mark"></span>
-      <p class="help">${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}What all chance comes from; empty: as in the present run.</p>
+      <p class="help">${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}The seed of all random choices; empty: that of the present run.</p>
     </div>
     <footer>
       <button class="primary" disabled=${problems() || Boolean(problem) || (shown.loading && state.value === null)}>Restart with these</button>

@@ -25,7 +25,7 @@ const resets = signal(0); // how often the view was reset
 const BETWEEN = 250; // the interval between two checks of the time that the 3D view shows [ms]
 const LATE = 0.5; // the delay of the 3D view from which it is reported [s]
 const NO_WEBGL =
-  "This browser cannot draw in 3D, for its WebGL is off or missing: switch on hardware acceleration in its settings, or take another browser. All else works without it.";
+  "This browser cannot draw in 3D: WebGL is off or missing. Turn on hardware acceleration, or use another browser. Everything else works.";
 
 const overlays = new Map();
 

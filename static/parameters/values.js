@@ -36,8 +36,8 @@ export function read(parameter, text) {
   if (takes === "choice") return { value: parameter.choices.find((choice) => String(choice) === text) };
   if (takes !== "number" && takes !== "whole number") return { value: text };
   const value = Number(String(text).replace(",", "."));
-  if (String(text).trim() === "" || !Number.isFinite(value)) return { problem: `a ${takes} is wanted` };
-  if (takes === "whole number" && !Number.isInteger(value)) return { problem: "a whole number is wanted" };
+  if (String(text).trim() === "" || !Number.isFinite(value)) return { problem: `must be a ${takes}` };
+  if (takes === "whole number" && !Number.isInteger(value)) return { problem: "must be a whole number" };
   const { above, least, below, most } = parameter;
   const held = (above === null || value > above) && (least === null || value >= least) && (below === null || value < below) && (most === null || value <= most);
   return held ? { value } : { problem: `must be ${boundsText(parameter)}` };

@@ -77,7 +77,7 @@ export async function deleteRuns(all) {
   const open = all.filter((run) => run.session);
   if (open.length > 0) {
     const names = open.map((run) => `${run.model || run.id}, ${whenText(run.made)}`).join("; ");
-    complain(`Not deleted, for a run that is open still writes it: ${names}. Show that run and restart it, and delete this then.`);
+    complain(`Not deleted: an open run still writes ${names}. Show and restart that run, then delete it.`);
   }
   if (list.length === 0) return;
   const one = list.length === 1 ? `the recording «${nameOf(list[0])}»` : counted(list.length, "recording");

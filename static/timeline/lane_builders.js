@@ -46,7 +46,7 @@ function fire(lanes, time, source, { production, bound }) {
 function changed(lanes, time, source) {
   const lane = productions(lanes, source);
   if (lane.open) Object.assign(lane.open, { tone: "quiet", more: "" });
-  lane.close(time, "matched no longer, did not fire");
+  lane.close(time, "no longer matched, did not fire");
 }
 
 function buffer(lanes, time, source, { chunk }) {

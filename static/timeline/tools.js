@@ -65,7 +65,7 @@ function Going() {
   const past = inThePast.value && !running.value;
   const ready = alive.value && past && wanted.value === null;
   return html`<div class="timeline-going">
-    <button disabled=${!ready} title="Run on from this moment. It goes as it went before; if you change something here, another way begins." onClick=${() => order({ type: "run" })}>
+    <button disabled=${!ready} title="Run from this moment. It repeats what happened; a change here begins a branch." onClick=${() => order({ type: "run" })}>
       <${Icon} name="run" /><span>Continue from here</span>
     </button>
     <button disabled=${!alive.value || !past} title=${buttonTitle(toNewest, "Go to the newest moment of the run")} onClick=${() => run(toNewest)}>

@@ -195,7 +195,7 @@ def test_none_among_what_is_waited_for_is_said(what: str) -> None:
     start = f"    def start(self):\n        yield {what}\n        self.seen = self.now()\n"
     text = f"from actr3d.actr import *\nclass World(Model):\n    seen = 0\n{start}    def note(self): pass\n"
     world: Any = load_text(text, "loud.py").World()
-    with pytest.warns(ModelWarning, match=r"World\.start yields a tuple with None in it, which waits for nothing") as said:
+    with pytest.warns(ModelWarning, match=r"World\.start yields a tuple with None in it, which ends it for all that wait for it") as said:
         world.run(1)
     assert [(w.filename, w.lineno) for w in said] == [("loud.py", 5)]
     assert world.seen == 0.2

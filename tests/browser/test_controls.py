@@ -29,7 +29,7 @@ def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
     page.keyboard.press("u")
     page.keyboard.type("soon")
     page.keyboard.press("Enter")
-    expect(problem).to_have_text("a number of seconds is wanted, such as 1.5")
+    expect(problem).to_have_text("enter a number of seconds, such as 1.5")
     production = page.get_by_label("Production", exact=True)
     production.fill("trun")
     expect(problem).to_have_count(0)

@@ -226,7 +226,7 @@ def test_what_the_present_run_writes_is_not_deleted(pages: Callable[..., Page], 
     name = page.locator("tr.present").first.get_attribute("data-run")
     page.locator("tr.present").first.click()
     page.keyboard.press("Delete")
-    expect(page.locator(".toast")).to_contain_text("Not deleted, for a run that is open still writes it: counting.py")
+    expect(page.locator(".toast")).to_contain_text("Not deleted: an open run still writes counting.py")
     assert (recordings / f"{name}.sqlite").exists()
 
 

@@ -54,7 +54,7 @@ class Mindful:
 
     def __init__(self, world: World, kind: Any, seed: int = 1, trace: Any = None) -> None:
         self._world = world
-        self._minds = Agents({"walker": kind}, frozenset({"walker"}), seed, trace)
+        self._minds = Agents({"walker": kind}, frozenset({"walker"}), seed, trace, PERIOD)
         self.mind: Any = self._minds.environment["walker"]
 
     def tick(self, n: int = 1) -> Mindful:

@@ -490,7 +490,7 @@ def test_anatomy_and_proprioception_have_the_same_order_of_joints(kind: str) -> 
     joints = [joint for part in plan.parts for joint in part.joints]
     assert [joint.name for joint in joints] == list(body.joints) == list(motor._limbs.order)
     assert felt.positions == tuple(joint.position for joint in body.joints.values())
-    assert [part.name for part in plan.parts] == [part.name for part in motor.body.line()] == list(body.parts)
+    assert [part.name for part in plan.parts] == [part.name for part in motor.body.subtree()] == list(body.parts)
     for joint in joints:
         limits = body.joints[joint.name].limits
         assert limits == (-math.inf if joint.lower is None else joint.lower, math.inf if joint.upper is None else joint.upper)

@@ -41,7 +41,7 @@ def test_the_parts_are_those_of_the_body_in_its_order() -> None:
     assert body.name == "legs"
     assert [part.name for part in body.parts] == ["pelvis"]
     assert [part.name for part in body.part("torso").parts] == ["left_shoulder", "right_shoulder", "head"]
-    assert [part.name for part in body.line()][:4] == ["legs", "pelvis", "torso", "left_shoulder"]
+    assert [part.name for part in body.subtree()][:4] == ["legs", "pelvis", "torso", "left_shoulder"]
     assert [joint.axis for joint in body.part("torso").joints] == ["yaw", "pitch", "roll"]
     assert body.part("left_shoulder").joints[0].lower == near(math.radians(-20))
     with pytest.raises(WorldError, match="legs has no part 'tors'; did you mean 'torso'"):

@@ -255,7 +255,7 @@ def test_what_is_there_is_not_replaced(tmp_path: Path) -> None:
 def test_a_recording_begins_with_its_run(tmp_path: Path) -> None:
     simulation = driving()
     simulation.step()
-    with pytest.raises(SimulationError, match="a recording holds a run from its start on"):
+    with pytest.raises(SimulationError, match=r"record\(\) must be called before the run starts"):
         simulation.record(tmp_path / "run")
     assert list(tmp_path.iterdir()) == []
 

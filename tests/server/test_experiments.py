@@ -18,7 +18,11 @@ import httpx
 import pytest
 
 from tests.helpers.experiments import COUNTER, write_experiment
+from tests.helpers.sessions import Desk
 from tests.helpers.workbench_server import Served, served
+from workbench.design_files import Starting
+from workbench.experiment_command import ExperimentRunError
+from workbench.experiments import Experiments
 
 pytestmark = pytest.mark.long
 
@@ -210,6 +214,13 @@ def test_no_more_than_two_run_at_once(workbench: Served) -> None:
         assert workbench.get(f"/api/experiments/{name}").status_code == 404
 
 
+def test_none_starts_while_the_workbench_closes(tmp_path: Path, desk: Desk) -> None:
+    experiments = Experiments(desk.sessions(tmp_path))
+    desk.do(experiments.close())
+    with pytest.raises(ExperimentRunError, match="the workbench is closing"):
+        desk.do(experiments.start(Starting(design="fan_effect")))
+
+
 @pytest.mark.slow
 def test_experiments_end_with_the_workbench_and_go_on_with_the_next(tmp_path: Path) -> None:
     folder = tmp_path / "models"
@@ -222,7 +233,7 @@ def test_experiments_end_with_the_workbench_and_go_on_with_the_next(tmp_path: Pa
     pid = int(lock.read_text("utf-8"))
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
-    assert (lock.parent / "trials.csv").is_file()  # it has ended in order
+    assert (lock.parent / "trials.csv").is_file()  # it has ended normally
     with served(folder) as second:
         now = state_of(second, name)
         assert (now["state"], now["total"], now["done"] >= 5) == ("stopped", 2400, True)

@@ -159,7 +159,7 @@ def test_too_much_memory_is_reported(desk: Desk, tmp_path: Path, monkeypatch: py
     monkeypatch.setattr("workbench.readers.MEMORY", 50)
     path = written(tmp_path, "m", firing(3))
     row(json.dumps([[0, "a", "fire", {"x": "y" * 100_000_000}]]))(path)
-    with pytest.raises(ReadingError, match=r"it takes more memory to read than there may be|used more memory than it may"):
+    with pytest.raises(ReadingError, match=r"reading it needs more memory than allowed|used more memory than it may"):
         desk.do(Readers(desk.workers).make("events.csv", path))
 
 

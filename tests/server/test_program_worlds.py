@@ -217,7 +217,7 @@ def test_of_several_simulations_the_latest_is_shown_and_the_scene_changes_with_t
 
 def test_a_command_to_a_program_is_refused_in_words(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, ONE)
-    with pytest.raises(RefusedError, match="of a program, only agents without a body can be changed"):
+    with pytest.raises(RefusedError, match="in a program, only agents without a body can be changed"):
         talk.say("command", word="aperture", values=[0.5])
 
 

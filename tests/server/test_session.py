@@ -418,7 +418,7 @@ def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
     with pytest.raises(SessionError, match="each is shown on a page or still running"):
         desk.do(open_watched())
     # One that nobody watches any more makes room.
-    opened[3].part(opened[3].feeds[0])
+    opened[3].leave(opened[3].feeds[0])
     newest = desk.do(open_watched())
     ended = "the run of model.py, which no page showed, was ended; it was not recorded"
     assert all(any(ended in notice.decode() for _, notice in session.notices) for session in (newest, opened[0]))

@@ -174,7 +174,7 @@ def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_
     [
         ("os._exit(3)", "the model's process ended with exit code 3"),
         ("sys.exit(4)", "the model ended its process (SystemExit: 4)"),
-        ("os.kill(os.getpid(), signal.SIGKILL)", "ended by SIGKILL, which it sent itself, or another program did"),
+        ("os.kill(os.getpid(), signal.SIGKILL)", "ended by SIGKILL, sent by itself, by another program, or by the system"),
         ("os.kill(os.getpid(), signal.SIGSEGV)", "SIGSEGV: a crash in compiled code"),
         ("import ctypes; ctypes.string_at(0)", "SIGSEGV: a crash in compiled code"),
         ("x = [0] * 10**10", "the model used more memory"),

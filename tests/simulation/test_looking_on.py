@@ -226,7 +226,7 @@ def test_a_simulation_can_be_traced_after_it_was_made() -> None:
     simulation.step(10)
     assert simulation.trace is not None
     assert {event.kind for event in simulation.trace} == {"start", "select", "fire", "buffer"}
-    with pytest.raises(SimulationError, match="begun already"):
+    with pytest.raises(SimulationError, match=r"traced\(\) must be called before the run starts"):
         simulation.traced()
     with pytest.raises(ParameterError, match="no level"):
         driving().traced("some")
@@ -249,7 +249,7 @@ def test_planned_commands_are_done_again() -> None:
     second.plan([Command(5, "aperture", (0.9,), {})])
     second.step(10)
     assert digest(first) == digest(second)
-    with pytest.raises(SimulationError, match="begun already"):
+    with pytest.raises(SimulationError, match=r"plan\(\) must be called before the run starts"):
         second.plan([])
 
 

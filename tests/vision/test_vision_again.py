@@ -58,6 +58,16 @@ def test_what_is_still_there_comes_as_it_is_at_the_end() -> None:
     assert seen_of(0.9, 0.7, "").agents["walker"].visual.chunk["width"] == 0.9
 
 
+@pytest.mark.parametrize(("period", "delay", "looks"), [(0.02, 0.065, [0.06, 0.1]), (0.005, 0.008, [0.05, 0.055])])
+def test_the_second_look_is_at_the_end_of_the_last_whole_tick_of_the_search(period: float, delay: float, looks: list[float]) -> None:
+    scene = Scene(parts=(Floor(), Aperture(width=0.9), Mannequin(name="walker")), timestep=0.005)
+    kind = agent(KIND.replace("delay=0.2", f"delay={delay}").replace(" OPTIONS", ", rule='sos'"))
+    simulation = Simulation(scene, {"walker": kind}, seed=1, trace="all", period=period)
+    simulation.run(0.2)
+    assert [time for time, _ in events(simulation.trace, "answer")] == looks
+    assert [time for time, _ in events(simulation.trace, "sight")] == [near(0.05 + delay)]
+
+
 def test_both_looks_of_a_search_are_misjudged_alike() -> None:
     """Else a request that has found something just wide enough would fail the oftener."""
     found = [seen_of(0.6, 0.6, ", rule='sos', edge_noise=0.01", seed) for seed in range(6)]

@@ -48,7 +48,7 @@ class KeptBranch:
             if drop:
                 return None
             why = "the recording that this run repeats has been deleted" if self._is_gone else "the run is not recorded"
-            raise SimulationError(f"{why}: {ahead} would be lost; go to its newest moment, or allow it with `drop`")
+            raise SimulationError(f"{why}: {ahead} would be lost; go to its newest moment, or set `drop` to lose it")
         path, origin = new_branch(Path(self._start.record), self._at), Path(self._start.record).stem
         try:
             # The copy has the way of the run: if the run itself left another recording later than now, the copy did.
@@ -57,7 +57,7 @@ class KeptBranch:
         except Actr3dError as error:
             if drop:
                 return None
-            raise SimulationError(f"nothing was changed, because {ahead} cannot be kept: {error}; allow to lose it with `drop`") from None
+            raise SimulationError(f"nothing was changed, because {ahead} cannot be kept: {error}; set `drop` to lose it") from None
         return path
 
     def undo(self) -> None:
@@ -66,7 +66,7 @@ class KeptBranch:
             self._branch.unlink(missing_ok=True)
 
     def announce(self, events: int) -> None:
-        """Informs the server that the run goes another way from its present moment on.
+        """Informs the server that the run continues differently from its present moment on.
 
         Args:
             events: Number of events up to the change.

@@ -91,7 +91,7 @@ def difference_notice(now: float, event: TraceEvent | None) -> Notice:
         else f"it has the event '{event.kind}' of '{event.source}', which the recording does not have"
     )
     text = (
-        f"from {when:g} s on this run differs from its recording, which was made with other versions or other files: {does}. "
+        f"from {when:g} s on this run differs from its recording, perhaps because versions or files differ: {does}. "
         "What is shown from there on is what happens now; «Replay» in the tab Runs compares everything."
     )
     return notice("error", text)

@@ -167,7 +167,7 @@ class Branched(Message, frozen=True, kw_only=True):
     recording: str
     """The name of that recording."""
     at: float
-    """The moment from which the run goes another way, or further [s]."""
+    """The moment from which the run continues differently, or goes further [s]."""
     until: float
     """The furthest time that the run had reached [s]."""
 

@@ -323,7 +323,7 @@ class ProgramRun(ControlledRun):
                 controller.attend()
 
     def _run_text(self, limits: RunLimits, helpers: HelperTexts) -> SystemExit | None:
-        """Runs the program; returns with what it has ended itself, if it has."""
+        """Runs the program; returns its `SystemExit`, if it raised one."""
         start = self._controller.channel.start
         try:
             run_text(self._source, start.path, limits=limits, folder=Path(start.folder), helpers=helpers)
@@ -578,7 +578,7 @@ class ProgramRun(ControlledRun):
         return names_of_program(self.tops(), bodies, self._listing, self._source, Path(self._controller.channel.start.folder))
 
     def _hold_models(self) -> None:
-        """Keeps the latest models: else it would be up to Python's collector of garbage which of them are shown."""
+        """Keeps the latest models; otherwise garbage collection would decide which are shown."""
         trace = self._limits.trace
         if trace is not None:
             for run in trace.runs[self._runs :]:
@@ -589,6 +589,6 @@ class ProgramRun(ControlledRun):
 
 def _refusal(what: str) -> SimulationError:
     return SimulationError(
-        f"'{what}' cannot be done: of a program, only agents without a body can be changed; to change a simulation while it runs, "
-        "let a function `build(parameters) -> Simulation` return it"
+        f"'{what}' cannot be done: in a program, only agents without a body can be changed; to change a simulation, "
+        "return it from `build(parameters) -> Simulation`"
     )

@@ -76,7 +76,7 @@ def _answer(number: int, work: Callable[[], bytes], paths: list[Path]) -> Reply:
         return Reply(id=number, result=work())
     except MemoryError:
         relieve()
-        problem = "it takes more memory to read than there may be"
+        problem = "reading it needs more memory than allowed"
     except Actr3dError as error:
         problem = str(error)
     except OSError as error:

@@ -212,7 +212,7 @@ class RunController:
         """Makes the run, which has repeated a recording, a branch of it: what follows is kept in the run's own recording.
 
         Args:
-            at: From when on the run goes another way than the recording, or further [s].
+            at: The moment from which the run differs from the recording, or goes beyond it [s].
             until: The furthest time that was known of it [s].
         """
         facts = {} if self._known_run is None else self._known_run.facts

@@ -1,4 +1,4 @@
-"""A run of what a model file builds: agents and bodies in a world, which can go back and another way."""
+"""A run of what a model file builds: agents and bodies in a world, which can go back and continue differently."""
 
 from __future__ import annotations
 

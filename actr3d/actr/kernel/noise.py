@@ -11,7 +11,7 @@ Option = TypeVar("Option")
 
 
 def pick(numbers: random.Random, options: list[Option]) -> Option:
-    """Draws one of several options; a single option uses up as many random numbers as a choice among one does."""
+    """Draws one of several options; always uses the same random numbers as `random.choice`."""
     if len(options) > 1:
         return numbers.choice(options)
     while numbers.getrandbits(1):

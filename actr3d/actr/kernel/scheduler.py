@@ -483,7 +483,7 @@ def _wait_for_first(sch: Scheduler, event: Event, several: Sequence[Any]) -> Non
     """Schedules an alternative of an event for each of several values; the first that happens cancels the others."""
     choices = list(_each(several))
     if any(choice is None for choice in choices):
-        warn_of_none(event, "a tuple with None in it, which waits for nothing and ends it for all that wait for its end")
+        warn_of_none(event, "a tuple with None in it, which ends it for all that wait for it")
     if not choices:
         raise SchedulerError(f"{event.describe()}: cannot wait for {several!r}; nothing is in it")
     events = [copy.copy(event) for _ in choices]

@@ -83,18 +83,20 @@ class Request:
 
 
 class Embodiment:
-    """Connects an agent to its body, by the body's name and a list of requests.
+    """Connects an agent to its body, by the body's name and a list of requests, which the body answers at the end of each tick.
 
     Args:
         body: The body's name.
         outbox: The requests that wait for the next tock, in order; all agents of a simulation share it.
+        tick: Length of a tick [us].
     """
 
-    __slots__ = ("body", "outbox")
+    __slots__ = ("body", "outbox", "tick")
 
-    def __init__(self, body: str, outbox: list[Request]) -> None:
+    def __init__(self, body: str, outbox: list[Request], tick: int) -> None:
         self.body = body
         self.outbox = outbox
+        self.tick = tick
 
     def join(self, agent: Model) -> None:
         """Gives an agent, and all ports below it, this body."""

@@ -77,7 +77,7 @@ def opening(view: View, *, step: Annotated[Metres, Ge(0)] = 0.02) -> tuple[Openi
 
     Args:
         view: The view.
-        step: Least distance of everything between the edges of a gap behind them.
+        step: Minimum distance behind both edges of what is seen between them.
     """
     extents = view.extents
     count = len(extents)

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, TypeVar, get_origin
 
 from actr3d.camera import View
 from actr3d.errors import VisionError
-from actr3d.vision.feature import Feature, slot_names, sound
+from actr3d.vision.feature import Feature, checked, slot_names
 from actr3d.vision.units import PLAIN, Unit, bounds_of, types_of, units_of
 
 Detect = Callable[..., tuple[Feature, ...]]
@@ -58,7 +58,7 @@ class Detector:
             features = tuple(found)
         except TypeError:
             raise VisionError(f"detector '{self.name}': must return the features that it has found, in a tuple (got {found!r})") from None
-        return tuple(sound(feature, self.finds) for feature in features)
+        return tuple(checked(feature, self.finds) for feature in features)
 
 
 RESERVED = ("feature", "pattern", "bottom_up")

@@ -25,8 +25,8 @@ def gaps() -> Gaps:
     """Returns the function that finds openings; the first call of it in a new installation takes seconds.
 
     It takes: the extents, an array of one optics, the eye's axes, the step behind a gap, the greatest distance between the edges of one
-    opening from row to row, and room for points, gaps and openings. It returns the numbers of gaps and openings; those
-    without room are not written.
+    opening from row to row, and room for points, gaps and openings. It returns the numbers of gaps and openings:
+    `(gaps, 0)` if gaps lack room; if openings do, none is written.
     """
     return kept(_gaps, SOURCES, Path(__file__).parent)
 

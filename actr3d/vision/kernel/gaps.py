@@ -134,8 +134,8 @@ def _beyond(point: Array, start: Array, end: Array) -> float:
 def link_gaps(extents: Records, points: Array, gaps: Records, count: int, apart: float) -> int:
     """Joins gaps of neighbouring rows whose edges are no farther apart than `apart` [m]; returns how many openings there are.
 
-    A gap goes on from the one above whose edges are nearest to its own, unless another one does already. Between the same
-    things, edges may be as far apart as a wall is thick: at its foot, what is seen goes over from its back to its front.
+    A gap continues the nearest one above that no other gap continues. Between the same objects, edges may be `THICKEST` apart:
+    at a wall's foot, the visible edge changes from its back to its front.
     """
     openings, above, first = 0, 0, 0
     while first < count:

@@ -36,12 +36,12 @@ def set_openings(extents: Records, points: Array, gaps: Records, count: int, row
     """Writes each opening: the largest upright rectangle that fits between the edges of its gaps.
 
     Args:
-        extents: The view's.
-        points: Where their edges are.
+        extents: Those of the view, `(n,)`.
+        points: Their positions [m], `(n, 3, 4)`; see `set_points`.
         gaps: All gaps.
-        count: How many there are.
-        rows: How many the view has.
-        openings: Where they are written, as many as there are.
+        count: Number of gaps.
+        rows: Number of rows of the view.
+        openings: Output, one record each.
     """
     for number in range(len(openings)):
         openings[number].area = -1.0
@@ -97,8 +97,8 @@ def _end(extents: Records, points: Array, gap: Record, row: int, levels: Array, 
     its outer height is that of the edge where it is met first; of one that leaves the field of view, the inner height is free.
 
     Args:
-        extents: The view's.
-        points: Where their edges are.
+        extents: Those of the view, `(n,)`.
+        points: Their positions [m], `(n, 3, 4)`.
         gap: The first or the last gap.
         row: The next row.
         levels: Where the gap ends at its left and at its right edge, above the eye [m].
