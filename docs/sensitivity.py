@@ -38,8 +38,8 @@ REPETITIONS = 40
 BELOW = 1.25
 """People turn before doorways below this many shoulder widths."""
 Likeness = Literal["room", "room in metres", "ratio", "widths"]
-"""What makes two passages alike: the room, seen minus felt width, in shoulder widths, as the model has it; room in metres; the ratio of seen
-and felt width; or both widths one by one."""
+"""What makes two passages alike: the room, seen minus felt width, in shoulder widths, as the model has it; room in metres; the ratio of
+seen and felt width; or both widths one by one."""
 
 
 @dataclass(frozen=True, kw_only=True)
