@@ -357,9 +357,11 @@ def test_a_changed_program_has_the_scenes_of_the_simulations_that_it_makes_now(d
     talk.say("seek", time=0.1)
     talk.until("paused", time=0.1)
     change(talk, "set_buffer", buffer="goal", chunk="narrow")
+    assert talk.say("curves", names=["walker x"])["curves"] == {}
     (kept,) = [one for one in path.parent.glob("*.sqlite") if branched_at(one) is not None]
     talk.say("run")
     talk.until("ended")
+    changed = talk.say("curves", names=["walker x"])
     desk.do(talk.session.close())
     widths: list[list[float]] = []
     for one in (kept, path):
@@ -368,7 +370,7 @@ def test_a_changed_program_has_the_scenes_of_the_simulations_that_it_makes_now(d
             widths.append([len(world["apertures"]) for world in worlds])
             assert replay(recorded).difference is None
     assert widths == [[1, 1], [2]]
-    assert curves_of(kept, names=["walker x"], first=0.0, most=5_000) == curves
+    assert [curves_of(one, names=["walker x"], first=0.0, most=5_000) for one in (kept, path)] == [curves, changed]
 
 
 def test_a_program_says_what_cannot_be_changed(desk: Desk, tmp_path: Path) -> None:
