@@ -153,7 +153,8 @@ def _scene(simulation: RecordedSimulation, agents: Sequence[str], scenes: int) -
     bodies = shapes.bodies
     ticks = past.furthest
     most = max(2, min(MAX_FRAMES, MAX_NUMBERS // (7 * max(1, len(bodies)))) // scenes)
-    every = max(1, round(MICROSECONDS / RATE / period), stride(ticks + 1, most - 1))
+    stored = past.every
+    every = stored * max(1, round(MICROSECONDS / RATE / (period * stored)), stride(ticks // stored + 1, most - 1))
     frames = [(tick, state) for tick, state, _ in past.between(0, None) if tick % every == 0 or tick == ticks]
     times = [seconds(simulation.begin + tick * period) for tick, _ in frames]
     poses = poses_of(model, bodies, (state for _, state in frames))
