@@ -101,7 +101,11 @@ def test_the_view_follows_the_agent_s_body_whatever_else_moves(tmp_path: Path) -
     assert followed(tmp_path, parts, "walker") == pytest.approx([0, 0], abs=0.05)
 
 
-def test_the_view_follows_the_first_agent_of_the_model_as_the_live_view_does(tmp_path: Path) -> None:
+@pytest.mark.parametrize("shown", [0, make.MAX_EVENTS])
+def test_the_view_follows_the_first_agent_of_the_model_as_the_live_view_does(
+    shown: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(make, "MAX_EVENTS", shown)
     parts = Mannequin(name="first", position=(0, 2)), Mannequin(name="second", position=(0, -2))
     assert followed(tmp_path, parts, "second", "first") == pytest.approx([0, -2], abs=0.05)
 
