@@ -283,6 +283,8 @@ def test_a_change_in_the_past_of_any_run_keeps_what_had_come_as_a_branch(kind: s
     now = events(talk)
     (branch,) = [path for path in recording(talk).parent.glob("*.sqlite") if branched_at(path) is not None]
     path = recording(talk)
+    assert talk.summary(branch.stem).copied == (path.stem, 0.3)
+    assert talk.summary(path.stem).copied is None
     desk.do(talk.session.close())
     for one, goals in ((branch, ["rest 1"]), (path, ["rest 1", "count 90"])):
         with Recorded(one) as recorded:
