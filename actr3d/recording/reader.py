@@ -303,8 +303,9 @@ def _resolved(facts: dict[str, Any]) -> dict[str, Any]:
     """Returns facts in which each simulation has its own scene, also if another one has the same."""
 
     def resolved(name: str, value: Any) -> Any:
-        refers = is_of_simulation(name) and isinstance(value, dict) and SAME_AS in value
-        return facts.get(value[SAME_AS], value) if refers else value
+        if not is_of_simulation(name) or not isinstance(value, dict):
+            return value
+        return facts.get(cast("dict[str, Any]", value).get(SAME_AS, name), cast("Any", value))
 
     return {name: resolved(name, value) for name, value in facts.items()}
 

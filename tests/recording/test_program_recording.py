@@ -9,6 +9,7 @@ from array import array
 from collections.abc import Callable
 from itertools import groupby
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -108,7 +109,7 @@ def test_a_scene_of_many_simulations_is_recorded_once_and_the_recording_can_be_o
 ) -> None:
     monkeypatch.setattr(reader, "OPENING_STEPS", 1_000)
     path = tmp_path / "many.sqlite"
-    scenes = [{"period_us": 10_000, "compiled": name * 10_000, "world": {}} for name in "abc"]
+    scenes: list[dict[str, Any]] = [{"period_us": 10_000, "compiled": name * 10_000, "world": {}} for name in "abc"]
     with Recording(path, program_facts("many.py", "", 1, None)) as recording:
         for number in range(1_000):
             recording.fact(SIMULATION.format(number), scenes[number % 2])
