@@ -81,7 +81,12 @@ def _units(recorded: Recorded, parameters: Iterable[Parameter]) -> dict[str, str
 
 
 def _changed(recorded: Recorded, parameters: Sequence[Parameter]) -> dict[str, list[list[Any]]]:
-    """Returns the parameters and apertures that users changed during the run, as pairs of time [s] and new value."""
+    """Returns the parameters and apertures that users changed during the run, as pairs of time [s] and new value.
+
+    In a program, users can change neither; it gives its simulations commands itself.
+    """
+    if recorded.facts["kind"] == "program":
+        return {}
     from actr3d.simulation import Command  # takes long to import; the server needs only the names in this module
 
     period = recorded.facts.get("period_us", 0)

@@ -19,7 +19,7 @@ from actr3d.runner.facts import NAMED, REACHED
 from actr3d.values import to_json
 from workbench.files import ModelFolder
 from workbench.loader import listing_of
-from workbench.retention import begun, branched_at, size_of, written
+from workbench.retention import begun, copied_from, size_of, written
 
 _WRONG = (ValueError, KeyError, TypeError, AttributeError, IndexError, RecursionError)
 UNREADABLE = (RecordingError, OSError, sqlite3.Error, msgspec.MsgspecError, *_WRONG)
@@ -55,6 +55,8 @@ class Summary:
     it in this list left it [s]. Any of them may have been deleted since."""
     kept: float | None = None
     """For a copy of what lay ahead of a run when its past was changed: when that was [s since 1970]."""
+    copied: tuple[str, float] | None = None
+    """For such a copy: the recording of that run, by the name that it was given first, and the time of the change [s]."""
     ended: str | None = None
     """How the run ended; None if it was interrupted, or is still running."""
     failed: str | None = None
@@ -123,6 +125,7 @@ def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
     parameters = dict(facts.get("parameters", {}))
     file = str(facts.get("file", ""))
     named = str(facts.get(NAMED, path.stem))
+    copied = copied_from(named)
     return Summary(
         id=path.stem,
         named=named,
@@ -134,7 +137,8 @@ def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
         branched=facts.get("branched"),
         origin=facts.get("origin"),
         ancestors=tuple((str(name), float(time)) for name, time in facts.get("ancestors", ())),
-        kept=None if branched_at(path.with_name(f"{named}.sqlite")) is None else written(path),
+        kept=None if copied is None else written(path),
+        copied=copied,
         ended=None if ended is None else str(ended["by"]),
         failed=None if facts.get("failed") is None else str(facts["failed"]),
         result=_result(last),

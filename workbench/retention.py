@@ -126,8 +126,15 @@ def new_branch(recording: Path, moment: float) -> Path:
 
 def branched_at(path: Path) -> float | None:
     """Returns the time at which the past of a branch's run was changed [s]; None if the file is not a branch."""
-    found = _BRANCH.fullmatch(path.stem)
-    return None if found is None else float(found[2])
+    copied = copied_from(path.stem)
+    return None if copied is None else copied[1]
+
+
+def copied_from(name: str) -> tuple[str, float] | None:
+    """Returns the recording that a branch was copied from when the past of its run was changed, and the time of the change [s]; None if
+    the name is not that of a branch."""
+    found = _BRANCH.fullmatch(name)
+    return None if found is None else (found[1], float(found[2]))
 
 
 def superfluous_branches(recording: Path) -> list[Path]:

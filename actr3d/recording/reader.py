@@ -21,7 +21,7 @@ from actr3d.recording.checksums import Checksums
 from actr3d.recording.facts import LARGEST, check_facts
 from actr3d.recording.key import is_sealed
 from actr3d.recording.opening import opened
-from actr3d.recording.schema import COLUMNS, FORMAT, LEFT, SCHEMA
+from actr3d.recording.schema import COLUMNS, FORMAT, LEFT, SAME_AS, SCHEMA, is_of_simulation
 from actr3d.recording.writer import Answer, State
 from actr3d.trace import TraceEvent
 
@@ -29,6 +29,8 @@ SHOWN = 80
 """The maximum length of a quote from a damaged recording in an error message [characters]."""
 OPENING_STEPS = 100_000
 """The maximum number of SQLite steps to open a recording, which usually takes a few thousand; a file that needs more is rejected."""
+PAGE_STEPS = 1_000
+"""How many more are allowed for each page of the file: a program that makes many simulations records many facts."""
 
 
 class RecordedCommand(NamedTuple):
@@ -59,7 +61,7 @@ class Recorded:
         self._file = opened(self.path)
         try:
             self._written_facts = self._begin()
-            self.facts: dict[str, Any] = {name: _parsed(value) for name, value in self._written_facts.items()}
+            self.facts = _resolved({name: _parsed(value) for name, value in self._written_facts.items()})
             check_facts(self.facts)
         except (sqlite3.Error, ValueError, TypeError, RecursionError, RecordingError) as error:
             self._file.close()
@@ -79,6 +81,8 @@ class Recorded:
         schema = self._file.execute("SELECT sql FROM sqlite_schema").fetchmany(100)
         if (SCHEMA[0],) not in schema:
             raise RecordingError("it has other tables than a recording")
+        (pages,) = self._file.execute("PRAGMA page_count").fetchone()
+        self._file.set_progress_handler(lambda: 1, OPENING_STEPS + PAGE_STEPS * pages)
         facts: dict[str, str] = {}
         for name, value in self._file.execute("SELECT name, value FROM facts"):
             if type(name) is not str or type(value) is not str or (facts and name <= next(reversed(facts))):
@@ -293,6 +297,17 @@ def _parsed(text: str) -> Any:
         return json.loads(text)
     except RecursionError:
         raise ValueError("something in it is nested too deeply") from None
+
+
+def _resolved(facts: dict[str, Any]) -> dict[str, Any]:
+    """Returns facts in which each simulation has its own scene, also if another one has the same."""
+
+    def resolved(name: str, value: Any) -> Any:
+        if not is_of_simulation(name) or not isinstance(value, dict):
+            return value
+        return facts.get(cast("dict[str, Any]", value).get(SAME_AS, name), cast("Any", value))
+
+    return {name: resolved(name, value) for name, value in facts.items()}
 
 
 def _contacts(text: str, count: int) -> Mapping[int, Contacts]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from hashlib import sha256
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, cast
@@ -14,7 +15,7 @@ from actr3d.clock import MICROSECONDS
 from actr3d.errors import RecordingError
 from actr3d.forks import detach_in_copies
 from actr3d.recording.facts import check_fact
-from actr3d.recording.schema import FORMAT, LEFT, versions
+from actr3d.recording.schema import FORMAT, LEFT, SAME_AS, is_of_simulation, versions
 from actr3d.recording.writer import Answer, CommandRow, NoWriter, State, Writer
 from actr3d.trace import TraceEvent
 
@@ -55,6 +56,8 @@ class Recording:
         detach_in_copies(self)
         self.events = self.answers = self.commands = self.states = 0
         """The number of items of each sort that it has received."""
+        self._scenes: dict[bytes, str] = {}
+        """By its checksum, the fact of a program's simulation that has been written whole; later ones of the same scene refer to it."""
         self._over = {"ended": False, "failed": False}
         """Whether each of these facts has been written, and holds."""
         self.ending: Callable[[], None] | None = None
@@ -66,7 +69,13 @@ class Recording:
         Raises:
             RecordingError: If the values are not plain.
         """
-        self._writer.facts.append((name, _plain(name, value)))
+        text = _plain(name, value)
+        if is_of_simulation(name) and value is None:
+            self._scenes = {checksum: one for checksum, one in self._scenes.items() if one != name}
+        elif is_of_simulation(name):
+            first = self._scenes.setdefault(sha256(text.encode()).digest(), name)
+            text = text if first == name else json.dumps({SAME_AS: first})
+        self._writer.facts.append((name, text))
         if name in self._over:
             self._over[name] = value is not None
 

@@ -19,7 +19,8 @@ anything else has the fact `failed` instead; a run that was interrupted has neit
 
 SIMULATION = "simulation {}"
 """The name of the fact of each simulation of a program, by its number: its compiled scene (`compiled`) and its `world` at its start, and
-its `period_us`, as in a recording of that simulation alone."""
+its `period_us`, as in a recording of that simulation alone; or only `same_as`, the name of such a fact with the same values."""
+SAME_AS = "same_as"
 
 SCHEMA = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID",

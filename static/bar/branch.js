@@ -3,19 +3,24 @@
 import { html, signal, useEffect } from "../vendor/preact.js";
 import { confirmed } from "../parts/dialog.js";
 import { remembered } from "../local_storage.js";
-import { isLeft, say } from "../server.js";
+import { call, isLeft, say } from "../server.js";
 import { complain, session, shownRecording } from "../store.js";
 import { openRun } from "../runs/actions.js";
 import { furthest, inThePast, present } from "../timeline/seek.js";
 
 const seconds = (time) => `${time.toFixed(2)} s`;
 
-/** Sends a command that changes the run; if the run is in its past and is not recorded, asks first. Returns whether it was
+/** Returns whether the server has a recording; it may have been deleted or renamed since it was opened. */
+const isThere = (id) => call("GET", `/api/recordings/${id}`).then(() => true, () => false);
+
+/** Sends a command that changes the run; if the run is in its past and has no recording, asks first. Returns whether it was
  * sent; throws an Error with the reason if it cannot be done. */
 export async function change(what) {
-  if (!inThePast.peek() || shownRecording.peek() !== null) return say(what).then(() => true);
+  const recording = shownRecording.peek();
+  if (!inThePast.peek() || (recording !== null && (await isThere(recording)))) return say(what).then(() => true);
   const [here, end] = [seconds(present.peek()), seconds(furthest.peek())];
-  const text = `The run is at ${here} and has reached ${end}. It is not recorded: if it is changed here, what came after ${here} is lost.`;
+  const why = recording === null ? "It is not recorded" : "Its recording was deleted or renamed";
+  const text = `The run is at ${here} and has reached ${end}. ${why}: if it is changed here, what came after ${here} is lost.`;
   if (!(await confirmed("Change the past?", text, "Change it, and lose the rest"))) return false;
   await say({ ...what, drop: true });
   return true;

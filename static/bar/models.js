@@ -4,7 +4,7 @@ import { effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
 import { call, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
-import { withPresentNames } from "../runs/list.js";
+import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
 import { travel } from "../timeline/seek.js";
@@ -67,8 +67,9 @@ export async function chooseRecording(id, { run = false } = {}) {
 async function holderOf(id, time) {
   const copied = addressed("copied");
   if (copied === null) return id;
-  const { recordings } = await call("GET", "/api/recordings?first=0&most=250");
-  const since = withPresentNames(recordings).filter(({ origin, kept, branched }) => origin === id && kept !== null && kept >= Number(copied) && branched < time);
+  const recordings = [];
+  for await (const part of parts()) recordings.push(...part.recordings);
+  const since = withPresentNames(recordings).filter((run) => run.copied?.[0] === id && run.kept >= Number(copied) && run.copied[1] < time);
   return since.toSorted((one, other) => one.kept - other.kept)[0]?.id ?? id;
 }
 

@@ -17,9 +17,11 @@ const FORMATS = [
   ["events.csv", "CSV of events", "Time, source, kind and data of all events"],
   ["states.csv", "CSV of states", "MuJoCo's state at the start and at the end of each tick; columns have the names of joints"],
 ];
+/** The formats of recordings with a simulation. */
+const OF_STATES = ["replay.html", "states.csv"];
 
 function DownloadLinks({ run }) {
-  const formats = run.problem ? FORMATS.slice(0, 1) : FORMATS.filter(([format]) => (format !== "replay.html" || run.kind === "simulation") && (format !== "states.csv" || run.states > 0));
+  const formats = run.problem ? FORMATS.slice(0, 1) : FORMATS.filter(([format]) => run.states > 0 || !OF_STATES.includes(format));
   const get = (event, format, text) => (event.preventDefault(), download(run, format, text));
   return html`<span class="downloads">
     <${Icon} name="download" />

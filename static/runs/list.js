@@ -26,16 +26,29 @@ export const isComplete = computed(() => runs.value !== null && runs.value.lengt
 let asked = 0;
 let tries = 0;
 
-/** Returns summaries in which `origin` and `ancestors` are present names: branches know a recording by its first name (`named`). */
+/** Returns summaries in which `origin`, `ancestors` and `copied` have present names: branches know a recording by its first name (`named`). */
 export function withPresentNames(list) {
   const present = new Map([...list.map(({ id, named }) => [named, id]), ...list.filter(({ id, named }) => id === named).map(({ id }) => [id, id])]);
-  const nameOf = (name) => present.get(name) ?? name;
-  return list.map((run) => ({ ...run, origin: nameOf(run.origin), ancestors: run.ancestors.map(([name, at]) => [nameOf(name), at]) }));
+  const ids = new Set(list.map(({ id }) => id));
+  const nameOf = (name) => present.get(name) ?? (ids.has(name) ? `${name} (deleted)` : name); // a later one may have the name of one that was deleted
+  const named = ([name, at]) => [nameOf(name), at];
+  return list.map((run) => ({ ...run, origin: nameOf(run.origin), ancestors: run.ancestors.map(named), copied: run.copied && named(run.copied) }));
 }
 
 /** Returns whether a recording is a branch of one that was deleted. */
 export function isOrphan(run) {
   return run.origin !== null && isComplete.value && !runs.value.some(({ id }) => id === run.origin);
+}
+
+/** Yields the list of the server in parts: {recordings, total, warning}. */
+export async function* parts() {
+  let found = 0;
+  let page;
+  do {
+    page = await call("GET", `/api/recordings?first=${found}&most=${PART}`);
+    found += page.recordings.length;
+    yield page;
+  } while (page.recordings.length === PART && found < page.total);
 }
 
 /** Reads the list again, in parts; known entries stay on screen until they are replaced. */
@@ -45,8 +58,7 @@ export async function listRuns() {
   loading.value = true;
   const found = new Map();
   try {
-    do {
-      const page = await call("GET", `/api/recordings?first=${found.size}&most=${PART}`);
+    for await (const page of parts()) {
       if (mine !== asked) return;
       for (const run of page.recordings) found.set(run.id, run);
       batch(() => {
@@ -55,8 +67,7 @@ export async function listRuns() {
         warning.value = page.warning;
         if (runs.value === null || runs.value.length <= found.size) runs.value = withPresentNames([...found.values()]);
       });
-      if (page.recordings.length < PART) break;
-    } while (found.size < total.value);
+    }
     runs.value = withPresentNames([...found.values()]);
   } catch (error) {
     if (mine === asked) problem.value = error.message;

@@ -28,12 +28,12 @@ const open = remembered("branches open", true);
  * one, which has the run's way until then. */
 function lines(list) {
   const known = new Map(list.map((run) => [run.id, run]));
-  const copies = Map.groupBy(list.filter(({ kept }) => kept !== null), (run) => run.origin);
-  const later = (run) => (copies.get(run.origin) ?? []).filter((other) => other.kept > run.kept && other.branched < run.branched);
+  const copies = Map.groupBy(list.filter(({ copied }) => copied), (run) => run.copied[0]);
+  const later = (run) => copies.get(run.copied[0]).filter((other) => other.kept > run.kept && other.copied[1] < run.copied[1]);
   const first = (list) => list.toSorted((one, other) => one.kept - other.kept)[0];
   const stepsOf = (run) => {
-    const copy = run.kept === null ? undefined : first(later(run));
-    if (copy) return [[copy.id, run.branched]];
+    const copy = run.copied ? first(later(run)) : undefined;
+    if (copy) return [[copy.id, run.copied[1]]];
     return run.origin === null || run.branched === null ? [] : [[run.origin, run.branched], ...run.ancestors];
   };
   return (begin) => {

@@ -67,6 +67,21 @@ def test_a_branch_below_a_deleted_recording_follows_the_nearest_one_that_it_come
     }"""
     told = [["at 3.00 s of new", "at 2.00 s"], ["at 3.00 s of new", "at 2.00 s of a recording that was deleted"]]
     assert page.evaluate(renamed) == [["0new", "1b"], ["0c"], *told]  # while the list is read, the others may be in the rest of it
+    reused = """async () => {
+      const [{ treeOf }, { withPresentNames }] = [await part("timeline/branches.js"), await part("runs/list.js")];
+      const run = (id, named, origin, branched) => ({ id, named, origin, branched, ancestors: [], kept: null, copied: null, made: 0 });
+      const known = withPresentNames([run("a", "b", null, null), run("c", "c", "a", 3)]);
+      return treeOf(known, "c").map(({ run, depth }) => depth + run.id);
+    }"""
+    assert page.evaluate(reused) == ["0c"]  # the recording «a» from which it comes was deleted, and another one is called so now
+    copies = """async () => {
+      const { treeOf, sameUntil } = await part("timeline/branches.js");
+      const run = (id, branched, kept, copied) => ({ id, origin: branched && "r", branched, ancestors: [], kept, copied, made: 0 });
+      const all = [run("r", null, null, null), run("r1", 8, 1, ["r", 8]), run("b1", 3, null, null), run("c1", 5, 2, ["b1", 3])];
+      all[2].origin = "c1";
+      return [treeOf(all, "r").map(({ run, depth }) => depth + run.id), sameUntil(all, "r1", "c1")];
+    }"""
+    assert page.evaluate(copies) == [["0r", "1c1", "2b1", "1r1"], 5]  # r1 is a copy of the run r, c1 one of its branch b1
 
 
 @pytest.mark.slow

@@ -150,7 +150,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     pages: Pages, workbench: Served
 ) -> None:
     name = recorded(workbench, "doorway.py")
-    page, other = pages("counting.py", tab="buffers"), pages("counting.py", tab="buffers")
+    page, other = pages("counting.py", tab="buffers", refusals=True), pages("counting.py", tab="buffers")
     for one in (page, other):
         one.goto(f"{workbench.url}/?run={name}")
         expect(one.locator(".recording-banner")).to_contain_text("6.80 s are known")
@@ -166,6 +166,13 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
         page.keyboard.press(key)
 
     order("seek", 1)
+    file = workbench.folder / ".workbench" / "recordings" / f"{name}.sqlite"
+    file.rename(file.with_suffix(".away"))
+    drag("End")
+    expect(asked).to_contain_text("has reached 6.80 s. Its recording was deleted or renamed: if it is changed here")
+    asked.get_by_role("button", name="Cancel").click()
+    expect(asked).to_have_count(0)
+    file.with_suffix(".away").rename(file)
     drag("End")
     shows(page, "#status", r"paused: changed at 1\.00 s; the recording keeps the rest")  # without a question
     expect(page.locator(".recording-banner")).to_contain_text("Recorded as a branch")

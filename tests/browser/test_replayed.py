@@ -50,6 +50,7 @@ def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_w
     trace = Trace("all")
     with Recording(tmp_path / "run.sqlite", program_facts("two.py", "", 1, None)) as recording, RunLimits(trace=trace, recorder=recording):
         trace.listen(recording.event_alone)
+        Waiting().run(0.2)
         for parts in ((), (Wall(name="wall", start=(2, -1), end=(2, 1)),)):
             Simulation(Scene(parts=(Floor(), Mannequin(), *parts)), bodiless={"waiting": Waiting}).run(0.5)
     make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
@@ -57,7 +58,12 @@ def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_w
         page = context.new_page()
         page.set_default_timeout(PATIENCE)
         page.goto((tmp_path / "replay.html").as_uri())
-        expect(page.locator("#outcome")).to_have_text("Shown up to 1.00 s: the run was not over then.")
+        expect(page.locator("#outcome")).to_have_text("Shown up to 1.20 s: the run was not over then.")
+        expect(page.locator("#empty")).to_have_text("No scene is stored before 0.20 s.")
+        expect(page.locator("#canvas")).to_be_hidden()
+        page.get_by_role("slider", name="Time").fill("0.2")
+        expect(page.locator("#empty")).to_be_hidden()
+        expect(page.locator("#canvas")).to_be_visible()
         for width in (690, 850):  # below each other, and beside each other
             page.set_viewport_size({"width": width, "height": 500})
             drawn(page)
@@ -67,7 +73,7 @@ def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_w
             assert filter_box is not None
             assert filter_box["width"] >= 190  # what can be written there is shown whole
         page.get_by_label("follow").uncheck()
-        shapes = "[0.2, 0.7, 0.3].map((time) => { goTo(time); return [drawing.shapes.length, drawing.camera.following]; })"
+        shapes = "[0.4, 0.9, 0.5].map((time) => { goTo(time); return [drawing.shapes.length, drawing.camera.following]; })"
         (one, _), (other, _), again = page.evaluate(shapes)
         assert (other, again) == (one + 1, [one, False])  # the second simulation has a wall more; the view is as it was chosen
 

@@ -12,7 +12,12 @@ from typing import Any
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.recording import Recording
+from actr3d.runner.facts import REACHED, program_facts
+from actr3d.simulation import Simulation
+from actr3d.trace import Trace
+from actr3d.world import Floor, Mannequin, Scene
 from tests.helpers.page import open_tab, until
 from tests.helpers.recording_forgery import forge
 from tests.helpers.workbench_server import Served
@@ -178,16 +183,28 @@ def test_several_downloads_at_once_arrive_whole_and_a_failed_one_is_reported(
         whole = workbench.get(f"/api/recordings/{two[1]}/file", params={"form": form}).content
         assert taken[f"{two[1]}.{form}"].read_bytes() == whole
 
+    path = recordings / "trials.sqlite"
+    with (
+        Recording(path, program_facts(str(workbench.folder / "trials.py"), "", 1, None)) as recording,
+        RunLimits(trace=Trace(), recorder=recording),
+    ):
+        Simulation(Scene(parts=(Floor(), Mannequin()))).run(0.1)
+        recording.fact(REACHED, 0.1)
     spare = recorded(workbench, "counting.py")
     page.get_by_role("button", name="Read the list again").click()
+    page.get_by_label("Search recordings").fill("trials.py")
+    row(page, path.stem).click()
+    expect(page.locator(".downloads a")).to_have_text(list(forms))  # a program with a simulation has a scene
+    page.get_by_label("Search recordings").fill("counting.py")
     row(page, spare).click()
     link = page.get_by_role("link", name="CSV of events")
-    expect(link).to_be_visible()
+    expect(page.locator(".downloads a")).to_have_text(["SQLite", "CSV of events"])
     (recordings / f"{spare}.sqlite").unlink()
     link.evaluate("link => link.click()")  # before the list is read again and has it no more
     expect(page.locator(".toast")).to_contain_text(
         re.compile(r"Not downloaded: CSV of events of counting\.py .*: there is no such recording")
     )
+    path.unlink()
 
 
 def test_a_recording_from_elsewhere_shows_its_code_and_asks_before_it_is_run(

@@ -9,11 +9,14 @@ from array import array
 from collections.abc import Callable
 from itertools import groupby
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from actr3d.cli import main
-from actr3d.recording import Recorded
+from actr3d.recording import Recorded, Recording, reader
+from actr3d.recording.schema import SIMULATION
+from actr3d.runner.facts import program_facts
 from actr3d.runner.replay import replay
 from tests.helpers.recording_forgery import Change, forge
 from tests.helpers.walkers import DRIVER
@@ -99,6 +102,25 @@ def test_what_a_program_records_is_what_its_simulation_records_of_itself(tmp_pat
         assert list(alone.states()) == list(program.states())
         assert list(alone.answers()) == list(program.answers())
         assert [event.to_json() for event in alone.events()] == [event.to_json() for event in program.events()]
+
+
+def test_a_scene_of_many_simulations_is_recorded_once_and_the_recording_can_be_opened(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reader, "OPENING_STEPS", 1_000)
+    path = tmp_path / "many.sqlite"
+    scenes: list[dict[str, Any]] = [{"period_us": 10_000, "compiled": name * 10_000, "world": {}} for name in "abc"]
+    with Recording(path, program_facts("many.py", "", 1, None)) as recording:
+        for number in range(1_000):
+            recording.fact(SIMULATION.format(number), scenes[number % 2])
+        recording.fact("simulation 1000", scenes[2])
+        recording.fact("simulation 1000", None)  # a user changed something before it
+        recording.fact("simulation 1001", scenes[2])
+        recording.fact("simulation 1002", scenes[2])
+    assert path.stat().st_size < 300_000
+    with Recorded(path) as recorded:
+        recorded.check()
+        assert [recorded.facts[SIMULATION.format(number)] for number in range(1_003)] == [*500 * scenes[:2], None, *2 * scenes[2:]]
 
 
 def swap(table: str, change: Callable[[bytes], bytes]) -> Callable[[sqlite3.Connection], None]:

@@ -24,6 +24,7 @@ from tests.server.test_recorded_runs import recording
 from workbench.html_replay import make, shapes
 from workbench.html_replay.make import write_replay
 from workbench.readers import Readers, ReadingError
+from workbench.worker import state_history
 
 EVIL = "</script><img src=x onerror=alert(1)><!--"
 PRINTS = f"from actr3d.actr import *\nprint('''{EVIL}''')\n"
@@ -100,7 +101,11 @@ def test_the_view_follows_the_agent_s_body_whatever_else_moves(tmp_path: Path) -
     assert followed(tmp_path, parts, "walker") == pytest.approx([0, 0], abs=0.05)
 
 
-def test_the_view_follows_the_first_agent_of_the_model_as_the_live_view_does(tmp_path: Path) -> None:
+@pytest.mark.parametrize("shown", [0, make.MAX_EVENTS])
+def test_the_view_follows_the_first_agent_of_the_model_as_the_live_view_does(
+    shown: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(make, "MAX_EVENTS", shown)
     parts = Mannequin(name="first", position=(0, 2)), Mannequin(name="second", position=(0, -2))
     assert followed(tmp_path, parts, "second", "first") == pytest.approx([0, -2], abs=0.05)
 
@@ -182,6 +187,11 @@ def test_long_runs_and_large_scenes_have_bounds(walked: Path, tmp_path: Path, mo
     assert numbers(told["scenes"][0]["times"])[-1] == 1
     assert len(told["events"]["rows"]) == 5
     assert told["events"]["more"] > 50
+    monkeypatch.setattr(make, "MAX_FRAMES", 36)
+    monkeypatch.setattr(state_history, "MAX_BYTES", 60_000)  # so every fourth state is left, and every third would be shown
+    write_replay(walked, tmp_path / "replay.html")
+    times = numbers(inside((tmp_path / "replay.html").read_text(encoding="utf-8"))["scenes"][0]["times"])
+    assert 20 <= len(times) <= 36
     monkeypatch.setattr(shapes, "MAX_CORNERS", 100)
     with pytest.raises(RecordingError, match="too many triangles"):
         write_replay(walked, tmp_path / "replay.html")

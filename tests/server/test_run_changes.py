@@ -138,7 +138,7 @@ def test_a_change_says_what_is_lost_if_the_opened_recording_has_been_deleted(des
     path, opened = reopened(desk, tmp_path, PROGRAM)
     there(opened, 0.1)
     path.unlink()
-    with pytest.raises(RefusedError, match=r"has been deleted: what lies ahead, from 0\.1 to 0\.3 s, would be lost"):
+    with pytest.raises(RefusedError, match=r"has been deleted or renamed: what lies ahead, from 0\.1 to 0\.3 s, would be lost"):
         opened.say("command", word="set_buffer", named={"buffer": "goal", "chunk": "count 9"})
     opened.say("command", word="set_buffer", named={"buffer": "goal", "chunk": "count 9"}, drop=True)
     assert opened.state["reason"] == "changed at 0.10 s; the rest was lost"
@@ -283,6 +283,8 @@ def test_a_change_in_the_past_of_any_run_keeps_what_had_come_as_a_branch(kind: s
     now = events(talk)
     (branch,) = [path for path in recording(talk).parent.glob("*.sqlite") if branched_at(path) is not None]
     path = recording(talk)
+    assert talk.summary(branch.stem).copied == (path.stem, 0.3)
+    assert talk.summary(path.stem).copied is None
     desk.do(talk.session.close())
     for one, goals in ((branch, ["rest 1"]), (path, ["rest 1", "count 90"])):
         with Recorded(one) as recorded:
@@ -357,9 +359,11 @@ def test_a_changed_program_has_the_scenes_of_the_simulations_that_it_makes_now(d
     talk.say("seek", time=0.1)
     talk.until("paused", time=0.1)
     change(talk, "set_buffer", buffer="goal", chunk="narrow")
+    assert talk.say("curves", names=["walker x"])["curves"] == {}
     (kept,) = [one for one in path.parent.glob("*.sqlite") if branched_at(one) is not None]
     talk.say("run")
     talk.until("ended")
+    changed = talk.say("curves", names=["walker x"])
     desk.do(talk.session.close())
     widths: list[list[float]] = []
     for one in (kept, path):
@@ -368,7 +372,7 @@ def test_a_changed_program_has_the_scenes_of_the_simulations_that_it_makes_now(d
             widths.append([len(world["apertures"]) for world in worlds])
             assert replay(recorded).difference is None
     assert widths == [[1, 1], [2]]
-    assert curves_of(kept, names=["walker x"], first=0.0, most=5_000) == curves
+    assert [curves_of(one, names=["walker x"], first=0.0, most=5_000) for one in (kept, path)] == [curves, changed]
 
 
 def test_a_program_says_what_cannot_be_changed(desk: Desk, tmp_path: Path) -> None:

@@ -37,6 +37,7 @@ class Drawing {
     this.grounded = this.program(GROUND_VERTEX, GROUND_FRAGMENT);
     this.square = this.array(this.grounded, { place: [new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]), 2, this.gl.FLOAT, false] });
     this.scenes = scenes.map((scene) => this.drawable(scene));
+    this.begin = this.scenes[0].times[0];
     this.end = this.scenes.at(-1).times.at(-1);
     this.choose(0);
     this.now = 0;
@@ -54,7 +55,7 @@ class Drawing {
 
   // Sets the scene of a time: that of the simulation which has begun last.
   choose(time) {
-    const now = this.scenes.filter(({ times }) => times[0] <= time).at(-1) || this.scenes[0];
+    const now = this.scenes.filter(({ times }) => times[0] <= Math.fround(time)).at(-1) || this.scenes[0];
     if (this.camera) now.camera.following = this.camera.following;
     Object.assign(this, now);
   }

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import html
 import itertools
-from collections.abc import Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.recording import Recorded
-from actr3d.trace import TraceEvent, run_of, top_path
+from actr3d.trace import TraceEvent, top_path
 from actr3d.values import to_json
 from workbench.curves import stride
 from workbench.files import ModelFolder
@@ -50,9 +51,9 @@ def write_replay(path: Path, to: Path, *, models: str | None = None) -> None:
         OSError: If the file cannot be written.
     """
     with Recorded(path) as recorded:
-        facts, events = _facts(recorded, models), _events(recorded)
+        facts, (events, agents) = _facts(recorded, models), _events(recorded)
         found = [one for one in simulations_of(recorded) if one.mj_model.ngeom > 0]
-        scenes = [_scene(one, _agents(events["rows"], one.number), len(found)) for one in found]
+        scenes = [_scene(one, list(agents[one.number]), len(found)) for one in found]
         content = {**facts, "palette": palette(), "events": events, "scenes": scenes}
     # No text from a model can close the HTML element that contains it.
     data = msgspec.json.encode(content).decode().replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
@@ -87,16 +88,19 @@ def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
     }
 
 
-def _events(recorded: Recorded) -> dict[str, Any]:
-    """Returns the events as rows, the number of events left out, and the result separately."""
+def _events(recorded: Recorded) -> tuple[dict[str, Any], Mapping[int, Iterable[str]]]:
+    """Returns the events as rows, the number of events left out, and the result separately; and the names of the agents of each run, by
+    its number, in the order of their first events, which is the model's."""
     rows: list[tuple[float, str, str, str]] = []
+    agents: defaultdict[int, dict[str, None]] = defaultdict(dict)
     result: dict[str, Any] | None = None
     for event in timed_events(recorded):
         if len(rows) < MAX_EVENTS:
             rows.append((event.time, event.source, event.kind, _text(event)))
+        agents[event.run][_agent(event)] = None
         if event.kind == "result":
             result = dict(event.data)
-    return {"rows": rows, "more": recorded.event_count - len(rows), "result": None if result is None else _plain(result)}
+    return {"rows": rows, "more": recorded.event_count - len(rows), "result": None if result is None else _plain(result)}, agents
 
 
 def _plain(values: Mapping[str, Any]) -> dict[str, str]:
@@ -130,11 +134,10 @@ def _word(value: Any) -> str:
     return value if isinstance(value, str) else to_json(value)
 
 
-def _agents(rows: Sequence[tuple[float, str, str, str]], number: int) -> list[str]:
-    """Returns the names of the agents of a simulation, in the order of their first events, which is the model's."""
-    prefix = "" if number == 1 else f"{top_path(number)}."
-    sources = [source for _, source, _, _ in rows if run_of(source) == number]
-    return list(dict.fromkeys(source.removeprefix(prefix).partition(".")[0] for source in sources))
+def _agent(event: TraceEvent) -> str:
+    """Returns the name of an event's agent in its simulation."""
+    prefix = "" if event.run == 1 else f"{top_path(event.run)}."
+    return event.source.removeprefix(prefix).partition(".")[0]
 
 
 def _scene(simulation: RecordedSimulation, agents: Sequence[str], scenes: int) -> dict[str, Any]:
@@ -153,7 +156,8 @@ def _scene(simulation: RecordedSimulation, agents: Sequence[str], scenes: int) -
     bodies = shapes.bodies
     ticks = past.furthest
     most = max(2, min(MAX_FRAMES, MAX_NUMBERS // (7 * max(1, len(bodies)))) // scenes)
-    every = max(1, round(MICROSECONDS / RATE / period), stride(ticks + 1, most - 1))
+    stored = past.every
+    every = stored * max(1, round(MICROSECONDS / RATE / (period * stored)), stride(ticks // stored + 1, most - 1))
     frames = [(tick, state) for tick, state, _ in past.between(0, None) if tick % every == 0 or tick == ticks]
     times = [seconds(simulation.begin + tick * period) for tick, _ in frames]
     poses = poses_of(model, bodies, (state for _, state in frames))

@@ -47,7 +47,12 @@ function goTo(time) {
   get("time").value = now;
   get("clock").textContent = `${now.toFixed(2)} s`;
   events.mark(now);
-  if (drawing) drawing.draw(now);
+  if (!drawing) return;
+  const early = Math.fround(now) < drawing.begin;
+  get("canvas").hidden = early;
+  get("empty").hidden = !early;
+  get("empty").textContent = `No scene is stored before ${drawing.begin.toFixed(2)} s.`;
+  drawing.draw(now);
 }
 
 function play(on) {

@@ -47,7 +47,7 @@ class KeptBranch:
         if self._is_gone or recording is None or self._start.record is None:
             if drop:
                 return None
-            why = "the recording that this run repeats has been deleted" if self._is_gone else "the run is not recorded"
+            why = "the recording that this run repeats has been deleted or renamed" if self._is_gone else "the run is not recorded"
             raise SimulationError(f"{why}: {ahead} would be lost; go to its newest moment, or set `drop` to lose it")
         path, origin = new_branch(Path(self._start.record), self._at), Path(self._start.record).stem
         try:

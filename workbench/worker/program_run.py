@@ -515,7 +515,7 @@ class ProgramRun(ControlledRun):
             branch.undo()
             raise
         self._commands = self._changes.known
-        self._furthest = self._clock
+        self.forget_ahead()
         self._waits = sch, sch.now_us, self._clock
         if self._over:
             self._over = False
