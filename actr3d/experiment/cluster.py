@@ -225,10 +225,8 @@ class _Run:
             return
         if batch.rows[0][0] == 0:
             check_row(batch.rows[0][1], sure=self._sure)
-        table = self._experiment.design.trial
-        rows = [
-            Finished(row={**table(number).columns, **row}, wall_s=round(wall, 4), worker=batch.worker) for number, row, wall in batch.rows
-        ]
+        columns_of = self._experiment.design.columns_of
+        rows = [Finished(row={**columns_of(number), **row}, wall_s=round(wall, 4), worker=batch.worker) for number, row, wall in batch.rows]
         self._done += self._store.add(rows, self._versions, self._experiment.about | batch.about)
         self._failures += sum(one.row["error"] is not None for one in rows)
         self._seconds = sum(one.wall_s for one in rows) / len(rows)

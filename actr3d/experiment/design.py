@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from random import Random
@@ -324,6 +325,15 @@ class Design(Configuration):
         Raises:
             DesignError: If there is no such trial, or `derive` fails.
         """
+        trial = self.underived_trial(number)
+        return replace(trial, values=self.derived(trial.values))
+
+    def underived_trial(self, number: int) -> Trial:
+        """Returns a trial without the values that `derive` computes.
+
+        Raises:
+            DesignError: If there is no such trial.
+        """
         if not 0 <= number < len(self):
             raise DesignError(f"trial: must be a number from 0 to {len(self) - 1} (got {number})")
         who, position = divmod(number, self.trials_of_each)
@@ -334,8 +344,19 @@ class Design(Configuration):
         conditions = " ".join(f"{name}={value}" for name, value in levels.items())
         seed = " ".join(filter(None, [str(self.seed), participant.name, conditions, str(repetition + 1)]))
         drawn = {name: _value(value, f"{seed} {name}") for name, value in self.settings.items()}
-        values = self.derived({**drawn, **participant.parameters, **levels})
+        values = {**drawn, **participant.parameters, **levels}
         return Trial(number=number, participant=participant, position=position + 1, repetition=repetition + 1, values=values, seed=seed)
+
+    def columns_of(self, number: int) -> dict[str, Any]:
+        """Returns the columns of a trial that are known before it runs; without derived values if `derive` fails.
+
+        Raises:
+            DesignError: If there is no such trial.
+        """
+        trial = self.underived_trial(number)
+        with suppress(DesignError):
+            trial = replace(trial, values=self.derived(trial.values))
+        return trial.columns
 
     def derived(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Returns the values of a trial with those that `derive` computes from them.

@@ -91,6 +91,20 @@ def test_failures_are_rows_and_the_rest_goes_on(tmp_path: Path, client: Any) -> 
     assert seen[-1].failures == 6
 
 
+def test_a_trial_whose_drawn_values_cannot_be_derived_is_a_failure_among_others(tmp_path: Path, client: Any) -> None:
+    path = write_experiment(tmp_path, factors='{"mode": ["count"]}', participants=1, trials=12)
+    settings = "settings={'a': Uniform(low=0, high=1), 'b': Uniform(low=0, high=1)}"
+    more = f"limit=60, {settings}, derive=lambda v: {{'n': math.ceil(math.sqrt(v['a'] - v['b']))}}"
+    path.write_text(f"import math\n{path.read_text(encoding='utf-8').replace('limit=60', more)}", encoding="utf-8")
+    rows = list(csv.DictReader(io.StringIO(run_here(client, path, tmp_path / "out"))))
+    assert [row["trial"] for row in rows] == [str(number) for number in range(12)]
+    for row in rows:
+        impossible = float(row["a"]) < float(row["b"])
+        assert row["end"] == ("error" if impossible else "end")
+        assert ("Design.derive: failed with" in row["error"]) == impossible
+    assert len({row["end"] for row in rows}) == 2
+
+
 def test_a_run_that_is_stopped_continues_where_it_was(tmp_path: Path, client: Any) -> None:
     path = write_experiment(tmp_path, participants=2, trials=50, model=SLOW_COUNTER)
     experiment, stop = specify(str(path)), threading.Event()
