@@ -85,6 +85,32 @@ def test_a_report_needs_nothing_from_elsewhere_and_its_links_lead_somewhere(walk
     assert named == {name for name in files(walked) if name != "index.html"}, "each file is named on the page"
 
 
+def test_people_are_compared_at_the_levels_that_the_experiment_has(tmp_path: Path) -> None:
+    recognised = store_rows(
+        tmp_path / "targets",
+        "fan_effect",
+        lambda _: {"reaction_time": 1.2, "correct": True},
+        participants=1,
+        trials=1,
+        values={"probe": "target"},
+    )
+    write_report(recognised)
+    assert [row["probe"] for row in table(recognised, "means_beside_people")] == ["target"] * 9
+    assert "9 rows are left out: the experiment has no probe &#x27;foil&#x27;." in page(recognised)
+
+    path = write_experiment(tmp_path, factors='{"mode": ["count", "shout", None], "n": [1, 2]}')
+    text = "participant,mode,n,rt\n1,count,1,0.2\n1,shout,2,0.3\n1,,2,0.4\n"
+    (people := tmp_path / "people.csv").write_text(text, encoding="utf-8")
+    for mode, left in (("count", 1), ("hang", 0)):
+        counted = store_rows(tmp_path / mode, str(path), count, values={"mode": mode})
+        write_report(counted, human=people)
+        assert f"{3 - left} rows are left out: the experiment has no mode " in page(counted)
+        assert (counted / "report" / "tables" / "means_beside_people.csv").exists() == bool(left)
+    people.write_text(f"{text}1,cuont,1,0.2\n", encoding="utf-8")
+    with pytest.raises(ExperimentError, match=r"people\.csv:5: column 'mode': must be one of: .*count.*\(got 'cuont'\)"):
+        write_report(tmp_path / "count", human=people)
+
+
 def test_the_same_rows_give_the_same_files(tmp_path: Path) -> None:
     path = str(write_experiment(tmp_path, participants=3))
     folders = [store_rows(tmp_path / name / "out", path, count) for name in ("one", "two")]
