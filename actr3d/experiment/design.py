@@ -358,6 +358,19 @@ class Design(Configuration):
             trial = replace(trial, values=self.derived(trial.values))
         return trial.columns
 
+    @cached_property
+    def known_columns(self) -> frozenset[str]:
+        """The names of the columns of all trials that are known before they run. What `derive` computes is that of a trial of each group."""
+        found: set[str] = set()
+        for group in self.groups:
+            first = next(place for place, one in enumerate(self.participants) if one.group == group) * self.trials_of_each
+            found.update(self.underived_trial(first).columns)
+            for number in range(first, first + self.trials_of_each):
+                with suppress(DesignError):
+                    found.update(self.trial(number).columns)
+                    break
+        return frozenset(found)
+
     def derived(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Returns the values of a trial with those that `derive` computes from them.
 

@@ -511,7 +511,7 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     texts = {(shown, plain_text(level)): level for shown, name in names.items() for level in design.factors.get(name, ())}
     lines = [row for row in csv.reader(io.StringIO(read_human_text(path))) if row and not row[0].lstrip().startswith("#")]
     head = [cell.strip() for cell in lines[0]] if lines else []
-    ignored = {*OWN_COLUMNS, *design.trial(0).columns} - {"participant", "group", *names.values()}
+    ignored = {*OWN_COLUMNS, *design.known_columns} - {"participant", "group", *names.values()}
     if "measure" in head:
         place = head.index("measure")
         measures = [row[place].strip() for row in lines[1:] if len(row) > place]

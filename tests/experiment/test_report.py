@@ -265,6 +265,20 @@ def test_the_table_of_trials_can_be_the_data_of_people(tmp_path: Path) -> None:
     assert {tuple(one.conditions) for one in target} == {("group", "n", "mode")}
 
 
+def test_a_parameter_that_only_a_later_group_has_is_no_measure(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, factors='{"mode": ["count", "shout"]}')
+    text = path.read_text(encoding="utf-8").replace(
+        'measures=["rt", "luck"]', "measures=['rt'], derive=lambda v: {'n': v['age']} if v.get('age') else {}"
+    )
+    groups = '"young": Group(participants=2), "old": Group(participants=2, parameters={"age": Uniform(low=3, high=5)})'
+    path.write_text(text.replace('"all": Group(participants=2)', groups), encoding="utf-8")
+    folder = store_rows(tmp_path / "out", str(path), lambda trial: {"rt": 0.1 * trial.values.get("n", 3)})
+    assert read_results(folder).measures == ["rt"]
+    with Store(folder) as store:
+        export(store)
+    assert {one.measure for one in load_target(str(folder / "trials.csv"), specify(str(path)), "rt")} == {"rt"}
+
+
 def test_what_has_no_report_says_why(tmp_path: Path, capsys: Any) -> None:
     path = write_experiment(tmp_path, participants=1)
     empty = tmp_path / "empty"

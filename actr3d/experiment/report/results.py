@@ -142,7 +142,7 @@ def read_results(folder: Path | str) -> Results:
     if not len(rows):
         first = summary(str(failures.sort_values("trial")["error"].iloc[0]))
         raise ExperimentError(f"'{folder}': all {len(failures):,} trials failed; the first one with: {first}")
-    of_design = {*design.trial(0).columns, *OWN_COLUMNS, *renamed.values()}
+    of_design = {*design.known_columns, *OWN_COLUMNS, *renamed.values()}
     kinds = {name: columns[name].type for name in rows if name in columns and name not in of_design}
     return Results(
         label=Path(folder).resolve().name,
