@@ -34,6 +34,8 @@ from actr3d.recording.schema import versions
 
 BATCH = 1.0
 """The intended duration of a batch of trials [s]: long enough to make the cost of a task small."""
+LONGEST_BATCH = 2 * BATCH
+"""The duration after which a batch begins no more trials [s]: its rows are not stored before it ends, and trials may take long."""
 MAX_BATCH = 200
 """The maximum number of trials of a batch."""
 AHEAD = 2
@@ -183,6 +185,8 @@ class _Run:
                 self._take(future, self._waiting.pop(future))
             if self._client.status not in ("running", "connecting"):
                 self._lost()
+        for future in [one for one in self._waiting if one.done()]:
+            self._take(future, self._waiting.pop(future))
         self._client.cancel(list(self._waiting))
 
     def _workers(self) -> int:
@@ -212,7 +216,7 @@ class _Run:
         future.add_done_callback(self._finished.put)
 
     def _take(self, future: Any, numbers: list[int]) -> None:
-        """Stores a batch that has finished; submits it again if its workers, or the scheduler, were ended meanwhile."""
+        """Stores a batch that has finished, and submits what it left; all of it if its workers, or the scheduler, were ended meanwhile."""
         try:
             batch = cast("Batch", future.result(timeout=PATIENCE))
         except KilledWorker:
@@ -230,6 +234,8 @@ class _Run:
         self._done += self._store.add(rows, self._versions, self._experiment.about | batch.about)
         self._failures += sum(one.row["error"] is not None for one in rows)
         self._seconds = sum(one.wall_s for one in rows) / len(rows)
+        if left := numbers[len(rows) :]:
+            self._submit(left)
         self._report()
 
     def _report(self) -> None:
@@ -257,7 +263,7 @@ _LOCK = threading.Lock()
 
 
 def run_batch(specification: str, numbers: Sequence[int], limit: float, expected: Mapping[str, str]) -> Batch:
-    """Runs trials on a worker.
+    """Runs trials on a worker, at least one, as long as a batch may take.
 
     Args:
         specification: The experiment, as JSON.
@@ -279,8 +285,11 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
     with _LOCK:
         process = _PROCESSES.setdefault((_worker("address"), threading.get_ident()), TrialProcess())
     rows: list[tuple[int, Row, float]] = []
+    end = time.perf_counter() + LONGEST_BATCH
     for number in numbers:
         begin = time.perf_counter()
+        if rows and begin >= end:
+            break
         row = process.run(specification, number, limit)
         rows.append((number, row, time.perf_counter() - begin))
     return Batch(rows=rows, worker=worker, about=process.about)

@@ -360,7 +360,7 @@ class Design(Configuration):
 
     @cached_property
     def known_columns(self) -> frozenset[str]:
-        """The names of the columns of all trials that are known before they run. What `derive` computes is that of a trial of each group."""
+        """The names of the columns of all trials that are known before they run; derived ones are those of a trial of each group."""
         found: set[str] = set()
         for group in self.groups:
             first = next(place for place, one in enumerate(self.participants) if one.group == group) * self.trials_of_each

@@ -125,6 +125,33 @@ def test_a_run_that_is_stopped_continues_where_it_was(tmp_path: Path, client: An
     assert len(after) == 300
 
 
+def test_a_batch_that_takes_long_returns_its_rows_and_the_rest_is_another(
+    tmp_path: Path, client: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write_experiment(tmp_path, participants=1, trials=20)
+    expected = run_here(client, path, tmp_path / "usual")
+    monkeypatch.setattr(cluster, "LONGEST_BATCH", 0.0)
+    batch = run_batch(specify(str(path)).specification.to_json(), [3, 4, 5], 60, cluster_versions())
+    assert [number for number, _, _ in batch.rows] == [3]
+    seen: list[int] = []
+    assert run_here(client, path, tmp_path / "short", show=lambda progress: seen.append(progress.done)) == expected
+    assert seen == list(range(61))
+
+
+def test_batches_that_have_finished_are_kept_when_a_run_is_stopped(tmp_path: Path, client: Any) -> None:
+    experiment, stop = specify(str(write_experiment(tmp_path, factors='{"n": [1]}', participants=1, trials=4))), threading.Event()
+
+    def stop_once_all_have_finished(progress: Progress) -> None:
+        while progress.done and not all(future.status == "finished" for future in client.futures.values()):
+            time.sleep(0.02)
+        if progress.done:
+            stop.set()
+
+    with Store.create(tmp_path / "out", experiment.specification) as store:
+        run_experiment(experiment, store, client, show=stop_once_all_have_finished, stop=stop)
+        assert store.count == 4
+
+
 def test_an_experiment_that_cannot_be_loaded_on_a_worker_says_why(tmp_path: Path, client: Any) -> None:
     path = write_experiment(tmp_path)
     path.write_text(path.read_text() + "\nimport os\nif os.environ.get('PYTHONHASHSEED') == '0':\n    raise RuntimeError('not here')\n")
