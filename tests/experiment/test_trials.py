@@ -732,6 +732,13 @@ def test_only_one_of_several_commands_makes_the_experiment_of_a_folder(tmp_path:
             assert store.specification == specifications[made[0]]
 
 
+def test_only_trials_with_an_error_count_as_failures(tmp_path: Path) -> None:
+    rows = [{"Error": "x", "error": None}, {"level": {"n": 1, "error": "low"}, "error": None}, {"error": "ValueError: no"}]
+    with Store.create(tmp_path / "out", specify(str(write_experiment(tmp_path))).specification) as store:
+        store.add([Finished(row={"trial": n, **row}, wall_s=1, worker="0") for n, row in enumerate(rows)], "v")
+        assert store.failures == 1
+
+
 @pytest.mark.parametrize(
     "damage",
     ["UPDATE trial SET data = '{bad' WHERE number = 1", "UPDATE trial SET data = '[]'", "ALTER TABLE trial DROP COLUMN versions"],
@@ -744,4 +751,5 @@ def test_a_damaged_table_is_named(tmp_path: Path, damage: str) -> None:
         file.execute(damage)
         file.commit()
     with Store(tmp_path / "out") as store, pytest.raises(ExperimentError, match=r"trials\.sqlite: is damaged"):
+        assert store.failures >= 0
         list(store.rows())
