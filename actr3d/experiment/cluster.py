@@ -117,7 +117,7 @@ def existing_cluster(address: str) -> Generator[Any]:
             finally:
                 if client.status == "running":
                     with suppress(Exception):
-                        client.run(end_processes, on_error="ignore")
+                        client.run(end_processes, client.id, on_error="ignore")
 
 
 def run_experiment(
@@ -209,7 +209,8 @@ class _Run:
     def _submit(self, batch: list[int]) -> None:
         limit = self._experiment.design.limit
         try:
-            future = self._client.submit(run_batch, self._json, batch, limit, cluster_versions(), pure=False, priority=-batch[0])
+            given = self._json, batch, limit, cluster_versions(), self._client.id
+            future = self._client.submit(run_batch, *given, pure=False, priority=-batch[0])
         except (RuntimeError, OSError):  # the client has just been closed
             self._lost()
         self._waiting[future] = batch
@@ -262,7 +263,7 @@ process. One that is closed stays, so that a batch which is still on its way beg
 _LOCK = threading.Lock()
 
 
-def run_batch(specification: str, numbers: Sequence[int], limit: float, expected: Mapping[str, str]) -> Batch:
+def run_batch(specification: str, numbers: Sequence[int], limit: float, expected: Mapping[str, str], client: str = "") -> Batch:
     """Runs trials on a worker, at least one, as long as a batch may take.
 
     Args:
@@ -270,6 +271,7 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
         numbers: The numbers of the trials.
         limit: The maximum wall time of each [s].
         expected: The versions of the client.
+        client: Its name.
 
     Raises:
         ExperimentError: If the worker has other versions, or the experiment cannot be loaded.
@@ -284,6 +286,7 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
         raise ExperimentError(f"worker {worker}: has other versions: {', '.join(different)}; install the same on both")
     with _LOCK:
         process = _PROCESSES.setdefault((_worker("address"), threading.get_ident()), TrialProcess())
+        process.client = client
     rows: list[tuple[int, Row, float]] = []
     end = time.perf_counter() + LONGEST_BATCH
     for number in numbers:
@@ -295,11 +298,12 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
     return Batch(rows=rows, worker=worker, about=process.about)
 
 
-def end_processes() -> None:
-    """Ends all processes of this one that run trials; a trial of another client begins again."""
+def end_processes(client: str) -> None:
+    """Ends those processes of this one that run the trials of a client."""
     with _LOCK:
         for process in _PROCESSES.values():
-            process.end()
+            if process.client == client:
+                process.end()
 
 
 def _worker(what: str) -> str:

@@ -12,6 +12,7 @@ import sys
 import threading
 import time
 from collections.abc import Generator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
@@ -24,7 +25,7 @@ from actr3d.cli import main
 from actr3d.errors import ExperimentError
 from actr3d.experiment import cluster
 from actr3d.experiment import table as table_of_trials
-from actr3d.experiment.cluster import Progress, cluster_versions, existing_cluster, local_cluster, run_batch, run_experiment
+from actr3d.experiment.cluster import Progress, cluster_versions, end_processes, existing_cluster, local_cluster, run_batch, run_experiment
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
@@ -165,6 +166,26 @@ def test_workers_with_other_versions_are_refused(tmp_path: Path) -> None:
         ExperimentError, match=r"worker \d+: has other versions: mujoco \S+ \(the client has 1\.2\.3\); install the same on both"
     ):
         run_batch(text, [0], 60, {**cluster_versions(), "mujoco": "1.2.3"})
+
+
+def test_a_client_that_leaves_ends_no_process_of_another(tmp_path: Path) -> None:
+    begun, enough = tmp_path / "begun", tmp_path / "enough"
+    lines = ["import os, time", f"with open({str(begun)!r}, 'a') as file:", "    file.write('x')"]
+    lines += [f"while not os.path.exists({str(enough)!r}):", "    time.sleep(0.02)"]
+    waiting = COUNTER.replace("model.run()", "\n".join([*lines, "model.run()"]))
+    text = specify(str(write_experiment(tmp_path, model=waiting))).specification.to_json()
+    before = trial_processes()
+    with ThreadPoolExecutor(1) as pool:
+        batch = pool.submit(run_batch, text, [0], 60, cluster_versions(), "one")
+        while not begun.exists():
+            time.sleep(0.02)
+        end_processes("another")
+        enough.touch()
+        assert batch.result(60).rows[0][1]["end"] == "end"
+    assert begun.read_text() == "x", "the trial began once"
+    assert len(trial_processes() - before) == 1
+    end_processes("one")
+    assert trial_processes() == before
 
 
 def test_no_scheduler_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
