@@ -77,7 +77,7 @@ def plain_text(value: Any) -> str:
     """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`."""
     if value is None or isinstance(value, str) or (isinstance(value, float) and math.isnan(value)):
         return value if isinstance(value, str) and value else "none"
-    return json.dumps(value) if isinstance(value, (list, dict)) else f"{value:g}" if isinstance(value, float) else str(value)
+    return json.dumps(value) if isinstance(value, (list, tuple, dict)) else f"{value:g}" if isinstance(value, float) else str(value)
 
 
 @dataclass(frozen=True, kw_only=True)
