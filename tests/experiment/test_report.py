@@ -25,7 +25,7 @@ from actr3d.experiment.report.results import read_results
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
-from tests.helpers.experiments import write_experiment
+from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.folders import not_writable
 from tests.helpers.reports import store_rows, walk
 
@@ -240,8 +240,27 @@ def test_two_experiments_are_compared(tmp_path: Path) -> None:
     assert main(["report", str(one), "--compare", str(tmp_path / "two")]) == 0
     fit = {row["measure"]: row for row in table(one, "fit_to_other")}
     assert float(fit["rt"]["mean_difference"]) == pytest.approx(-0.1, abs=0.002)
-    assert "differs in: seed = 2 (here None)" in page(one)
+    assert "differs from this experiment (“now”) in: seed: 2 there, 1 now." in page(one)
     assert ">two</text>" in (one / "report/figures/measure_rt.svg").read_text(encoding="utf-8")
+
+
+def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    path, same = (str(write_experiment(folder, participants=3)) for folder in (tmp_path, tmp_path / "elsewhere"))
+    one = store_rows(tmp_path / "one", path, count)
+
+    def compared(name: str, design: str, **options: Any) -> str:
+        write_report(one, compare=store_rows(tmp_path / name, design, count, **options))
+        return re.findall(rf"{name} \(“there”: counting, \d+ trials\) differs from this experiment \(“now”\) in: (.*?)\.</p>", page(one))[0]
+
+    assert compared("same", same) == "nothing that was set"
+    assert (
+        compared("more", same, participants=4, trials=5)
+        == "--participants: {&#x27;all&#x27;: 4} there, {&#x27;all&#x27;: 3} now; --trials: 5 there, 4 now"
+    )
+    Path(same).with_name("counter.py").write_text(f"{COUNTER}\n", encoding="utf-8")
+    says = r"the model differs from line 37 on \(.*/counter\.py\); n: \[1\] there, \[1, 2, 5\] now"
+    assert re.fullmatch(says, compared("other", same, values={"n": 1}))
 
 
 def test_the_table_of_trials_can_be_the_data_of_people(tmp_path: Path) -> None:
