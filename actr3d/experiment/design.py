@@ -500,7 +500,7 @@ class Trial:
     position: int
     """Its place among the trials of its participant, from 1."""
     repetition: int
-    """Its place among the participant's trials of the same levels, from 1."""
+    """The number of the trial among the participant's trials of the same levels, from 1; a random order need not follow it."""
     values: Mapping[str, Any]
     """All values that the design gives, by name."""
     seed: str
@@ -645,5 +645,5 @@ def _random_order(seed: int, name: str, length: int) -> tuple[int, ...]:
 
 
 def _order(of: Design, name: str) -> Sequence[int]:
-    """Returns the numbers of a participant's trials in the order in which they are done: all cells once, then again."""
+    """Returns the numbers of a participant's trials in the order in which they are done; they number all cells once, then again."""
     return range(of.trials_of_each) if of.order == "fixed" else _random_order(of.seed, name, of.trials_of_each)

@@ -60,7 +60,7 @@ MEANINGS = {
     "participant": "The simulated participant.",
     "group": "The participant's group.",
     "position": "The place of the trial among those of its participant, from 1.",
-    "repetition": "The place of the trial among the participant's trials of the same levels, from 1.",
+    "repetition": "The number of the trial among the participant's trials of the same levels, from 1; a random order need not follow it.",
     "seed": "The seed of all random choices in the trial.",
     "end": "What ended the trial.",
     "error": "The error of a trial that failed, with its traceback.",
