@@ -134,9 +134,9 @@ def test_a_batch_that_takes_long_returns_its_rows_and_the_rest_is_another(
     monkeypatch.setattr(cluster, "LONGEST_BATCH", 0.0)
     batch = run_batch(specify(str(path)).specification.to_json(), [3, 4, 5], 60, cluster_versions())
     assert [number for number, _, _ in batch.rows] == [3]
-    seen: list[int] = []
-    assert run_here(client, path, tmp_path / "short", show=lambda progress: seen.append(progress.done)) == expected
-    assert seen == list(range(61))
+    seen: list[Progress] = []
+    assert run_here(client, path, tmp_path / "short", show=seen.append) == expected
+    assert [progress.done for progress in seen] == list(range(61))
 
 
 def test_batches_that_have_finished_are_kept_when_a_run_is_stopped(tmp_path: Path, client: Any) -> None:

@@ -741,11 +741,14 @@ def test_an_experiment_is_made_on_the_disk_also_where_a_command_was_ended_meanwh
     def end_before_the_link(*_: Any) -> None:
         raise KeyboardInterrupt
 
+    def keep(*_: Any, **__: Any) -> None:
+        pass
+
     def note(descriptor: int) -> None:
         synced.append((Path(f"/proc/self/fd/{descriptor}").readlink().name.partition(".json.")[0], (folder / "experiment.json").exists()))
 
     with monkeypatch.context() as during:
-        during.setattr(Path, "unlink", lambda *_, **__: None)
+        during.setattr(Path, "unlink", keep)
         during.setattr(os, "link", end_before_the_link)
         with pytest.raises(KeyboardInterrupt):
             Store.create(folder, specification)
