@@ -170,11 +170,10 @@ def test_workers_with_other_versions_are_refused(tmp_path: Path) -> None:
 
 def test_a_client_that_leaves_ends_no_process_of_another(tmp_path: Path) -> None:
     begun, enough = tmp_path / "begun", tmp_path / "enough"
-    lines = ["import os, time", f"with open({str(begun)!r}, 'a') as file:", "    file.write('x')"]
+    lines = ["import os, time", f"with open({str(begun)!r}, 'a') as file:", "    print(os.getpid(), file=file)"]
     lines += [f"while not os.path.exists({str(enough)!r}):", "    time.sleep(0.02)"]
     waiting = COUNTER.replace("model.run()", "\n".join([*lines, "model.run()"]))
     text = specify(str(write_experiment(tmp_path, model=waiting))).specification.to_json()
-    before = trial_processes()
     with ThreadPoolExecutor(1) as pool:
         batch = pool.submit(run_batch, text, [0], 60, cluster_versions(), "one")
         while not begun.exists():
@@ -182,10 +181,10 @@ def test_a_client_that_leaves_ends_no_process_of_another(tmp_path: Path) -> None
         end_processes("another")
         enough.touch()
         assert batch.result(60).rows[0][1]["end"] == "end"
-    assert begun.read_text() == "x", "the trial began once"
-    assert len(trial_processes() - before) == 1
+    (process,) = map(int, begun.read_text().split())  # the trial began once
+    assert process in trial_processes()
     end_processes("one")
-    assert trial_processes() == before
+    assert process not in trial_processes()
 
 
 def test_no_scheduler_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
