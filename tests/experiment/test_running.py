@@ -176,7 +176,7 @@ def test_a_client_that_leaves_ends_no_process_of_another(tmp_path: Path) -> None
     text = specify(str(write_experiment(tmp_path, model=waiting))).specification.to_json()
     with ThreadPoolExecutor(1) as pool:
         batch = pool.submit(run_batch, text, [0], 60, cluster_versions(), "one")
-        while not begun.exists():
+        while not begun.exists() and not batch.done():
             time.sleep(0.02)
         end_processes("another")
         enough.touch()
