@@ -124,7 +124,7 @@ def literal(text: str) -> Any:
     """
     try:
         return ast.literal_eval(text.capitalize() if text in ("true", "false") else text)
-    except (ValueError, SyntaxError):
+    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):  # see `ast.literal_eval`
         return text
 
 

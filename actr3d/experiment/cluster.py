@@ -34,6 +34,8 @@ from actr3d.recording.schema import versions
 
 BATCH = 1.0
 """The intended duration of a batch of trials [s]: long enough to make the cost of a task small."""
+LONGEST_BATCH = 2 * BATCH
+"""The duration after which a batch begins no more trials [s]: its rows are not stored before it ends, and trials may take long."""
 MAX_BATCH = 200
 """The maximum number of trials of a batch."""
 AHEAD = 2
@@ -115,7 +117,7 @@ def existing_cluster(address: str) -> Generator[Any]:
             finally:
                 if client.status == "running":
                     with suppress(Exception):
-                        client.run(end_processes, on_error="ignore")
+                        client.run(end_processes, client.id, on_error="ignore")
 
 
 def run_experiment(
@@ -183,6 +185,8 @@ class _Run:
                 self._take(future, self._waiting.pop(future))
             if self._client.status not in ("running", "connecting"):
                 self._lost()
+        for future in [one for one in self._waiting if one.done()]:
+            self._take(future, self._waiting.pop(future))
         self._client.cancel(list(self._waiting))
 
     def _workers(self) -> int:
@@ -205,14 +209,15 @@ class _Run:
     def _submit(self, batch: list[int]) -> None:
         limit = self._experiment.design.limit
         try:
-            future = self._client.submit(run_batch, self._json, batch, limit, cluster_versions(), pure=False, priority=-batch[0])
+            given = self._json, batch, limit, cluster_versions(), self._client.id
+            future = self._client.submit(run_batch, *given, pure=False, priority=-batch[0])
         except (RuntimeError, OSError):  # the client has just been closed
             self._lost()
         self._waiting[future] = batch
         future.add_done_callback(self._finished.put)
 
     def _take(self, future: Any, numbers: list[int]) -> None:
-        """Stores a batch that has finished; submits it again if its workers, or the scheduler, were ended meanwhile."""
+        """Stores a batch that has finished, and submits what it left; all of it if its workers, or the scheduler, were ended meanwhile."""
         try:
             batch = cast("Batch", future.result(timeout=PATIENCE))
         except KilledWorker:
@@ -225,13 +230,13 @@ class _Run:
             return
         if batch.rows[0][0] == 0:
             check_row(batch.rows[0][1], sure=self._sure)
-        table = self._experiment.design.trial
-        rows = [
-            Finished(row={**table(number).columns, **row}, wall_s=round(wall, 4), worker=batch.worker) for number, row, wall in batch.rows
-        ]
+        columns_of = self._experiment.design.columns_of
+        rows = [Finished(row={**columns_of(number), **row}, wall_s=round(wall, 4), worker=batch.worker) for number, row, wall in batch.rows]
         self._done += self._store.add(rows, self._versions, self._experiment.about | batch.about)
         self._failures += sum(one.row["error"] is not None for one in rows)
         self._seconds = sum(one.wall_s for one in rows) / len(rows)
+        if left := numbers[len(rows) :]:
+            self._submit(left)
         self._report()
 
     def _report(self) -> None:
@@ -258,14 +263,15 @@ process. One that is closed stays, so that a batch which is still on its way beg
 _LOCK = threading.Lock()
 
 
-def run_batch(specification: str, numbers: Sequence[int], limit: float, expected: Mapping[str, str]) -> Batch:
-    """Runs trials on a worker.
+def run_batch(specification: str, numbers: Sequence[int], limit: float, expected: Mapping[str, str], client: str = "") -> Batch:
+    """Runs trials on a worker, at least one, as long as a batch may take.
 
     Args:
         specification: The experiment, as JSON.
         numbers: The numbers of the trials.
         limit: The maximum wall time of each [s].
         expected: The versions of the client.
+        client: Its name.
 
     Raises:
         ExperimentError: If the worker has other versions, or the experiment cannot be loaded.
@@ -280,19 +286,24 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
         raise ExperimentError(f"worker {worker}: has other versions: {', '.join(different)}; install the same on both")
     with _LOCK:
         process = _PROCESSES.setdefault((_worker("address"), threading.get_ident()), TrialProcess())
+        process.client = client
     rows: list[tuple[int, Row, float]] = []
+    end = time.perf_counter() + LONGEST_BATCH
     for number in numbers:
         begin = time.perf_counter()
+        if rows and begin >= end:
+            break
         row = process.run(specification, number, limit)
         rows.append((number, row, time.perf_counter() - begin))
     return Batch(rows=rows, worker=worker, about=process.about)
 
 
-def end_processes() -> None:
-    """Ends all processes of this one that run trials; a trial of another client begins again."""
+def end_processes(client: str) -> None:
+    """Ends those processes of this one that run the trials of a client."""
     with _LOCK:
         for process in _PROCESSES.values():
-            process.end()
+            if process.client == client:
+                process.end()
 
 
 def _worker(what: str) -> str:

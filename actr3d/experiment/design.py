@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from random import Random
@@ -324,6 +325,15 @@ class Design(Configuration):
         Raises:
             DesignError: If there is no such trial, or `derive` fails.
         """
+        trial = self.underived_trial(number)
+        return replace(trial, values=self.derived(trial.values))
+
+    def underived_trial(self, number: int) -> Trial:
+        """Returns a trial without the values that `derive` computes.
+
+        Raises:
+            DesignError: If there is no such trial.
+        """
         if not 0 <= number < len(self):
             raise DesignError(f"trial: must be a number from 0 to {len(self) - 1} (got {number})")
         who, position = divmod(number, self.trials_of_each)
@@ -334,8 +344,32 @@ class Design(Configuration):
         conditions = " ".join(f"{name}={value}" for name, value in levels.items())
         seed = " ".join(filter(None, [str(self.seed), participant.name, conditions, str(repetition + 1)]))
         drawn = {name: _value(value, f"{seed} {name}") for name, value in self.settings.items()}
-        values = self.derived({**drawn, **participant.parameters, **levels})
+        values = {**drawn, **participant.parameters, **levels}
         return Trial(number=number, participant=participant, position=position + 1, repetition=repetition + 1, values=values, seed=seed)
+
+    def columns_of(self, number: int) -> dict[str, Any]:
+        """Returns the columns of a trial that are known before it runs; without derived values if `derive` fails.
+
+        Raises:
+            DesignError: If there is no such trial.
+        """
+        trial = self.underived_trial(number)
+        with suppress(DesignError):
+            trial = replace(trial, values=self.derived(trial.values))
+        return trial.columns
+
+    @cached_property
+    def known_columns(self) -> frozenset[str]:
+        """The names of the columns of all trials that are known before they run; derived ones are those of a trial of each group."""
+        found: set[str] = set()
+        for group in self.groups:
+            first = next(place for place, one in enumerate(self.participants) if one.group == group) * self.trials_of_each
+            found.update(self.underived_trial(first).columns)
+            for number in range(first, first + self.trials_of_each):
+                with suppress(DesignError):
+                    found.update(self.trial(number).columns)
+                    break
+        return frozenset(found)
 
     def derived(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Returns the values of a trial with those that `derive` computes from them.
@@ -466,7 +500,7 @@ class Trial:
     position: int
     """Its place among the trials of its participant, from 1."""
     repetition: int
-    """Its place among the participant's trials of the same levels, from 1."""
+    """The number of the trial among the participant's trials of the same levels, from 1; a random order need not follow it."""
     values: Mapping[str, Any]
     """All values that the design gives, by name."""
     seed: str
@@ -611,5 +645,5 @@ def _random_order(seed: int, name: str, length: int) -> tuple[int, ...]:
 
 
 def _order(of: Design, name: str) -> Sequence[int]:
-    """Returns the numbers of a participant's trials in the order in which they are done: all cells once, then again."""
+    """Returns the numbers of a participant's trials in the order in which they are done; they number all cells once, then again."""
     return range(of.trials_of_each) if of.order == "fixed" else _random_order(of.seed, name, of.trials_of_each)

@@ -508,10 +508,10 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
         raise ExperimentError(f"human data '{name}': no such file{alternatives(name, known, 'the library has:')}")
     names = {factor_name(name): name for name in (*design.factors, *(one.over for one in design.kept if one.over is not None))}
     levels: Any = {shown: plain_levels(design.factors.get(name, ())) for shown, name in names.items()}
-    texts = {(shown, plain_text(level)): level for shown, name in names.items() for level in design.factors.get(name, ())}
+    texts = {(shown, plain_text(level)): _in_cell(level) for shown, name in names.items() for level in design.factors.get(name, ())}
     lines = [row for row in csv.reader(io.StringIO(read_human_text(path))) if row and not row[0].lstrip().startswith("#")]
     head = [cell.strip() for cell in lines[0]] if lines else []
-    ignored = {*OWN_COLUMNS, *design.trial(0).columns} - {"participant", "group", *names.values()}
+    ignored = {*OWN_COLUMNS, *design.known_columns} - {"participant", "group", *names.values()}
     if "measure" in head:
         place = head.index("measure")
         measures = [row[place].strip() for row in lines[1:] if len(row) > place]
@@ -573,6 +573,11 @@ def check_measure(name: str, known: Collection[str], experiment: Experiment) -> 
         )
 
 
+def _in_cell(level: Any) -> Any:
+    """Returns a level as it is in a `Cell`: lists and dicts as texts."""
+    return plain_text(level) if isinstance(level, (list, tuple, dict)) else level
+
+
 def _check_conditions(target: Mapping[Cell, float], of: Design) -> None:
     """Checks that a design has the conditions of a target.
 
@@ -582,7 +587,7 @@ def _check_conditions(target: Mapping[Cell, float], of: Design) -> None:
     for cell in target:
         for name, level in cell:
             levels = of.factors.get(name)
-            if levels is not None and level not in levels:
+            if levels is not None and level not in map(_in_cell, levels):
                 known = ", ".join(map(str, levels))
                 what = f"{level:g}" if isinstance(level, float) else level
                 raise ExperimentError(f"--target: has a mean for {name} {what}, which the design does not have; it has: {known}")
@@ -599,7 +604,7 @@ def cells_of_target(target: Sequence[TargetMean]) -> dict[Cell, float]:
         raise ExperimentError(f"--target: must have means of one measure; choose it with --measure ({', '.join(measures) or 'none'})")
     found: dict[Cell, float] = {}
     for one in target:
-        cell = tuple(sorted(one.conditions.items()))
+        cell = tuple(sorted((name, _in_cell(level)) for name, level in one.conditions.items()))
         if cell in found:
             raise ExperimentError(f"--target: has two means for {dict(cell)}")
         found[cell] = one.mean
@@ -622,7 +627,7 @@ def cells_of_rows(rows: Any, measure: Measured, columns: Sequence[str]) -> dict[
         for number, value in measure.values(row):
             known = {**row, **number} if measure.over is None else {**row, **number, measure.name: value}
             if isinstance(value, (int, float)) and all(column in known for column in columns):
-                found[tuple(sorted((column, known[column]) for column in columns))][row["participant"]].append(float(value))
+                found[tuple(sorted((column, _in_cell(known[column])) for column in columns))][row["participant"]].append(float(value))
     if not found:
         wrong = next((name for name in (measure.name, *columns) if name not in known), None)
         if wrong is not None:

@@ -64,11 +64,20 @@ def plain_levels(levels: Sequence[Any]) -> list[float] | list[str]:
     return [plain_text(level) for level in levels]
 
 
+def absent_levels(written: Sequence[Any], levels: Sequence[Any]) -> list[str]:
+    """Returns the levels of a factor in the file of a design that an experiment does not have; none of numbers, between which people may
+    be anyway."""
+    if not isinstance(plain_levels([*written, *levels])[0], str):
+        return []
+    there = set(map(plain_text, levels))
+    return [text for text in map(plain_text, written) if text not in there]
+
+
 def plain_text(value: Any) -> str:
     """Returns a level of a factor as text: `fast`, `True`, `none`, `0.5`, `[1, 2]`."""
     if value is None or isinstance(value, str) or (isinstance(value, float) and math.isnan(value)):
         return value if isinstance(value, str) and value else "none"
-    return json.dumps(value) if isinstance(value, (list, dict)) else f"{value:g}" if isinstance(value, float) else str(value)
+    return json.dumps(value) if isinstance(value, (list, tuple, dict)) else f"{value:g}" if isinstance(value, float) else str(value)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,6 +109,8 @@ class Schema:
     factors: Mapping[str, Sequence[float] | Sequence[str]]
     """The factors of the design, and their levels: all numbers, or all texts."""
     measures: Sequence[str]
+    absent: Mapping[str, Sequence[str]] = field(default_factory=dict[str, "Sequence[str]"])
+    """Other levels that people may have; see `absent_levels`. Rows with one of them are left out."""
     parameters: Mapping[str, Parameter] = field(default_factory=dict[str, Parameter])
     """The parameters of the model that the factors are; levels of people must be within their bounds."""
     switches: Sequence[str] = ()
@@ -187,10 +198,21 @@ class _Reader:
         if self._errors:
             more = len(self._errors) - SHOWN
             raise ExperimentError("\n".join([*self._errors[:SHOWN], *([f"... and {more} more errors"] if more > 0 else [])]))
+        absent = [self._absent_in(row) for row in rows.values()]
+        if left_out := sum(map(bool, absent)):
+            these = ", ".join(dict.fromkeys(text for text in absent if text))
+            count = "1 row is" if left_out == 1 else f"{left_out:,} rows are"
+            self._notes.append(f"{count} left out: the experiment has no {these}.")
+            rows = {line: row for (line, row), text in zip(rows.items(), absent, strict=True) if not text}
         measures = [
             one for one in self._schema.measures if (any(row["measure"] == one for row in rows.values()) if published else one in head)
         ]
         return HumanData(name=name, published=published, rows=list(rows.values()), measures=measures, notes=self._notes)
+
+    def _absent_in(self, row: Mapping[str, Any]) -> str:
+        """Returns a factor with its level in a row that the experiment does not have; "" for none."""
+        absent = self._schema.absent.items()
+        return next((f"{name} '{row[name]}'" for name, levels in absent if row[name] in levels), "")
 
     def _check_rows(self, head: list[str], rows: Mapping[int, Mapping[str, Any]], published: bool) -> None:
         """Checks what several rows must have in common: one mean for the same conditions; factors that are in all trials or in none; a
@@ -244,7 +266,7 @@ class _Reader:
         row: dict[str, Any] = {"group": self._one_of(line, "group", given.get("group", ""), self._schema.groups)}
         for name, levels in self._schema.factors.items():
             # The table of trials has an empty cell for the level None.
-            none = "none" if name in given and not published and "none" in levels else ""
+            none = "none" if name in given and not published and "none" in (*levels, *self._schema.absent.get(name, ())) else ""
             row[name] = self._level(line, name, given.get(name, "") or none, levels)
         if published:
             row["measure"] = self._one_of(line, "measure", given["measure"], self._schema.measures, needed=True)
@@ -287,9 +309,9 @@ class _Reader:
     def _level(self, line: int, column: str, text: str, levels: Sequence[float] | Sequence[str]) -> float | str | None:
         """Returns a level of a factor. A number need not be one of the levels of the design, because people can be drawn between them, but
         the model's parameter must allow it."""
-        texts = [level for level in levels if isinstance(level, str)]
-        if texts:
-            return self._one_of(line, column, text, texts)
+        texts, absent = [level for level in levels if isinstance(level, str)], self._schema.absent.get(column, ())
+        if texts or text in absent:
+            return self._one_of(line, column, text, [*texts, *absent])
         value, parameter = self._number(line, column, text), self._schema.parameters.get(column)
         if value is not None and parameter is not None:
             try:

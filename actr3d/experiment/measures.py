@@ -33,9 +33,9 @@ def known_measures(experiment: Experiment) -> tuple[str, ...] | None:
     if experiment.blueprint is None:
         helpers = [text for _, text in model.helpers.values()]
         return None if any("__main__" in text for text in helpers) else variables_set_in(model.text)
-    trial = design.trial(0)
-    limits = limits_of(experiment, trial)
     try:
+        trial = design.trial(0)
+        limits = limits_of(experiment, trial)
         with printing_to(ModelOutput(lambda _: None)), unchecked(), limits, shared_random(limits.program_seed):
             result = experiment.blueprint.build(parameters_for(experiment, trial))[0].result()
     except Exception:  # noqa: BLE001 - the trial fails, with this error in its row

@@ -150,7 +150,8 @@ class Experiment:
         self.specification = specification
         source, model = specification.design, specification.model
         self._module = load_quietly(source, helpers)
-        self._written = design_in(self._module, specification.name, source)
+        self.written = design_in(self._module, specification.name, source)
+        """The design as its file has it, without the numbers and values of the specification."""
         with naming_the_line(source, specification.name, specification.values):
             self.design = self._changed_as(specification)
         compile_source(model.text, model.file)
@@ -180,7 +181,7 @@ class Experiment:
 
     def _changed_as(self, specification: Specification) -> Design:
         """Returns the design of the file with the numbers and values of a specification."""
-        return self._written.changed(participants=specification.participants, trials=specification.trials, values=specification.values)
+        return self.written.changed(participants=specification.participants, trials=specification.trials, values=specification.values)
 
     def differences(self, there: Specification) -> list[str]:
         """Returns the differences of an experiment that is there from this one in words, without those of versions. Designs are compared

@@ -21,6 +21,8 @@ from actr3d.values import to_json
 
 SPECIFICATION, FACTS, TRIALS, LOCK = "experiment.json", "facts.json", "trials.sqlite", "lock"
 """The names of the files in the folder."""
+UNFINISHED = re.compile(rf"{re.escape(SPECIFICATION)}\.[0-9a-f]{{8}}")
+"""The names of files that a command may have left which was ended while it made the folder."""
 CHUNK = 5_000
 """Rows that are read at a time."""
 LATTICE = ("null", "boolean", "integer", "real", "text")
@@ -58,7 +60,7 @@ MEANINGS = {
     "participant": "The simulated participant.",
     "group": "The participant's group.",
     "position": "The place of the trial among those of its participant, from 1.",
-    "repetition": "The place of the trial among the participant's trials of the same levels, from 1.",
+    "repetition": "The number of the trial among the participant's trials of the same levels, from 1; a random order need not follow it.",
     "seed": "The seed of all random choices in the trial.",
     "end": "What ended the trial.",
     "error": "The error of a trial that failed, with its traceback.",
@@ -121,15 +123,19 @@ class Store:
             raise ExperimentError(f"--out: '{path}' is a file; name a new folder")
         try:
             path.mkdir(parents=True, exist_ok=True)
-            if any(path.iterdir()):
+            if not all(UNFINISHED.fullmatch(file.name) for file in path.iterdir()):
                 what = "holds an experiment already; continue it with --resume" if (path / SPECIFICATION).exists() else "is not empty"
                 raise ExperimentError(f"--out: '{path}' {what}, or name a new folder")
             part = path / f"{SPECIFICATION}.{secrets.token_hex(4)}"
-            part.write_text(text, encoding="utf-8")
             try:
+                with part.open("w", encoding="utf-8") as file:
+                    file.write(text)
+                    file.flush()
+                    os.fsync(file.fileno())
                 os.link(part, path / SPECIFICATION)  # fails if another command has been faster
             finally:
-                part.unlink()
+                part.unlink(missing_ok=True)
+            _sync(path)
         except FileExistsError:
             raise ExperimentError(f"--out: '{path}' holds an experiment already; continue it with --resume, or name a new folder") from None
         except OSError as error:
@@ -220,7 +226,9 @@ class Store:
     @property
     def failures(self) -> int:
         """The number of finished trials that failed."""
-        return self._database.execute('SELECT count(*) FROM trial WHERE data LIKE \'%,"error":"%\'').fetchone()[0]
+        # A row that is no JSON is found by those who read it.
+        failed = "CASE WHEN json_valid(data) THEN json_extract(data, '$.error') END"
+        return self._database.execute(f"SELECT count({failed}) FROM trial").fetchone()[0]
 
     def missing(self, total: int) -> Iterator[int]:
         """Yields the numbers of trials without a row, in order.
@@ -318,6 +326,15 @@ def write_whole(path: Path, text: str) -> None:
         part.replace(path)
     except OSError as error:
         raise ExperimentError(f"'{path}': cannot be written ({_why(error)})") from None
+
+
+def _sync(folder: Path) -> None:
+    """Waits until the names in a folder are on the disk."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def _connected(path: Path | str, script: str) -> sqlite3.Connection:

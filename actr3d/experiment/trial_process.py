@@ -47,6 +47,8 @@ class TrialProcess:
         self._folder = ""
         """The folder for the temporary files of the process."""
         self._loaded: str | None = None
+        self.client = ""
+        """The client of the cluster whose trials it runs."""
         self.about: dict[str, dict[str, str | None]] = {}
         """Units and meanings of columns of the loaded experiment, as far as they are known."""
 

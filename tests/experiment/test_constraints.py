@@ -169,6 +169,21 @@ def test_with_two_participants_a_group_nothing_is_tested() -> None:
     assert (results(enough)[3], results(enough)[5]) == (True, True)
 
 
+@pytest.mark.parametrize("conditions", [("fast",), CONDITIONS])
+def test_a_participant_without_an_angle_is_left_out_wherever_it_has_none(conditions: tuple[str, ...]) -> None:
+    """An experiment that goes on may have no trial of it yet, or none in which it set out."""
+    absent = [replace(one, angle=None) if one.participant == "large 4" and one.condition in conditions else one for one in GOOD]
+    found, without = Findings(absent), Findings(one for one in absent if one.angle is not None)
+    assert found.all(boundary=1.16)[:5] == without.all(boundary=1.16)[:5]
+    assert results(found)[3] is True
+    scores = found.scores()
+    assert scores is not None
+    assert scores == without.scores()
+    assert len(scores[0]) == (5 if conditions == ("fast",) else 4)
+    few = Findings(one if one.participant[-1] in "01" else replace(one, angle=None) for one in GOOD)
+    assert few.scores() is None
+
+
 def test_a_critical_ratio_that_the_trials_leave_open_is_not_tested() -> None:
     """One walker turns at the narrower of two apertures: where it begins to turn is not known."""
     two = [one for one in GOOD if one.aperture in (0.5, 0.7) and one.participant == "small 2" and one.condition == "normal"][::2]

@@ -29,10 +29,12 @@ from actr3d.experiment.fit import (
     load_target,
     rmse,
 )
+from actr3d.experiment.report.results import read_results
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store, only_process
 from actr3d.runner.model_factory import Blueprint
 from tests.helpers.experiments import COUNTER, write_experiment
+from tests.helpers.reports import store_rows
 
 LINE = """
 x = 1
@@ -432,3 +434,22 @@ def test_targets_are_means_of_human_data(tmp_path: Path) -> None:
         load_target("fan_efect", design)
     with pytest.raises(ExperimentError, match="have no means of 'speed'; they have: reaction_time"):
         load_target("fan_effect", design, "speed")
+
+
+def test_levels_may_be_lists_and_dicts(tmp_path: Path) -> None:
+    factors = '{"load": [[1, 2], (3,), {"a": [4]}, None]}'
+    design = str(write_experiment(tmp_path, factors=factors, model=COUNTER.replace("n = 3", "n = 3\nload = None")))
+    (people := tmp_path / "people.csv").write_text('participant,load,rt\np,"[1, 2]",1\np,[3],2\np,"{""a"": [4]}",3\np,,4\n')
+    target = load_target(str(people), specify(design))
+    Fit(design, [Range(name="n", low=1, high=3)], target, tmp_path / "fit", None)
+    folder = store_rows(tmp_path / "out", design, lambda trial: {"rt": float(trial.position)})
+    with Store(folder) as store:
+        found = cells_of_rows(store.rows(), Measured(name="rt"), ["group", "load"])
+    assert agreement(found, cells_of_target(target)).cells == 4
+    assert [(level, len(of)) for level, of in read_results(folder).rows.groupby("load")] == [
+        ("[1, 2]", 8),
+        ("[3]", 8),
+        ("none", 8),
+        ('{"a": [4]}', 8),
+    ]
+    assert read_results(folder).factors == {"load": ["[1, 2]", "[3]", '{"a": [4]}', "none"]}

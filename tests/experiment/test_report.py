@@ -25,7 +25,7 @@ from actr3d.experiment.report.results import read_results
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
-from tests.helpers.experiments import write_experiment
+from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.folders import not_writable
 from tests.helpers.reports import store_rows, walk
 
@@ -83,6 +83,32 @@ def test_a_report_needs_nothing_from_elsewhere_and_its_links_lead_somewhere(walk
     assert len(ids) == len(set(ids))
     named = set(re.findall(r"(?:figures|tables)/[\w.]+", text))
     assert named == {name for name in files(walked) if name != "index.html"}, "each file is named on the page"
+
+
+def test_people_are_compared_at_the_levels_that_the_experiment_has(tmp_path: Path) -> None:
+    recognised = store_rows(
+        tmp_path / "targets",
+        "fan_effect",
+        lambda _: {"reaction_time": 1.2, "correct": True},
+        participants=1,
+        trials=1,
+        values={"probe": "target"},
+    )
+    write_report(recognised)
+    assert [row["probe"] for row in table(recognised, "means_beside_people")] == ["target"] * 9
+    assert "9 rows are left out: the experiment has no probe &#x27;foil&#x27;." in page(recognised)
+
+    path = write_experiment(tmp_path, factors='{"mode": ["count", "shout", None], "n": [1, 2]}')
+    text = "participant,mode,n,rt\n1,count,1,0.2\n1,shout,2,0.3\n1,,2,0.4\n"
+    (people := tmp_path / "people.csv").write_text(text, encoding="utf-8")
+    for mode, left in (("count", 1), ("hang", 0)):
+        counted = store_rows(tmp_path / mode, str(path), count, values={"mode": mode})
+        write_report(counted, human=people)
+        assert f"{3 - left} rows are left out: the experiment has no mode " in page(counted)
+        assert (counted / "report" / "tables" / "means_beside_people.csv").exists() == bool(left)
+    people.write_text(f"{text}1,cuont,1,0.2\n", encoding="utf-8")
+    with pytest.raises(ExperimentError, match=r"people\.csv:5: column 'mode': must be one of: .*count.*\(got 'cuont'\)"):
+        write_report(tmp_path / "count", human=people)
 
 
 def test_the_same_rows_give_the_same_files(tmp_path: Path) -> None:
@@ -214,8 +240,27 @@ def test_two_experiments_are_compared(tmp_path: Path) -> None:
     assert main(["report", str(one), "--compare", str(tmp_path / "two")]) == 0
     fit = {row["measure"]: row for row in table(one, "fit_to_other")}
     assert float(fit["rt"]["mean_difference"]) == pytest.approx(-0.1, abs=0.002)
-    assert "differs in: seed = 2 (here None)" in page(one)
+    assert "differs from this experiment (“now”) in: seed: 2 there, 1 now." in page(one)
     assert ">two</text>" in (one / "report/figures/measure_rt.svg").read_text(encoding="utf-8")
+
+
+def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    path, same = (str(write_experiment(folder, participants=3)) for folder in (tmp_path, tmp_path / "elsewhere"))
+    one = store_rows(tmp_path / "one", path, count)
+
+    def compared(name: str, design: str, **options: Any) -> str:
+        write_report(one, compare=store_rows(tmp_path / name, design, count, **options))
+        return re.findall(rf"{name} \(“there”: counting, \d+ trials\) differs from this experiment \(“now”\) in: (.*?)\.</p>", page(one))[0]
+
+    assert compared("same", same) == "nothing that was set"
+    assert (
+        compared("more", same, participants=4, trials=5)
+        == "--participants: {&#x27;all&#x27;: 4} there, {&#x27;all&#x27;: 3} now; --trials: 5 there, 4 now"
+    )
+    Path(same).with_name("counter.py").write_text(f"{COUNTER}\n", encoding="utf-8")
+    says = r"the model differs from line 37 on \(.*/counter\.py\); n: \[1\] there, \[1, 2, 5\] now"
+    assert re.fullmatch(says, compared("other", same, values={"n": 1}))
 
 
 def test_the_table_of_trials_can_be_the_data_of_people(tmp_path: Path) -> None:
@@ -237,6 +282,20 @@ def test_the_table_of_trials_can_be_the_data_of_people(tmp_path: Path) -> None:
     target = load_target(str(tmp_path / "people.csv"), specify(str(path)), "right")
     assert len(target) == 6
     assert {tuple(one.conditions) for one in target} == {("group", "n", "mode")}
+
+
+def test_a_parameter_that_only_a_later_group_has_is_no_measure(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, factors='{"mode": ["count", "shout"]}')
+    text = path.read_text(encoding="utf-8").replace(
+        'measures=["rt", "luck"]', "measures=['rt'], derive=lambda v: {'n': v['age']} if v.get('age') else {}"
+    )
+    groups = '"young": Group(participants=2), "old": Group(participants=2, parameters={"age": Uniform(low=3, high=5)})'
+    path.write_text(text.replace('"all": Group(participants=2)', groups), encoding="utf-8")
+    folder = store_rows(tmp_path / "out", str(path), lambda trial: {"rt": 0.1 * trial.values.get("n", 3)})
+    assert read_results(folder).measures == ["rt"]
+    with Store(folder) as store:
+        export(store)
+    assert {one.measure for one in load_target(str(folder / "trials.csv"), specify(str(path)), "rt")} == {"rt"}
 
 
 def test_what_has_no_report_says_why(tmp_path: Path, capsys: Any) -> None:

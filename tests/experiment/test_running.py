@@ -12,6 +12,7 @@ import sys
 import threading
 import time
 from collections.abc import Generator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
@@ -24,7 +25,7 @@ from actr3d.cli import main
 from actr3d.errors import ExperimentError
 from actr3d.experiment import cluster
 from actr3d.experiment import table as table_of_trials
-from actr3d.experiment.cluster import Progress, cluster_versions, existing_cluster, local_cluster, run_batch, run_experiment
+from actr3d.experiment.cluster import Progress, cluster_versions, end_processes, existing_cluster, local_cluster, run_batch, run_experiment
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
@@ -91,6 +92,20 @@ def test_failures_are_rows_and_the_rest_goes_on(tmp_path: Path, client: Any) -> 
     assert seen[-1].failures == 6
 
 
+def test_a_trial_whose_drawn_values_cannot_be_derived_is_a_failure_among_others(tmp_path: Path, client: Any) -> None:
+    path = write_experiment(tmp_path, factors='{"mode": ["count"]}', participants=1, trials=12)
+    settings = "settings={'a': Uniform(low=0, high=1), 'b': Uniform(low=0, high=1)}"
+    more = f"limit=60, {settings}, derive=lambda v: {{'n': math.ceil(math.sqrt(v['a'] - v['b']))}}"
+    path.write_text(f"import math\n{path.read_text(encoding='utf-8').replace('limit=60', more)}", encoding="utf-8")
+    rows = list(csv.DictReader(io.StringIO(run_here(client, path, tmp_path / "out"))))
+    assert [row["trial"] for row in rows] == [str(number) for number in range(12)]
+    for row in rows:
+        impossible = float(row["a"]) < float(row["b"])
+        assert row["end"] == ("error" if impossible else "end")
+        assert ("Design.derive: failed with" in row["error"]) == impossible
+    assert len({row["end"] for row in rows}) == 2
+
+
 def test_a_run_that_is_stopped_continues_where_it_was(tmp_path: Path, client: Any) -> None:
     path = write_experiment(tmp_path, participants=2, trials=50, model=SLOW_COUNTER)
     experiment, stop = specify(str(path)), threading.Event()
@@ -111,6 +126,33 @@ def test_a_run_that_is_stopped_continues_where_it_was(tmp_path: Path, client: An
     assert len(after) == 300
 
 
+def test_a_batch_that_takes_long_returns_its_rows_and_the_rest_is_another(
+    tmp_path: Path, client: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write_experiment(tmp_path, participants=1, trials=20)
+    expected = run_here(client, path, tmp_path / "usual")
+    monkeypatch.setattr(cluster, "LONGEST_BATCH", 0.0)
+    batch = run_batch(specify(str(path)).specification.to_json(), [3, 4, 5], 60, cluster_versions())
+    assert [number for number, _, _ in batch.rows] == [3]
+    seen: list[Progress] = []
+    assert run_here(client, path, tmp_path / "short", show=seen.append) == expected
+    assert [progress.done for progress in seen] == list(range(61))
+
+
+def test_batches_that_have_finished_are_kept_when_a_run_is_stopped(tmp_path: Path, client: Any) -> None:
+    experiment, stop = specify(str(write_experiment(tmp_path, factors='{"n": [1]}', participants=1, trials=4))), threading.Event()
+
+    def stop_once_all_have_finished(progress: Progress) -> None:
+        while progress.done and not all(future.status == "finished" for future in client.futures.values()):
+            time.sleep(0.02)
+        if progress.done:
+            stop.set()
+
+    with Store.create(tmp_path / "out", experiment.specification) as store:
+        run_experiment(experiment, store, client, show=stop_once_all_have_finished, stop=stop)
+        assert store.count == 4
+
+
 def test_an_experiment_that_cannot_be_loaded_on_a_worker_says_why(tmp_path: Path, client: Any) -> None:
     path = write_experiment(tmp_path)
     path.write_text(path.read_text() + "\nimport os\nif os.environ.get('PYTHONHASHSEED') == '0':\n    raise RuntimeError('not here')\n")
@@ -124,6 +166,25 @@ def test_workers_with_other_versions_are_refused(tmp_path: Path) -> None:
         ExperimentError, match=r"worker \d+: has other versions: mujoco \S+ \(the client has 1\.2\.3\); install the same on both"
     ):
         run_batch(text, [0], 60, {**cluster_versions(), "mujoco": "1.2.3"})
+
+
+def test_a_client_that_leaves_ends_no_process_of_another(tmp_path: Path) -> None:
+    begun, enough = tmp_path / "begun", tmp_path / "enough"
+    lines = ["import os, time", f"with open({str(begun)!r}, 'a') as file:", "    print(os.getpid(), file=file)"]
+    lines += [f"while not os.path.exists({str(enough)!r}):", "    time.sleep(0.02)"]
+    waiting = COUNTER.replace("model.run()", "\n".join([*lines, "model.run()"]))
+    text = specify(str(write_experiment(tmp_path, model=waiting))).specification.to_json()
+    with ThreadPoolExecutor(1) as pool:
+        batch = pool.submit(run_batch, text, [0], 60, cluster_versions(), "one")
+        while not begun.exists() and not batch.done():
+            time.sleep(0.02)
+        end_processes("another")
+        enough.touch()
+        assert batch.result(60).rows[0][1]["end"] == "end"
+    (process,) = map(int, begun.read_text().split())  # the trial began once
+    assert process in trial_processes()
+    end_processes("one")
+    assert process not in trial_processes()
 
 
 def test_no_scheduler_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -732,6 +732,46 @@ def test_only_one_of_several_commands_makes_the_experiment_of_a_folder(tmp_path:
             assert store.specification == specifications[made[0]]
 
 
+def test_an_experiment_is_made_on_the_disk_also_where_a_command_was_ended_meanwhile(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    specification, folder = specify(str(write_experiment(tmp_path))).specification, tmp_path / "out"
+    synced: list[tuple[str, bool]] = []
+
+    def end_before_the_link(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    def keep(*_: Any, **__: Any) -> None:
+        pass
+
+    def note(descriptor: int) -> None:
+        synced.append((Path(f"/proc/self/fd/{descriptor}").readlink().name.partition(".json.")[0], (folder / "experiment.json").exists()))
+
+    with monkeypatch.context() as during:
+        during.setattr(Path, "unlink", keep)
+        during.setattr(os, "link", end_before_the_link)
+        with pytest.raises(KeyboardInterrupt):
+            Store.create(folder, specification)
+    assert [path.name.startswith("experiment.json.") for path in folder.iterdir()] == [True]
+    monkeypatch.setattr(os, "fsync", note)
+    with Store.create(folder, specification) as store:
+        assert store.specification == specification
+    assert synced == [("experiment", False), ("out", True)]
+    with pytest.raises(ExperimentError, match="holds an experiment already"):
+        Store.create(folder, specification)
+    (other := tmp_path / "other").mkdir()
+    (other / "experiment.json.txt").touch()
+    with pytest.raises(ExperimentError, match="is not empty"):
+        Store.create(other, specification)
+
+
+def test_only_trials_with_an_error_count_as_failures(tmp_path: Path) -> None:
+    rows = [{"Error": "x", "error": None}, {"level": {"n": 1, "error": "low"}, "error": None}, {"error": "ValueError: no"}]
+    with Store.create(tmp_path / "out", specify(str(write_experiment(tmp_path))).specification) as store:
+        store.add([Finished(row={"trial": n, **row}, wall_s=1, worker="0") for n, row in enumerate(rows)], "v")
+        assert store.failures == 1
+
+
 @pytest.mark.parametrize(
     "damage",
     ["UPDATE trial SET data = '{bad' WHERE number = 1", "UPDATE trial SET data = '[]'", "ALTER TABLE trial DROP COLUMN versions"],
@@ -743,5 +783,7 @@ def test_a_damaged_table_is_named(tmp_path: Path, damage: str) -> None:
     with closing(sqlite3.connect(tmp_path / "out" / "trials.sqlite")) as file:
         file.execute(damage)
         file.commit()
-    with Store(tmp_path / "out") as store, pytest.raises(ExperimentError, match=r"trials\.sqlite: is damaged"):
-        list(store.rows())
+    with Store(tmp_path / "out") as store:
+        assert store.failures == 0
+        with pytest.raises(ExperimentError, match=r"trials\.sqlite: is damaged"):
+            list(store.rows())

@@ -130,7 +130,11 @@ def test_settings_know_texts(lamp: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "value"), [("true", True), ("False", False), ("false", False), ("None", None), ("no", "no"), ("0.5", 0.5)]
+    ("text", "value"),
+    [
+        *[("true", True), ("False", False), ("false", False), ("None", None), ("no", "no"), ("0.5", 0.5)],
+        *[(text, text) for text in ("{{}}", "{[1]: 2}", "-" * 5_000 + "1", "-" * 100_000 + "1", "1 + " * 3_000 + "1")],
+    ],
 )
 def test_settings_of_unknown_parameters_are_python_literals(text: str, value: Any) -> None:
     assert read_settings([f"lit={text}"], ()) == {"lit": value}

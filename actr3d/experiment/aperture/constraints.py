@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -118,11 +118,11 @@ class Findings:
 
     def has(self, group: str, condition: str, level: float) -> bool:
         """Returns whether a cell has an angle."""
-        return any(level in self._people[group, condition, one] for one in self.people(group))
+        return any(level in self._angles(group, condition, one) for one in self.people(group))
 
     def mean(self, group: str, condition: str, level: float) -> float:
         """Returns the mean angle of a cell, of the participants' means [degrees]."""
-        found = (self._people[group, condition, one].get(level) for one in self.people(group))
+        found = (self._angles(group, condition, one).get(level) for one in self.people(group))
         return mean(mean(angles) for angles in found if angles)
 
     def margin(self, group: str, condition: str, level: float) -> float | None:
@@ -136,13 +136,17 @@ class Findings:
 
     def trials(self, group: str, condition: str, participant: str) -> list[Passing]:
         """Returns a participant's trials with an angle."""
-        return self._trials[group, condition, participant]
+        return self._trials.get((group, condition, participant), [])
 
     def curve(self, group: str, condition: str, participant: str) -> tuple[list[float], list[float]]:
         """Returns a participant's ratios of aperture to shoulders, and its mean angles at them [degrees]."""
-        angles, shoulders = self._people[group, condition, participant], self._shoulders[group, participant]
+        angles, shoulders = self._angles(group, condition, participant), self._shoulders[group, participant]
         scale = shoulders if self.by == "aperture" else 1.0
         return [level / scale for level in sorted(angles)], [mean(angles[level]) for level in sorted(angles)]
+
+    def _angles(self, group: str, condition: str, participant: str) -> Mapping[float, list[float]]:
+        """Returns a participant's angles by level; empty without any."""
+        return self._people.get((group, condition, participant), {})
 
     @property
     def pair(self) -> tuple[str, str] | None:
@@ -197,9 +201,15 @@ class Findings:
 
     def scores(self) -> tuple[list[float], list[float]] | None:
         """Returns the mean angle on the ratio, from 1.0 to 1.4, of each participant of the large and of the small group [degrees]."""
-        if self.pair is None or min(len(self.people(group)) for group in self.pair) < FEWEST:
+        if self.pair is None:
             return None
         curves = {key: self.curve(*key) for key in sorted(self._people) if key[0] in self.pair}
+        there = [
+            [(group, one) for one in self.people(group) if any((group, condition, one) in curves for condition in self.conditions)]
+            for group in self.pair
+        ]
+        if min(map(len, there)) < FEWEST:
+            return None
         low = max((min(ratios) for ratios, _ in curves.values()), default=math.inf)
         high = min((max(ratios) for ratios, _ in curves.values()), default=-math.inf)
         # Outside of a participant's own ratios nothing is known: only what all have is compared.
@@ -211,7 +221,7 @@ class Findings:
             of = [curves[group, condition, one] for condition in self.conditions if (group, condition, one) in curves]
             return float(np.mean([np.interp(ratios, *curve) for curve in of]))
 
-        small, large = ([score(group, one) for one in self.people(group)] for group in self.pair)
+        small, large = ([score(*one) for one in those] for those in there)
         return large, small
 
     @cached_property

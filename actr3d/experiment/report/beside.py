@@ -48,6 +48,7 @@ def schema_of(parts: Sequence[Results]) -> Schema:
         groups=parts[0].groups,
         factors=factors,
         measures=measures,
+        absent=parts[0].absent,
         parameters=parts[0].parameters,
         switches=[name for part in parts for name in part.measures if name in part.columns and part.columns[name].type == "boolean"],
         ignored=[name for name in parts[0].columns if name not in (*measures, *factors)],
@@ -66,7 +67,8 @@ def human_data_of(design: Design, parts: Sequence[Results], file: Path | str | N
         ExperimentError: If the file does not follow the schema.
     """
     if file is not None:
-        return read_human_data(file, schema_of(parts)), ""
+        data = read_human_data(file, schema_of(parts))
+        return (data, "") if data.rows or data.published else (None, f"{data.name}: {' '.join(data.notes)}")
     name, known = design.human, library_human_data()
     if name is None:
         return None, "The design names no human data, and none were given with --human."

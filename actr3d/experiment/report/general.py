@@ -114,23 +114,15 @@ def comparison_section(results: Results, other: Results, parts: Sequence[Results
     title = f"Compared with {other.label}"
     if beside is None:
         return Section(title=title, parts=[Caution(f"{other.label} has no measure in common with {results.label}.")])
-    one, two = results.specification, other.specification
-    different = [name for name in ("design", "model") if getattr(one, name) != getattr(two, name)]
-    changed = [f"{name} = {two.values.get(name)!r} (here {one.values.get(name)!r})" for name in sorted({*one.values, *two.values})]
-    changed = [text for name, text in zip(sorted({*one.values, *two.values}), changed, strict=True) if _differs(name, one, two)]
-    text = (
-        f"{other.label} ({two.name}, {len(other.rows):,} trials) differs in: {', '.join([*different, *changed]) or 'nothing that was set'}."
-    )
+    different = [*other.specification.differences(results.specification), *other.design.differences(results.design)]
+    what = f"{other.label} (“there”: {other.specification.name}, {len(other.rows):,} trials)"
+    text = f"{what} differs from this experiment (“now”) in: {'; '.join(different) or 'nothing that was set'}."
     fit = fit_to(parts, beside)
     found: list[str | Table | Plot | Caution] = [text]
     if len(fit):
         found.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
         found.append(_matched_table(parts, beside, "means_beside_other", f"Means beside those of {other.label}"))
     return Section(title=title, parts=found)
-
-
-def _differs(name: str, one: Any, two: Any) -> bool:
-    return one.values.get(name) != two.values.get(name)
 
 
 def _matched_table(parts: Sequence[Results], beside: Beside, name: str, title: str) -> Table:

@@ -11,7 +11,7 @@ from typing import Any
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment.design import OWN_COLUMNS, Design
-from actr3d.experiment.human_data import factor_name, plain_levels, plain_text
+from actr3d.experiment.human_data import absent_levels, factor_name, plain_levels, plain_text
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.specification import Experiment, Specification
 from actr3d.experiment.store import CHUNK, Column, Store, summary
@@ -51,6 +51,8 @@ class Results:
     """The measures that are texts."""
     parameters: Mapping[str, Parameter] = field(default_factory=dict[str, Parameter])
     """The parameters of the model that are factors, by the names of the columns of `rows`."""
+    absent: Mapping[str, Sequence[str]] = field(default_factory=dict[str, "Sequence[str]"])
+    """The levels of the factors that the file of the design has, and this experiment does not; see `absent_levels`."""
     numbers: Mapping[str, list[float]] = field(default_factory=dict[str, "list[float]"])
     """What the values of a trial are numbered by, such as `block`, and its numbers: a further factor. See `by_number`."""
 
@@ -140,7 +142,7 @@ def read_results(folder: Path | str) -> Results:
     if not len(rows):
         first = summary(str(failures.sort_values("trial")["error"].iloc[0]))
         raise ExperimentError(f"'{folder}': all {len(failures):,} trials failed; the first one with: {first}")
-    of_design = {*design.trial(0).columns, *OWN_COLUMNS, *renamed.values()}
+    of_design = {*design.known_columns, *OWN_COLUMNS, *renamed.values()}
     kinds = {name: columns[name].type for name in rows if name in columns and name not in of_design}
     return Results(
         label=Path(folder).resolve().name,
@@ -154,6 +156,7 @@ def read_results(folder: Path | str) -> Results:
         measures=[name for name, kind in kinds.items() if kind in NUMBERS and rows[name].notna().any()],
         outcomes=[name for name, kind in kinds.items() if kind == "text"],
         parameters={renamed[one.name]: one for one in experiment.parameters if one.name in renamed},
+        absent={renamed[name]: absent_levels(levels, design.factors[name]) for name, levels in experiment.written.factors.items()},
     )
 
 
