@@ -428,7 +428,7 @@ class Design(Configuration):
         number = self.trials if trials is None else trials
         return replace(self, factors=factors, groups=groups, settings=settings, trials=number, **own)
 
-    def _changeable(self) -> dict[str, Any]:
+    def changeable(self) -> dict[str, Any]:
         """Returns all that `changed` can change: numbers by their options, and values by name."""
         own = {name: getattr(self, name) for name in OWN_NUMBERS}
         of_groups: dict[str, dict[str, Any]] = {"--participants": {}}
@@ -439,7 +439,7 @@ class Design(Configuration):
 
     def differences(self, other: Design) -> list[str]:
         """Returns in words how this design ("there") and another one of the same text ("now") were changed differently; see `changed`."""
-        this, that = self._changeable(), other._changeable()
+        this, that = self.changeable(), other.changeable()
         found: list[str] = []
         for name in {**this, **that}:
             if name not in this or name not in that or _key(this[name]) != _key(that[name]):
