@@ -510,7 +510,7 @@ class Person(ACTR):
             self.nearest = deep if self.nearest == inf else max(self.nearest, deep)
         if comes:
             self.nearest, self.patient_until = deep, now + self.random.uniform(*PATIENCE)
-        free = now > min(self.patient_until, self.taken + FORGET) if waits else far < self.step or not comes
+        free = now > min(self.patient_until, self.taken + FORGET) if waits else far < self.step or not (comes and self.motor.walking)
         elapsed, self.seen_at = min(now - self.seen_at, LONGEST), now
         self.b_door.modify(far=far, direction=left, near=far < STEPS * self.step, free=free)
         if waits:

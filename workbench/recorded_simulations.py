@@ -50,6 +50,8 @@ def simulations_of(recorded: Recorded) -> list[RecordedSimulation]:
         RecordingError: If the recording is damaged.
     """
     found: dict[int, RecordedSimulation] = {}
+    if recorded.facts["kind"] == "simulation" and (facts := facts_of_simulation(recorded, 1)) is not None:
+        found[1] = RecordedSimulation(number=1, begin=0, facts=facts)
     for state, time in _timed_states(recorded):
         if state.run not in found:
             facts = facts_of_simulation(recorded, state.run)

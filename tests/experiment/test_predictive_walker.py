@@ -103,14 +103,10 @@ def test_of_two_doorways_it_passes_one(model: Any, seed: int) -> None:
     assert not simulation.world.bodies["walker"].get("contacts")
 
 
-@pytest.mark.parametrize(
-    ("seed", "aperture"),
-    [(1, 0.8), (213, 1.0), pytest.param(2, 0.8, marks=pytest.mark.slow), pytest.param(3, 0.8, marks=pytest.mark.slow)],
-)
-def test_of_two_people_one_waits_while_the_other_passes_the_doorway(model: Any, capsys: Any, seed: int, aperture: float) -> None:
-    """With the seed 213, one sets out while the other, whose patience has ended, too, still stands and plans."""
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.slow)])
+def test_of_two_people_one_waits_while_the_other_passes_the_doorway(model: Any, capsys: Any, seed: int) -> None:
     with RunLimits(seed=seed, until=20):
-        simulation = model.build(model.Parameters(aperture=aperture, scene="two people"))
+        simulation = model.build(model.Parameters(aperture=0.8, scene="two people"))
         simulation.run()
     told = capsys.readouterr().out.splitlines()
     assert told[-1].endswith("is through")
