@@ -140,7 +140,7 @@ def test_simulations_of_a_program_are_recorded_once_however_often_it_goes_back(d
     assert agrees(path)
     write_states_csv(path, tmp_path / "states.csv")
     table = (tmp_path / "states.csv").read_text(encoding="utf-8").splitlines()
-    assert table[0].startswith("run,tick,state_0,")
+    assert table[0].startswith("run,tick,mujoco time [s],")
     assert [line.split(",")[:2] for line in table[1:]] == [["1", str(tick)] for tick in range(len(moments))]
 
 
