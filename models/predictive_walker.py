@@ -476,12 +476,16 @@ class Person(ACTR):
         if way.state == "on":
             self.pass_in(max(0, self.through_at - self.now()) * before / self.speed)
         if motor.walking:
-            motor.walk(forward(self.speed, self.turned))
+            motor.walk(self.forward())
 
     def go_at(self, speed):
         """Sets the walking speed [m/s], and with it the length of a step and the time for a turn, which takes one step."""
         frequency = Gait().steps_per_second(speed)
         self.speed, self.step, self.turning_time = speed, speed / frequency, TURNING / frequency
+
+    def forward(self):
+        """Returns its speed along the way [m/s], as far as it has turned."""
+        return forward(self.speed, self.turned)
 
     def pass_in(self, seconds):
         """Starts the timer until the walker is through the doorway."""
@@ -530,7 +534,7 @@ class Person(ACTR):
         """Returns where the doorway must be, by its own movement since it knew it last: distance [m] and direction [degrees]."""
         far, left = float(self.b_door["far"]), radians(float(self.b_door["direction"]))
         elapsed = self.now() - self.seen_at
-        ahead = far * cos(left) - (forward(self.speed, self.turned) * elapsed if self.motor.walking else 0)
+        ahead = far * cos(left) - (self.forward() * elapsed if self.motor.walking else 0)
         aside = far * sin(left)
         return hypot(ahead, aside), degrees(atan2(aside, ahead) - self.rate * elapsed)
 
@@ -572,8 +576,8 @@ class Person(ACTR):
         self.judged = "turned" if float(turn) else "as it is"
         self.chosen = float(turn)
         self.turn_shoulders(float(turn), self.turning_time)
-        motor.walk(forward(self.speed, self.turned))
-        self.pass_in((float(far) + BEHIND) / forward(self.speed, self.turned))
+        motor.walk(self.forward())
+        self.pass_in((float(far) + BEHIND) / self.forward())
         b_goal.set("do:pass")
 
     def leave(b_goal="do:pass", way="state:over"):

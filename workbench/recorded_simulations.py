@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -49,10 +48,12 @@ def simulations_of(recorded: Recorded) -> list[RecordedSimulation]:
     Raises:
         RecordingError: If the recording is damaged.
     """
+    if recorded.facts["kind"] == "simulation":
+        return _alone(recorded)
     found: dict[int, RecordedSimulation] = {}
-    if recorded.facts["kind"] == "simulation" and (facts := facts_of_simulation(recorded, 1)) is not None:
-        found[1] = RecordedSimulation(number=1, begin=0, facts=facts)
-    for state, time in _timed_states(recorded):
+    for state, time in timed(recorded):
+        if not isinstance(state, State):
+            continue
         if state.run not in found:
             facts = facts_of_simulation(recorded, state.run)
             if state.tick > 0 or facts is None:
@@ -72,9 +73,12 @@ def facts_of_simulation(recorded: Recorded, number: int) -> dict[str, Any] | Non
     return None if facts is None or "compiled" not in facts else facts
 
 
-def _timed_states(recorded: Recorded) -> Iterator[tuple[State, int]]:
-    """Yields the states, each with the time since the start of the program [us]; this is 0 for the start of a simulation alone."""
-    if recorded.facts["kind"] == "simulation":
-        yield from ((state, 0) for state in recorded.states())
-    else:
-        yield from ((thing, time) for thing, time in timed(recorded) if isinstance(thing, State))
+def _alone(recorded: Recorded) -> list[RecordedSimulation]:
+    """Returns the simulation of a recording that was made of it alone; none if its scene is unknown."""
+    facts = facts_of_simulation(recorded, 1)
+    if facts is None:
+        return []
+    one = RecordedSimulation(number=1, begin=0, facts=facts)
+    for state in recorded.states():
+        one.past.add_recorded(state)
+    return [one]

@@ -124,12 +124,6 @@ def new_branch(recording: Path, moment: float) -> Path:
     return recording.with_name(f"{recording.stem}-at-{moment:.3f}s-{stamp()}{recording.suffix}")
 
 
-def branched_at(path: Path) -> float | None:
-    """Returns the time at which the past of a branch's run was changed [s]; None if the file is not a branch."""
-    copied = copied_from(path.stem)
-    return None if copied is None else copied[1]
-
-
 def copied_from(name: str) -> tuple[str, float] | None:
     """Returns the recording that a branch was copied from when the past of its run was changed, and the time of the change [s]; None if
     the name is not that of a branch."""
@@ -143,6 +137,6 @@ def superfluous_branches(recording: Path) -> list[Path]:
     if labels.problem is not None:
         return []
     labelled = labels.all()
-    branches = [path for path in recording.parent.glob(f"{recording.stem}-at-*{recording.suffix}") if branched_at(path) is not None]
+    branches = [path for path in recording.parent.glob(f"{recording.stem}-at-*{recording.suffix}") if copied_from(path.stem) is not None]
     found = [path for path in branches if path.stem not in labelled]
     return sorted(found, key=written, reverse=True)[MAX_BRANCHES:]

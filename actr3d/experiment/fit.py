@@ -574,7 +574,7 @@ def check_measure(name: str, known: Collection[str], experiment: Experiment) -> 
 
 
 def _in_cell(level: Any) -> Any:
-    """Returns a level as it is in a `Cell`: lists and dicts as texts."""
+    """Returns a level in the form that a `Cell` has: lists and dicts as texts."""
     return plain_text(level) if isinstance(level, (list, tuple, dict)) else level
 
 

@@ -50,8 +50,8 @@ def _check_facts(recorded: Recorded) -> None:
         missing = [f"the source of '{facts['file']}'"]
     if missing:
         raise RecordingError(f"the recording '{recorded.path}' cannot be run again: it lacks {', '.join(missing)}")
-    if facts["kind"] == "program" or facts.get("built"):
-        is_program = facts["kind"] == "program"
+    is_program = facts["kind"] == "program"
+    if is_program or facts.get("built"):
         known = PROGRAM | {name for name in facts if is_of_simulation(name)} if is_program else BUILT
         unknown = sorted(facts.keys() - known)
         if unknown:

@@ -35,7 +35,7 @@ def folder(talk: Talk) -> Path:
 
 
 def found(talk: Talk) -> list[Path]:
-    return sorted(path for path in folder(talk).glob("*.sqlite") if retention.branched_at(path) is not None)
+    return sorted(path for path in folder(talk).glob("*.sqlite") if retention.copied_from(path.stem) is not None)
 
 
 def there(talk: Talk, tick: int) -> None:
@@ -157,5 +157,5 @@ def test_branches_of_one_run_are_not_without_number(tmp_path: Path) -> None:
         path.touch()
     assert len(retention.superfluous_branches(origin)) == 3
     assert set(retention.superfluous_branches(origin)) <= set(made)
-    assert retention.branched_at(made[2]) == 0.02
-    assert retention.branched_at(origin) is None
+    assert retention.copied_from(made[2].stem) == (origin.stem, 0.02)
+    assert retention.copied_from(origin.stem) is None

@@ -20,7 +20,7 @@ from workbench.exports import curves_of
 from workbench.labels import Label
 from workbench.program_time import timed_events
 from workbench.recordings import Recordings
-from workbench.retention import Keeping, branched_at
+from workbench.retention import Keeping, copied_from
 
 AGENT = counter_text("PMNoise(noise=0.3)")
 PROGRAM = AGENT + "\nfirst = Counter()\nfirst.run(0.4)\nsecond = Counter()\nsecond.run(3)\nprint('over')\n"
@@ -276,12 +276,12 @@ def test_a_change_in_the_past_of_any_run_keeps_what_had_come_as_a_branch(kind: s
     talk.until("paused", time=0.3)
     with pytest.raises(RefusedError, match="no buffer"):
         change(talk, "set_buffer", buffer="nothing", chunk="count 9")
-    assert not [path for path in recording(talk).parent.glob("*.sqlite") if branched_at(path) is not None]
+    assert not [path for path in recording(talk).parent.glob("*.sqlite") if copied_from(path.stem) is not None]
     change(talk, "set_buffer", buffer=f"{below}goal", chunk="count 90")
     assert talk.state["reason"] == "changed at 0.30 s; a branch was kept"
     there(talk, 0.7)
     now = events(talk)
-    (branch,) = [path for path in recording(talk).parent.glob("*.sqlite") if branched_at(path) is not None]
+    (branch,) = [path for path in recording(talk).parent.glob("*.sqlite") if copied_from(path.stem) is not None]
     path = recording(talk)
     assert talk.summary(branch.stem).copied == (path.stem, 0.3)
     assert talk.summary(path.stem).copied is None
@@ -360,7 +360,7 @@ def test_a_changed_program_has_the_scenes_of_the_simulations_that_it_makes_now(d
     talk.until("paused", time=0.1)
     change(talk, "set_buffer", buffer="goal", chunk="narrow")
     assert talk.say("curves", names=["walker x"])["curves"] == {}
-    (kept,) = [one for one in path.parent.glob("*.sqlite") if branched_at(one) is not None]
+    (kept,) = [one for one in path.parent.glob("*.sqlite") if copied_from(one.stem) is not None]
     talk.say("run")
     talk.until("ended")
     changed = talk.say("curves", names=["walker x"])
