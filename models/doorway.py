@@ -13,7 +13,7 @@ With a doorway of 0.5 m it turns its shoulders, and touches nothing. With 0.8 m 
 What to try
 -----------
 - `width = 0.5`: turns its shoulders; `width = 0.8`: walks straight on.
-- `width = 0.6, speed = 2`: has less time to turn.
+- `width = 0.5, speed = 2`: has less time to turn, and still passes.
 - `width = 0.2`: too narrow even for a body turned sideways: it walks on against the wall, until you stop it.
 - Move the slider of the aperture while it walks: a decision is not changed.
 """

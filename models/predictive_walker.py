@@ -37,8 +37,8 @@ What to try
 - `contact_cost = 60.0`: fears to touch the wall.
 - `gait = False`: glides, and so did all the bodies of its experience.
 - `units = "metres"`: compares passages by their room in metres. Then a large walker turns less than a small one at the same ratio.
-- In the 3D view, the label above the walker has the turn that it plans, and the costs that it expects of turns; the overlay «handles» moves its
-  start.
+- In the 3D view, the label above the walker has the turn that it plans, and the costs that it expects of turns; the overlay «handles to move
+  things» moves its start.
 """
 
 from dataclasses import dataclass, replace
