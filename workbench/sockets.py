@@ -40,12 +40,12 @@ def index(request: Request) -> HTMLResponse:
 
 @router.get("/viser/")
 def any_scene(request: Request) -> Response:
-    """Redirects to the 3D view of the newest session that has one."""
+    """Redirects to the 3D view of the newest session that has one, with the same options."""
     sessions: Sessions = request.app.state.sessions
     shown = [session.name for session in sessions.all() if sessions.view(session.name) is not None]
     if not shown:
         return PlainTextResponse("there is no 3D view yet: run a model that has a world\n", status_code=404)
-    return RedirectResponse(f"/viser/{shown[-1]}/", status_code=307)
+    return RedirectResponse(request.url.replace(scheme="", netloc="", path=f"/viser/{shown[-1]}/"), status_code=307)
 
 
 @router.get("/viser/{session}/")

@@ -433,7 +433,8 @@ def test_viser_is_behind_the_login_and_nowhere_else(server: Served) -> None:
                         await socket.recv()
 
     asyncio.run(talk())
-    assert server.get("/viser/", follow_redirects=True).status_code == 200
+    shown = server.get("/viser/?panel=hidden", follow_redirects=True)
+    assert (shown.status_code, shown.url.query) == (200, b"panel=hidden")
     server.post(f"/api/sessions/{name}/close")
     assert server.get(f"/viser/{name}/").status_code == 404
 
