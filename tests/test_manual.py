@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -72,3 +75,31 @@ def test_a_posture_is_stored_as_the_page_on_motor_control_shows() -> None:
     chunk = motor.parent.posture.chunk
     (shown,) = re.findall(r"`(posture:rotate_torso .*?)`", page("concepts/motor"))
     assert {f"{slot}:{value}" for slot, value in chunk.items()} >= set(shown.split()) - {"..."}
+
+
+# -- tables that docs/generate makes
+
+
+@pytest.fixture
+def tables(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Returns the module that makes the tables."""
+    monkeypatch.setattr(sys, "path", [str(ROOT / "docs" / "generate"), *sys.path])
+    return import_module("tables")
+
+
+def test_the_tables_of_commands_and_sensors_say_what_an_imported_body_needs_for_each(tables: Any) -> None:
+    rows = [line.split(" | ") for name in ("actuators", "sensors") for line in tables.table(name).splitlines()]
+    bodies = {row[0].strip("| `"): row[2] for row in rows}
+    assert bodies["pose"] == "any"
+    assert bodies["view"] == "mannequin, car, imported with an eye"
+    assert bodies["teleport"] == "mannequin, car, imported with a free joint"
+    assert bodies["posture"] == "mannequin, car, imported with a velocity servo"
+
+
+def test_the_table_of_motor_commands_has_commands_only(tables: Any) -> None:
+    assert {"start", "joint"}.isdisjoint(re.findall(r"^\| `(\w+)", tables.table("motor commands"), re.MULTILINE))
+
+
+def test_the_table_of_defaults_has_the_numbers_of_agents_and_memories(tables: Any) -> None:
+    found = tables.table("defaults")
+    assert all(f"`{default}`" in found for default in ("production_time=0.05", "threshold=0", "finst_time=3.0", "decay=0.5", "strength=1"))

@@ -1,9 +1,9 @@
 """The physical side: scenes, bodies, sensors, actuators. The only place that compiles a MuJoCo model."""
 
 from actr3d.world import actuators, changes, sensors
-from actr3d.world.anatomy import BODY_KINDS
+from actr3d.world.anatomy import BODY_KINDS, NamedMovement
 from actr3d.world.bodies import Car, ImportedBody, Load, Mannequin
-from actr3d.world.body import Body, BodyState
+from actr3d.world.body import Body, BodyState, actuator, sensor
 from actr3d.world.bounding_box import BoundingBox
 from actr3d.world.gait import Gait
 from actr3d.world.imported import Imported
@@ -26,13 +26,16 @@ __all__ = [
     "Loose",
     "Mannequin",
     "Mesh",
+    "NamedMovement",
     "Scene",
     "Track",
     "Wall",
     "World",
     "WorldState",
+    "actuator",
     "actuators",
     "changes",
+    "sensor",
     "sensors",
 ]
 

@@ -15,8 +15,10 @@ from unittest import mock
 
 import workbench_pages
 
+import actr3d.actr
 import actr3d.cli
 import workbench.cli
+from actr3d.actr import ACTR, BlendingMemory, Buffer, DMSpreading, Memory, MemorySubModule, Partial, ProceduralSubModule
 from actr3d.change import CHANGES
 from actr3d.experiment import find_measures
 from actr3d.motor import Motor
@@ -25,11 +27,22 @@ from actr3d.trace_kinds import KINDS
 from actr3d.vision import DETECTORS
 from actr3d.vision.feature import slot_names
 from actr3d.world import Car, ImportedBody, Mannequin, Scene, World
+from actr3d.world.anatomy import Embodied
 from actr3d.world.body import ACTUATORS, SENSORS
 from actr3d.world.command_registry import BodyFunction
 
-ROBOT = """<mujoco><worldbody><body name="base"><joint name="slide" type="slide"/><geom size="0.1"/><site name="eye"/></body></worldbody>
-  <actuator><motor name="pull" joint="slide"/></actuator></mujoco>"""
+ROBOT = """<mujoco><worldbody><body name="base"><{joint} name="joint"/><geom size="0.1"/><site name="eye"/></body></worldbody>
+  <actuator>{actuator}</actuator></mujoco>"""
+BODIES: Mapping[str, Embodied] = {
+    "mannequin": Mannequin(),
+    "car": Car(),
+    "imported": ImportedBody(name="plain", text=ROBOT.format(joint="joint", actuator="")),
+    "imported with an eye": ImportedBody(name="seeing", text=ROBOT.format(joint="joint", actuator=""), eye="eye"),
+    "imported with a free joint": ImportedBody(name="free", text=ROBOT.format(joint="freejoint", actuator="")),
+    "imported with a motor": ImportedBody(name="motor", text=ROBOT.format(joint="joint", actuator='<motor joint="joint"/>')),
+    "imported with a velocity servo": ImportedBody(name="servo", text=ROBOT.format(joint="joint", actuator='<velocity joint="joint"/>')),
+}
+"""Bodies by what they are called in the tables; of the imported ones, each has only what its name says."""
 WALKER = tuple(Path(__file__).parents[2] / file for file in ("models/predictive_walker.py", "actr3d/world/gait.py"))
 KINDS_OF_NUMBERS = ("fitted", "published", "chosen", "derived")
 WORDS = {"fitted with": "fitted", "chosen": "chosen", "follows from": "derived"}
@@ -82,8 +95,7 @@ def _first_sentence(of: Callable[..., object]) -> str:
 
 
 def _body_functions(functions: Mapping[str, BodyFunction[Any]]) -> str:
-    parts = (Mannequin(), Car(position=(9, 0)), ImportedBody(name="imported", text=ROBOT, eye="eye", position=(0, 9, 0)))
-    bodies = World(Scene(parts=parts)).bodies
+    bodies = {called: World(Scene(parts=(part,))).bodies[part.name] for called, part in BODIES.items()}
     rows: list[Sequence[str]] = []
     for name, function in functions.items():
         has = [kind for kind, body in bodies.items() if function.available(body)]
@@ -116,15 +128,34 @@ def features() -> str:
 
 @_registered
 def motor_commands() -> str:
-    """Returns the table of all commands of the motor module."""
-    own = [name for name in vars(Motor) if not name.startswith("_") and inspect.isfunction(getattr(Motor, name))]
-    documented = [getattr(Motor, name) for name in own if inspect.getdoc(getattr(Motor, name))]
+    """Returns the table of all commands of the motor module: the public methods that return nothing, without the start of the module."""
+    own = [method for name, method in vars(Motor).items() if not name.startswith("_") and inspect.isfunction(method)]
+    commands = [method for method in own if inspect.signature(method).return_annotation == "None" and method is not Motor.start]
     rows: list[Sequence[str]] = []
-    for command in documented:
+    for command in commands:
         parameters = list(inspect.signature(command).parameters.values())[1:]
         takes = ", ".join(str(parameter.replace(annotation=inspect.Parameter.empty)) for parameter in parameters)
         rows.append((_code(f"{command.__name__}({takes})"), _first_sentence(command)))
     return _rows(("Command", "Meaning"), rows)
+
+
+@_registered
+def defaults() -> str:
+    """Returns the table of the numbers of an agent, its memory and their modules where a model gives none."""
+    spreading = DMSpreading(Memory(Buffer()))
+    rows = [("an agent (`ACTR`)", _code(f"production_time={inspect.getattr_static(ACTR, 'production_time')}"))]
+    for kind in (Memory, BlendingMemory, *_below(MemorySubModule), Partial, *_below(ProceduralSubModule)):
+        given = inspect.signature(kind).parameters.values()
+        numbers = [f"{one.name}={one.default}" for one in given if isinstance(one.default, (int, float))]
+        numbers += [f"strength={spreading.strength}"] if kind is DMSpreading else []
+        if numbers:
+            rows.append((_code(kind.__name__), ", ".join(map(_code, numbers))))
+    return _rows(("Of", "Defaults"), rows)
+
+
+def _below(kind: type) -> list[type]:
+    """Returns the classes of `actr3d.actr` that derive from a class."""
+    return [one for _, one in inspect.getmembers(actr3d.actr, inspect.isclass) if issubclass(one, kind)]
 
 
 @_registered
