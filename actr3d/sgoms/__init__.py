@@ -1,4 +1,7 @@
-"""SGOMS: planning units, unit tasks, methods and operators on top of ACT-R, with interruption and resumption."""
+"""SGOMS (sociotechnical GOMS: goals, operators, methods, selection rules): planning units on top of ACT-R.
+
+They can be interrupted and resumed.
+"""
 
 from actr3d.sgoms.agent import SGOMS
 from actr3d.sgoms.units import Ordered, Situated
