@@ -53,6 +53,7 @@ class Normal(Configuration):
     """A normal distribution, truncated if there are bounds: `Normal(mean=0.404, sd=0.02, low=0.3, high=0.7)`."""
 
     mean: float
+    """The mean before truncation."""
     sd: Annotated[float, Ge(0)]
     """The standard deviation before truncation."""
     low: float | None = None
@@ -99,7 +100,9 @@ class Uniform(Configuration):
     """A uniform distribution: `Uniform(low=0, high=0.5)`."""
 
     low: float
+    """The lower bound of values."""
     high: float
+    """The upper bound of values."""
 
     def __post_init__(self) -> None:
         """Checks the values.
@@ -145,8 +148,11 @@ class Measured(Configuration):
     """A measure of a trial: `Measured(name="latency", unit="s", over="block")`."""
 
     name: str
+    """The name of its column, which is that of a variable of the program or a field of the model's measure."""
     unit: str | None = None
+    """Its unit, such as `s`; None without one."""
     meaning: str = ""
+    """What it means, for the list of columns."""
     over: str | None = None
     """What is numbered if a trial has a list of values, such as `block`; None if it has one value. The table of trials has a column for
     each number, `latency_1`, `latency_2`, ...; fits and reports take the number as another factor."""
@@ -496,7 +502,9 @@ class Trial:
     """A trial of a design."""
 
     number: int
+    """Its number in the table of trials."""
     participant: Participant
+    """The participant who does it."""
     position: int
     """Its place among the trials of its participant, from 1."""
     repetition: int
@@ -504,6 +512,7 @@ class Trial:
     values: Mapping[str, Any]
     """All values that the design gives, by name."""
     seed: str
+    """The seed of its run."""
 
     @property
     def columns(self) -> dict[str, Any]:

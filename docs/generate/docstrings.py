@@ -11,7 +11,7 @@ import griffe
 
 ROOT = Path(__file__).parents[2]
 
-PACKAGES = ("actr", "camera", "motor", "recording", "sgoms", "simulation", "vision", "world")
+PACKAGES = ("actr", "camera", "experiment", "motor", "recording", "sgoms", "simulation", "vision", "world")
 """The packages of `actr3d` that the reference describes."""
 
 

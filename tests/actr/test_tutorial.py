@@ -1,6 +1,6 @@
 """Every model does what its golden trace says, and does it again.
 
-After an intended change of behaviour, `python tests/golden/make.py` records the golden traces again.
+After an intended change of behaviour, `uv run python tests/golden/make.py` records the golden traces again.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Records the golden traces: what each model of `models` does with seed 1, event by event.
 
-Usage: `python tests/golden/make.py` writes them all anew, `python tests/golden/make.py addition tutorial/counting` only
+Usage: `uv run python tests/golden/make.py` writes them all anew, `uv run python tests/golden/make.py addition tutorial/counting` only
 those named. The trace of `models/tutorial/counting.py` is `tests/golden/tutorial/counting.jsonl`, that of another variant of a model
 `tests/golden/aperture_passage@replication.jsonl`. Look at the difference
 (`git diff tests/golden`) before keeping it: every changed line is a changed behaviour.
