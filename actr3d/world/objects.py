@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import mujoco
 import numpy as np
@@ -18,7 +18,14 @@ from actr3d.world.scene_objects import yaw_quaternion
 
 PRESSED = 0.01
 """Greatest depth of one object in another after it was moved by hand [m]: contacts as stiff as those of walls push that out
-at less than 3 m/s, but fling away, or crush without bounds, what is deeper. Source: chosen for this library."""
+at less than 3 m/s if it can give way, but fling away, or crush without bounds, what is deeper. Source: chosen for this library."""
+
+SQUEEZED = 0.00075
+"""The same for an object that is pressed from two sides, so that it cannot give way [m]: with 2 mm at each
+side, contacts fling a person out of a gap at 7 m/s. Source: chosen for this library."""
+
+AGAINST = -0.5
+"""The cosine of the angle between two pushes from which an object between them counts as squeezed. Source: chosen, 120 degrees."""
 
 FARTHEST = 10_000.0
 """Greatest coordinate of a place [m]: there, the numbers of 32 bits with which scenes are drawn still distinguish millimetres."""
@@ -31,6 +38,19 @@ LONGEST = 60.0
 
 Pose = tuple[float, float, float]
 """Place and heading of an object: x [m], y [m], heading [rad]."""
+
+
+class Depth(NamedTuple):
+    """How deep objects are in another one [m]."""
+
+    depth: float
+    """The greatest depth."""
+    permitted: float
+    """The greatest depth after something was moved by hand."""
+
+
+NONE = Depth(0.0, PRESSED)
+"""That of objects that do not touch."""
 
 
 class Objects:
@@ -153,8 +173,8 @@ class Objects:
             raise WorldError(f"no object '{name}' to {what}{alternatives(name, names)}")
         return self._bodies[name].root if name in self._bodies else self._obstacles[name] if name in self._obstacles else self._loose[name]
 
-    def depths(self, roots: Collection[int], *, others: Literal["all", "fixed", "moving"] = "all") -> dict[str, float]:
-        """Returns by name the depth of some objects in each other object [m].
+    def depths(self, roots: Collection[int], *, others: Literal["all", "fixed", "moving"] = "all") -> dict[str, Depth]:
+        """Returns by name the depth of some objects in each other object.
 
         Args:
             roots: The MuJoCo bodies that are the roots of these objects.
@@ -163,20 +183,50 @@ class Objects:
         """
         physics = self._physics
         physics.refresh()
-        model, contacts = physics.mj_model, physics.mj_data.contact
-        depths: dict[str, float] = {}
+        contacts, depths = physics.mj_data.contact, dict[str, Depth]()
         pairs: list[list[int]] = contacts.geom.tolist()
-        for pair, distance in zip(pairs, contacts.dist.tolist(), strict=True):
-            mine = [geom >= 0 and int(model.body_rootid[model.geom_bodyid[geom]]) in roots for geom in pair]
-            geom = pair[mine[0]]  # of the other object, if one of the two is
-            if mine[0] != mine[1] and geom >= 0 and (others == "all" or self._kind(geom) == others):
-                other = physics.owners[geom]
-                depths[other] = max(depths.get(other, 0.0), -distance)
+        kinds = [[self._kind(geom) for geom in pair] for pair in pairs]
+        ends = [[self._root(geom) for geom in pair] for pair in pairs]
+        pushes = [n for n, kind in enumerate(kinds) if others != "fixed" or others in kind]  # what can move gives way to what is fixed
+        for n, distance in enumerate(contacts.dist.tolist()):
+            mine = [end in roots for end in ends[n]]
+            side = int(mine[0])  # that of the other object, if one of the two is
+            if mine[0] != mine[1] and pairs[n][side] >= 0 and others in ("all", kinds[n][side]):
+                other = physics.owners[pairs[n][side]]
+                known, permitted = depths.get(other, NONE)
+                if -distance > SQUEEZED and any(self._against(ends, n, push) for push in pushes):
+                    permitted = SQUEEZED
+                depths[other] = Depth(max(known, -distance), permitted)
         return depths
+
+    def _against(self, ends: list[list[int]], one: int, other: int) -> bool:
+        """Returns whether two contacts push an object that can move from two sides.
+
+        Args:
+            ends: The MuJoCo bodies that are the roots of the two objects in each contact; -1 for soft objects.
+            one: One of the contacts.
+            other: The other one.
+        """
+        normals = self._physics.mj_data.contact.frame[[one, other], :3]  # from the first end to the second
+        cosine = float(normals[0] @ normals[1])
+        return any(
+            root >= 0 and root == ends[other][end] and self._moves(root) and (cosine if side == end else -cosine) < AGAINST
+            for side, root in enumerate(ends[one])
+            for end in (0, 1)
+        )
+
+    def _root(self, geom: int) -> int:
+        model = self._physics.mj_model
+        return int(model.body_rootid[model.geom_bodyid[geom]]) if geom >= 0 else -1
+
+    def _moves(self, body: int) -> bool:
+        return bool(self._physics.mj_model.body_treeid[body] >= 0)
 
     def _kind(self, geom: int) -> str:
         model = self._physics.mj_model
-        if model.body_treeid[model.geom_bodyid[geom]] >= 0:
+        if geom < 0:
+            return "soft"
+        if self._moves(model.geom_bodyid[geom]):
             return "moving"
         return "plane" if int(model.geom_type[geom]) == int(mujoco.mjtGeom.mjGEOM_PLANE) else "fixed"
 
@@ -255,9 +305,9 @@ def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, 
     return x, y, None if heading is None else checked_angle(heading, f"{what}: heading")
 
 
-def deeper(before: Mapping[str, float], after: Mapping[str, float]) -> list[str]:
-    """Returns the objects in which something is now too deep, given the depths in them before and after it was moved [m]."""
-    return [name for name, depth in after.items() if depth > max(PRESSED, before.get(name, 0.0))]
+def deeper(before: Mapping[str, Depth], after: Mapping[str, Depth]) -> list[str]:
+    """Returns the objects in which something is now too deep, given the depths in them before and after it was moved."""
+    return [name for name, (depth, permitted) in after.items() if depth > max(permitted, before.get(name, NONE).depth)]
 
 
 def _turn(quaternion: NDArray[np.float64], heading: float) -> None:

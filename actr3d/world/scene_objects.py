@@ -134,7 +134,7 @@ class Aperture(Configuration):
     """The direction in which one walks through it [rad], 0 along x."""
 
     closing: Annotated[float, Ge(0)] = 0.0
-    """How fast it closes from the start on, unless something in it holds it open [m/s]."""
+    """How fast it closes from the start on [m/s]. What only one segment touches is pushed aside; what both press holds it open."""
 
     segment: Length = 2.5
     """Length of each wall segment [m]. Segments keep their length and slide when the width changes."""
