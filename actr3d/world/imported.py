@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from annotated_types import MinLen
-from mujoco import MjSpec
+from mujoco import MjSpec, mjtGeom
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, WorldError, did_you_mean
@@ -23,6 +23,13 @@ from actr3d.world.scene_objects import Heading, Name
 
 HIDDEN_GROUP = 3
 """First geom group that MuJoCo's viewers do not draw: files use it for geoms with contacts only."""
+
+GEOM_FIELDS = (
+    *("type", "pos", "quat", "fromto", "size", "mass", "density", "typeinertia", "meshname", "hfieldname", "fitscale"),
+    *("contype", "conaffinity", "condim", "priority", "friction", "solmix", "solref", "solimp", "margin", "gap", "surfacevel", "adhesion"),
+    *("fluid_ellipsoid", "fluid_coefs", "material", "rgba", "group", "castshadow", "userdata", "info"),
+)
+"""The fields of MuJoCo's description of a geom, but for its name, its frame and its plugin."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,6 +112,7 @@ class Imported(Configuration):
         frame = mj_spec.worldbody.add_frame(pos=self.position, quat=orientation("", self.heading, self.quaternion))
         described = _specification(_document(self.files or ()), self.free)
         _name_unnamed(described)
+        _embody(described)
         mj_spec.attach(described, prefix=self.prefix, frame=frame)
 
     def _read(self) -> Files:
@@ -188,6 +196,27 @@ def _name_unnamed(mj_spec: MjSpec) -> None:
         free = (name for name in (f"{kind}_{number}" for number in count()) if name not in taken)
         for thing in things:
             thing.name = thing.name or next(free)
+
+
+def _embody(mj_spec: MjSpec) -> None:
+    """Moves each geom directly in the world into a fixed body, unless it is ground: the feet of walkers do not touch the world itself.
+
+    Where the file excludes contacts with the world, they stay in it.
+    """
+    ground = (mjtGeom.mjGEOM_PLANE, mjtGeom.mjGEOM_HFIELD)
+    if any("world" in (exclude.bodyname1, exclude.bodyname2) for exclude in mj_spec.excludes):
+        return
+    for geom in [geom for geom in mj_spec.worldbody.geoms if geom.type not in ground and not geom.plugin.active]:
+        body = mj_spec.worldbody.add_body()
+        if geom.frame is not None:
+            body.set_frame(geom.frame)
+        moved, called = body.add_geom(), geom.name
+        for name in GEOM_FIELDS:
+            setattr(moved, name, getattr(geom, name))
+        for name in ("type", "axisangle", "euler", "xyaxes", "zaxis"):
+            setattr(moved.alt, name, getattr(geom.alt, name))
+        mj_spec.delete(geom)
+        moved.name = called
 
 
 def _hide(geoms: list[Any], urdf: bool) -> None:

@@ -47,7 +47,7 @@ class Physics:
         self._warnings: NDArray[np.int32] = self.mj_data.warning.number[_DIVERGED]
         mujoco.mj_forward(self.mj_model, self.mj_data)
         self.owners: tuple[str, ...] = tuple(self._owner(geom) for geom in range(self.mj_model.ngeom))
-        """By geom: the name of the object that it belongs to; a geom of the world itself has its own name."""
+        """By geom: the name of the object that it belongs to; a geom of the world itself, or of a body without a name, has its own name."""
         self.soft: NDArray[np.intp] = self.mj_model.flex_vertbodyid[self.mj_model.flex_vertadr].astype(np.intp)
         """By flex, MuJoCo's soft object: the MuJoCo body of its first vertex; its contacts have no geom."""
         self.grasped: dict[int, int] = {}
@@ -154,4 +154,4 @@ class Physics:
 
     def _owner(self, geom: int) -> str:
         body = int(self.mj_model.geom_bodyid[geom])
-        return self._root_name(body) if body else str(self.mj_model.geom(geom).name)
+        return (body and self._root_name(body)) or str(self.mj_model.geom(geom).name)
