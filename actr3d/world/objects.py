@@ -242,7 +242,7 @@ class Pushes:
     def __init__(self, physics: Physics, objects: Objects) -> None:
         self._physics = physics
         self._objects = objects
-        self._pushes: list[tuple[int, float, float, int]] = []
+        self._pushes: tuple[tuple[int, float, float, int], ...] = ()
         """The MuJoCo body, the force along x and y [N], and the physics steps left."""
         self._before: NDArray[np.float64] = np.empty((0, 6))
         """The forces on these bodies without the pushes, while these act."""
@@ -259,10 +259,11 @@ class Pushes:
         pushed = self._objects.pushed(name)
         x, y = (number(force, f"push: {axis}", -MAX_FORCE, MAX_FORCE) for axis, force in (("x", x), ("y", y)))
         time = number(time, "push: time", 1e-6, LONGEST)
-        self._pushes.append((pushed, x, y, max(1, round(time / self._physics.timestep))))
+        self.restore((*self._pushes, (pushed, x, y, max(1, round(time / self._physics.timestep)))))
 
     def begin(self, steps: int) -> None:
         """Applies the forces for the next physics steps; a push that lasts less acts with its mean force, so that its impulse is exact."""
+        self._physics.pushes = ()
         self._before = self._physics.mj_data.xfrc_applied[self._pushed()].copy()
         for body, x, y, left in self._pushes:
             share = min(left, steps) / steps
@@ -275,18 +276,19 @@ class Pushes:
         self._physics.mj_data.xfrc_applied[pushed] = self._before
         for body in pushed:
             self._objects.strike(body)
-        self._pushes = [(body, x, y, left - steps) for body, x, y, left in self._pushes if left > steps]
+        self.restore(tuple((body, x, y, left - steps) for body, x, y, left in self._pushes if left > steps))
 
     def _pushed(self) -> list[int]:
         return [body for body, *_ in self._pushes]
 
     def state(self) -> tuple[tuple[int, float, float, int], ...]:
         """Returns what is left of all pushes as plain values."""
-        return tuple(self._pushes)
+        return self._pushes
 
     def restore(self, state: tuple[tuple[int, float, float, int], ...]) -> None:
         """Restores pushes that `state` returned."""
-        self._pushes = list(state)
+        self._pushes = state
+        self._physics.pushes = tuple((body, x, y) for body, x, y, _ in state)
 
 
 def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, float, float | None]:

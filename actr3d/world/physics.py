@@ -52,6 +52,8 @@ class Physics:
         """By flex, MuJoCo's soft object: the MuJoCo body of its first vertex; its contacts have no geom."""
         self.grasped: dict[int, int] = {}
         """By weld of a hand: the MuJoCo body that the hand holds."""
+        self.pushes: tuple[tuple[int, float, float], ...] = ()
+        """Forces by hand that will act in the coming physics step: the MuJoCo body, and the force along x and y [N]."""
         self.observed = False
         """Whether an observer is being called now, who must leave the world unchanged."""
         self.renderer: Any = None
@@ -93,6 +95,8 @@ class Physics:
         if self._scratch is None:
             self._scratch = MjData(self.mj_model)
         mujoco.mj_setState(self.mj_model, self._scratch, self.integration_state(), INTEGRATION)
+        for body, x, y in self.pushes:
+            self._scratch.xfrc_applied[body, :2] += (x, y)
         mujoco.mj_step(self.mj_model, self._scratch)
         return (self._scratch.qvel - self.mj_data.qvel) / self.mj_model.opt.timestep
 

@@ -15,7 +15,7 @@ import pytest
 from mujoco import MjSpec, mjtGeom
 
 from actr3d.errors import Actr3dError
-from actr3d.world import Aperture, Body, Floor, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Aperture, Body, Car, Floor, Loose, Mannequin, Scene, Wall, World
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.sensor_noise import SensorNoise
 from actr3d.world.sensors.render import Picture
@@ -89,6 +89,26 @@ def test_the_accelerometer_feels_rest_a_bend_and_free_fall() -> None:
     falling = World(Scene(parts=(Floor(), Crate(height=3.0))))
     falling.step(50)
     assert falling.bodies["crate"].get("accelerometer") == near((0, 0, 0), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("pushed", "part", "force"), [(Car(name="it"), None, 5000), (Mannequin(name="it"), "legs", 2000)], ids=["car", "m"]
+)
+def test_the_accelerometer_feels_a_push(pushed: Any, part: str | None, force: float) -> None:
+    world = World(Scene(parts=(Floor(), pushed)))
+    body = world.bodies["it"]
+    world.step(50)
+    world.push("it", force)
+    for steps in (0, 5):
+        world.step(steps)
+        felt, before, state = body.get("accelerometer", part), body.get("velocity", part, frame="world"), world.state()
+        world.step()
+        gained = (body.get("velocity", part, frame="world").linear[0] - before.linear[0]) / world.scene.timestep
+        world.restore(state)
+        assert gained > 4
+        assert felt[0] == near(gained, rel=0.1)  # commands of the legs, which correct their speed, are not in it
+    world.step(50)
+    assert abs(body.get("accelerometer", part)[0]) < 1
 
 
 def test_the_accelerometer_is_of_the_present_and_not_of_the_step_before() -> None:
