@@ -8,7 +8,7 @@ import pytest
 
 from actr3d.errors import WorldError
 from actr3d.simulation import Simulation
-from actr3d.world import Floor, ImportedBody, Loose, Scene, World
+from actr3d.world import Body, Floor, ImportedBody, Loose, Scene, World
 from actr3d.world.anatomy import NamedMovement
 from tests.helpers.small_agents import near
 
@@ -114,6 +114,41 @@ def test_a_control_beyond_what_the_physics_takes_is_refused() -> None:
         with pytest.raises(WorldError, match=r"speed: must be <= 1e\+10 \(got "):
             body.set(word, *values)
     body.set("control", "turn", 1e10)
+
+
+def driven_by(actuator: str) -> tuple[World, Body]:
+    """Returns a world with a slide that an actuator moves, and its body."""
+    slide = '<worldbody><body name="b"><joint name="j" type="slide"/><geom size="0.1"/></body></worldbody>'
+    text = f"<mujoco>{slide}<actuator>{actuator}</actuator></mujoco>"
+    world = World(Scene(gravity=(0, 0, 0), parts=(ImportedBody(name="r", text=text),)))
+    return world, world.bodies["r"]
+
+
+@pytest.mark.parametrize("gear", [5, -5, 0.5])
+def test_a_servo_with_a_gear_keeps_the_commanded_speed(gear: float) -> None:
+    world, body = driven_by(f'<velocity joint="j" kv="100" gear="{gear}" ctrlrange="-10 5"/>')
+    body.set("joint", "j", 0.9)
+    world.step(100)
+    assert body.get("joints")["j"].velocity == near(0.9, abs=1e-3)
+    assert body.moving() == ("j",)
+    body.set("position", "j", 0.5, 0.9)
+    world.step(500)
+    assert body.get("joints")["j"].position == near(0.5, abs=1e-3)
+
+
+def test_a_speed_beyond_the_range_of_a_servo_is_refused() -> None:
+    _, body = driven_by('<velocity joint="j" kv="10" gear="-2" ctrlrange="-0.5 1"/>')
+    with pytest.raises(WorldError, match=r"joint: speed: must be <= 0\.25 \(got 1\.0\)"):
+        body.set("joint", "j", 1.0)
+    with pytest.raises(WorldError, match=r"position: speed: must be <= 0\.25 \(got 2\.0\)"):
+        body.set("position", "j", 1.0)
+    body.set("joint", "j", -0.5)
+
+
+def test_a_damper_is_no_servo() -> None:
+    _, body = driven_by('<damper joint="j" kv="10" ctrlrange="0 1"/>')
+    assert not body.joints["j"].driven
+    assert "joint" not in body.actuators
 
 
 def test_a_movement_of_joints_that_do_not_exist_is_refused() -> None:
