@@ -11,7 +11,7 @@ import pytest
 from mujoco import MjSpec
 
 from actr3d.errors import Actr3dError
-from actr3d.world import Body, Floor, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Body, Floor, Imported, Loose, Mannequin, Scene, Wall, World
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.sensors.touch import present
 from tests.helpers.small_agents import near
@@ -185,6 +185,19 @@ def test_what_is_grasped_comes_along_until_released() -> None:
     world.refresh()
     assert body.get("grasp")["right"] is None
     assert cup.xpos[2] < 0.2
+
+
+def test_a_hand_carries_the_weight_of_all_parts_of_what_it_holds() -> None:
+    parts = '<geom size=".02" mass="0.2"/><body pos="0 0 -.1" gravcomp="{}"><joint/><geom size=".02" mass="2"/></body>'
+    for gravcomp, weight in ((0, 2.2), (0.5, 1.2)):
+        text = f'<mujoco><worldbody><body name="bag">{parts.format(gravcomp)}</body></worldbody></mujoco>'
+        world, body = living(Imported(name="a", text=text, free=True, position=(0.0, -0.24, 0.66)))
+        body.set("grasp", "a_bag")
+        assert world.mj_data.xfrc_applied.sum(axis=0) == near((0, 0, 9.81 * weight, 0, 0, 0))
+        ticks(world, 50)
+        assert body.joints["right_upper_arm_pitch"].position == near(0, abs=1e-3)
+        body.set("release")
+        assert not world.mj_data.xfrc_applied.any()
 
 
 def test_what_is_held_feels_what_it_touches() -> None:
