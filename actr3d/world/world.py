@@ -24,9 +24,9 @@ from actr3d.world.substepping import Substepping
 from actr3d.world.velocity_servo import fit_servos
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class WorldState:
-    """All that a world needs to continue exactly from a moment."""
+    """All that a world needs to continue exactly from a moment. It is equal only to itself: compare its fields."""
 
     steps: int
     """Physics steps since the start."""
