@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Mapping
 from typing import Literal, NamedTuple
 
@@ -11,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError, alternatives
+from actr3d.world.base import heading_in, turn_to
 from actr3d.world.body import Body
 from actr3d.world.command_registry import checked_angle, number
 from actr3d.world.physics import Physics
-from actr3d.world.scene_objects import yaw_quaternion
 
 PRESSED = 0.01
 """Greatest depth of one object in another after it was moved by hand [m]: contacts as stiff as those of walls push that out
@@ -96,7 +95,7 @@ class Objects:
         else:
             at = int(self._physics.mj_model.jnt_qposadr[self._physics.mj_model.body_jntadr[number]])
             (x, y, _), turned = data.qpos[at : at + 3].tolist(), data.qpos[at + 3 : at + 7]
-        return x, y, _heading(turned.tolist())
+        return x, y, heading_in(turned.tolist())
 
     def move(self, name: str, x: float, y: float, heading: float | None) -> None:
         """Puts an object at (x, y) [m], with a heading [rad] or its present one; a loose object comes to rest.
@@ -117,14 +116,14 @@ class Objects:
             mocap = int(physics.mj_model.body_mocapid[number])
             physics.mj_data.mocap_pos[mocap, :2] = (x, y)
             if heading is not None:
-                _turn(physics.mj_data.mocap_quat[mocap], heading)
+                turn_to(physics.mj_data.mocap_quat[mocap], heading)
         else:
             joint = int(physics.mj_model.body_jntadr[number])
             q, v = int(physics.mj_model.jnt_qposadr[joint]), int(physics.mj_model.jnt_dofadr[joint])
             physics.mj_data.qpos[q : q + 2] = (x, y)
             physics.mj_data.qvel[v : v + 6] = 0
             if heading is not None:
-                _turn(physics.mj_data.qpos[q + 3 : q + 7], heading)
+                turn_to(physics.mj_data.qpos[q + 3 : q + 7], heading)
         physics.changed()
         others = deeper(depths, self.depths(moved))
         if others:
@@ -310,15 +309,3 @@ def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, 
 def deeper(before: Mapping[str, Depth], after: Mapping[str, Depth]) -> list[str]:
     """Returns the objects in which something is now too deep, given the depths in them before and after it was moved."""
     return [name for name, (depth, permitted) in after.items() if depth > max(permitted, before.get(name, NONE).depth)]
-
-
-def _turn(quaternion: NDArray[np.float64], heading: float) -> None:
-    """Turns an orientation about the vertical to a heading [rad]; an object that lies keeps lying."""
-    by = np.array(yaw_quaternion(heading - _heading(quaternion.tolist())))
-    mujoco.mju_mulQuat(quaternion, by, quaternion.copy())
-
-
-def _heading(quaternion: list[float]) -> float:
-    """Returns the heading of an orientation [rad]."""
-    w, x, y, z = quaternion
-    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
