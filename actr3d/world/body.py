@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar, cast
@@ -13,7 +13,7 @@ import numpy as np
 from mujoco import mjtJoint, mjtObj
 from numpy.typing import NDArray
 
-from actr3d.errors import WorldError, alternatives
+from actr3d.errors import Actr3dError, WorldError, alternatives
 from actr3d.world.actuated_dofs import ActuatedDofs
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.base import Base
@@ -139,10 +139,25 @@ class Body:
         self.extent = Extent(model, physics.mj_data, self.geoms)
         self.actuators: tuple[str, ...] = ACTUATORS.of(self)
         self.sensors: tuple[str, ...] = SENSORS.of(self)
-        self._noise: Mapping[str, float] = dict(self.anatomy.noise)
+        self._noise: dict[str, StandardDeviation] = {
+            name: dict(sd) if isinstance(sd, tuple) else number(sd, f"{self.name}: noise of {name}", 0) for name, sd in self.anatomy.noise
+        }
         for name, sd in self._noise.items():
-            known(name, self.sensors, self.name, "sensor")
-            number(sd, f"{self.name}: noise of {name}", 0)
+            self._check_noise(known(name, self.sensors, self.name, "sensor"), sd)
+
+    def _check_noise(self, sensor: str, sd: StandardDeviation) -> None:
+        """Adds noise to a reading, which is not used.
+
+        Raises:
+            WorldError: If readings of the sensor take no such noise.
+        """
+        assert sd is not None
+        with self._unchanged():
+            try:
+                reading = SENSORS[sensor](self)
+            except Actr3dError:  # it needs values, or something that this computer does not have
+                return
+            self.noise.added(sensor, reading, sd)
 
     # -- commands and sensors
 

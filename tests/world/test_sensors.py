@@ -8,7 +8,7 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import FrozenInstanceError, dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -321,6 +321,51 @@ def test_noise_by_field_leaves_the_others_exact() -> None:
     pose = body.get("pose", noise={"x": 0.1})
     assert pose.x != 0
     assert replace(pose, x=0.0) == body.get("pose")
+
+
+class Spot(NamedTuple):
+    """A reading of an own sensor."""
+
+    x: float
+    name: str
+
+
+def test_noise_is_added_to_every_reading_or_refused() -> None:
+    noise = SensorNoise(0, "walker")
+    by_key = noise.added("own", {"a": 1.0, "b": 2.0}, {"a": 0.5})
+    assert by_key["a"] != 1.0
+    assert by_key["b"] == 2.0
+    spot = noise.added("own", Spot(1.0, "here"), 0.5)
+    assert isinstance(spot, Spot)
+    assert spot.x != 1.0
+    assert noise.added("own", Spot(1.0, "here"), {"x": 0.0}) == Spot(1.0, "here")
+    assert noise.added("own", (None, "text", 3, np.int64(3), True), 1.0) == (None, "text", 3, 3, True)
+    for reading in ([1.0, 2.0], np.ones(2), np.float32(1), {"a": [1.0]}):
+        with pytest.raises(Actr3dError, match=r"noise of own: is not added to a (list|ndarray|float32) \(got "):
+            noise.added("own", reading, 0.5)
+    with pytest.raises(Actr3dError, match=r"noise of own: its readings have no 'c'; they have a, b"):
+        noise.added("own", {"a": 1.0, "b": 2.0}, {"c": 0.5})
+    _, body = walker_in()
+    joints = body.get("joints", noise={"position": 0.1})
+    assert joints["torso_yaw"].position != 0
+    assert joints["torso_yaw"].velocity == 0
+
+
+def test_noise_of_a_description_is_checked_at_the_start_and_can_be_by_field() -> None:
+    for noise, message in (
+        (("proprioception", 0.1), "takes no noise"),
+        (("pose", (("xx", 0.1),)), "its readings have no 'xx'"),
+        (("pose", (("x", -0.1),)), "noise of pose: must be >= 0"),
+        (("touch", 0.1), "walker has no sensor 'touch'"),
+    ):
+        with pytest.raises(Actr3dError, match=message):
+            walker_in(noise=(noise,))
+    _, body = walker_in(noise=(("pose", (("x", 0.1),)),))
+    fresh = body.state()
+    assert fresh.noise == ()
+    pose = body.get("pose")
+    assert pose.x != 0
+    assert pose.y == 0
 
 
 def test_noise_comes_from_the_seed_and_from_its_own_sensor() -> None:
