@@ -417,8 +417,8 @@ def _named(kind: str, names: list[str]) -> list[str]:
     return found
 
 
-ACTUATORS = actuator = CommandRegistry[Body]()
+ACTUATORS = actuator = CommandRegistry[Body]("actuator")
 """The actuators of bodies by name; also the decorator `@actuator` that registers one. See `actr3d.world.actuators`."""
 
-SENSORS = sensor = CommandRegistry[Body]()
+SENSORS = sensor = CommandRegistry[Body]("sensor")
 """The sensors of bodies by name; also the decorator `@sensor` that registers one. See `actr3d.world.sensors`."""
