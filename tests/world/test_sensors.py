@@ -240,6 +240,7 @@ def test_pictures_show_what_the_eye_sees_or_say_what_is_missing() -> None:
     assert distances.shape == (60, 80)
     assert distances[30, 40] == near(body.get("rangefinder"), rel=2e-3)
     assert body.get("depth", 80, 60).pixels == depth.pixels
+    assert world.state().compiled == (), "the compiled model is that of the start"
     ticks(world, 1)
     body.set("teleport", 1.0, 0.0)
     assert body.get("depth", 80, 60).as_array()[30, 40] == near(distances[30, 40] - 1.0, rel=5e-3)
@@ -398,6 +399,9 @@ def test_noise_goes_on_exactly_from_a_state() -> None:
         ("laser", {"rays": True}, r"laser: rays: must be a number \(got True\)"),
         ("rangefinder", {"at": "nowhere"}, "no frame, part or site 'nowhere'"),
         ("rangefinder", {"reach": -1}, "rangefinder: reach: must be >= 0"),
+        ("rangefinder", {"angle": 90}, r"rangefinder: angle: must be <= 6\.2832 rad, a full turn \(got 90\)"),
+        ("rangefinder", {"elevation": -45}, r"rangefinder: elevation: must be >= -6\.2832 rad, a full turn \(got -45\)"),
+        ("laser", {"elevation": 45}, r"laser: elevation: must be <= 6\.2832 rad, a full turn \(got 45\)"),
         ("pose", {"noise": -1}, "walker: noise of pose: must be >= 0"),
         ("pose", {"noise": {"xx": 1}}, "noise of pose: its readings have no 'xx'"),
         ("rangefinder", {"noise": {"x": 1}, "elevation": -1.0}, "its readings have no fields; give one number"),
