@@ -19,6 +19,7 @@ from actr3d.warnings import warn_modeller
 from actr3d.world.asset_folder import Files, Folder, digest, resolved
 from actr3d.world.mesh import UNSEEN, Quaternion, orientation
 from actr3d.world.mjcf_rewrite import Document, read_imported
+from actr3d.world.scene import on_one_line
 from actr3d.world.scene_objects import Heading, Name
 
 HIDDEN_GROUP = 3
@@ -56,7 +57,7 @@ class Imported(Configuration):
     """The folder of all its files, for files that refer to files outside their own folder; `None` is the folder of the file, for
     `package://NAME/…` the folder NAME above it. Without a path, files are read only with a folder."""
 
-    files: Files | None = field(default=None, repr=False)
+    files: Annotated[Files, MinLen(1)] | None = field(default=None, repr=False)
     """Names and contents of the file and of those that it mentions; `None` reads them now. If given, nothing is read from the disk."""
 
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -166,7 +167,7 @@ def _checked(files: Files, free: bool, eye: str | None) -> tuple[str, ...]:
             mj_spec.compile()
         except (ValueError, RuntimeError) as error:
             raise WorldError(_said(error, document)) from error
-    return (*document.remarks, *(_on_one_line(str(warning.message)) for warning in said))
+    return (*document.remarks, *(on_one_line(str(warning.message)) for warning in said))
 
 
 def _specification(document: Document, free: bool) -> MjSpec:
@@ -237,8 +238,4 @@ def _said(error: Exception, document: Document) -> str:
         return document.origins[number - 1] if 0 < number <= len(document.origins) else found[0]
 
     text = re.sub(r"(?:L|\bl)ine(?: number=| )(\d+)", origin, str(error))
-    return _on_one_line(text).removeprefix("XML ").removeprefix("Error: ")
-
-
-def _on_one_line(text: str) -> str:
-    return re.sub(r"\s*\n\s*", "; ", text.strip())
+    return on_one_line(text).removeprefix("XML ").removeprefix("Error: ")

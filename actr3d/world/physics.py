@@ -146,7 +146,7 @@ class Physics:
         }
         if str(name) not in free:
             raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(str(name), free)}")
-        return free[name]
+        return free[str(name)]
 
     def other_side(self, contact: int, side: int) -> str:
         """Returns the name of the object on one side (0 or 1) of a contact."""

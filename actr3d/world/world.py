@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
@@ -110,21 +111,27 @@ class World:
         Unfinished commands choose their speeds before it, and in a long one every 10 ms.
 
         Raises:
-            WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset), or the number is none.
+            WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset), or `steps` is not a whole number >= 0.
         """
-        if not isinstance(steps, int) or steps < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
+        try:
+            count = operator.index(steps)
+        except TypeError:
+            count = -1
+        if count < 0:
             raise WorldError(f"World.step: must be a whole number of steps, >= 0 (got {steps!r})")
         self._check_unobserved("step")
+        if count == 0:
+            return
         commands = [body.motion for body in self.bodies.values() if body.motion]
         feeling = [body for body in self.bodies.values() if body.touched is not None]
-        parts = self._in_stretches(steps, commands) if commands or self._closing else self._substepping.steps(steps)
+        parts = self._in_stretches(count, commands) if commands or self._closing else self._substepping.steps(count)
         parts = self._watched(parts) if self.watchers else parts
         if feeling:
             step_and_feel(parts, feeling)
         else:
             for _ in parts:
                 pass
-        self.physics.steps += steps
+        self.physics.steps += count
         self.changed()
         if self.physics.diverged:
             culprit = self.physics.diverged_object()

@@ -187,6 +187,12 @@ def test_what_is_grasped_comes_along_until_released() -> None:
     assert cup.xpos[2] < 0.2
 
 
+def test_the_name_of_an_object_may_look_like_a_number() -> None:
+    _, body = living(Loose(name="5", size=CUP.size, position=CUP.position, mass=CUP.mass))
+    body.set("grasp", 5)
+    assert body.get("grasp")["right"] == "5"
+
+
 def test_a_hand_carries_the_weight_of_all_parts_of_what_it_holds() -> None:
     parts = '<geom size=".02" mass="0.2"/><body pos="0 0 -.1" gravcomp="{}"><joint/><geom size=".02" mass="2"/></body>'
     for gravcomp, weight in ((0, 2.2), (0.5, 1.2)):

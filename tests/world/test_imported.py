@@ -468,6 +468,15 @@ def test_geoms_directly_in_the_world_of_a_file_keep_their_places_and_properties(
     assert kept.geom("i_geom_1").bodyid[0] == 0, "its exclude would be lost"
 
 
+def test_names_that_look_like_numbers_are_names() -> None:
+    text = '<mujoco><worldbody><body name="nan"><joint name="inf"/><geom size=".1"/></body></worldbody>{}</mujoco>'
+    World(Scene(parts=(Imported(name="i", text=text.format('<actuator><motor joint="inf"/></actuator>')),)))
+    with pytest.raises(WorldError):
+        Imported(name="i", text='<mujoco><worldbody><replicate count=""><geom size="1"/></replicate></worldbody></mujoco>')
+    with pytest.raises(Actr3dError, match=r"Imported\.files: must "):
+        Imported(name="i", text=text, files=())
+
+
 def test_every_field_of_a_geom_is_moved() -> None:
     """A later MuJoCo may have more."""
     geom = MjSpec().worldbody.add_geom()

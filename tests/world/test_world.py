@@ -233,6 +233,30 @@ def test_an_aperture_closes_by_the_time_and_not_by_the_call() -> None:
     assert one.state_bytes() == many.state_bytes()
 
 
+def test_no_step_changes_nothing_and_whole_numbers_of_numpy_are_whole() -> None:
+    wall = Wall(name="w", start=(0.174, -1), end=(0.174, 1))
+    world = World(Scene(parts=(Floor(), Mannequin(name="m"), wall)))
+    body = world.bodies["m"]
+    body.get("contacts")
+    body.set("walk", 0.5)
+    world.step(np.int64(5))  # pyright: ignore[reportArgumentType]
+    felt, moment = body.get("contacts"), world.physics.moment
+    assert felt
+    world.step(0)
+    assert (body.get("contacts"), world.physics.moment) == (felt, moment)
+    for steps in (2.5, "5", None, -1, np.float64(5)):
+        with pytest.raises(Actr3dError, match=r"World\.step: must be a whole number of steps, >= 0 \(got "):
+            world.step(steps)  # pyright: ignore[reportArgumentType]
+
+
+def test_errors_of_scenes_name_what_is_wrong_on_one_line() -> None:
+    with pytest.raises(WorldError, match=r"Scene\.parts: Wall is a class; a part is made of it, as Wall\(…\)"):
+        Scene(parts=(Wall,))
+    with pytest.raises(WorldError, match="the scene cannot be compiled: ") as caught:
+        World(Scene(parts=(Mannequin(name="a"), Loose(name="a_torso", position=(3, 0, 1)))))
+    assert "\n" not in str(caught.value)
+
+
 def test_a_body_that_stands_inside_something_fixed_is_refused_at_the_start() -> None:
     walls = (Wall(name="w", start=(0, -1), end=(0, 1)), Loose(name="pole", position=(0.2, 0, 0.5), mass=None))
     with pytest.raises(WorldError, match=r"'m' is inside 'w', 'pole' at the start; leave room"):
