@@ -83,6 +83,19 @@ def test_a_loose_object_falls_and_lies_on_the_floor() -> None:
     assert world.mj_data.body("box").xpos[2] == near(0.15, abs=2e-3)
 
 
+@pytest.mark.parametrize("end", [(5.0, 5.0), (5.0, -5.0), (9.0, 3.0), (2.0, 4.0), (9.0, 0.0)])
+def test_the_lines_of_a_track_keep_their_distance_at_corners(end: tuple[float, float]) -> None:
+    points = ((0.0, 0.0), (5.0, 0.0), end)
+    world = World(Scene(parts=(Track(points=points, width=3),)))
+    for geom in range(world.mj_model.ngeom):
+        along, at = world.mj_data.geom_xmat[geom].reshape(3, 3)[:2, 0], world.mj_data.geom_xpos[geom][:2]
+        start, stop = np.array(points[geom % 2]), np.array(points[geom % 2 + 1])
+        way = (stop - start) / np.linalg.norm(stop - start)
+        side = np.array((-way[1], way[0]))
+        for corner in (at - world.mj_model.geom_size[geom, 0] * along, at + world.mj_model.geom_size[geom, 0] * along):
+            assert (corner - start) @ side == near(1.5 if geom < 2 else -1.5)
+
+
 def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
     world = World(Scene(parts=(Track(points=((0, 0), (10, 0)), width=4),)))
     assert sorted(world.mj_model.geom_pos[:, 1]) == [-2, 2]
@@ -106,6 +119,10 @@ def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
         (lambda: Scene(parts=(Floor,)), r"Floor is a class; a part is made of it, as Floor\(…\)"),
         (lambda: Scene(parts=(Wall(name="a\0", start=(0, 0), end=(1, 0)),)), r"'a\\x00' cannot be a name"),
         (lambda: Scene(parts=(Mannequin(name="\ud800"),)), r"'\\ud800' cannot be a name"),
+        (
+            lambda: Track(points=((0, 0), (5, 0), (1, 1))),
+            r"Track 'track'\.points: turns by <= 150 degrees at a point \(got 166 at point 1\)",
+        ),
         (lambda: Track(points=((0, 0), (1, 0), (1, 0))), r"Track 'track'\.points: the points 1 and 2 are the same, \(1\.0, 0\.0\)"),
         (lambda: World(Floor()), r"a world is made of a Scene \(got Floor"),  # pyright: ignore[reportArgumentType]
         (lambda: World(Scene(), seed=-1), r"World\.seed: must be a whole number >= 0 \(got -1\)"),
