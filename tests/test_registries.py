@@ -99,6 +99,26 @@ def test_a_new_sensor_and_a_new_actuator_are_there_at_once_also_for_bodies_that_
 
 
 @pytest.mark.usefixtures("registered")
+def test_a_sensor_or_an_actuator_of_the_library_is_not_replaced_and_the_same_may_be_defined_again() -> None:
+    def pose(body: Body) -> int:
+        return 1
+
+    def walk(body: Body) -> None: ...
+
+    with pytest.raises(ValueError, match=r"sensor 'pose' is defined twice: actr3d\.world\.sensors\.motion\.pose and .*test_registries"):
+        sensor(pose)
+    with pytest.raises(ValueError, match=r"actuator 'walk' is defined twice: actr3d\.world\.actuators\.motion\.walk and "):
+        actuator(walk)
+    for answer in (1, 2):  # as when a model file is loaded again
+
+        @sensor
+        def height(body: Body, answer: int = answer) -> int:
+            return answer
+
+        assert World(Scene(parts=(Car(),))).bodies["car"].get("height") == answer
+
+
+@pytest.mark.usefixtures("registered")
 def test_a_new_kind_of_body_lives_in_a_scene_without_any_other_change() -> None:
     @body_kind
     class Marble:

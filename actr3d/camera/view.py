@@ -14,7 +14,10 @@ from numpy.typing import NDArray
 from actr3d.camera.parameters import CameraParameters, optics_of
 from actr3d.errors import CameraError, alternatives
 
-NOISY = ("x1", "x2", "d1", "d2", "a1", "a2")
+EDGES = ("x1", "x2", "d1", "d2", "a1", "a2")
+"""The fields about the two edges of an extent."""
+
+NOISY = (*EDGES, "xn", "dn")
 """The fields that noise can be added to."""
 
 Extent = list[float]
@@ -61,7 +64,7 @@ class View:
         ys = [(row + 0.5) / self.rows for row in range(self.rows)]
         view: dict[float, dict[int, list[Extent]]] = {y: {} for y in ys}
         for row, label, _, *extent in self.extents.tolist():
-            view[ys[row]].setdefault(label, []).append(extent[: len(NOISY)])
+            view[ys[row]].setdefault(label, []).append(extent[: len(EDGES)])
         return view
 
     def __repr__(self) -> str:
@@ -78,7 +81,8 @@ class View:
         """Returns the view with Gaussian noise on some fields of all extents.
 
         Args:
-            sd: Standard deviations by field, in the field's unit: `{"d1": 0.05, "d2": 0.05}`.
+            sd: Standard deviations by field, in the field's unit: `{"d1": 0.05, "d2": 0.05, "dn": 0.05}`. Fields that are not named
+                stay exact.
             random: The random number generator.
 
         Raises:

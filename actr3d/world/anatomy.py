@@ -11,6 +11,7 @@ from actr3d.configuration import Configuration
 from actr3d.registry import Registry
 from actr3d.world.gait import Gait, LegPlan
 from actr3d.world.scene import Part
+from actr3d.world.sensor_noise import Noise
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,8 +82,8 @@ class Anatomy:
     movements: tuple[NamedMovement, ...] = ()
     """Its named movements."""
 
-    noise: tuple[tuple[str, float], ...] = ()
-    """Noise of sensors: the name and the standard deviation of every number of the reading, in its unit."""
+    noise: Noise = ()
+    """Noise of sensors: the name, and the standard deviation of every number of the reading, in its unit, or by field."""
 
     steering: Steering | None = None
     """How it is driven; None if it is not a vehicle."""

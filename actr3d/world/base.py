@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import math
 
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
 from actr3d.world.physics import Physics
 from actr3d.world.scene_objects import yaw_quaternion
 
@@ -74,4 +78,16 @@ class Base:
         self._qpos[self.q : self.q + 2] = (x, y)
         self._qvel[self.v : self.v + 6] = 0
         if heading is not None:
-            self._qpos[self.q + 3 : self.q + 7] = yaw_quaternion(heading)
+            turn_to(self._qpos[self.q + 3 : self.q + 7], heading)
+
+
+def turn_to(quaternion: NDArray[np.float64], heading: float) -> None:
+    """Turns an orientation (4,) about the vertical to a heading [rad], in place; what lies or leans keeps lying or leaning."""
+    by = np.array(yaw_quaternion(heading - heading_in(quaternion.tolist())))
+    mujoco.mju_mulQuat(quaternion, by, quaternion.copy())
+
+
+def heading_in(quaternion: list[float]) -> float:
+    """Returns the heading of an orientation (w, x, y, z) [rad]."""
+    w, x, y, z = quaternion
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))

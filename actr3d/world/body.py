@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Mapping
+import itertools
+from collections.abc import Callable, Generator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar, cast
@@ -12,7 +13,7 @@ import numpy as np
 from mujoco import mjtJoint, mjtObj
 from numpy.typing import NDArray
 
-from actr3d.errors import WorldError, alternatives
+from actr3d.errors import Actr3dError, WorldError, alternatives
 from actr3d.world.actuated_dofs import ActuatedDofs
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.base import Base
@@ -138,10 +139,25 @@ class Body:
         self.extent = Extent(model, physics.mj_data, self.geoms)
         self.actuators: tuple[str, ...] = ACTUATORS.of(self)
         self.sensors: tuple[str, ...] = SENSORS.of(self)
-        self._noise: Mapping[str, float] = dict(self.anatomy.noise)
+        self._noise: dict[str, StandardDeviation] = {
+            name: dict(sd) if isinstance(sd, tuple) else number(sd, f"{self.name}: noise of {name}", 0) for name, sd in self.anatomy.noise
+        }
         for name, sd in self._noise.items():
-            known(name, self.sensors, self.name, "sensor")
-            number(sd, f"{self.name}: noise of {name}", 0)
+            self._check_noise(known(name, self.sensors, self.name, "sensor"), sd)
+
+    def _check_noise(self, sensor: str, sd: StandardDeviation) -> None:
+        """Adds noise to a reading, which is not used.
+
+        Raises:
+            WorldError: If readings of the sensor take no such noise.
+        """
+        assert sd is not None
+        with self._unchanged():
+            try:
+                reading = SENSORS[sensor](self)
+            except Actr3dError:  # it needs values, or something that this computer does not have
+                return
+            self.noise.added(sensor, reading, sd)
 
     # -- commands and sensors
 
@@ -343,7 +359,7 @@ class Body:
             site = mujoco.mj_name2id(model, mjtObj.mjOBJ_SITE, called)
             if site >= 0:
                 return (data.site_xpos[site], data.site_xmat[site].reshape(3, 3))
-            body = mujoco.mj_name2id(model, mjtObj.mjOBJ_BODY, called)
+            body = self.part_number(name) if name in self.parts else mujoco.mj_name2id(model, mjtObj.mjOBJ_BODY, called)
             if body >= 0:
                 return (data.xpos[body], data.xmat[body].reshape(3, 3))
         names = ["world", "body", *self.parts]
@@ -369,14 +385,20 @@ class Body:
         model = self.physics.mj_model
         kinds = (int(mjtJoint.mjJNT_HINGE), int(mjtJoint.mjJNT_SLIDE))
         numbers = [n for n in range(model.njnt) if self.members[model.jnt_bodyid[n]] and model.jnt_type[n] in kinds]
-        return [Joint(self.physics, n, self._short(model.joint(n).name) or f"joint_{n}") for n in numbers if n not in self.base.joints]
+        numbers = [n for n in numbers if n not in self.base.joints]
+        names = _named("joint", [self._short(str(model.joint(n).name)) for n in numbers])
+        return [Joint(self.physics, n, name) for n, name in zip(numbers, names, strict=True)]
 
     def _controls(self) -> dict[str, slice]:
-        """Returns where the controls are of the actuators that move it; a name alone may be that of `arm` or of `arm_2`."""
+        """Returns where the controls are of the actuators that move it.
+
+        These are found by what they move, and not by the prefix of their names: `arm_` begins the names of a body `arm_2`, too.
+        """
         model: Any = self.physics.mj_model
         own = [n for n in range(model.nactuator) if self.members[moved_by(model, n)].any()]
         first, count = model.actuator_ctrladr, model.actuator_ctrlnum
-        return {self._short(str(model.actuator(n).name)): slice(int(first[n]), int(first[n] + count[n])) for n in own}
+        names = _named("control", [self._short(str(model.actuator(n).name)) for n in own])
+        return {name: slice(int(first[n]), int(first[n] + count[n])) for n, name in zip(own, names, strict=True)}
 
     def _id(self, kind: str, name: str) -> int:
         try:
@@ -385,8 +407,18 @@ class Body:
             raise WorldError(f"body '{self.name}': the compiled model has no {kind} '{name}'") from error
 
 
-ACTUATORS = actuator = CommandRegistry[Body]()
+def _named(kind: str, names: list[str]) -> list[str]:
+    """Returns the names of elements of a body; those without one are called by their kind and number, or the next number that is free."""
+    found, taken = list[str](), set(names)
+    for at, name in enumerate(names):
+        called = name or next(free for n in itertools.count(at) if (free := f"{kind}_{n}") not in taken)
+        found.append(called)
+        taken.add(called)
+    return found
+
+
+ACTUATORS = actuator = CommandRegistry[Body]("actuator")
 """The actuators of bodies by name; also the decorator `@actuator` that registers one. See `actr3d.world.actuators`."""
 
-SENSORS = sensor = CommandRegistry[Body]()
+SENSORS = sensor = CommandRegistry[Body]("sensor")
 """The sensors of bodies by name; also the decorator `@sensor` that registers one. See `actr3d.world.sensors`."""

@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection
 from typing import Any, Generic, TypeVar, get_type_hints
 
 from actr3d.errors import WorldError, did_you_mean, followed
+from actr3d.registry import Registry
 from actr3d.world.frames import FULL_TURN
 
 B = TypeVar("B")
@@ -30,6 +31,7 @@ class BodyFunction(Generic[B]):
         self.name = name
         self.available = available
         self._function = function
+        self.__module__, self.__qualname__ = function.__module__, function.__qualname__
         self._signature = inspect.signature(function)
         self._optional = all(of.default is not of.empty for of in [*self._signature.parameters.values()][1:])
         """Whether it can be called without values."""
@@ -67,8 +69,8 @@ class BodyFunction(Generic[B]):
         return re.split(r"(?<=\.)\s", inspect.getdoc(self._function) or "")[0]
 
 
-class CommandRegistry(dict[str, BodyFunction[B]], Generic[B]):
-    """All actuators, or all sensors, by name; a decorator that registers a function under its own name.
+class CommandRegistry(Registry[BodyFunction[B]], Generic[B]):
+    """All actuators, or all sensors, by name; a decorator that registers a function under its own name, which no other may have.
 
     Use it as `@sensor`, or as `@sensor.if_body(condition)` for a sensor that only some bodies have.
     """
@@ -81,7 +83,7 @@ class CommandRegistry(dict[str, BodyFunction[B]], Generic[B]):
         """Returns a decorator that registers a function for the bodies that fulfil a condition."""
 
         def register(function: F) -> F:
-            self[function.__name__] = BodyFunction(function.__name__, function, available)
+            self.add(function.__name__, BodyFunction(function.__name__, function, available))
             return function
 
         return register

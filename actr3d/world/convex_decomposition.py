@@ -7,6 +7,7 @@ import os
 import platform
 import struct
 import tempfile
+from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 
@@ -97,9 +98,10 @@ def read_cached(name: str) -> Parts | None:
     path = cache_folder() / name
     try:
         content = path.read_bytes()
-        os.utime(path)
     except OSError:  # missing or not readable: they can be made again
         return None
+    with suppress(OSError):  # it is not writable
+        os.utime(path)
     if hashlib.sha256(content[32:]).digest() != content[:32]:
         return None
     (count,) = struct.unpack_from("<q", content, 32)

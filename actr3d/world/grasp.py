@@ -67,7 +67,9 @@ class Hand:
         model.eq_data[self._weld, :3] = 0
         model.eq_data[self._weld, 3:10] = held.pose
         data.eq_active[self._weld] = 1
-        data.xfrc_applied[object, :3] = -model.opt.gravity * model.body_mass[object]
+        own = _bodies_of(model, object)
+        weights = model.body_mass[own] * (1 - model.body_gravcomp[own])
+        data.xfrc_applied[own, :3] = -model.opt.gravity * weights[:, None]
 
     def release(self) -> None:
         """Releases the held object, if any; another hand that holds it too still carries it."""
@@ -75,7 +77,7 @@ class Hand:
         self._physics.mj_data.eq_active[self._weld] = 0
         self.restore(None)
         if held is not None and held.object not in self._physics.grasped.values():
-            self._physics.mj_data.xfrc_applied[held.object, :3] = 0
+            self._physics.mj_data.xfrc_applied[_bodies_of(self._physics.mj_model, held.object), :3] = 0
 
     def restore(self, held: Held | None) -> None:
         """Notes the held object; the weld itself is part of the world's state."""
@@ -102,5 +104,9 @@ class Hand:
 
 
 def _geoms_of(model: Any, body: int) -> tuple[int, ...]:
-    roots = model.body_rootid[model.geom_bodyid]
-    return tuple(int(geom) for geom in np.flatnonzero(roots == model.body_rootid[body]))
+    return tuple(np.flatnonzero(np.isin(model.geom_bodyid, _bodies_of(model, body))).tolist())
+
+
+def _bodies_of(model: Any, body: int) -> NDArray[np.intp]:
+    """Returns the MuJoCo bodies (n,) that have the same root as one of them."""
+    return np.flatnonzero(model.body_rootid == model.body_rootid[body])

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from annotated_types import MinLen
-from mujoco import MjSpec
+from mujoco import MjSpec, mjtGeom
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, WorldError, did_you_mean
@@ -19,10 +19,18 @@ from actr3d.warnings import warn_modeller
 from actr3d.world.asset_folder import Files, Folder, digest, resolved
 from actr3d.world.mesh import UNSEEN, Quaternion, orientation
 from actr3d.world.mjcf_rewrite import Document, read_imported
+from actr3d.world.scene import on_one_line
 from actr3d.world.scene_objects import Heading, Name
 
 HIDDEN_GROUP = 3
 """First geom group that MuJoCo's viewers do not draw: files use it for geoms with contacts only."""
+
+GEOM_FIELDS = (
+    *("type", "pos", "quat", "fromto", "size", "mass", "density", "typeinertia", "meshname", "hfieldname", "fitscale"),
+    *("contype", "conaffinity", "condim", "priority", "friction", "solmix", "solref", "solimp", "margin", "gap", "surfacevel", "adhesion"),
+    *("fluid_ellipsoid", "fluid_coefs", "material", "rgba", "group", "castshadow", "userdata", "info"),
+)
+"""The fields of MuJoCo's description of a geom, but for its name, its frame and its plugin."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +57,7 @@ class Imported(Configuration):
     """The folder of all its files, for files that refer to files outside their own folder; `None` is the folder of the file, for
     `package://NAME/…` the folder NAME above it. Without a path, files are read only with a folder."""
 
-    files: Files | None = field(default=None, repr=False)
+    files: Annotated[Files, MinLen(1)] | None = field(default=None, repr=False)
     """Names and contents of the file and of those that it mentions; `None` reads them now. If given, nothing is read from the disk."""
 
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -105,6 +113,7 @@ class Imported(Configuration):
         frame = mj_spec.worldbody.add_frame(pos=self.position, quat=orientation("", self.heading, self.quaternion))
         described = _specification(_document(self.files or ()), self.free)
         _name_unnamed(described)
+        _embody(described)
         mj_spec.attach(described, prefix=self.prefix, frame=frame)
 
     def _read(self) -> Files:
@@ -158,7 +167,7 @@ def _checked(files: Files, free: bool, eye: str | None) -> tuple[str, ...]:
             mj_spec.compile()
         except (ValueError, RuntimeError) as error:
             raise WorldError(_said(error, document)) from error
-    return (*document.remarks, *(_on_one_line(str(warning.message)) for warning in said))
+    return (*document.remarks, *(on_one_line(str(warning.message)) for warning in said))
 
 
 def _specification(document: Document, free: bool) -> MjSpec:
@@ -190,6 +199,27 @@ def _name_unnamed(mj_spec: MjSpec) -> None:
             thing.name = thing.name or next(free)
 
 
+def _embody(mj_spec: MjSpec) -> None:
+    """Moves each geom directly in the world into a fixed body, unless it is ground: the feet of walkers do not touch the world itself.
+
+    Where the file excludes contacts with the world, they stay in it.
+    """
+    ground = (mjtGeom.mjGEOM_PLANE, mjtGeom.mjGEOM_HFIELD)
+    if any("world" in (exclude.bodyname1, exclude.bodyname2) for exclude in mj_spec.excludes):
+        return
+    for geom in [geom for geom in mj_spec.worldbody.geoms if geom.type not in ground and not geom.plugin.active]:
+        body = mj_spec.worldbody.add_body()
+        if geom.frame is not None:
+            body.set_frame(geom.frame)
+        moved, called = body.add_geom(), geom.name
+        for name in GEOM_FIELDS:
+            setattr(moved, name, getattr(geom, name))
+        for name in ("type", "axisangle", "euler", "xyaxes", "zaxis"):
+            setattr(moved.alt, name, getattr(geom.alt, name))
+        mj_spec.delete(geom)
+        moved.name = called
+
+
 def _hide(geoms: list[Any], urdf: bool) -> None:
     """Hides geoms for contacts only from rays and viewers."""
     seen = [geom for geom in geoms if geom.contype == 0 and geom.conaffinity == 0]
@@ -208,8 +238,4 @@ def _said(error: Exception, document: Document) -> str:
         return document.origins[number - 1] if 0 < number <= len(document.origins) else found[0]
 
     text = re.sub(r"(?:L|\bl)ine(?: number=| )(\d+)", origin, str(error))
-    return _on_one_line(text).removeprefix("XML ").removeprefix("Error: ")
-
-
-def _on_one_line(text: str) -> str:
-    return re.sub(r"\s*\n\s*", "; ", text.strip())
+    return on_one_line(text).removeprefix("XML ").removeprefix("Error: ")

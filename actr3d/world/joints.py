@@ -37,7 +37,13 @@ class Joint:
         self.q, self.v = int(model.jnt_qposadr[number]), int(model.jnt_dofadr[number])
         self.servo: int | None = _servo_of(model, number)
         """The actuator that moves it; None if the joint is not actuated."""
-        self._control = -1 if self.servo is None else int(model.actuator_ctrladr[self.servo])
+        self._control, self._gear, self.speeds = -1, 1.0, (-math.inf, math.inf)
+        if self.servo is not None:
+            self._control, self._gear = int(model.actuator_ctrladr[self.servo]), float(model.actuator_gear[self.servo, 0])
+            if model.actuator_ctrllimited[self.servo]:
+                least, greatest = sorted(float(control) / self._gear for control in model.actuator_ctrlrange[self.servo])
+                self.speeds = least, greatest
+        """The least and the greatest speed that its servo can be set to keep [rad/s] or [m/s]."""
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -61,11 +67,11 @@ class Joint:
     @property
     def control(self) -> float:
         """The speed that its servo is set to keep [rad/s]; 0 if it is not actuated."""
-        return 0.0 if self.servo is None else float(self._ctrl[self._control])
+        return 0.0 if self.servo is None else float(self._ctrl[self._control]) / self._gear
 
     @control.setter
     def control(self, value: float) -> None:
-        self._ctrl[self._control] = value
+        self._ctrl[self._control] = self._gear * value
 
     @property
     def driven(self) -> bool:
@@ -82,6 +88,7 @@ def _servo_of(model: MjModel, joint: int) -> int | None:
     for number in range(int(model.nactuator)):
         actuator: Any = model.actuator(number)
         moves = model.actuator_trntype[number] == int(mjtTrn.mjTRN_JOINT) and model.actuator_trnid[number, 0] == joint
-        if moves and actuator.biasprm[2] == -actuator.gainprm[0] and actuator.biasprm[1] == 0:
+        gain, gear = actuator.gainprm[0], model.actuator_gear[number, 0]
+        if moves and gain > 0 and gear != 0 and actuator.biasprm[2] == -gain and actuator.biasprm[1] == 0:
             return number
     return None

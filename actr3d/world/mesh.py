@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from annotated_types import Ge, Le
+from annotated_types import Ge, Le, MinLen
 from mujoco import MjSpec, mjtGeom, mjtMeshInertia
 from numpy.typing import NDArray
 
@@ -60,7 +60,7 @@ class Mesh(Configuration):
     path: str | Path
     """The file; a relative path starts at the working directory. Files that it mentions are read only from its folder."""
 
-    files: Files | None = field(default=None, repr=False)
+    files: Annotated[Files, MinLen(1)] | None = field(default=None, repr=False)
     """Names and contents of the file and of those that it mentions; `None` reads them now. If given, nothing is read from the disk."""
 
     scale: Length | tuple[Length, Length, Length] = 1.0

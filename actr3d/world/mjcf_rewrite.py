@@ -35,6 +35,15 @@ MAX_COUNTS = {
 """Greatest values of attributes that are counts; for `count`, of the product of its numbers. Without a limit MuJoCo uses all
 memory, computes for minutes (a flex of 100 x 100 points: 14 s), or ends the process (a height field of 10^7 x 10^7)."""
 
+TEXTS = frozenset(
+    (
+        *("name", "class", "childclass", "model", "file", "filename", "mesh", "material", "texture", "hfield", "objname", "refname"),
+        *("body", "body1", "body2", "geom", "geom1", "geom2", "joint", "joint1", "joint2", "site", "site1", "site2", "refsite"),
+        *("tendon", "tendon1", "tendon2", "cranksite", "slidersite", "sidesite", "actuator", "target", "link", "parent"),
+    )
+)
+"""Attributes that are names, not numbers, whatever they look like."""
+
 MIN_MASS, MIN_INERTIA = 1e-3, 1e-6
 """Default mass and inertia of a moving URDF link [kg, kg m^2]: too little to change how a robot moves."""
 
@@ -93,7 +102,7 @@ def read_imported(folder: Folder, name: str) -> Document:
 
 def _check_numbers(element: Element) -> None:
     for attribute, value in element.attributes.items():
-        numbers = _numbers(value)
+        numbers = [] if attribute in TEXTS else _numbers(value)
         says = f'{element.where}: <{element.tag} {attribute}="{value}">'
         if any(map(math.isnan, numbers)):
             raise WorldError(f"{says} is not a number")
@@ -115,7 +124,7 @@ def _numbers(value: str) -> list[float]:
 
 def _copies(element: Element) -> float:
     """Returns the number of elements after each `<replicate>` has made its copies."""
-    times = max(1, *_numbers(element.attributes.get("count", "1"))) if element.tag == "replicate" else 1
+    times = max([1, *_numbers(element.attributes.get("count", "1"))]) if element.tag == "replicate" else 1
     return 1 + times * sum(map(_copies, element.children))
 
 

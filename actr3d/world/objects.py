@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Mapping
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError, alternatives
+from actr3d.world.base import heading_in, turn_to
 from actr3d.world.body import Body
 from actr3d.world.command_registry import checked_angle, number
 from actr3d.world.physics import Physics
-from actr3d.world.scene_objects import yaw_quaternion
 
 PRESSED = 0.01
 """Greatest depth of one object in another after it was moved by hand [m]: contacts as stiff as those of walls push that out
-at less than 3 m/s, but fling away, or crush without bounds, what is deeper. Source: chosen for this library."""
+at less than 3 m/s if it can give way, but fling away, or crush without bounds, what is deeper. Source: chosen for this library."""
+
+SQUEEZED = 0.00075
+"""The same for an object that is pressed from two sides, so that it cannot give way [m]: with 2 mm at each
+side, contacts fling a person out of a gap at 7 m/s. Source: chosen for this library."""
+
+AGAINST = -0.5
+"""The cosine of the angle between two pushes from which an object between them counts as squeezed. Source: chosen, 120 degrees."""
 
 FARTHEST = 10_000.0
 """Greatest coordinate of a place [m]: there, the numbers of 32 bits with which scenes are drawn still distinguish millimetres."""
@@ -31,6 +37,19 @@ LONGEST = 60.0
 
 Pose = tuple[float, float, float]
 """Place and heading of an object: x [m], y [m], heading [rad]."""
+
+
+class Depth(NamedTuple):
+    """How deep objects are in another one [m]."""
+
+    depth: float
+    """The greatest depth."""
+    permitted: float
+    """The greatest depth after something was moved by hand."""
+
+
+NONE = Depth(0.0, PRESSED)
+"""That of objects that do not touch."""
 
 
 class Objects:
@@ -76,7 +95,7 @@ class Objects:
         else:
             at = int(self._physics.mj_model.jnt_qposadr[self._physics.mj_model.body_jntadr[number]])
             (x, y, _), turned = data.qpos[at : at + 3].tolist(), data.qpos[at + 3 : at + 7]
-        return x, y, _heading(turned.tolist())
+        return x, y, heading_in(turned.tolist())
 
     def move(self, name: str, x: float, y: float, heading: float | None) -> None:
         """Puts an object at (x, y) [m], with a heading [rad] or its present one; a loose object comes to rest.
@@ -97,14 +116,14 @@ class Objects:
             mocap = int(physics.mj_model.body_mocapid[number])
             physics.mj_data.mocap_pos[mocap, :2] = (x, y)
             if heading is not None:
-                _turn(physics.mj_data.mocap_quat[mocap], heading)
+                turn_to(physics.mj_data.mocap_quat[mocap], heading)
         else:
             joint = int(physics.mj_model.body_jntadr[number])
             q, v = int(physics.mj_model.jnt_qposadr[joint]), int(physics.mj_model.jnt_dofadr[joint])
             physics.mj_data.qpos[q : q + 2] = (x, y)
             physics.mj_data.qvel[v : v + 6] = 0
             if heading is not None:
-                _turn(physics.mj_data.qpos[q + 3 : q + 7], heading)
+                turn_to(physics.mj_data.qpos[q + 3 : q + 7], heading)
         physics.changed()
         others = deeper(depths, self.depths(moved))
         if others:
@@ -153,8 +172,8 @@ class Objects:
             raise WorldError(f"no object '{name}' to {what}{alternatives(name, names)}")
         return self._bodies[name].root if name in self._bodies else self._obstacles[name] if name in self._obstacles else self._loose[name]
 
-    def depths(self, roots: Collection[int], *, others: Literal["all", "fixed", "moving"] = "all") -> dict[str, float]:
-        """Returns by name the depth of some objects in each other object [m].
+    def depths(self, roots: Collection[int], *, others: Literal["all", "fixed", "moving"] = "all") -> dict[str, Depth]:
+        """Returns by name the depth of some objects in each other object.
 
         Args:
             roots: The MuJoCo bodies that are the roots of these objects.
@@ -163,20 +182,50 @@ class Objects:
         """
         physics = self._physics
         physics.refresh()
-        model, contacts = physics.mj_model, physics.mj_data.contact
-        depths: dict[str, float] = {}
+        contacts, depths = physics.mj_data.contact, dict[str, Depth]()
         pairs: list[list[int]] = contacts.geom.tolist()
-        for pair, distance in zip(pairs, contacts.dist.tolist(), strict=True):
-            mine = [geom >= 0 and int(model.body_rootid[model.geom_bodyid[geom]]) in roots for geom in pair]
-            geom = pair[mine[0]]  # of the other object, if one of the two is
-            if mine[0] != mine[1] and geom >= 0 and (others == "all" or self._kind(geom) == others):
-                other = physics.owners[geom]
-                depths[other] = max(depths.get(other, 0.0), -distance)
+        kinds = [[self._kind(geom) for geom in pair] for pair in pairs]
+        ends = [[self._root(geom) for geom in pair] for pair in pairs]
+        pushes = [n for n, kind in enumerate(kinds) if others != "fixed" or others in kind]  # what can move gives way to what is fixed
+        for n, distance in enumerate(contacts.dist.tolist()):
+            mine = [end in roots for end in ends[n]]
+            side = int(mine[0])  # that of the other object, if one of the two is
+            if mine[0] != mine[1] and pairs[n][side] >= 0 and others in ("all", kinds[n][side]):
+                other = physics.owners[pairs[n][side]]
+                known, permitted = depths.get(other, NONE)
+                if -distance > SQUEEZED and any(self._against(ends, n, push) for push in pushes):
+                    permitted = SQUEEZED
+                depths[other] = Depth(max(known, -distance), permitted)
         return depths
+
+    def _against(self, ends: list[list[int]], one: int, other: int) -> bool:
+        """Returns whether two contacts push an object that can move from two sides.
+
+        Args:
+            ends: The MuJoCo bodies that are the roots of the two objects in each contact; -1 for soft objects.
+            one: One of the contacts.
+            other: The other one.
+        """
+        normals = self._physics.mj_data.contact.frame[[one, other], :3]  # from the first end to the second
+        cosine = float(normals[0] @ normals[1])
+        return any(
+            root >= 0 and root == ends[other][end] and self._moves(root) and (cosine if side == end else -cosine) < AGAINST
+            for side, root in enumerate(ends[one])
+            for end in (0, 1)
+        )
+
+    def _root(self, geom: int) -> int:
+        model = self._physics.mj_model
+        return int(model.body_rootid[model.geom_bodyid[geom]]) if geom >= 0 else -1
+
+    def _moves(self, body: int) -> bool:
+        return bool(self._physics.mj_model.body_treeid[body] >= 0)
 
     def _kind(self, geom: int) -> str:
         model = self._physics.mj_model
-        if model.body_treeid[model.geom_bodyid[geom]] >= 0:
+        if geom < 0:
+            return "soft"
+        if self._moves(model.geom_bodyid[geom]):
             return "moving"
         return "plane" if int(model.geom_type[geom]) == int(mujoco.mjtGeom.mjGEOM_PLANE) else "fixed"
 
@@ -192,7 +241,7 @@ class Pushes:
     def __init__(self, physics: Physics, objects: Objects) -> None:
         self._physics = physics
         self._objects = objects
-        self._pushes: list[tuple[int, float, float, int]] = []
+        self._pushes: tuple[tuple[int, float, float, int], ...] = ()
         """The MuJoCo body, the force along x and y [N], and the physics steps left."""
         self._before: NDArray[np.float64] = np.empty((0, 6))
         """The forces on these bodies without the pushes, while these act."""
@@ -209,10 +258,11 @@ class Pushes:
         pushed = self._objects.pushed(name)
         x, y = (number(force, f"push: {axis}", -MAX_FORCE, MAX_FORCE) for axis, force in (("x", x), ("y", y)))
         time = number(time, "push: time", 1e-6, LONGEST)
-        self._pushes.append((pushed, x, y, max(1, round(time / self._physics.timestep))))
+        self.restore((*self._pushes, (pushed, x, y, max(1, round(time / self._physics.timestep)))))
 
     def begin(self, steps: int) -> None:
         """Applies the forces for the next physics steps; a push that lasts less acts with its mean force, so that its impulse is exact."""
+        self._physics.pushes = ()
         self._before = self._physics.mj_data.xfrc_applied[self._pushed()].copy()
         for body, x, y, left in self._pushes:
             share = min(left, steps) / steps
@@ -225,18 +275,19 @@ class Pushes:
         self._physics.mj_data.xfrc_applied[pushed] = self._before
         for body in pushed:
             self._objects.strike(body)
-        self._pushes = [(body, x, y, left - steps) for body, x, y, left in self._pushes if left > steps]
+        self.restore(tuple((body, x, y, left - steps) for body, x, y, left in self._pushes if left > steps))
 
     def _pushed(self) -> list[int]:
         return [body for body, *_ in self._pushes]
 
     def state(self) -> tuple[tuple[int, float, float, int], ...]:
         """Returns what is left of all pushes as plain values."""
-        return tuple(self._pushes)
+        return self._pushes
 
     def restore(self, state: tuple[tuple[int, float, float, int], ...]) -> None:
         """Restores pushes that `state` returned."""
-        self._pushes = list(state)
+        self._pushes = state
+        self._physics.pushes = tuple((body, x, y) for body, x, y, _ in state)
 
 
 def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, float, float | None]:
@@ -255,18 +306,6 @@ def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, 
     return x, y, None if heading is None else checked_angle(heading, f"{what}: heading")
 
 
-def deeper(before: Mapping[str, float], after: Mapping[str, float]) -> list[str]:
-    """Returns the objects in which something is now too deep, given the depths in them before and after it was moved [m]."""
-    return [name for name, depth in after.items() if depth > max(PRESSED, before.get(name, 0.0))]
-
-
-def _turn(quaternion: NDArray[np.float64], heading: float) -> None:
-    """Turns an orientation about the vertical to a heading [rad]; an object that lies keeps lying."""
-    by = np.array(yaw_quaternion(heading - _heading(quaternion.tolist())))
-    mujoco.mju_mulQuat(quaternion, by, quaternion.copy())
-
-
-def _heading(quaternion: list[float]) -> float:
-    """Returns the heading of an orientation [rad]."""
-    w, x, y, z = quaternion
-    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+def deeper(before: Mapping[str, Depth], after: Mapping[str, Depth]) -> list[str]:
+    """Returns the objects in which something is now too deep, given the depths in them before and after it was moved."""
+    return [name for name, (depth, permitted) in after.items() if depth > max(permitted, before.get(name, NONE).depth)]

@@ -47,11 +47,13 @@ class Physics:
         self._warnings: NDArray[np.int32] = self.mj_data.warning.number[_DIVERGED]
         mujoco.mj_forward(self.mj_model, self.mj_data)
         self.owners: tuple[str, ...] = tuple(self._owner(geom) for geom in range(self.mj_model.ngeom))
-        """By geom: the name of the object that it belongs to; a geom of the world itself has its own name."""
+        """By geom: the name of the object that it belongs to; a geom of the world itself, or of a body without a name, has its own name."""
         self.soft: NDArray[np.intp] = self.mj_model.flex_vertbodyid[self.mj_model.flex_vertadr].astype(np.intp)
         """By flex, MuJoCo's soft object: the MuJoCo body of its first vertex; its contacts have no geom."""
         self.grasped: dict[int, int] = {}
         """By weld of a hand: the MuJoCo body that the hand holds."""
+        self.pushes: tuple[tuple[int, float, float], ...] = ()
+        """Forces by hand that will act in the coming physics step: the MuJoCo body, and the force along x and y [N]."""
         self.observed = False
         """Whether an observer is being called now, who must leave the world unchanged."""
         self.renderer: Any = None
@@ -93,6 +95,8 @@ class Physics:
         if self._scratch is None:
             self._scratch = MjData(self.mj_model)
         mujoco.mj_setState(self.mj_model, self._scratch, self.integration_state(), INTEGRATION)
+        for body, x, y in self.pushes:
+            self._scratch.xfrc_applied[body, :2] += (x, y)
         mujoco.mj_step(self.mj_model, self._scratch)
         return (self._scratch.qvel - self.mj_data.qvel) / self.mj_model.opt.timestep
 
@@ -142,7 +146,7 @@ class Physics:
         }
         if str(name) not in free:
             raise WorldError(f"no loose object '{name}' in this scene{did_you_mean(str(name), free)}")
-        return free[name]
+        return free[str(name)]
 
     def other_side(self, contact: int, side: int) -> str:
         """Returns the name of the object on one side (0 or 1) of a contact."""
@@ -154,4 +158,4 @@ class Physics:
 
     def _owner(self, geom: int) -> str:
         body = int(self.mj_model.geom_bodyid[geom])
-        return self._root_name(body) if body else str(self.mj_model.geom(geom).name)
+        return (body and self._root_name(body)) or str(self.mj_model.geom(geom).name)

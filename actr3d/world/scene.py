@@ -54,10 +54,10 @@ class Scene(Configuration):
         """
         super().__post_init__()
         for part in self.parts:
-            if not isinstance(part, Part):
-                raise WorldError(f"Scene.parts: {part!r} is not a part: it has no name or no add_to(mj_spec)")
             if isinstance(part, type):
                 raise WorldError(f"Scene.parts: {part.__name__} is a class; a part is made of it, as {part.__name__}(…)")
+            if not isinstance(part, Part):
+                raise WorldError(f"Scene.parts: {part!r} is not a part: it has no name or no add_to(mj_spec)")
             if "\0" in part.name or part.name != part.name.encode(errors="replace").decode():
                 raise WorldError(f"Scene.parts: {part.name!r} cannot be a name: a character of it cannot be written")
         twice = [name for name, count in Counter(part.name for part in self.parts).items() if count > 1]
@@ -81,7 +81,8 @@ class Scene(Configuration):
             return self.specification().compile()
         except ValueError as error:
             repeated = re.search(r"repeated name '(.*)' in (\w+)", str(error))
-            raise WorldError(f"the scene cannot be compiled: {error}{self._clash(*repeated.groups()) if repeated else ''}") from error
+            said, clash = on_one_line(str(error)), self._clash(*repeated.groups()) if repeated else ""
+            raise WorldError(f"the scene cannot be compiled: {said}{clash}") from error
 
     def _clash(self, name: str, kind: str) -> str:
         """Returns which parts have elements of a kind with the same name, for a message."""
@@ -112,3 +113,8 @@ class Scene(Configuration):
         for part in self.parts:
             part.add_to(mj_spec)
         return mj_spec
+
+
+def on_one_line(text: str) -> str:
+    """Returns a message of MuJoCo on one line."""
+    return re.sub(r"\s*\n\s*", "; ", text.strip())

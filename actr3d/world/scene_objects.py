@@ -28,6 +28,9 @@ SHAPES = {
 }
 """By shape: MuJoCo's type, the number of sizes, and their meaning."""
 
+SHARPEST = math.radians(150)
+"""Greatest turn of a track at a point [rad]: the corner of its outer line is four times as far away as the line. Source: chosen."""
+
 LEAST_SIZE, LEAST_MASS = 1e-4, 1e-6
 """Least size [m] and mass [kg] of a loose object: MuJoCo needs an inertia of at least 1e-15 kg m^2, which any shape of these has."""
 
@@ -134,7 +137,7 @@ class Aperture(Configuration):
     """The direction in which one walks through it [rad], 0 along x."""
 
     closing: Annotated[float, Ge(0)] = 0.0
-    """How fast it closes from the start on, unless something in it holds it open [m/s]."""
+    """How fast it closes from the start on [m/s]. What only one segment touches is pushed aside; what both press holds it open."""
 
     segment: Length = 2.5
     """Length of each wall segment [m]. Segments keep their length and slide when the width changes."""
@@ -184,7 +187,7 @@ class Track(Configuration):
     """The middle line, (x, y) points in order [m]."""
 
     width: Length = 3.0
-    """Between the lines [m]. Source of the default: a usual lane of a rural road."""
+    """Between the middles of the lines [m]. Source of the default: a usual lane of a rural road."""
 
     line: Length = 0.1
     """Width of a painted line [m]."""
@@ -196,12 +199,19 @@ class Track(Configuration):
         """Checks the fields.
 
         Raises:
-            ConfigurationError: If a field is wrong, or two points in a row are the same.
+            ConfigurationError: If a field is wrong, two points in a row are the same, or a corner is too sharp.
         """
         super().__post_init__()
         for n, (one, other) in enumerate(pairwise(self.points)):
             if one == other:
                 raise ConfigurationError(f"Track '{self.name}'.points: the points {n} and {n + 1} are the same, {one}")
+        for n, (before, after) in enumerate(pairwise(self._headings()), start=1):
+            turn = abs(math.remainder(after - before, math.tau))
+            if turn > SHARPEST:
+                most, got = math.degrees(SHARPEST), math.degrees(turn)
+                raise ConfigurationError(
+                    f"Track '{self.name}'.points: turns by <= {most:g} degrees at a point (got {got:.0f} at point {n})"
+                )
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds one thin box for each piece of each line, all in one fixed body."""
@@ -221,14 +231,18 @@ class Track(Configuration):
             )
 
     def _offset(self, by: float) -> list[tuple[float, float]]:
-        """Returns the line beside the middle one; at each point the offset is perpendicular to the mean direction of the pieces there."""
-        points = self.points
+        """Returns the line beside the middle one, at this distance from each of its pieces; at a corner it turns on the bisector."""
+        headings = self._headings()
         line: list[tuple[float, float]] = []
-        for n, (x, y) in enumerate(points):
-            (x1, y1), (x2, y2) = points[max(n - 1, 0)], points[min(n + 1, len(points) - 1)]
-            heading = math.atan2(y2 - y1, x2 - x1)
-            line.append((x - math.sin(heading) * by, y + math.cos(heading) * by))
+        for (x, y), before, after in zip(self.points, [headings[0], *headings], [*headings, headings[-1]], strict=True):
+            half = math.remainder(after - before, math.tau) / 2
+            heading, away = before + half, by / math.cos(half)
+            line.append((x - math.sin(heading) * away, y + math.cos(heading) * away))
         return line
+
+    def _headings(self) -> list[float]:
+        """Returns the direction of each piece of the middle line [rad]."""
+        return [math.atan2(y2 - y1, x2 - x1) for (x1, y1), (x2, y2) in pairwise(self.points)]
 
 
 @dataclass(frozen=True, kw_only=True)

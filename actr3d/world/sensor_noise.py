@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from typing import Any
+from numbers import Integral
+from typing import Any, cast
 
 from numpy.random import PCG64, Generator, SeedSequence
 
 from actr3d.errors import WorldError, alternatives
 from actr3d.world.command_registry import number
+
+Noise = tuple[tuple[str, float | tuple[tuple[str, float], ...]], ...]
+"""Of a body's description: the name of a sensor, and the standard deviation of every number of its readings, or by field."""
 
 StandardDeviation = float | Mapping[str, float] | None
 """Of every number of a reading, or by field; None for no noise."""
@@ -33,11 +37,13 @@ class SensorNoise:
 
         Args:
             sensor: The name of the sensor.
-            reading: Its reading; None, text and integers stay unchanged.
+            reading: Its reading: a number, a dataclass, a tuple or dictionary of readings, or what has `with_noise(sd, random)`. None,
+                text and integers stay unchanged.
             sd: The standard deviation in the reading's unit, or one for each field named.
 
         Raises:
-            WorldError: If a standard deviation is not a number >= 0, or is for a field that the reading does not have.
+            WorldError: If a standard deviation is not a number >= 0, or is for a field that the reading does not have; or if
+                noise cannot be added to a reading of this type.
         """
         of = f"{self._name}: noise of {sensor}"
         checked = {_field(name, of): number(value, of, 0) for name, value in sd.items()} if isinstance(sd, Mapping) else number(sd, of, 0)
@@ -73,19 +79,33 @@ def _noisy(sensor: str, value: Any, sd: Any, random: Generator) -> Any:
     if hasattr(value, "with_noise"):
         return value.with_noise(sd, random)
     if isinstance(value, tuple):
-        return tuple(_noisy(sensor, item, sd, random) for item in value)  # pyright: ignore[reportUnknownVariableType]
+        items = cast("tuple[Any, ...]", value)
+        kind: Any = type(items)
+        if hasattr(kind, "_asdict"):  # a tuple with names
+            return kind(**_by_name(sensor, kind._asdict(items), sd, random))
+        return tuple(_noisy(sensor, item, sd, random) for item in items)
     if isinstance(value, dict):
-        return {key: _noisy(sensor, item, sd, random) for key, item in value.items()}  # pyright: ignore[reportUnknownVariableType]
+        by_key = cast("dict[Any, Any]", value)
+        if _is_by_key(by_key, sd):
+            return _by_name(sensor, by_key, sd, random)
+        return {key: _noisy(sensor, item, sd, random) for key, item in by_key.items()}
     if is_dataclass(value) and not isinstance(value, type):
-        return type(value)(**_fields(sensor, value, sd, random))
-    return value
+        return type(value)(**_by_name(sensor, {field.name: getattr(value, field.name) for field in fields(value)}, sd, random))
+    if value is None or isinstance(value, (str, bytes, Integral)):
+        return value
+    what = f"{type(value).__name__} (got {value!r:.60})"
+    raise WorldError(f"noise of {sensor}: is not added to a {what}; a reading has numbers, tuples, dictionaries and dataclasses")
 
 
-def _fields(sensor: str, value: Any, sd: float | dict[str, float], random: Generator) -> dict[str, Any]:
-    old = {field.name: getattr(value, field.name) for field in fields(value)}
+def _by_name(sensor: str, old: dict[Any, Any], sd: float | dict[str, float], random: Generator) -> dict[Any, Any]:
     if not isinstance(sd, dict):
         return {name: _noisy(sensor, item, sd, random) for name, item in old.items()}
     for name in sd:
         if name not in old:
             raise WorldError(f"noise of {sensor}: its readings have no '{name}'{alternatives(name, old, 'they have')}")
     return {name: _noisy(sensor, item, sd[name], random) if name in sd else item for name, item in old.items()}
+
+
+def _is_by_key(reading: dict[Any, Any], sd: float | dict[str, float]) -> bool:
+    """Returns whether standard deviations are by the keys of a reading, and not by the fields of what it holds."""
+    return isinstance(sd, dict) and (bool(sd.keys() & reading.keys()) or any(isinstance(item, float) for item in reading.values()))

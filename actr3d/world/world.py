@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
@@ -24,9 +25,9 @@ from actr3d.world.substepping import Substepping
 from actr3d.world.velocity_servo import fit_servos
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class WorldState:
-    """All that a world needs to continue exactly from a moment."""
+    """All that a world needs to continue exactly from a moment. It is equal only to itself: compare its fields."""
 
     steps: int
     """Physics steps since the start."""
@@ -110,32 +111,42 @@ class World:
         Unfinished commands choose their speeds before it, and in a long one every 10 ms.
 
         Raises:
-            WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset), or the number is none.
+            WorldError: If the physics diverges (MuJoCo finds NaN or huge values and would reset), or `steps` is not a whole number >= 0.
         """
-        if not isinstance(steps, int) or steps < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
+        try:
+            count = operator.index(steps)
+        except TypeError:
+            count = -1
+        if count < 0:
             raise WorldError(f"World.step: must be a whole number of steps, >= 0 (got {steps!r})")
         self._check_unobserved("step")
-        for aperture in self._closing:
-            closer = self.aperture_width(aperture.name) - aperture.closing * steps * self.scene.timestep
-            self._slide(aperture.name, max(0.0, closer))
+        if count == 0:
+            return
         commands = [body.motion for body in self.bodies.values() if body.motion]
         feeling = [body for body in self.bodies.values() if body.touched is not None]
-        parts = self._with_commands(steps, commands) if commands else self._substepping.steps(steps)
+        parts = self._in_stretches(count, commands) if commands or self._closing else self._substepping.steps(count)
         parts = self._watched(parts) if self.watchers else parts
         if feeling:
             step_and_feel(parts, feeling)
         else:
             for _ in parts:
                 pass
-        self.physics.steps += steps
+        self.physics.steps += count
         self.changed()
         if self.physics.diverged:
             culprit = self.physics.diverged_object()
             raise WorldError(f"the physics diverged near {seconds(self.time)} s, at '{culprit}': forces or speeds without bounds")
 
-    def _with_commands(self, steps: int, commands: list[MotionCommands]) -> Iterator[None]:
-        """Makes steps while there are unfinished commands, which correct their speeds every 10 ms: a brake must not drive backwards."""
+    def _in_stretches(self, steps: int, commands: list[MotionCommands]) -> Iterator[None]:
+        """Makes steps, and between them, every 10 ms, closes apertures and corrects the speeds of unfinished commands.
+
+        A brake must not drive backwards.
+        """
         for count in self._substepping.stretches(steps):
+            for aperture in self._closing:
+                width = self.aperture_width(aperture.name)
+                if width > 0:
+                    self._slide(aperture.name, max(0.0, width - aperture.closing * count * self.scene.timestep))
             for motion in commands:
                 motion.before_step(count * self.scene.timestep)
             yield from self._substepping.steps(count)
@@ -244,7 +255,7 @@ class World:
         return aperture.width_of(tuple(self.mj_data.mocap_pos[self._mocap(f"{name}_left")]))
 
     def set_aperture_width(self, width: float, name: str = "aperture") -> None:
-        """Sets the free width of an aperture [m], at once; it cannot close further than objects in it permit.
+        """Sets the free width of an aperture [m], at once; it cannot close further than objects in it permit, see `SQUEEZED`.
 
         Raises:
             WorldError: If there is no such aperture, or something that can move is in the way of its segments; they stay then.

@@ -169,3 +169,12 @@ def test_a_recording_keeps_what_a_view_was_in_short(tmp_path: Path) -> None:
         answers = [event for event in recorded.events() if event.kind == "answer"]
     assert answers
     assert all(set(event.data["value"]) == {"rows", "extents", "crc32"} for event in answers)
+
+
+def test_noise_of_a_view_can_be_on_the_nearest_point_too() -> None:
+    walker = doorway().bodies["walker"]
+    exact = walker.get("view", rows=1).as_array()
+    noisy = walker.get("view", rows=1, noise={"dn": 0.1, "xn": 0.01}).as_array()
+    for name in exact.dtype.names or ():
+        assert bool((exact[name] != noisy[name]).all()) == (name in ("dn", "xn"))
+    assert [len(extent) for extents in walker.get("view", rows=1).as_dict()[0.5].values() for extent in extents] == [6] * len(exact)

@@ -11,7 +11,7 @@ import pytest
 from mujoco import MjSpec
 
 from actr3d.errors import Actr3dError
-from actr3d.world import Body, Floor, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Body, Floor, Imported, Loose, Mannequin, Scene, Wall, World
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.sensors.touch import present
 from tests.helpers.small_agents import near
@@ -187,6 +187,25 @@ def test_what_is_grasped_comes_along_until_released() -> None:
     assert cup.xpos[2] < 0.2
 
 
+def test_the_name_of_an_object_may_look_like_a_number() -> None:
+    _, body = living(Loose(name="5", size=CUP.size, position=CUP.position, mass=CUP.mass))
+    body.set("grasp", 5)
+    assert body.get("grasp")["right"] == "5"
+
+
+def test_a_hand_carries_the_weight_of_all_parts_of_what_it_holds() -> None:
+    parts = '<geom size=".02" mass="0.2"/><body pos="0 0 -.1" gravcomp="{}"><joint/><geom size=".02" mass="2"/></body>'
+    for gravcomp, weight in ((0, 2.2), (0.5, 1.2)):
+        text = f'<mujoco><worldbody><body name="bag">{parts.format(gravcomp)}</body></worldbody></mujoco>'
+        world, body = living(Imported(name="a", text=text, free=True, position=(0.0, -0.24, 0.66)))
+        body.set("grasp", "a_bag")
+        assert world.mj_data.xfrc_applied.sum(axis=0) == near((0, 0, 9.81 * weight, 0, 0, 0))
+        ticks(world, 50)
+        assert body.joints["right_upper_arm_pitch"].position == near(0, abs=1e-3)
+        body.set("release")
+        assert not world.mj_data.xfrc_applied.any()
+
+
 def test_what_is_held_feels_what_it_touches() -> None:
     stick = Loose(name="stick", size=(0.6, 0.05, 0.05), position=(0.1, -0.24, 0.66), mass=0.5)
     world, body = living(Wall(name="wall", start=(0.6, -3.0), end=(0.6, 3.0)), stick)
@@ -310,13 +329,13 @@ def test_an_imported_body_shows_its_joints_and_takes_controls() -> None:
         ("saccade", (0, -10), "saccade: up: must be >= -6.2832 rad"),
         ("teleport", (1, 0, 90), "teleport: heading: must be <= 6.2832 rad"),
         ("position", ("torso_yaw", 60), r"position: angle: must be <= 6\.2832 rad, a full turn \(got 60\)"),
-        ("posture", ({"torso_yaw": 1, "head_yaw": 45},), r"position: angle: must be <= 6\.2832 rad, a full turn \(got 45\)"),
+        ("posture", ({"torso_yaw": 1, "head_yaw": 45},), r"posture: head_yaw: angle: must be <= 6\.2832 rad, a full turn \(got 45\)"),
         ("waypoint", (1, 2, math.nan), "waypoint: speed: must be a finite number"),
         ("joint", ("torso_yaw", math.nan), "joint: speed: must be a finite number"),
         ("joint", (["torso_yaw"], 1), r"walker has no joint \['torso_yaw'\]"),
         ("position", (5, 1), "walker has no joint 5"),
         ("posture", (5,), r"posture: angles: must be angles by joint \(got 5\)"),
-        ("posture", ({"torso_yaw": 1, "head_yaw": math.nan},), "position: angle: must be a finite number"),
+        ("posture", ({"torso_yaw": 1, "head_yaw": math.nan},), "posture: head_yaw: angle: must be a finite number"),
         ("grasp", (5,), "no loose object '5' in this scene"),
         ("grasp", ("cup", ["left"]), r"walker has no hand \['left'\]"),
         ("release", (0,), "walker has no hand 0"),

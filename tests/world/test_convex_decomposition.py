@@ -54,6 +54,18 @@ def test_they_are_made_once(cache: Path, monkeypatch: pytest.MonkeyPatch) -> Non
             convex_parts(box(), coarseness, seed)
 
 
+def test_a_cache_that_can_only_be_read_is_used(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = convex_parts(box(), 0.2, 1)
+
+    def refuse(*_: object) -> None:
+        raise PermissionError
+
+    monkeypatch.setattr(convex_decomposition.os, "utime", refuse)
+    monkeypatch.setattr(convex_decomposition, "_cut", never)
+    assert cache.exists()
+    assert same(convex_parts(box(), 0.2, 1), made)
+
+
 def test_a_broken_file_is_made_again(cache: Path) -> None:
     made = convex_parts(box(), 0.2, 1)
     (file,) = cache.iterdir()

@@ -17,7 +17,8 @@ import trimesh
 from mujoco import MjModel, MjSpec
 
 from actr3d.errors import Actr3dError, ModelWarning, WorldError
-from actr3d.world import Floor, Imported, Loose, Mannequin, Scene, World
+from actr3d.world import Body, Floor, Gait, Imported, Loose, Mannequin, Scene, Wall, World
+from actr3d.world.imported import GEOM_FIELDS
 from actr3d.world.scene import Part
 from tests.helpers.small_agents import near
 
@@ -430,6 +431,58 @@ def test_what_has_no_name_or_is_soft_is_felt_too(text: str, direction: float, fe
         world.step(5)
         touches |= {touch.other for touch in body.get("contacts")}
     assert touches == {feels}
+
+
+STEP = """<mujoco><default><default class="ground"><geom type="plane" size="9 9 1"/></default></default><worldbody><geom class="ground"/>
+  <frame pos="1 0 0" euler="0 0 90"><geom {}type="box" size="2 .1 .15" pos="0 0 .15" rgba="1 0 0 1" friction="0.3"/></frame>
+  <body name="b" pos="9 9 .1"><geom size=".1"/><joint/></body></worldbody>{}</mujoco>"""
+
+
+@pytest.mark.parametrize("named", ["", 'name="step" '])
+def test_the_feet_of_a_walker_touch_what_lies_directly_in_the_world_of_a_file(named: str) -> None:
+    def walked(obstacle: Any) -> Body:
+        world = World(Scene(parts=(Floor(), obstacle, Mannequin(name="m", gait=Gait()))))
+        world.bodies["m"].set("walk", 1.0)
+        world.bodies["m"].get("contacts")
+        world.step(750)
+        return world.bodies["m"]
+
+    before_file = walked(Imported(name="i", text=STEP.format(named, "")))
+    before_wall = walked(Wall(name="w", start=(1, -2), end=(1, 2), thickness=0.2, height=0.3))
+    assert before_file.get("pose").x == near(before_wall.get("pose").x, abs=0.01), "1.5 where only its thighs were stopped"
+    assert {touch.other for touch in before_file.get("contacts")} == {"i_step" if named else "i_geom_1"}
+
+
+def test_geoms_directly_in_the_world_of_a_file_keep_their_places_and_properties() -> None:
+    inside = World(Scene(parts=(Imported(name="i", text=STEP.format("", "")),)))
+    excludes = '<contact><exclude body1="world" body2="b"/></contact>'
+    plain = MjModel.from_xml_string(STEP.format("", excludes))
+    data = mujoco.MjData(plain)
+    mujoco.mj_forward(plain, data)
+    mine, box = inside.mj_model.geom("i_geom_1"), plain.geom(1)
+    assert inside.mj_data.geom_xpos[mine.id] == near(data.geom_xpos[1])
+    assert inside.mj_data.geom_xmat[mine.id] == near(data.geom_xmat[1])
+    assert [list(mine.friction), list(mine.rgba), list(mine.size)] == [list(box.friction), list(box.rgba), list(box.size)]
+    assert mine.bodyid[0] > 0
+    kept = World(Scene(parts=(Imported(name="i", text=STEP.format("", excludes)),))).mj_model
+    assert kept.geom("i_geom_1").bodyid[0] == 0, "its exclude would be lost"
+
+
+def test_names_that_look_like_numbers_are_names() -> None:
+    text = '<mujoco><worldbody><body name="nan"><joint name="inf"/><geom size=".1"/></body></worldbody>{}</mujoco>'
+    World(Scene(parts=(Imported(name="i", text=text.format('<actuator><motor joint="inf"/></actuator>')),)))
+    with pytest.raises(WorldError):
+        Imported(name="i", text='<mujoco><worldbody><replicate count=""><geom size="1"/></replicate></worldbody></mujoco>')
+    with pytest.raises(Actr3dError, match=r"Imported\.files: must "):
+        Imported(name="i", text=text, files=())
+
+
+def test_every_field_of_a_geom_is_moved() -> None:
+    """A later MuJoCo may have more."""
+    geom = MjSpec().worldbody.add_geom()
+    apart = {"name", "frame", "set_frame", "plugin", "alt", "id", "parent", "signature", "classname", "compiler"}
+    assert {field for field in dir(geom) if not field.startswith("_")} - apart == set(GEOM_FIELDS)
+    assert {field for field in dir(geom.alt) if not field.startswith("_")} == {"type", "axisangle", "euler", "xyaxes", "zaxis"}
 
 
 def test_no_text_crashes_the_process(tmp_path: Path) -> None:

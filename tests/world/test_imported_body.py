@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from actr3d.errors import WorldError
 from actr3d.simulation import Simulation
-from actr3d.world import Floor, ImportedBody, Loose, Scene, World
+from actr3d.world import Body, Floor, ImportedBody, Loose, Scene, World
 from actr3d.world.anatomy import NamedMovement
 from tests.helpers.small_agents import near
 
@@ -114,6 +115,82 @@ def test_a_control_beyond_what_the_physics_takes_is_refused() -> None:
         with pytest.raises(WorldError, match=r"speed: must be <= 1e\+10 \(got "):
             body.set(word, *values)
     body.set("control", "turn", 1e10)
+
+
+def driven_by(actuator: str) -> tuple[World, Body]:
+    """Returns a world with a slide that an actuator moves, and its body."""
+    slide = '<worldbody><body name="b"><joint name="j" type="slide"/><geom size="0.1"/></body></worldbody>'
+    text = f"<mujoco>{slide}<actuator>{actuator}</actuator></mujoco>"
+    world = World(Scene(gravity=(0, 0, 0), parts=(ImportedBody(name="r", text=text),)))
+    return world, world.bodies["r"]
+
+
+@pytest.mark.parametrize("gear", [5, -5, 0.5])
+def test_a_servo_with_a_gear_keeps_the_commanded_speed(gear: float) -> None:
+    world, body = driven_by(f'<velocity joint="j" kv="100" gear="{gear}" ctrlrange="-10 5"/>')
+    body.set("joint", "j", 0.9)
+    world.step(100)
+    assert body.get("joints")["j"].velocity == near(0.9, abs=1e-3)
+    assert body.moving() == ("j",)
+    body.set("position", "j", 0.5, 0.9)
+    world.step(500)
+    assert body.get("joints")["j"].position == near(0.5, abs=1e-3)
+
+
+def test_a_speed_beyond_the_range_of_a_servo_is_refused() -> None:
+    _, body = driven_by('<velocity joint="j" kv="10" gear="-2" ctrlrange="-0.5 1"/>')
+    with pytest.raises(WorldError, match=r"joint: speed: must be <= 0\.25 \(got 1\.0\)"):
+        body.set("joint", "j", 1.0)
+    with pytest.raises(WorldError, match=r"position: speed: must be <= 0\.25 \(got 2\.0\)"):
+        body.set("position", "j", 1.0)
+    body.set("joint", "j", -0.5)
+
+
+def test_a_damper_is_no_servo() -> None:
+    _, body = driven_by('<damper joint="j" kv="10" ctrlrange="0 1"/>')
+    assert not body.joints["j"].driven
+    assert "joint" not in body.actuators
+
+
+UNNAMED = """<mujoco><worldbody><body name="r"><joint axis="0 0 1"/><geom size=".1"/>
+  <body pos=".5 0 0"><joint/><geom size=".1"/><site name="part_3"/></body>
+  <body pos="0 2 0"><joint name="joint_0"/><geom size=".1"/></body></body></worldbody>
+  <actuator><motor joint="joint_0"/><motor joint="joint_0" name="own"/><motor joint="joint_0"/></actuator></mujoco>"""
+
+
+def test_what_has_no_name_is_called_the_same_wherever_the_body_is_in_a_scene() -> None:
+    robot = ImportedBody(name="r", text=UNNAMED)
+    for parts in ((robot,), (Loose(name="one"), robot, Loose(name="other"))):
+        world = World(Scene(parts=parts))
+        body = world.bodies["r"]
+        assert list(body.joints) == ["joint_1", "joint_2", "joint_0"]
+        assert list(body.controls) == ["control_0", "own", "control_2"]
+        assert len({control.start for control in body.controls.values()}) == 3
+        body.set("control", "control_2", 1.0)
+        assert world.mj_data.ctrl.tolist() == [0.0, 0.0, 1.0]
+
+
+def test_parts_without_a_name_are_frames() -> None:
+    other = Loose(name="part_2", position=(7, 7, 7))
+    body = World(Scene(parts=(Loose(name="one"), ImportedBody(name="r", text=UNNAMED), other))).bodies["r"]
+    assert body.parts == ("base", "part_1", "part_2")
+    for part in body.parts[1:]:
+        pose = body.get("pose", part)
+        assert body.frame(part)[0] == near((pose.x, pose.y, pose.z))
+    assert body.bounding_box("part_2").lower[1] == near(-2.1)
+    assert body.get("bounding_box", "part_2") == body.get("bounding_box", "body")
+    assert body.get("rangefinder", at="part_2") is None
+
+
+@pytest.mark.parametrize("lies", [(0.7071067811865476, 0.7071067811865476, 0, 0), (0.9238795325112867, 0, 0.3826834323650898, 0)])
+def test_a_free_body_that_lies_or_leans_does_so_still_after_it_was_moved(lies: tuple[float, float, float, float]) -> None:
+    world = World(Scene(parts=(ImportedBody(name="r", text=ROBOT, free=True, quaternion=lies),)))
+    body = world.bodies["r"]
+    before = body.get("pose")
+    world.move("r", 1.0, 0.0, 0.5)
+    assert body.get("pose") == replace(before, x=near(1.0), heading=near(0.5), pitch=near(before.pitch), roll=near(before.roll))
+    body.set("teleport", 2.0, 0.0, -0.5)
+    assert body.get("pose") == replace(before, x=near(2.0), heading=near(-0.5), pitch=near(before.pitch), roll=near(before.roll))
 
 
 def test_a_movement_of_joints_that_do_not_exist_is_refused() -> None:

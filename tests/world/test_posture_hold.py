@@ -132,7 +132,7 @@ def test_after_a_limit_it_is_at_rest() -> None:
         ("heading", (1, 13), r"heading: speed: must be <= 12\.5"),
         ("waypoint", (1, 2, 13), r"waypoint: speed: must be <= 12\.5"),
         ("joint", ("torso_yaw", 17), r"joint: speed: must be <= 16 \(got 17\)"),
-        ("posture", ({"torso_yaw": 1}, 17), r"position: speed: must be <= 16 \(got 17\)"),
+        ("posture", ({"torso_yaw": 1}, 17), r"posture: torso_yaw: speed: must be <= 16 \(got 17\)"),
         ("walk", (True,), r"walk: speed: must be a number \(got True\)"),
     ],
 )

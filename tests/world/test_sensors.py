@@ -8,14 +8,14 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import FrozenInstanceError, dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 from mujoco import MjSpec, mjtGeom
 
 from actr3d.errors import Actr3dError
-from actr3d.world import Aperture, Body, Floor, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Aperture, Body, Car, Floor, Loose, Mannequin, Scene, Wall, World
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.sensor_noise import SensorNoise
 from actr3d.world.sensors.render import Picture
@@ -89,6 +89,26 @@ def test_the_accelerometer_feels_rest_a_bend_and_free_fall() -> None:
     falling = World(Scene(parts=(Floor(), Crate(height=3.0))))
     falling.step(50)
     assert falling.bodies["crate"].get("accelerometer") == near((0, 0, 0), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("pushed", "part", "force"), [(Car(name="it"), None, 5000), (Mannequin(name="it"), "legs", 2000)], ids=["car", "m"]
+)
+def test_the_accelerometer_feels_a_push(pushed: Any, part: str | None, force: float) -> None:
+    world = World(Scene(parts=(Floor(), pushed)))
+    body = world.bodies["it"]
+    world.step(50)
+    world.push("it", force)
+    for steps in (0, 5):
+        world.step(steps)
+        felt, before, state = body.get("accelerometer", part), body.get("velocity", part, frame="world"), world.state()
+        world.step()
+        gained = (body.get("velocity", part, frame="world").linear[0] - before.linear[0]) / world.scene.timestep
+        world.restore(state)
+        assert gained > 4
+        assert felt[0] == near(gained, rel=0.1)  # commands of the legs, which correct their speed, are not in it
+    world.step(50)
+    assert abs(body.get("accelerometer", part)[0]) < 1
 
 
 def test_the_accelerometer_is_of_the_present_and_not_of_the_step_before() -> None:
@@ -220,6 +240,7 @@ def test_pictures_show_what_the_eye_sees_or_say_what_is_missing() -> None:
     assert distances.shape == (60, 80)
     assert distances[30, 40] == near(body.get("rangefinder"), rel=2e-3)
     assert body.get("depth", 80, 60).pixels == depth.pixels
+    assert world.state().compiled == (), "the compiled model is that of the start"
     ticks(world, 1)
     body.set("teleport", 1.0, 0.0)
     assert body.get("depth", 80, 60).as_array()[30, 40] == near(distances[30, 40] - 1.0, rel=5e-3)
@@ -303,6 +324,51 @@ def test_noise_by_field_leaves_the_others_exact() -> None:
     assert replace(pose, x=0.0) == body.get("pose")
 
 
+class Spot(NamedTuple):
+    """A reading of an own sensor."""
+
+    x: float
+    name: str
+
+
+def test_noise_is_added_to_every_reading_or_refused() -> None:
+    noise = SensorNoise(0, "walker")
+    by_key = noise.added("own", {"a": 1.0, "b": 2.0}, {"a": 0.5})
+    assert by_key["a"] != 1.0
+    assert by_key["b"] == 2.0
+    spot = noise.added("own", Spot(1.0, "here"), 0.5)
+    assert isinstance(spot, Spot)
+    assert spot.x != 1.0
+    assert noise.added("own", Spot(1.0, "here"), {"x": 0.0}) == Spot(1.0, "here")
+    assert noise.added("own", (None, "text", 3, np.int64(3), True), 1.0) == (None, "text", 3, 3, True)
+    for reading in ([1.0, 2.0], np.ones(2), np.float32(1), {"a": [1.0]}):
+        with pytest.raises(Actr3dError, match=r"noise of own: is not added to a (list|ndarray|float32) \(got "):
+            noise.added("own", reading, 0.5)
+    with pytest.raises(Actr3dError, match=r"noise of own: its readings have no 'c'; they have a, b"):
+        noise.added("own", {"a": 1.0, "b": 2.0}, {"c": 0.5})
+    _, body = walker_in()
+    joints = body.get("joints", noise={"position": 0.1})
+    assert joints["torso_yaw"].position != 0
+    assert joints["torso_yaw"].velocity == 0
+
+
+def test_noise_of_a_description_is_checked_at_the_start_and_can_be_by_field() -> None:
+    for noise, message in (
+        (("proprioception", 0.1), "takes no noise"),
+        (("pose", (("xx", 0.1),)), "its readings have no 'xx'"),
+        (("pose", (("x", -0.1),)), "noise of pose: must be >= 0"),
+        (("touch", 0.1), "walker has no sensor 'touch'"),
+    ):
+        with pytest.raises(Actr3dError, match=message):
+            walker_in(noise=(noise,))
+    _, body = walker_in(noise=(("pose", (("x", 0.1),)),))
+    fresh = body.state()
+    assert fresh.noise == ()
+    pose = body.get("pose")
+    assert pose.x != 0
+    assert pose.y == 0
+
+
 def test_noise_comes_from_the_seed_and_from_its_own_sensor() -> None:
     first, again, other = (walker_in(seed=seed, noise=(("pose", 0.1),))[1] for seed in (1, 1, 2))
     again.get("gyroscope", noise=1.0)
@@ -333,6 +399,9 @@ def test_noise_goes_on_exactly_from_a_state() -> None:
         ("laser", {"rays": True}, r"laser: rays: must be a number \(got True\)"),
         ("rangefinder", {"at": "nowhere"}, "no frame, part or site 'nowhere'"),
         ("rangefinder", {"reach": -1}, "rangefinder: reach: must be >= 0"),
+        ("rangefinder", {"angle": 90}, r"rangefinder: angle: must be <= 6\.2832 rad, a full turn \(got 90\)"),
+        ("rangefinder", {"elevation": -45}, r"rangefinder: elevation: must be >= -6\.2832 rad, a full turn \(got -45\)"),
+        ("laser", {"elevation": 45}, r"laser: elevation: must be <= 6\.2832 rad, a full turn \(got 45\)"),
         ("pose", {"noise": -1}, "walker: noise of pose: must be >= 0"),
         ("pose", {"noise": {"xx": 1}}, "noise of pose: its readings have no 'xx'"),
         ("rangefinder", {"noise": {"x": 1}, "elevation": -1.0}, "its readings have no fields; give one number"),

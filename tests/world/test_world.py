@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from actr3d.errors import Actr3dError, ConfigurationError, WorldError
-from actr3d.world import Aperture, Car, Floor, ImportedBody, Loose, Mannequin, Scene, Track, Wall, World
+from actr3d.world import Aperture, Car, Floor, Gait, ImportedBody, Loose, Mannequin, Scene, Track, Wall, World
 from actr3d.world.scene_objects import SHAPES
 from tests.helpers.small_agents import near
 
@@ -83,6 +83,19 @@ def test_a_loose_object_falls_and_lies_on_the_floor() -> None:
     assert world.mj_data.body("box").xpos[2] == near(0.15, abs=2e-3)
 
 
+@pytest.mark.parametrize("end", [(5.0, 5.0), (5.0, -5.0), (9.0, 3.0), (2.0, 4.0), (9.0, 0.0)])
+def test_the_lines_of_a_track_keep_their_distance_at_corners(end: tuple[float, float]) -> None:
+    points = ((0.0, 0.0), (5.0, 0.0), end)
+    world = World(Scene(parts=(Track(points=points, width=3),)))
+    for geom in range(world.mj_model.ngeom):
+        along, at = world.mj_data.geom_xmat[geom].reshape(3, 3)[:2, 0], world.mj_data.geom_xpos[geom][:2]
+        start, stop = np.array(points[geom % 2]), np.array(points[geom % 2 + 1])
+        way = (stop - start) / np.linalg.norm(stop - start)
+        side = np.array((-way[1], way[0]))
+        for corner in (at - world.mj_model.geom_size[geom, 0] * along, at + world.mj_model.geom_size[geom, 0] * along):
+            assert (corner - start) @ side == near(1.5 if geom < 2 else -1.5)
+
+
 def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
     world = World(Scene(parts=(Track(points=((0, 0), (10, 0)), width=4),)))
     assert sorted(world.mj_model.geom_pos[:, 1]) == [-2, 2]
@@ -106,6 +119,10 @@ def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
         (lambda: Scene(parts=(Floor,)), r"Floor is a class; a part is made of it, as Floor\(…\)"),
         (lambda: Scene(parts=(Wall(name="a\0", start=(0, 0), end=(1, 0)),)), r"'a\\x00' cannot be a name"),
         (lambda: Scene(parts=(Mannequin(name="\ud800"),)), r"'\\ud800' cannot be a name"),
+        (
+            lambda: Track(points=((0, 0), (5, 0), (1, 1))),
+            r"Track 'track'\.points: turns by <= 150 degrees at a point \(got 166 at point 1\)",
+        ),
         (lambda: Track(points=((0, 0), (1, 0), (1, 0))), r"Track 'track'\.points: the points 1 and 2 are the same, \(1\.0, 0\.0\)"),
         (lambda: World(Floor()), r"a world is made of a Scene \(got Floor"),  # pyright: ignore[reportArgumentType]
         (lambda: World(Scene(), seed=-1), r"World\.seed: must be a whole number >= 0 \(got -1\)"),
@@ -154,9 +171,11 @@ def test_an_aperture_does_not_close_on_what_stands_in_it() -> None:
     with pytest.raises(Actr3dError, match=r"aperture 'aperture' cannot be 0\.3 m wide now: walker would be inside its walls"):
         world.set_aperture_width(0.3)
     assert world.state().mj_state.tobytes() == before.mj_state.tobytes()
-    world.set_aperture_width(0.44)
+    with pytest.raises(Actr3dError, match=r"cannot be 0\.44 m wide now"):  # 2 mm at each side: it may fling the person out
+        world.set_aperture_width(0.44)
+    world.set_aperture_width(0.443)
     world.step(100)
-    assert world.aperture_width() == near(0.44)
+    assert world.aperture_width() == near(0.443)
     assert np.abs(world.mj_data.qvel).max() < 0.1
     assert world.bodies["walker"].get("pose").x == near(0, abs=0.02)
 
@@ -198,6 +217,61 @@ def test_a_closing_aperture_is_held_open_by_what_lies_in_it() -> None:
         world.step(5)
         assert np.abs(world.mj_data.qvel).max() < 10
     assert 0.28 < world.aperture_width() < 0.3
+
+
+@pytest.mark.parametrize("closing", [0.05, 0.1, 0.5])
+@pytest.mark.parametrize("person", [{}, {"gait": Gait()}, {"trunk": "box"}, {"heading": 0.5, "position": (0.0, 0.02)}], ids=str)
+def test_a_closing_aperture_stops_at_a_person_in_it(person: dict[str, Any], closing: float) -> None:
+    world = World(Scene(parts=(Floor(), Aperture(width=0.47, position=(0.0, 0.0), closing=closing), Mannequin(name="m", **person))))
+    for _ in range(150):
+        world.step(5)
+        assert np.hypot(*world.bodies["m"].base.speed[:2]) < 0.1 + closing / 2, "17 m/s where it was squeezed"
+    assert world.aperture_width() > 0.2
+    assert world.bodies["m"].get("pose").x == near(0, abs=0.05)
+
+
+def test_a_closing_aperture_stops_at_two_people_side_by_side_in_it() -> None:
+    people = (Mannequin(name="m", position=(0.0, -0.25)), Mannequin(name="n", position=(0.0, 0.25)))
+    world = World(Scene(parts=(Floor(), Aperture(width=1.0, position=(0.0, 0.0), closing=0.1), *people)))
+    world.step(1000)
+    assert all(np.hypot(*body.base.speed[:2]) < 0.1 for body in world.bodies.values())
+    assert world.aperture_width() == near(0.89, abs=0.01)
+
+
+def test_an_aperture_closes_by_the_time_and_not_by_the_call() -> None:
+    def closed(*calls: int) -> World:
+        world = World(Scene(parts=(Floor(), Aperture(width=1.0, position=(0.0, 0.0), closing=0.5), Mannequin(name="m"))))
+        for steps in calls:
+            world.step(steps)
+        return world
+
+    one, many = closed(1000), closed(*[5] * 200)
+    assert 0.44 < one.aperture_width() < 0.45
+    assert one.state_bytes() == many.state_bytes()
+
+
+def test_no_step_changes_nothing_and_whole_numbers_of_numpy_are_whole() -> None:
+    wall = Wall(name="w", start=(0.174, -1), end=(0.174, 1))
+    world = World(Scene(parts=(Floor(), Mannequin(name="m"), wall)))
+    body = world.bodies["m"]
+    body.get("contacts")
+    body.set("walk", 0.5)
+    world.step(np.int64(5))  # pyright: ignore[reportArgumentType]
+    felt, moment = body.get("contacts"), world.physics.moment
+    assert felt
+    world.step(0)
+    assert (body.get("contacts"), world.physics.moment) == (felt, moment)
+    for steps in (2.5, "5", None, -1, np.float64(5)):
+        with pytest.raises(Actr3dError, match=r"World\.step: must be a whole number of steps, >= 0 \(got "):
+            world.step(steps)  # pyright: ignore[reportArgumentType]
+
+
+def test_errors_of_scenes_name_what_is_wrong_on_one_line() -> None:
+    with pytest.raises(WorldError, match=r"Scene\.parts: Wall is a class; a part is made of it, as Wall\(…\)"):
+        Scene(parts=(Wall,))
+    with pytest.raises(WorldError, match="the scene cannot be compiled: ") as caught:
+        World(Scene(parts=(Mannequin(name="a"), Loose(name="a_torso", position=(3, 0, 1)))))
+    assert "\n" not in str(caught.value)
 
 
 def test_a_body_that_stands_inside_something_fixed_is_refused_at_the_start() -> None:

@@ -138,3 +138,11 @@ def test_a_state_of_another_scene_is_refused() -> None:
 
 def differences(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
     return {path: (before.get(path), after.get(path)) for path in before.keys() | after.keys() if before.get(path) != after.get(path)}
+
+
+def test_states_are_compared_and_hashed_as_the_objects_that_they_are() -> None:
+    world = World(Scene(parts=(Floor(), Mannequin(name="walker"))))
+    one, other = world.state(), world.state()
+    assert one == one
+    assert one != other
+    assert len({one, other}) == 2

@@ -109,8 +109,9 @@ def joint(body: Body, name: str, speed: float) -> None:
     Raises:
         WorldError: If there is no such joint, no servo moves it, or the speed is not a number or too fast.
     """
-    most = body.fastest()[2]
-    turned, speed = _servoed(body, name), number(speed, "joint: speed", -most, most)
+    turned, most = _servoed(body, name), body.fastest()[2]
+    least, greatest = turned.speeds
+    speed = number(speed, "joint: speed", max(-most, least), min(most, greatest))
     body.motion.targets.pop(name, None)
     body.hold.drive_joint(turned, speed)
     body.physics.changed()
@@ -124,7 +125,7 @@ def position(body: Body, name: str, angle: float, speed: float = MODERATE) -> No
         WorldError: If there is no such joint, no servo moves it, the angle is not a number or more than a full turn, or the speed
             is not > 0 or is too fast.
     """
-    body.motion.targets[name] = _target(body, name, _place(body, name, angle), speed)
+    body.motion.targets[name] = _target(body, name, angle, speed, "position")
 
 
 @_if_jointed
@@ -136,7 +137,7 @@ def posture(body: Body, angles: Mapping[str, float], speed: float = MODERATE) ->
     """
     if not isinstance(angles, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
         raise WorldError(f"posture: angles: must be angles by joint (got {angles!r})")
-    body.motion.targets |= {name: _target(body, name, _place(body, name, angle), speed) for name, angle in angles.items()}
+    body.motion.targets |= {name: _target(body, name, angle, speed, f"posture: {name}") for name, angle in angles.items()}
 
 
 @_if_drivable
@@ -147,7 +148,8 @@ def steering(body: Body, angle: float) -> None:
         WorldError: If the angle is not a number.
     """
     car = _car(body)
-    body.motion.targets["steer"] = _target(body, "steer", number(angle, "steering: angle") / car.ratio, car.rate / car.ratio)
+    angle = number(angle, "steering: angle") / car.ratio
+    body.motion.targets["steer"] = (_within(body.joint("steer"), angle), car.rate / car.ratio)
 
 
 @_if_drivable
@@ -256,24 +258,32 @@ def _servoed(body: Body, name: str) -> Joint:
     return turned
 
 
-def _place(body: Body, name: str, angle: float) -> float:
-    """Returns the given angle [rad] of a joint, or the place of a slide [m]."""
+def _target(body: Body, name: str, angle: float, speed: float, what: str) -> tuple[float, float]:
+    """Returns the given angle [rad] of a joint, or the place of a slide [m], within its limits, and the speed.
+
+    Args:
+        body: The body.
+        name: The joint.
+        angle: The angle or place.
+        speed: The speed.
+        what: The command, for errors.
+    """
     turned = _servoed(body, name)
     is_limb = turned.turns and max(map(abs, turned.limits)) <= FULL_TURN
-    return (checked_angle if is_limb else number)(angle, "position: angle")
+    angle = (checked_angle if is_limb else number)(angle, f"{what}: angle")
+    least, greatest = turned.speeds
+    return _within(turned, angle), number(speed, f"{what}: speed", 1e-6, min(body.fastest()[2], -least, greatest))
 
 
-def _target(body: Body, name: str, angle: float, speed: float) -> tuple[float, float]:
-    """Returns the target of a joint, within its limits, and the speed."""
-    turned = _servoed(body, name)
-    return max(turned.lower, min(turned.upper, angle)), number(speed, "position: speed", 1e-6, body.fastest()[2])
+def _within(joint: Joint, angle: float) -> float:
+    """Returns an angle [rad], or the place of a slide [m], or the limit of the joint where that is nearer."""
+    return max(joint.lower, min(joint.upper, angle))
 
 
 def _look(body: Body, left: float, up: float, speed: float | None = None) -> None:
     """Turns the eye to a direction relative to the head [rad], or to its limits; at a speed [rad/s] or as people do."""
     yaw, pitch = body.joints["eye_yaw"], body.joints["eye_pitch"]
-    to_yaw = max(yaw.lower, min(yaw.upper, left))
-    to_pitch = max(pitch.lower, min(pitch.upper, -up))
+    to_yaw, to_pitch = _within(yaw, left), _within(pitch, -up)
     turns = (abs(to_yaw - yaw.position), abs(to_pitch - pitch.position))
     farthest = max(turns)
     time = SACCADE + SACCADE_PER_RAD * farthest if speed is None else farthest / number(speed, "gaze: speed", 1e-6)

@@ -14,6 +14,7 @@ from actr3d.errors import ConfigurationError
 from actr3d.world.anatomy import Anatomy, Steering, body_kind
 from actr3d.world.bodies.planar_base import add_planar_base
 from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Name
+from actr3d.world.sensor_noise import Noise
 from actr3d.world.velocity_servo import add_servo
 
 GRAVITY = 9.81
@@ -83,8 +84,9 @@ class Car(Configuration):
     eye: tuple[float, float, float] = (1.2, 0.35, 1.2)
     """The driver's eye relative to the rear axle's middle on the ground: forward, left, up [m]. Source: chosen, a left-hand drive."""
 
-    noise: tuple[tuple[str, float], ...] = ()
-    """Noise of its sensors: the name and the standard deviation, in the reading's unit; sensors that are not named are exact."""
+    noise: Noise = ()
+    """Noise of its sensors: the name and the standard deviation, in the reading's unit, or one for each field, as in
+    `(("pose", 0.01), ("view", (("d1", 0.1), ("d2", 0.1))))`. Sensors that are not named are exact."""
 
     colour: Colour = (0.70, 0.25, 0.22, 1.0)
     """Red, green, blue, alpha in 0 to 1."""

@@ -20,6 +20,7 @@ from actr3d.world.bodies.mannequin_limits import FASTEST_JOINT, FASTEST_TURN, FA
 from actr3d.world.bodies.planar_base import add_planar_base
 from actr3d.world.gait import OWN, Gait, LegPlan
 from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Name
+from actr3d.world.sensor_noise import Noise
 from actr3d.world.velocity_servo import add_servo
 
 SIDES = ("left", "right")
@@ -136,8 +137,9 @@ class Mannequin(Configuration):
     push: Annotated[float, Gt(0), Le(2000)] = 300.0
     """Greatest force of the legs [N]. Source: chosen; pushing while walking, people reach 200 to 400 N."""
 
-    noise: tuple[tuple[str, float], ...] = ()
-    """Noise of its sensors: the name and the standard deviation, in the reading's unit; sensors that are not named are exact."""
+    noise: Noise = ()
+    """Noise of its sensors: the name and the standard deviation, in the reading's unit, or one for each field, as in
+    `(("pose", 0.01), ("view", (("d1", 0.1), ("d2", 0.1))))`. Sensors that are not named are exact."""
 
     colour: Colour = (0.35, 0.47, 0.62, 1.0)
     """Of the shirt: red, green, blue, alpha in 0 to 1. Trousers and shoes are darker shades of it."""

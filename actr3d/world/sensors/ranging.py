@@ -12,7 +12,7 @@ from mujoco import mjtGeom
 from numpy.typing import NDArray
 
 from actr3d.world.body import Body, sensor
-from actr3d.world.command_registry import number, whole
+from actr3d.world.command_registry import checked_angle, number, whole
 
 BEYOND = 1e-6
 """Distance behind a hit on the body itself at which a ray continues [m]."""
@@ -32,7 +32,7 @@ class Proximity:
 
 @sensor
 def rangefinder(body: Body, angle: float = 0.0, elevation: float = 0.0, reach: float = 10.0, at: str | None = None) -> float | None:
-    """Senses the distance to the first surface in one direction [m], or None within reach.
+    """Senses the distance to the first surface in one direction [m]; None if nothing is within reach.
 
     Args:
         body: The body.
@@ -42,9 +42,9 @@ def rangefinder(body: Body, angle: float = 0.0, elevation: float = 0.0, reach: f
         at: The part, site or frame of the sensor, whose x axis points ahead; by default the eye, or the base without an eye.
 
     Raises:
-        WorldError: If a value is not a number, the reach is negative, or there is no such frame.
+        WorldError: If a value is not a number, an angle is more than a full turn, the reach is negative, or there is no such frame.
     """
-    angle, elevation = number(angle, "rangefinder: angle"), number(elevation, "rangefinder: elevation")
+    angle, elevation = checked_angle(angle, "rangefinder: angle"), checked_angle(elevation, "rangefinder: elevation")
     return _cast(body, at, np.array([angle]), elevation, number(reach, "rangefinder: reach", 0))[0]
 
 
@@ -62,7 +62,7 @@ def laser(
     count = whole(rays, "laser: rays", 1, 100_000)
     half = number(width, "laser: width", 0, 2 * math.pi) / 2
     angles = np.linspace(half, -half, count) if count > 1 else np.zeros(1)
-    return _cast(body, at, angles, number(elevation, "laser: elevation"), number(reach, "laser: reach", 0))
+    return _cast(body, at, angles, checked_angle(elevation, "laser: elevation"), number(reach, "laser: reach", 0))
 
 
 @sensor

@@ -126,8 +126,11 @@ class _Renderer:
         if self._size != (width, height):
             if self._resources is not None:
                 self._resources.free()
-            model.vis.global_.offwidth, model.vis.global_.offheight = width, height
+            drawing = model.vis.global_
+            before = drawing.offwidth, drawing.offheight
+            drawing.offwidth, drawing.offheight = width, height
             self._resources = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
+            drawing.offwidth, drawing.offheight = before  # the state of a world is compared with the model at the start
             mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._resources)
             self._resources.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
             self._size = (width, height)
