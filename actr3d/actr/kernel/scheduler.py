@@ -64,6 +64,9 @@ class Scheduler:
         self.firing: Any = None
         """The production whose body is running; errors in the events it starts name it."""
         self.trace: Trace | None = None
+        """The trace that records the run first, and passes its events on to others."""
+        self.traces: list[Trace] = []
+        """All traces of the run, that one first."""
         self.seed: int | str | None = None
         """The seed of the run's random numbers; None if the modeller provided a generator."""
         self.stop_flag = False
