@@ -97,7 +97,7 @@ class Lockstep:
         self.agents.claim((self.ticks + 1) * self._period_us)
         self._phase = "failed"
         with self._stdout:
-            self.agents.run(self._period, (self.ticks + 1) * self._period_us)
+            self.agents.run(self._period)
         self._phase = "ticked"
 
     def tock(self) -> tuple[Any, ...]:
