@@ -17,12 +17,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, cast
 
 from actr3d.clock import seconds
 from actr3d.errors import ParameterError, did_you_mean
 from actr3d.trace_kinds import KINDS, LEVELS
-from actr3d.values import plain, to_json
+from actr3d.values import Naming, plain, to_json
 
 Data = dict[str, Any] | Callable[[], dict[str, Any]]
 """The data of an event, or a function that creates the data from stored values when they are first read."""
@@ -99,7 +99,7 @@ class Trace:
         ParameterError: If the level is unknown.
     """
 
-    __slots__ = ("_failures", "_listeners", "_records", "_runs", "all", "buffer", "keep", "level", "production")
+    __slots__ = ("_failures", "_listeners", "_rank", "_records", "_runs", "all", "buffer", "keep", "level", "production")
 
     def __init__(self, level: str = "all", keep: bool = True) -> None:
         self.level = level
@@ -108,12 +108,12 @@ class Trace:
         self._listeners: tuple[tuple[Listener, int], ...] = ()
         self._runs: list[Run] = []
         self._failures: list[Exception] = []
-        _rank("Trace.level", level)
+        self._rank = _rank("Trace.level", level)
         self._set_flags()
 
     def _set_flags(self) -> None:
         """Sets the level flags to what is kept or listened to."""
-        wanted = max([rank for _, rank in self._listeners] + [LEVELS.index(self.level) if self.keep else 0])
+        wanted = max([rank for _, rank in self._listeners] + [self._rank if self.keep else 0])
         self.production = wanted >= LEVELS.index("production")
         self.buffer = wanted >= LEVELS.index("buffer")
         self.all = wanted >= LEVELS.index("all")
@@ -137,9 +137,9 @@ class Trace:
                 self._records.append((time_us, source, kind, data))
             return
         event = _event((time_us, source, kind, data))
-        if self.keep:
-            self._records.append(event)  # in this form: later readers need not create its data again
         rank = KINDS[kind].rank if kind in KINDS else 0
+        if self.keep and rank <= self._rank:
+            self._records.append(event)  # in this form: later readers need not create its data again
         for listener, level in self._listeners:
             if level >= rank:
                 try:
@@ -188,10 +188,9 @@ class Trace:
             Exception: Any error that the listener raises at once.
         """
         rank = _rank("Trace.listen(level)", self.level if level is None else level)
-        if rank > LEVELS.index(self.level):
+        if rank > self._rank:
             raise ParameterError(f"Trace.listen(level): a trace of level '{self.level}' has no events of level '{level}'")
-        self._listeners = (*self._listeners, (listener, rank))
-        self._set_flags()
+        self.feed(listener, LEVELS[rank])
         active = [run for run in self._runs if run.now_us() is not None]
         if not active:
             return
@@ -204,6 +203,17 @@ class Trace:
         except Exception:
             self.ignore(listener)
             raise
+
+    def pass_on(self, event: TraceEvent, other: Trace) -> None:
+        """Emits one of its events in another trace, too; what that one's listeners raise is raised where this one's failures are."""
+        other.emit(*event)
+        self._failures += other._failures
+        other._failures.clear()
+
+    def feed(self, listener: Listener, level: str) -> None:
+        """Calls a listener with every event up to a level, which may be above the trace's own, from now on, without the current state."""
+        self._listeners = (*self._listeners, (listener, LEVELS.index(level)))
+        self._set_flags()
 
     def ignore(self, listener: Listener) -> None:
         """Removes a listener.
@@ -264,6 +274,29 @@ def run_of(source: str) -> int:
 def top_path(number: int) -> str:
     """Returns the source name of a run's top model."""
     return "top" if number == 1 else f"top#{number}"
+
+
+def renumbered(source: str, number: int) -> str:
+    """Returns the name of a source if its run has another number."""
+    path = source.partition(".")[2] if source.startswith("top#") else "" if source == "top" else source
+    return ".".join(name for name in ("" if path and number == 1 else top_path(number), path) if name)
+
+
+def with_number(event: TraceEvent, number: int) -> TraceEvent:
+    """Returns an event as in a trace in which its run has another number: every part has its name there."""
+    if event.run == number:
+        return event
+    return event._replace(source=renumbered(event.source, number), data=_with_number(event.data, number))
+
+
+def _with_number(data: Any, number: int) -> Any:
+    if type(data) is Naming:
+        return data.renamed(lambda source: renumbered(source, number))
+    if isinstance(data, dict):
+        return {key: _with_number(value, number) for key, value in cast("dict[Any, Any]", data).items()}
+    if isinstance(data, (list, tuple)):
+        return [_with_number(value, number) for value in cast("list[Any]", data)]
+    return data
 
 
 def _rank(what: str, level: Any) -> int:

@@ -16,6 +16,7 @@ from actr3d.actr.loading import load_text, run_text
 from actr3d.actr.reasons import Explanation
 from actr3d.errors import ParameterError
 from actr3d.trace import Trace, TraceEvent
+from actr3d.trace_kinds import KINDS
 
 AGENT = """
 from actr3d.actr import *
@@ -61,9 +62,9 @@ class Agent(ACTR):
 """
 
 
-def agent_of(seed: int) -> Any:
+def agent_of(seed: int, trace: Trace | None = None) -> Any:
     agent = load_text(AGENT, "late.py").Agent()
-    with RunLimits(seed=seed):
+    with RunLimits(seed=seed, trace=trace):
         ensure_converted(agent)
     return agent
 
@@ -144,6 +145,78 @@ def test_a_trace_does_not_keep_its_models_alive() -> None:
     assert gone() is None
     with pytest.raises(ParameterError, match="there are: none"):
         trace.command("pause")
+
+
+# -- several traces of one run
+
+
+@pytest.mark.parametrize("level", ["production", "buffer", "all"])
+def test_a_trace_of_ones_own_leaves_the_one_of_the_program_as_it_is(level: str) -> None:
+    whole: list[list[str]] = []
+    for own in (None, "production", "all"):
+        heard: list[TraceEvent] = []
+        program = Trace(level)
+        program.listen(heard.append)
+        agent_of(2, program).run(0.1)
+        agent = agent_of(1, program)
+        if own is not None:
+            agent.traced(own)
+        agent.run(0.3)
+        assert heard == list(program)
+        whole.append([event.to_json() for event in heard])
+    assert len(whole[0]) > 10
+    assert whole == [whole[0]] * 3
+
+
+def test_a_trace_of_ones_own_is_the_same_in_a_program_that_is_traced() -> None:
+    found: list[Any] = []
+    for program in (None, Trace("production"), Trace(keep=False)):
+        agent_of(2, program).run(0.1)
+        agent = agent_of(1, program)
+        agent.parts = [agent.eye]
+        own = agent.traced()
+        agent.run(0.3)
+        found.append(
+            (
+                [event.to_json() for event in own],
+                [str(agent.explain(at)).replace("top#2.", "").replace("top#2", "top") for at in (0.02, 0.17)],
+            )
+        )
+    assert found == [found[0]] * 3
+
+
+def test_a_second_trace_does_not_end_the_first() -> None:
+    agent = agent_of(1)
+    first = agent.traced()
+    second = agent.traced("production")
+    agent.run(0.3)
+    assert agent.explain(0.2).time == 0.2
+    assert [e for e in first if KINDS[e.kind].level == "production"][1:] == list(second)[1:]
+
+
+def test_what_a_listener_of_any_trace_raises_is_raised_by_the_run() -> None:
+    agent = agent_of(1)
+    first = agent.traced()
+    second = agent.traced()
+
+    def fail(event: TraceEvent) -> None:
+        if event.kind == "fire":
+            raise ValueError("the disk is full")
+
+    second.listen(fail)
+    with pytest.raises(ValueError, match="the disk is full"):
+        agent.run(0.3)
+    agent.run(0.3)
+    assert first.select("fire") == second.select("fire") != []
+
+
+def test_a_program_does_not_keep_the_traces_of_models_that_are_gone() -> None:
+    program = Trace("production")
+    own = weakref.ref(agent_of(1, program).traced("production").runs[0])
+    gc.collect()
+    agent_of(2, program).run(0.1)
+    gc.collect()
+    assert own() is None
 
 
 # -- a trace that begins late

@@ -117,6 +117,7 @@ def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress
     trace = Trace("all", keep=False)
     count = max(1, recorded.event_count)
     trace.listen(lambda _: progress(min(1.0, comparator.events / count)))
+    trace.listen(comparator.event_alone)
     limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace)
     changes = ProgramChanges(limits, of_user(recorded.commands()))
     if changes.known:
@@ -124,7 +125,7 @@ def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress
     trouble = ""
     try:
         with ProgramOutput(limits) as output:
-            left = play_program(file, source, limits, trace, comparator, helpers, output)
+            left = play_program(file, source, limits, comparator, helpers, output)
         trouble = "" if left is None else f" ({failure(left)})"
     except Differs:
         pass

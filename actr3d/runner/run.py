@@ -23,7 +23,7 @@ from actr3d.runner.build_check import check_build, has_build
 from actr3d.runner.facts import built_facts, program_facts
 from actr3d.runner.model_stdout import BuiltOutput, ProgramOutput
 from actr3d.runner.traceback_report import failure
-from actr3d.trace import Trace, TraceEvent
+from actr3d.trace import Listener, Trace, TraceEvent
 
 if TYPE_CHECKING:
     from actr3d.simulation import Simulation
@@ -107,17 +107,28 @@ def run_source(
     """
     helpers = HelperTexts() if helpers is None else helpers
     check_build(source, file)
-    if limits.seed is None and record is not None:
-        limits.seed = fresh_seed()
-    if has_build(source):
-        return _run_built(file, source, limits, settings or {}, record, helpers)
-    if settings(()) if callable(settings) else settings:
-        raise SettingError(f"'{file}' has no build(parameters) -> Simulation, so there are no parameters to set")
-    if record is None:
-        run_text(source, file, limits=limits, folder=Path(file).parent, helpers=helpers)
-    else:
-        _record_program(file, source, limits, record, helpers)
+    with _restored(limits):
+        if limits.seed is None and record is not None:
+            limits.seed = fresh_seed()
+        if has_build(source):
+            return _run_built(file, source, limits, settings or {}, record, helpers)
+        if settings(()) if callable(settings) else settings:
+            raise SettingError(f"'{file}' has no build(parameters) -> Simulation, so there are no parameters to set")
+        if record is None:
+            run_text(source, file, limits=limits, folder=Path(file).parent, helpers=helpers)
+        else:
+            _record_program(file, source, limits, record, helpers)
     return None
+
+
+@contextmanager
+def _restored(limits: RunLimits) -> Generator[None]:
+    """Gives limits their own seed, trace and recorder again after a run, as they may be used for another one."""
+    own = limits.seed, limits.trace, limits.recorder
+    try:
+        yield
+    finally:
+        limits.seed, limits.trace, limits.recorder = own
 
 
 def _run_built(
@@ -158,25 +169,38 @@ def _record_program(file: str, source: str, limits: RunLimits, record: Path | st
         raise ParameterError(f"a recording holds every event: trace 'all', or none (got '{limits.trace.level}')")
     with (
         Recording(record, program_facts(file, source, limits.seed, limits.until)) as recording,
+        _heard(limits.trace, recording.event_alone),
         ProgramOutput(limits) as output,
         before_the_end(partial(_keep_all, recording, output)),
     ):
-        left = play_program(file, source, limits, limits.trace, recording, helpers, output)
+        left = play_program(file, source, limits, recording, helpers, output)
         if left is not None:
             raise left
 
 
+@contextmanager
+def _heard(trace: Trace, listener: Listener) -> Generator[None]:
+    """Calls a listener with the events of a trace inside the block."""
+    trace.listen(listener)
+    try:
+        yield
+    finally:
+        with suppress(ParameterError):  # it has failed, and does not listen any more
+            trace.ignore(listener)
+
+
 def play_program(
-    file: str, source: str, limits: RunLimits, trace: Trace, recording: ProgramRecorder, helpers: HelperTexts, output: ProgramOutput
+    file: str, source: str, limits: RunLimits, recording: ProgramRecorder, helpers: HelperTexts, output: ProgramOutput
 ) -> SystemExit | None:
     """Runs a program, and records it to its end; returns the `SystemExit` that ended it, if any. `output` emits what it prints.
+
+    The events reach the recording as a listener of the trace.
 
     Raises:
         Exception: Any error that the program raises; it is recorded, too.
     """
     helpers.heard = partial(recording.fact, "helpers")
     limits.recorder = recording
-    trace.listen(recording.event_alone)
     left: SystemExit | None = None
     with recorded_failure(recording):
         try:

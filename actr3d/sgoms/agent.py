@@ -14,6 +14,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr import ACTR, Buffer, Chunk, Memory
+from actr3d.actr.chunks.pattern import slot_named
 from actr3d.actr.declarative.memory import buffer_of
 from actr3d.actr.kernel.class_members import Method
 from actr3d.errors import PlanError
@@ -86,7 +87,13 @@ class SGOMS(ACTR):
         for name in IN_BUFFER if options["place_kept_in"] == "memory" else IN_MEMORY:
             methods.pop(name, None)
         for name, unit in units.items():
-            methods.update(choices(name, unit))
+            made = choices(name, unit)
+            if taken := sorted(made.keys() & methods.keys()):
+                raise PlanError(
+                    f"{type(self).__name__}.{name}: a production named '{taken[0]}' is made for it, and there is one already: that of "
+                    "SGOMS, of another planning unit, or your own; give the planning unit or its unit task another name"
+                )
+            methods.update(made)
         super()._convert_info(objects, methods)
 
     def _check_members(self, objects: dict[str, Any]) -> None:
@@ -366,7 +373,9 @@ def _put_back(agent: Any, place: Chunk) -> None:
     """Restores an agent's buffers from a place."""
     for prefix, buffer in PREFIXES.items():
         start = f"{prefix}_"
-        slots = {slot.removeprefix(start): value for slot, value in place.items() if isinstance(slot, str) and slot.startswith(start)}
+        slots = {
+            slot_named(slot.removeprefix(start)): value for slot, value in place.items() if isinstance(slot, str) and slot.startswith(start)
+        }
         if slots:
             again = prefix == "task" and slots["state"] == START
             getattr(agent, buffer).put_back(slots, "begun" if again else "resumed")

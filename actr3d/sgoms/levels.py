@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from actr3d.actr import Buffer, Chunk
-from actr3d.actr.chunks.chunk import as_text
+from actr3d.actr.chunks.chunk import Slot, as_text
 from actr3d.actr.lint.slot_names import is_slip
 from actr3d.errors import PlanError, alternatives, did_you_mean, followed
 from actr3d.sgoms.checks import matches_state
@@ -70,7 +70,7 @@ class Level(Buffer):
         _agent_of(self)
         return Chunk(chunk, self.sch.bound)
 
-    def put_back(self, slots: dict[str, Any], beginning: str) -> None:
+    def put_back(self, slots: dict[Slot, Any], beginning: str) -> None:
         """Sets a chunk, with another word for its beginning in the trace, such as «resumed»."""
         self._beginning = beginning
         try:

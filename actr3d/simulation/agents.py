@@ -10,7 +10,6 @@ from actr3d.actr.kernel.model import Model, attach_trace, ensure_converted, is_c
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading.global_seed import seed_shared
 from actr3d.actr.modules.port import Embodiment, Request
-from actr3d.clock import MICROSECONDS
 from actr3d.errors import SimulationError
 from actr3d.trace import Trace
 
@@ -102,13 +101,12 @@ class Agents:
         if self._sch.limits is not None:
             self._sch.limits.cut(end)
 
-    def run(self, period: float, end: int) -> None:
-        """Runs the agents for a period [s], until `end` [us]; to its end even where one of them calls `stop`."""
+    def run(self, period: float) -> None:
+        """Runs the agents for a period [s]; to its end even where one of them calls `stop`."""
         sch = self._sch
+        sch.stop_wanted = False
         sch.run(period)
-        self.stopped = sch.stop_flag
-        while sch.stop_flag or sch.now_us < end:
-            sch.run((end - sch.now_us) / MICROSECONDS)
+        self.stopped = sch.stop_wanted
 
     def take(self, request: Request, answer: Any) -> None:
         """Delivers an answer to an agent, available from the next tick on."""

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any
 
 from actr3d.actr.kernel.run_limits import Contacts, Recorder
 from actr3d.actr.modules.port import Request
 from actr3d.recording.schema import SIMULATION
 from actr3d.simulation.commands import Command
 from actr3d.simulation.surroundings import surroundings
-from actr3d.trace import Run, Trace, TraceEvent, top_path
+from actr3d.trace import Run, Trace, TraceEvent, with_number
 from actr3d.trace_kinds import KINDS, LEVELS
-from actr3d.values import Naming
 from actr3d.world import World
 from actr3d.world.compiled import saved, to_text
 
@@ -76,22 +75,7 @@ class ProgramRun:
         return self._run_number
 
     def _pass_on(self, event: TraceEvent, trace: Trace) -> None:
-        data = event.data if self.number == 1 else self._renamed(event.data)
-        trace.emit(event.time_us, self._name(event.source), event.kind, data)
-
-    def _renamed(self, data: Any) -> Any:
-        """Returns data with the names of parts as in the program's trace."""
-        if type(data) is Naming:
-            return data.renamed(self._name)
-        if isinstance(data, dict):
-            return {key: self._renamed(value) for key, value in cast("dict[Any, Any]", data).items()}
-        if isinstance(data, (list, tuple)):
-            return [self._renamed(value) for value in cast("list[Any]", data)]
-        return data
-
-    def _name(self, source: str) -> str:
-        top = top_path(self.number)
-        return source if self.number == 1 else top if source == "top" else f"{top}.{source}"
+        trace.emit(*with_number(event, self.number))
 
     # -- for the trace
 

@@ -179,7 +179,8 @@ class Simulation:
             Exception: What a body, an observer or a listener of the trace raises.
         """
         self._enter()
-        self.timeline.tock()
+        with self._random:
+            self.timeline.tock()
         self._observers.show(self._glimpse)
         self.event_log.check()
         self._notify_limits(self._period)
@@ -274,6 +275,7 @@ class Simulation:
     @contextmanager
     def _call(self) -> Generator[None]:
         """Uses the agents' random numbers inside the block; then calls the observers of calls, outside the outermost block only."""
+        self._enter()
         self._calls += 1
         try:
             with self._random:
@@ -308,7 +310,6 @@ class Simulation:
             SimulationError: If there is no such command or body, or a tick waits for its tock.
             Exception: What the world or the body raises; then nothing was done.
         """
-        self._enter()
         with self._call():
             self.timeline.command(word, values, named, body)
         self.event_log.check()

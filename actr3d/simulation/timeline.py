@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import islice, zip_longest
 from typing import Any
 
+from actr3d.clock import seconds
 from actr3d.errors import SimulationError
 from actr3d.simulation.commands import Command, command_of
 from actr3d.simulation.event_log import EventLog
@@ -42,6 +44,8 @@ class History:
         self._kept = 0
         self._spacing = SPACING
         self._states: dict[int, WorldState] = {0: start}
+        self._events: list[int] = []
+        """The number of traced events at the end of each tick that ran here."""
 
     def wants(self, tick: int) -> bool:
         """Returns whether to store the state at the end of a tick."""
@@ -54,9 +58,10 @@ class History:
             self._spacing *= 2
             self._states = {tick: kept for tick, kept in self._states.items() if tick % self._spacing == 0}
 
-    def add_tick(self, tick: int, answers: tuple[Any, ...]) -> None:
-        """Adds a tick, with the answers of the bodies at its end."""
+    def add_tick(self, tick: int, answers: tuple[Any, ...], events: int) -> None:
+        """Adds a tick, with the answers of the bodies at its end, and the number of events up to there."""
         self.simulated = tick
+        self._events.append(events)
         self.ticks = max(self.ticks, tick)
         if self.answered == tick - 1 and self._kept + len(answers) <= MAX_ANSWERS:
             self.answered = tick
@@ -67,6 +72,10 @@ class History:
     def answers(self, tick: int) -> tuple[Any, ...]:
         """Returns the answers of the bodies at the end of a tick up to `answered`."""
         return self._answers.get(tick, ())
+
+    def events(self, tick: int) -> int:
+        """Returns the number of traced events up to the end of a tick that ran here, after the first."""
+        return self._events[tick - 1]
 
     def before(self, tick: int) -> tuple[int, WorldState]:
         """Returns the last stored state up to a tick that a run can reach without its physics, and its tick."""
@@ -80,6 +89,7 @@ class History:
         self.simulated = min(self.simulated, tick)
         self.answered = min(self.answered, tick)
         self._states = {known: state for known, state in self._states.items() if known <= tick}
+        del self._events[tick:]
         for known in [known for known in self._answers if known > tick]:
             self._kept -= len(self._answers.pop(known))
 
@@ -101,6 +111,11 @@ class Timeline:
         self._log = log
         self._history = History(world.state())
         self._lockstep: Lockstep | None = None
+
+    @property
+    def _events(self) -> int:
+        """Number of traced events up to the present."""
+        return 0 if self._log.trace is None else len(self._log.trace)
 
     @property
     def begun(self) -> bool:
@@ -159,7 +174,7 @@ class Timeline:
         answers = lockstep.tock()
         ticks = lockstep.ticks
         if ticks > history.simulated:
-            history.add_tick(ticks, answers)
+            history.add_tick(ticks, answers, self._events)
             if history.wants(ticks):
                 history.keep(ticks, self._world.state())
         self._log.state(ticks)
@@ -212,7 +227,7 @@ class Timeline:
         Raises:
             SimulationError: If the agents act differently than the first time, as far as the trace shows it.
         """
-        present, before = self.lockstep, self._log.trace
+        present, before, simulated = self.lockstep, self._log.trace, self._history.simulated
         if present.broken or to <= present.ticks:
             self._lockstep = None
             self._world.restore(self._history.before(0)[1])
@@ -223,7 +238,7 @@ class Timeline:
             self._log.silent = False
         if before is not None and self._log.trace is not None and before is not self._log.trace:
             try:
-                _check_repeated(before, self._log.trace)
+                _check_repeated(before, self._log.trace, self._history.events(to) if 0 < to <= simulated else None)
             except SimulationError:
                 self.lockstep.fail()
                 raise
@@ -241,21 +256,30 @@ class Timeline:
             self.tock()
 
 
-def _check_repeated(first: Trace, again: Trace) -> None:
+def _check_repeated(first: Trace, again: Trace, number: int | None) -> None:
     """Compares the events of a repeated run with those of the first time.
+
+    Args:
+        first: The trace of the first time.
+        again: The trace of the repeated run.
+        number: The number of events that the first run had up to where the repeated one is; None if it was not there.
 
     Raises:
         SimulationError: If they differ.
     """
-    for was, now in zip(first, again, strict=False):
-        if was != now and was.to_json() != now.to_json():
+    pairs = zip(first, again, strict=False) if number is None else zip_longest(islice(first, number), again)
+    for was, now in pairs:
+        if was != now and (was is None or now is None or was.to_json() != now.to_json()):
+            time = seconds(min(event.time_us for event in (was, now) if event is not None))
             raise SimulationError(
-                f"the agents act differently than the first time from {now.time:.3f} s on (then: {_brief(was)}; now: {_brief(now)}): they "
+                f"the agents act differently than the first time from {time:.3f} s on (then: {_brief(was)}; now: {_brief(now)}): they "
                 "use something that neither comes from the seed nor belongs to an agent, such as a global variable or an attribute of a "
                 "class that the model changes; keep it in the agent, such as self.count in init()"
             )
 
 
-def _brief(event: TraceEvent) -> str:
+def _brief(event: TraceEvent | None) -> str:
+    if event is None:
+        return "nothing"
     text = f"{event.source} {event.kind} {' '.join(f'{key}={value}' for key, value in event.data.items())}"
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."

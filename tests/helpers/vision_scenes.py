@@ -60,7 +60,7 @@ class Mindful:
     def tick(self, n: int = 1) -> Mindful:
         """Runs the agent for some ticks, and answers its requests."""
         for _ in range(n):
-            self._minds.run(PERIOD / 1e6, self._minds.time + PERIOD)
+            self._minds.run(PERIOD / 1e6)
             asked, self._minds.outbox[:] = list(self._minds.outbox), []
             for request in asked:
                 word = self._world.bodies["walker"]

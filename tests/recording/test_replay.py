@@ -564,3 +564,21 @@ def test_a_run_that_failed_then_and_does_not_now_differs(tmp_path: Path, capsys:
         assert main(["replay", str(path)]) == 1
         assert capsys.readouterr().out == "differs: the fact 'failed'; recorded: \"ValueError: no\"; now: null\n"
         path.unlink()
+
+
+def test_the_same_limits_serve_one_recording_after_another(tmp_path: Path) -> None:
+    file = tmp_path / "noisy.py"
+    file.write_text(NOISY, encoding="utf-8")
+    trace = Trace()
+    limits = [RunLimits(), RunLimits(seed=1), RunLimits(seed=1, trace=trace)]
+    for number, one in enumerate(limits):
+        for name in "ab":
+            run_model(file, one, record=tmp_path / f"{name}{number}")
+        run_model(file, one)
+        assert one.recorder is None
+    assert [(one.seed, one.trace) for one in limits] == [(None, None), (1, None), (1, trace)]
+    counts: list[int] = []
+    for path in ("a1", "b1"):
+        with Recorded(tmp_path / path) as recorded:
+            counts.append(recorded.event_count)
+    assert counts[0] == counts[1] > 0

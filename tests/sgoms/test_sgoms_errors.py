@@ -204,3 +204,19 @@ def test_what_is_modified_is_checked_like_what_is_set(buffer: str, changes: dict
     agent.b_interrupt.set("planning_unit:phone when:end")
     with pytest.raises(PlanError, match=message):
         getattr(agent, buffer).modify(**changes)
+
+
+@pytest.mark.parametrize(
+    ("units", "message"),
+    [
+        ("ask = Situated(next='call:open', until='call:none')", r"Agent\.ask: a production named 'sgoms_ask_next' is made for it"),
+        (
+            "check = Situated(door_open='call:open', until='call:none')\n    check_door = Situated(open='call:open', until='call:none')",
+            r"Agent\.check_door: a production named 'sgoms_check_door_open' is made for it, and there is one already",
+        ),
+    ],
+)
+def test_two_productions_of_one_name_are_refused(units: str, message: str) -> None:
+    text = body("b_unit_task.modify(state='finished')").replace("class Agent(SGOMS):", f"class Agent(SGOMS):\n    {units}")
+    with pytest.raises(PlanError, match=message):
+        load_text(HEAD + text, "agent.py").Agent().run(0)

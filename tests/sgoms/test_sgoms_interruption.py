@@ -88,6 +88,22 @@ def test_a_unit_task_may_go_on_where_it_was_cut() -> None:
     assert between == near([at + 0.05])
 
 
+def test_a_method_without_slot_names_goes_on_where_it_was_cut() -> None:
+    body = """
+class Agent(Base):
+    resume_at = "method"
+    def begin(b_unit_task="unit_task:?task state:start"):
+        said.append((self.now(), task))
+        b_method.set("work 4")
+        b_unit_task.modify(state="running")
+    def work(b_method="work ?left!0"):
+        b_method.set({0: "work", 1: int(left) - 1})
+    def end(b_unit_task="state:running", b_method="work 0"):
+        b_unit_task.modify(state="finished")
+"""
+    assert tasks(cooking(body, 0.31, NOW)) == ["boil", *PHONE, "steep", "pour"]
+
+
 def test_a_situated_planning_unit_chooses_again_after_an_interruption() -> None:
     body = """
 class Agent(Base):

@@ -247,3 +247,44 @@ def test_seek_before_the_first_step() -> None:
     simulation.seek(0)
     simulation.step()
     assert simulation.ticks == 1
+
+
+def test_what_an_agent_does_with_an_answer_does_not_change_the_one_that_is_stored() -> None:
+    text = """
+from actr3d.actr import *
+from actr3d.simulation import BodyPort
+class Taker(Model):
+    body = BodyPort()
+    seen = 0
+    def start(self):
+        answer = self.body.get("joints")
+        yield answer
+        self.seen = len(answer.value)
+        answer.value.clear()
+"""
+    simulation = Simulation(scene_of("walker"), {"walker": load_text(text, "taker.py").Taker}, seed=1)
+    simulation.step(60)
+    seen = simulation.agents["walker"].seen
+    simulation.seek(0.5)
+    assert simulation.agents["walker"].seen == seen > 0
+
+
+@pytest.mark.parametrize("trace", ["production", "all"])
+def test_a_run_whose_agents_do_less_than_the_first_time_says_so(trace: str) -> None:
+    text = """
+from actr3d.actr import *
+lives = []
+class Once(ACTR):
+    goal = Buffer()
+    def init():
+        if not lives:
+            goal.set("begin")
+        lives.append(1)
+    def go(goal="begin"): goal.set("end")
+"""
+    simulation = Simulation(scene_of("walker"), {"walker": load_text(text, "once.py").Once}, seed=1, trace=trace)
+    simulation.step(60)
+    with pytest.raises(SimulationError, match="act differently than the first time from 0"):
+        simulation.seek(0.2)
+    with pytest.raises(SimulationError, match="cannot go on; seek an earlier time"):
+        simulation.step()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import gc
+import random
 import threading
 import time
 import tracemalloc
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import asdict
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
@@ -18,11 +20,12 @@ from actr3d.actr import ACTR, Buffer, Model
 from actr3d.actr.kernel.model import ensure_converted
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
-from actr3d.errors import Actr3dError, SimulationError, WorldError
+from actr3d.errors import Actr3dError, SchedulerError, SimulationError, WorldError
 from actr3d.simulation import Glimpse, Simulation, agents, timeline
 from actr3d.simulation.agents import Environment
 from actr3d.trace import Trace
 from actr3d.world import Body, Floor, Mannequin, Scene, Wall
+from actr3d.world.body import SENSORS, sensor
 from tests.helpers.small_agents import near
 from tests.helpers.walkers import Driver, digest, driving, scene_of
 
@@ -487,15 +490,19 @@ def test_other_threads_submit_commands_and_do_nothing_else() -> None:
     said: list[str] = []
 
     def other() -> None:
-        try:
-            simulation.step()
-        except SimulationError as error:
-            said.append(str(error))
+        for call in (simulation.tick, simulation.step, partial(simulation.step, 0), partial(simulation.advance, 0)):
+            try:
+                call()
+            except SimulationError as error:
+                said.append(str(error))
 
+    watched: list[int] = []
+    simulation.observe(lambda seen: watched.append(threading.get_ident()), of_calls=True)
     thread = threading.Thread(target=other)
     thread.start()
     thread.join()
-    assert said == ["a simulation belongs to the thread that made it; another one may use submit"]
+    assert said == ["a simulation belongs to the thread that made it; another one may use submit"] * 4
+    assert watched == []
     futures: list[Any] = []
     threads = [threading.Thread(target=lambda: futures.append(simulation.submit("walk", 0.5))) for _ in range(8)]
     threads.append(threading.Thread(target=lambda: futures.append(simulation.submit("apertur", 1.0))))
@@ -565,3 +572,66 @@ def test_many_ticks_neither_drift_nor_grow(monkeypatch: pytest.MonkeyPatch) -> N
     tracemalloc.stop()
     assert simulation.world.time == simulation.agents["walker"].sch.now_us == 32_000_000
     assert sizes[2] - sizes[1] < 200_000  # a state of the two bodies' noise alone is 40,000 bytes
+
+
+HALT = """
+from IMPORT import *
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+class Halter(ACTR):
+    goal = Buffer()
+    production_time = TIME
+    def init(): goal.set("start")
+    def halt(goal="start"): self.stop()
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="halter"))), {"halter": Halter}, seed=1)
+"""
+
+
+def test_an_agent_that_stops_without_end_in_no_time_says_so() -> None:
+    simulation = load_text(HALT.replace("IMPORT", "actr3d.actr").replace("TIME", "0"), "halt.py").build()
+    with pytest.raises(SchedulerError, match="time stands still at 0 s"):
+        simulation.run(0.1)
+
+
+def test_a_run_with_agents_written_for_python_actr_ends_when_one_stops_and_not_before() -> None:
+    simulation = load_text(HALT.replace("IMPORT", "python_actr").replace("TIME", "0.025"), "halt.py").build()
+    report = simulation.run(1)
+    assert (report.ended_by, report.ticks) == ("stop", 3)
+
+
+def test_single_ticks_and_tocks_draw_the_same_random_numbers_as_steps() -> None:
+    text = """
+import random
+from actr3d.actr import *
+from actr3d.simulation import BodyPort
+class Looker(Model):
+    body = BodyPort()
+    def start(self):
+        reading = self.body.get("drawn_numbers")
+        yield reading
+        self.seen = reading.value
+"""
+
+    @sensor
+    def drawn_numbers(body: Any) -> float:  # pyright: ignore[reportUnusedFunction]
+        return random.random()
+
+    try:
+        seen: list[float] = []
+        for number in range(3):
+            random.seed(number)
+            simulation = Simulation(scene_of("walker"), {"walker": load_text(text, "looker.py").Looker}, seed=1)
+            if number:
+                for _ in range(2):
+                    simulation.tick()
+                    simulation.tock()
+            else:
+                simulation.step(2)
+            assert random.random() == random.Random(number).random()
+            seen.append(simulation.agents["walker"].seen)
+    finally:
+        SENSORS.pop("drawn_numbers")
+    assert seen == [seen[0]] * 3

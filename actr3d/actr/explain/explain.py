@@ -56,18 +56,21 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
         time = microseconds(at, "explain(at)")
     except SchedulerError as error:
         raise ParameterError(str(error)) from None
-    trace = agent.sch.trace
-    if trace is None or not trace.all or not trace.keep:
+    traces = agent.sch.traces
+    trace = next((one for one in traces if one.level == "all" and one.keep), None)
+    if trace is None:
         raise ParameterError("explain(at): only a run traced from before that time contains its past; call traced() before the run")
     if time > agent.sch.now_us:
         raise ParameterError(f"explain(at): {at:g} s lies ahead; it is {agent.now():g} s now")
     top = top_of(agent)
-    run = run_of(path_of(top))
+    run = run_of(path_of(top)) if trace is traces[0] else next((n for n, run in enumerate(trace.runs, 1) if run.model is top), 1)
     begin = next((event.time for event in trace if event.run == run), agent.now())
     if time < microseconds(begin):
         raise ParameterError(f"explain(at): the trace begins at {begin:g} s; what was before the trace is not known (got {at:g} s)")
     visible = [target for system in systems for target in rules_of(system).context.values() if isinstance(target, Model)]
-    state = Past(trace, time, list({id(part): part for part in (agent, *systems, *modules, *visible)}.values()))
+    state = Past(
+        trace, None if trace is traces[0] else run, time, list({id(part): part for part in (agent, *systems, *modules, *visible)}.values())
+    )
     if not state.exists(agent):
         came = next(place.time for place in places_in(agent, trace) if place.path is not None)
         raise ParameterError(f"explain(at): '{path_of(agent)}' did not exist at {at:g} s; it was added at {seconds(came):g} s")

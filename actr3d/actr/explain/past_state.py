@@ -18,7 +18,7 @@ from actr3d.actr.procedural.production import Production, ProductionOwner
 from actr3d.actr.procedural.production_system import ProductionSystem, rules_of, system_of, utility_part_names
 from actr3d.actr.reasons import RetrievalReason, SearchReason
 from actr3d.clock import seconds
-from actr3d.trace import Trace, TraceEvent
+from actr3d.trace import Trace, TraceEvent, renumbered
 
 
 class Record(NamedTuple):
@@ -86,12 +86,13 @@ class Past:
     """The state of everything at a time, after all events of that time; see `AgentState` for the methods.
 
     Args:
-        trace: The run's trace.
+        trace: A trace of the run.
+        number: The number of the run in it, if it has another one in the trace that names the parts; None if that is this trace.
         time: The time [us].
         parts: The parts to reconstruct.
     """
 
-    def __init__(self, trace: Trace, time: int, parts: Collection[Model]) -> None:
+    def __init__(self, trace: Trace, number: int | None, time: int, parts: Collection[Model]) -> None:
         self.time = seconds(time)
         self._parts: dict[int, _Part] = {}
         self._paths: dict[int, str | None] = {}
@@ -103,7 +104,8 @@ class Past:
                 if place.time <= time:
                     self._paths[id(part)] = place.path
                 if place.path is not None:
-                    places.setdefault(place.path, []).append((place.begin, place.end, known))
+                    source = place.path if number is None else renumbered(place.path, number)
+                    places.setdefault(source, []).append((place.begin, place.end, known))
         for part in parts:
             for name, target in (rules_of(part).context if isinstance(part, ProductionSystem) else {}).items():
                 self._named.setdefault(id(target), []).append((part, name))

@@ -21,7 +21,7 @@ from actr3d.actr.kernel.tracing import UNWATCHED, traceable
 from actr3d.actr.kernel.tree import TreeNode, forget_place, keep_path, lineage, note_move, path_of, subtree, top_of
 from actr3d.clock import seconds
 from actr3d.errors import SchedulerError, hint_for
-from actr3d.trace import Trace, top_path
+from actr3d.trace import Trace, TraceEvent, run_of, top_path, with_number
 from actr3d.values import COLLECTIONS
 from actr3d.warnings import warn_modeller
 
@@ -181,7 +181,7 @@ class Model(TreeNode):
         separate = is_converted(value) and value.sch is not self.sch
         run = {"was": path_of(value)} if separate and value.sch.trace is self.sch.trace else {}
         replaced = self.__dict__.get("_children", {}).get(key)
-        note_move(value, self.sch.trace, self.sch.now_us)
+        note_move(value, self.sch.traces, self.sch.now_us)
         value.parent = self
         if not overlooked:
             _name_part(value, key, shown=type(value) is Model)
@@ -267,7 +267,7 @@ class Model(TreeNode):
         joins = False
         if key == "parent":
             if isinstance(value, Model) and "sch" in value.__dict__:
-                note_move(self, value.sch.trace, value.sch.now_us)
+                note_move(self, value.sch.traces, value.sch.now_us)
             forget_place(self, keep_path=value is None)
         if isinstance(value, Model) and key != "parent":
             ensure_converted(self)
@@ -330,7 +330,8 @@ class Model(TreeNode):
     def traced(self, level: str = "all", *, keep: bool = True) -> Trace:
         """Starts a trace of the whole run this model belongs to, and returns it.
 
-        It begins with the current state of everything; it does not know what was before.
+        It begins with the current state of everything; it does not know what was before. Traces of the run that have begun before,
+        such as that of a recorded program, go on.
 
         Args:
             level: How much to record; see `actr3d.trace.LEVELS`.
@@ -560,12 +561,48 @@ class TracedRun:
             top.sch.stop()
 
 
+class FollowedRun(TracedRun):
+    """A run that another trace records first, and passes on to this one.
+
+    Args:
+        top: Its top model.
+        first: The trace that records it first.
+        trace: This trace.
+    """
+
+    def __init__(self, top: Model, first: Trace, trace: Trace) -> None:
+        super().__init__(top)
+        self._first = first
+        self._trace = trace
+        self._number = trace.begin(self)
+        self.emit_state(trace)
+        first.feed(self._take, trace.level)
+
+    def _take(self, event: TraceEvent) -> None:
+        """Passes on an event of the run; not the output of a program, which its own runner traces."""
+        top = self.model
+        if top is None:
+            self._first.ignore(self._take)
+        elif event.kind != "output" and event.run == run_of(path_of(top)):
+            self._first.pass_on(with_number(event, self._number), self._trace)
+
+    def emit_state(self, trace: Trace) -> None:
+        named = Trace(trace.level, keep=False)
+        named.feed(lambda event: trace.emit(*with_number(event, self._number)), trace.level)
+        super().emit_state(named)
+
+
 def attach_trace(top: Model, trace: Trace) -> None:
-    """Connects the run of a top model to a trace."""
-    forget_place(top)
-    top.__dict__["_top_path"] = top_path(trace.begin(TracedRun(top)))
-    top.sch.trace = trace
-    _trace_opening(top, trace)
+    """Connects the run of a top model to a trace, besides those that record it already."""
+    traces = top.sch.traces
+    if traces:
+        FollowedRun(top, traces[0], trace)
+    else:
+        forget_place(top)
+        top.__dict__["_top_path"] = top_path(trace.begin(TracedRun(top)))
+        top.sch.trace = trace
+        _trace_opening(top, trace)
+    traces.append(trace)
 
 
 def _trace_opening(top: Model, trace: Trace) -> None:

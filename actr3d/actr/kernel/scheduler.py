@@ -64,9 +64,14 @@ class Scheduler:
         self.firing: Any = None
         """The production whose body is running; errors in the events it starts name it."""
         self.trace: Trace | None = None
+        """The trace that records the run first, and passes its events on to others."""
+        self.traces: list[Trace] = []
+        """All traces of the run, that one first."""
         self.seed: int | str | None = None
         """The seed of the run's random numbers; None if the modeller provided a generator."""
         self.stop_flag = False
+        self.stop_wanted = False
+        """Whether `stop` was called in lockstep."""
         self._run_number = 0
         self.step = 0
         """The number of past events."""
@@ -240,8 +245,11 @@ class Scheduler:
         self.harvests = self.harvests or other.harvests
 
     def stop(self) -> None:
-        """Ends the run after the current event."""
-        self.stop_flag = True
+        """Ends the run after the current event; in lockstep, the simulation ends it after the tick."""
+        if self.in_lockstep:
+            self.stop_wanted = True
+        else:
+            self.stop_flag = True
 
     def run(self, duration: float | None = None) -> None:
         """Runs until no events are left, `stop` is called, or `duration` seconds have passed.

@@ -5,7 +5,7 @@ These are functions, and their data private attributes, because productions see 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from sys import maxsize
 from typing import Any, NamedTuple
@@ -124,11 +124,12 @@ def forget_place(part: TreeNode, *, keep_path: bool = False) -> None:
 # -- earlier places
 
 
-def note_move(part: TreeNode, trace: Trace | None, now_us: int) -> None:
+def note_move(part: TreeNode, traces: Sequence[Trace], now_us: int) -> None:
     """Records the paths of a part and of everything below it, before it gets another place in a traced run."""
-    if trace is not None and trace.keep:
-        for below in subtree(part):
-            below.__dict__.setdefault("_moves", []).append(Move(trace, len(trace), now_us, below.__dict__.get("_path")))
+    for trace in traces:
+        if trace.keep:
+            for below in subtree(part):
+                below.__dict__.setdefault("_moves", []).append(Move(trace, len(trace), now_us, below.__dict__.get("_path")))
 
 
 def places_in(part: TreeNode, trace: Trace) -> list[Place]:

@@ -15,6 +15,13 @@ def _traced_fields(kind: type[Any]) -> tuple[str, ...]:
     return tuple(field.name for field in fields(kind) if "not_traced" not in field.metadata)
 
 
+def own_answer(answer: Any) -> Any:
+    """Returns an answer that an agent may change: lists and dicts are copies, as the same answer is used when the run goes back."""
+    if type(answer) is dict:
+        return {key: own_answer(value) for key, value in cast("dict[Any, Any]", answer).items()}
+    return [own_answer(value) for value in cast("list[Any]", answer)] if type(answer) is list else answer
+
+
 def plain_answer(answer: Any) -> Any:
     """Returns an answer as plain values, lists and dicts.
 
