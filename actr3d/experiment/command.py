@@ -28,7 +28,7 @@ from actr3d.experiment.store import SPECIFICATION, Store, only_process, summary,
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import PLAIN, record_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
-from actr3d.recording.schema import versions
+from actr3d.experiment.versions import experiment_versions
 from actr3d.values import to_json
 
 if TYPE_CHECKING:
@@ -363,7 +363,7 @@ def _folder_of_fit(path: Path) -> Generator[None]:
 
 def _other_versions(there: Specification) -> list[str]:
     """Returns the packages of an experiment that have other versions now, with both."""
-    now = versions()
+    now = experiment_versions()
     return [f"{name} {text} (now {now.get(name, 'none')})" for name, text in there.versions.items() if now.get(name) != text]
 
 
