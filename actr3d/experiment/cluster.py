@@ -30,7 +30,7 @@ from actr3d.experiment.specification import Experiment
 from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.trial import Row
 from actr3d.experiment.trial_process import TrialProcess
-from actr3d.recording.schema import versions
+from actr3d.experiment.versions import experiment_versions
 
 BATCH = 1.0
 """The intended duration of a batch of trials [s]: long enough to make the cost of a task small."""
@@ -167,7 +167,7 @@ class _Run:
     ) -> None:
         self._experiment, self._store, self._client, self._show, self._stop = experiment, store, client, show, stop
         self._json = experiment.specification.to_json()
-        self._versions = ", ".join(f"{name} {text}" for name, text in versions().items())
+        self._versions = ", ".join(f"{name} {text}" for name, text in experiment_versions().items())
         self._done, self._failures, self._seconds, self._sure = done, failures, BATCH, sure
         self._waiting: dict[Any, list[int]] = {}
         self._finished: SimpleQueue[Any] = SimpleQueue()
@@ -254,7 +254,7 @@ class _Run:
 @cache
 def cluster_versions() -> dict[str, str]:
     """Returns the versions that a client and its workers must share."""
-    return {**versions(), **{package: version(package) for package in PACKAGES}}
+    return {**experiment_versions(), **{package: version(package) for package in PACKAGES}}
 
 
 _PROCESSES: dict[tuple[str, int], TrialProcess] = {}

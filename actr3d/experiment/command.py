@@ -20,7 +20,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.text import Text
 
-from actr3d.errors import ExperimentError
+from actr3d.errors import ExperimentError, SettingError
 from actr3d.experiment.design import OWN_COLUMNS
 from actr3d.experiment.measures import check_measures, check_row, try_measures
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
@@ -28,11 +28,12 @@ from actr3d.experiment.store import SPECIFICATION, Store, only_process, summary,
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import PLAIN, record_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
-from actr3d.recording.schema import versions
+from actr3d.experiment.versions import experiment_versions
 from actr3d.values import to_json
 
 if TYPE_CHECKING:
     from actr3d.experiment.cluster import Progress as State
+    from actr3d.experiment.fit import Agreement
 
 EVERY = 10.0
 """Time between two lines of progress where the output is not a terminal [s]."""
@@ -209,9 +210,12 @@ def fit(
                 check_measure(found[0].measure, [name for name in row if name not in OWN_COLUMNS], experiment)
         return found
 
-    path = Path(folder or f"fit {Path(name).stem}")
-    wanted = means(specify(name, values=values), target, "--target FILE")
+    fitted = specify(name, values=values)
+    path = Path(folder or f"fit {fitted.specification.name}")
+    wanted = means(fitted, target, "--target FILE")
     named = [given.partition("=") for given in hold_out]
+    if twice := [design for design, count in Counter(design for design, _, _ in named).items() if count > 1]:
+        raise SettingError(f"--hold-out {twice[0]}: is given twice; give one")
     held_out = {design: means(specify(design), data, f"--hold-out {design}=FILE") for design, _, data in named}
     options = {"values": values, "participants": participants, "trials": trials}
     searched = [Range.from_text(text) for text in ranges]
@@ -234,12 +238,22 @@ def fit(
     for title, agreements in (("the fit", {"": result.fit}), ("held out", result.held_out), ("changed", result.ablated)):
         for what, found in agreements.items():
             r2 = "none" if found.r2 is None else f"{found.r2:.3f}"
-            out.line(f"{title} {what}".rstrip() + f": RMSE {found.rmse:.4g}, r2 {r2}, {found.cells} means")
+            out.line(f"{title} {what}".rstrip() + f": RMSE {found.rmse:.4g}, r2 {r2}, {found.cells} means", *_lost(found))
+    if failing := [one for one in result.tried if one.failed]:
+        counts = f"{sum(one.failed for one in failing):,} of {sum(one.trials for one in failing):,} trials"
+        out.line(("warning", "bold red"), f": in {len(failing)} of {result.candidates} candidates, {counts} failed; see tried in fit.json")
     for number, one in enumerate(result.recovered, start=1):
         pairs = ", ".join(f"{each.name} {one[f'true {each.name}']:g} found as {one[each.name]:g}" for each in result.parameters)
         out.line(f"simulated data {number}: {pairs}")
     out.line(f"result: {path / 'fit.json'}")
     return 0
+
+
+def _lost(found: Agreement) -> list[tuple[str, str]]:
+    """Returns a warning of trials that failed, and of means that are not compared, as parts of a line; none if there are none."""
+    lost = [f"{found.failed:,} of {found.trials:,} trials failed"] if found.failed else []
+    lost += [f"{found.missing} means of the target are not compared"] if found.missing else []
+    return [(f"; {', '.join(lost)}", "bold red")] if lost else []
 
 
 def facts_of(experiment: Experiment) -> dict[str, Any]:
@@ -363,7 +377,7 @@ def _folder_of_fit(path: Path) -> Generator[None]:
 
 def _other_versions(there: Specification) -> list[str]:
     """Returns the packages of an experiment that have other versions now, with both."""
-    now = versions()
+    now = experiment_versions()
     return [f"{name} {text} (now {now.get(name, 'none')})" for name, text in there.versions.items() if now.get(name) != text]
 
 

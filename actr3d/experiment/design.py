@@ -469,8 +469,15 @@ class Design(Configuration):
         given = {**self.settings, **self.factors, **{key: None for group in self.groups.values() for key in group.parameters}}
         read: set[str] = set()
         measured = {one.name for one in self.kept}
-        examples = [{name: _example(value, p) for name, value in self.settings.items()} for p in (FAR, 0.5, 1 - FAR)]
-        for participant, cell, example in itertools.product(self.participants, self.cells, examples):
+        drawn = any(isinstance(value, Distribution) for value in self.settings.values())
+        examples = [{name: _example(value, p) for name, value in self.settings.items()} for p in ((FAR, 0.5, 1 - FAR) if drawn else (0.5,))]
+        # What is the same for many participants or cells is checked once: a design may have a million of them.
+        people = list({(one.group, repr(one.parameters)): one for one in reversed(self.participants)}.values())[::-1]
+        pairs: Iterable[tuple[Participant, Mapping[str, Any]]] = itertools.product(people, self.cells)
+        if self.derive is None:  # no value depends on another one
+            single = [{name: level} for name, levels in self.factors.items() for level in levels]
+            pairs = [*((one, {}) for one in people), *((people[0], one) for one in single)]
+        for (participant, cell), example in itertools.product(pairs, examples):
             values = _ReadNames({**example, **participant.parameters, **cell}, read)
             for name, value in self.derived(values).items():
                 if name in measured:

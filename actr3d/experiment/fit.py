@@ -24,7 +24,7 @@ import warnings
 from collections import defaultdict
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
 from statistics import fmean
@@ -53,8 +53,10 @@ STARTING = 10
 """The number of candidates that are drawn evenly before any are proposed."""
 DRAWS = 20
 """The maximum number of values that are drawn for a simulated data set, until the model has all means."""
-GRID = 201
-"""The number of values of each parameter at which the surface of one or two parameters is evaluated; fewer for more parameters."""
+STEPS = 200
+"""The number of steps of a range in which the minimum of the surface is tried."""
+HALVINGS = 20
+"""How often a part of a range is halved that has a bound of an interval: to less than a millionth of the range."""
 
 Cell = tuple[tuple[str, Any], ...]
 """The conditions of a mean: names of columns and their values."""
@@ -76,7 +78,9 @@ class Range(Configuration):
 
     name: str
     low: float
+    """Its least value; rounded up to a value that can be tried, with 6 decimals."""
     high: float
+    """Its greatest value; rounded down likewise."""
 
     def __post_init__(self) -> None:
         """Checks the range.
@@ -95,6 +99,11 @@ class Range(Configuration):
             )
         if self.name in OWN_NUMBERS:
             raise SettingError(f"--parameter {self.name}: is a number of the design, not a parameter of the model")
+        for name, inwards in (("low", 1), ("high", -1)):  # rounded like values, which may lie at a bound
+            bound = getattr(self, name)
+            rounded = round(bound, DIGITS)
+            outside = (rounded - bound) * inwards < 0
+            object.__setattr__(self, name, round(rounded + inwards * 10**-DIGITS, DIGITS) if outside else rounded)
 
     @classmethod
     def from_text(cls, text: str) -> Range:
@@ -120,13 +129,44 @@ class Agreement:
     """How well a model's means agree with a target's."""
 
     cells: int
-    """The number of means that are compared."""
+    """The number of means that are compared: those of conditions in which no trial failed."""
+    missing: int
+    """The number of means of the target that are not compared: the model has none there, or a trial failed."""
     rmse: float
     """The root mean square difference, in the unit of the measure."""
     r2: float | None
     """The square of the correlation; None if there is none."""
     rows: tuple[dict[str, Any], ...] = ()
     """Each mean: its conditions, `target` and `model`."""
+    failed: int = 0
+    """The number of trials that failed."""
+    trials: int = 0
+    """The number of all trials."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Candidate:
+    """Values of the parameters that were tried."""
+
+    values: Mapping[str, float]
+    rmse: float | None
+    """The root mean square difference from the target; None if the model has no mean in some condition, or a trial failed there."""
+    failed: int
+    """The number of trials that failed."""
+    trials: int
+    """The number of all trials."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Simulated:
+    """What a model has done."""
+
+    means: Mapping[Cell, float]
+    """Its means by cell, without cells in which a trial failed."""
+    failed: int
+    trials: int
+    failure: str
+    """The first failure, in words that follow a sentence; "" for none."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,6 +192,8 @@ class FitResult:
     fit: Agreement
     """The agreement with the target that the parameters were fitted to."""
     candidates: int
+    tried: tuple[Candidate, ...]
+    """All candidates, in order."""
     held_out: dict[str, Agreement] = field(default_factory=dict[str, Agreement])
     """The agreement with targets that the parameters were not fitted to, by design."""
     ablated: dict[str, Agreement] = field(default_factory=dict[str, Agreement])
@@ -192,36 +234,37 @@ class Fit:
         progress: Shown = lambda _what, _total: nullcontext(lambda _: None),
     ) -> None:
         self._design, self._ranges, self._folder, self._client = design, tuple(ranges), folder, client
-        self._options: dict[str, Any] = {"values": {}, "participants": None, "trials": None, **(options or {})}
         self._seed, self._progress = seed, progress
         if not ranges:
             raise ExperimentError("--parameter: must be given at least once, as NAME=LOW..HIGH")
         self.target = cells_of_target(target)
         self.measure = target[0].measure
+        options = {"values": {}, "participants": None, "trials": None, **(options or {})}
+        self._base = specify(design, **options)
+        """The experiment without the fitted parameters. Its texts are those of all candidates, whatever becomes of the files meanwhile."""
+        self._others: dict[str, Experiment] = {}
         self._check_ranges()
         for ends in itertools.product(*((one.low, one.high) for one in ranges)):
             experiment = self._experiment(dict(zip(self._names, ends, strict=True)))  # checks the bounds of the model's parameters
             _check_conditions(self.target, experiment.design)
         self._points: list[dict[str, float]] = []
-        self._means: list[dict[Cell, float]] = []
-        self._failure = ""
+        self._simulated: list[_Simulated] = []
 
     def _check_ranges(self) -> None:
         """Checks that each parameter has one range, and is none of the design's factors.
 
         Raises:
-            SettingError: If one has two ranges, or is a factor with several levels or with texts.
+            SettingError: If one has two ranges, or is a factor.
         """
-        varied, seen = self._experiment({}).design.factors, dict[str, Range]()
+        varied, seen = self._base.design.factors, dict[str, Range]()
         for one in self._ranges:
             if one.name in seen:
                 ranges = f"{seen[one.name].low:g}..{seen[one.name].high:g} and {one.low:g}..{one.high:g}"
                 raise SettingError(f"--parameter {one.name}: is given twice ({ranges}); give one range")
             seen[one.name] = one
-            levels = varied.get(one.name, ())
-            if len(levels) > 1 or any(isinstance(level, str) for level in levels):
-                shown = ", ".join(map(str, levels))
-                raise SettingError(f"--parameter {one.name}: is a factor of the design ({shown}); name one that does not vary")
+            if one.name in varied:  # also of one level, which the seeds name
+                shown = ", ".join(map(str, varied[one.name]))
+                raise SettingError(f"--parameter {one.name}: is a factor of the design ({shown}); name a parameter that is none")
 
     @property
     def _names(self) -> list[str]:
@@ -255,9 +298,14 @@ class Fit:
             self._without(change, lowest)
         for number in range(candidates):
             self._evaluate(number, f"candidate {number + 1} of {candidates}")
-        best = min(range(candidates), key=lambda number: rmse(self._means[number], self.target))
-        if not math.isfinite(rmse(self._means[best], self.target)):
-            raise ExperimentError(f"measure '{self.measure}': no candidate has a mean in all conditions of the target{self._failure}")
+        tried = self._simulated[:candidates]
+        losses = [rmse(one.means, self.target) for one in tried]
+        best = losses.index(min(losses))
+        if not math.isfinite(losses[best]):
+            failure = next((one.failure for one in tried if one.failure), "")
+            raise ExperimentError(
+                f"measure '{self.measure}': no candidate has a mean in all conditions of the target, without failed trials{failure}"
+            )
         values = self._points[best]
         surface = self._surface(self.target)
         intervals = [surface.interval(axis) for axis in range(len(self._ranges))]
@@ -265,8 +313,12 @@ class Fit:
             design=self._design,
             measure=self.measure,
             parameters=tuple(_fitted(one, values[one.name], *bounds) for one, bounds in zip(self._ranges, intervals, strict=True)),
-            fit=agreement(self._means[best], self.target),
+            fit=_agreement_of(tried[best], self.target),
             candidates=candidates,
+            tried=tuple(
+                Candidate(values=point, rmse=loss if math.isfinite(loss) else None, failed=one.failed, trials=one.trials)
+                for point, loss, one in zip(self._points, losses, tried, strict=False)
+            ),
             held_out={name: self._held_out(name, target, values) for name, target in (hold_out or {}).items()},
             ablated={change: self._compared("ablated", f"changed: {change}", self._without(change, values)) for change in ablate},
             recovered=tuple(self._recover(number, f"simulated data {number + 1} of {recover}") for number in range(recover)),
@@ -285,7 +337,8 @@ class Fit:
                 columns[one.name] = round(one.low + (order[number] + 0.5) / STARTING * (one.high - one.low), DIGITS)
             return columns
         if number % 2 == 0:
-            minimum = self._values_at(self._surface(self.target).minimum())
+            # In steps: a candidate that is hardly another one says little new.
+            minimum = self._values_at(np.round(self._surface(self.target).minimum() * STEPS) / STEPS)
             if minimum not in self._points:
                 return minimum
         distributions: dict[str, Any] = {one.name: optuna.distributions.FloatDistribution(one.low, one.high) for one in self._ranges}
@@ -294,8 +347,8 @@ class Fit:
             sampler = optuna.samplers.TPESampler(seed=self._seed * 100_003 + number, n_startup_trials=0, multivariate=True)
         optuna.logging.set_verbosity(optuna.logging.WARNING)
         study = optuna.create_study(sampler=sampler)
-        for point, means in zip(self._points, self._means, strict=True):
-            loss = rmse(means, self.target)
+        for point, one in zip(self._points, self._simulated, strict=True):
+            loss = rmse(one.means, self.target)
             if math.isfinite(loss):
                 study.add_trial(optuna.trial.create_trial(params=point, distributions=distributions, value=loss))
         return {name: round(value, DIGITS) for name, value in study.ask(distributions).params.items()}
@@ -303,19 +356,25 @@ class Fit:
     def _evaluate(self, number: int, what: str) -> None:
         point = self._propose(number)
         self._points.append(point)
-        means, failure = self._simulate("candidate", f"{what}: {_text_of(point)}", self._experiment(point))
-        self._means.append(means)
-        self._failure = self._failure or failure
+        self._simulated.append(self._simulate("candidate", f"{what}: {_text_of(point)}", self._experiment(point)))
 
-    def _experiment(self, values: Mapping[str, Any]) -> Experiment:
-        options = self._options
-        return specify(self._design, values={**options["values"], **values}, participants=options["participants"], trials=options["trials"])
+    def _experiment(self, values: Mapping[str, Any], option: str = "--parameter {}") -> Experiment:
+        """Returns the experiment with other values; `option` names in errors what gave them."""
+        specification = self._base.specification
+        try:
+            return Experiment(replace(specification, values={**specification.values, **values}))
+        except DesignError as error:
+            if error.name not in values:
+                raise
+            text = str(error).removeprefix(f"--set {error.name}: ")
+            raise DesignError(f"{option.format(error.name)}: {text}", error.name) from None
 
     def _simulate(
         self, kind: str, what: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
-    ) -> tuple[dict[Cell, float], str]:
-        """Runs an experiment, or continues it; returns its means by cell, none if all trials failed, and the first failure, "" for none.
+    ) -> _Simulated:
+        """Runs an experiment, or continues it.
 
+        A cell in which a trial failed has no mean: what is left would be the mean of the easier trials.
         Its folder is named by all that determines its rows: what has run before is used again, and nothing else.
 
         Args:
@@ -332,14 +391,18 @@ class Fit:
             with self._progress(what, len(experiment.design)) as show:
                 run_experiment(experiment, store, self._client, show=show)
             columns = [name for name, _ in next(iter(self.target if target is None else target))]
-            failure = ""
-            if store.failures:
-                row = next(row for row in store.rows() if row["error"] is not None)
-                failure = f"; trial {row['trial']} in '{folder}' failed: {summary(row['error'])}"
-            if store.failures == store.count:
-                return {}, failure
-            finished = (row for row in store.rows() if row["error"] is None)
-            return cells_of_rows(finished, experiment.design.measure(measure or self.measure), columns), failure
+            conditions = [name for name in columns if name == "group" or name in experiment.design.factors]
+            means: dict[Cell, float] = {}
+            lost, failure = set[Cell](), ""
+            if failed := store.failures:
+                for row in (row for row in store.rows() if row["error"] is not None):
+                    lost.add(tuple((name, _in_cell(row[name])) for name in conditions))
+                    failure = failure or f"; trial {row['trial']} in '{folder}' failed: {summary(row['error'])}"
+            if failed < store.count:
+                finished = (row for row in store.rows() if row["error"] is None)
+                found = cells_of_rows(finished, experiment.design.measure(measure or self.measure), columns)
+                means = {cell: mean for cell, mean in found.items() if tuple((name, dict(cell)[name]) for name in conditions) not in lost}
+            return _Simulated(means=means, failed=failed, trials=store.count, failure=failure)
 
     def _compared(
         self, kind: str, what: str, experiment: Experiment, measure: str | None = None, target: Mapping[Cell, float] | None = None
@@ -349,15 +412,17 @@ class Fit:
         Raises:
             ExperimentError: If they have no conditions in common.
         """
-        means, failure = self._simulate(kind, what, experiment, measure, target)
-        if not means:
-            raise ExperimentError(f"{kind}: no trial has a value of '{measure or self.measure}'{failure}")
-        return agreement(means, self.target if target is None else target)
+        found = self._simulate(kind, what, experiment, measure, target)
+        if not found.means:
+            without = "has a mean without failed trials" if found.failed else f"has a value of '{measure or self.measure}'"
+            raise ExperimentError(f"{kind}: no condition {without}{found.failure}")
+        return _agreement_of(found, self.target if target is None else target)
 
     def _surface(self, target: Mapping[Cell, float]) -> QuadraticSurface:
         """Returns the surface of the sums of squares of all candidates until now."""
         points = [[(point[one.name] - one.low) / (one.high - one.low) for one in self._ranges] for point in self._points]
-        squares = [len(target) * (loss := rmse(means, target)) * loss for means in self._means]  # infinite, where ** would be an error
+        losses = [rmse(one.means, target) for one in self._simulated]
+        squares = [len(target) * loss * loss for loss in losses]  # infinite, where ** would be an error
         return QuadraticSurface(np.array(points), squares, len(target))
 
     def _values_at(self, point: NDArray[np.float64]) -> dict[str, float]:
@@ -372,8 +437,11 @@ class Fit:
         Raises:
             DesignError: If it has a factor whose levels would be replaced, or does not fit the values.
         """
-        values = {**self._options["values"], **values}
-        varied = specify(design).design.factors
+        values = {**self._base.specification.values, **values}
+        if design not in self._others:
+            self._others[design] = specify(design)
+        other = self._others[design]
+        varied = other.design.factors
         for name in values:
             if name in varied:
                 option = "--parameter" if name in self._names else "--set"
@@ -382,7 +450,7 @@ class Fit:
                     f"--hold-out {design}: varies {name} ({levels}), which {option} {name} would replace; leave out one", name
                 )
         try:
-            return specify(design, values=values)
+            return Experiment(replace(other.specification, values=values))
         except DesignError as error:
             raise DesignError(f"--hold-out {design}: {error}", error.name) from None
 
@@ -404,10 +472,7 @@ class Fit:
             value: Any = json.loads(text)
         except ValueError:
             value = text
-        try:
-            return self._experiment({**values, name: value})
-        except DesignError as error:
-            raise DesignError(f"--ablate {change}: {str(error).removeprefix(f'--set {name}: ')}", error.name) from None
+        return self._experiment({**values, name: value}, f"--ablate {change.replace('{', '{{').replace('}', '}}')}")
 
     def _recover(self, number: int, what: str) -> dict[str, float]:
         """Simulates data with known parameters, and estimates these from the candidates.
@@ -419,11 +484,10 @@ class Fit:
         failure = ""
         for _ in range(DRAWS):  # where the model fails, there are no data
             true = {one.name: round(rng.uniform(one.low, one.high), DIGITS) for one in self._ranges}
-            simulated, failure = self._simulate(
-                "simulated", f"{what}: {_text_of(true)}", self._experiment({**true, "seed": 1_000_000 + number})
-            )
-            if math.isfinite(rmse(simulated, self.target)):
-                target = {cell: simulated[cell] for cell in self.target}
+            found = self._simulate("simulated", f"{what}: {_text_of(true)}", self._experiment({**true, "seed": 1_000_000 + number}))
+            failure = found.failure
+            if math.isfinite(rmse(found.means, self.target)):
+                target = {cell: found.means[cell] for cell in self.target}
                 return {**{f"true {name}": value for name, value in true.items()}, **self._values_at(self._surface(target).minimum())}
         raise ExperimentError(f"--recover: no mean in all conditions of the target for {DRAWS} drawn values{failure}")
 
@@ -460,15 +524,9 @@ class QuadraticSurface:
         products = [points[:, a] * points[:, b] for a in range(self._axes) for b in range(a, self._axes)]
         return np.column_stack([np.ones(len(points)), points, *products])
 
-    def _grid(self) -> NDArray[np.float64]:
-        """Returns all points at which the surface is evaluated, (count, ..., count, p)."""
-        count = GRID if self._axes <= 2 else max(5, int(GRID ** (2 / self._axes)))
-        return np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, count)] * self._axes, indexing="ij"), axis=-1)
-
     def minimum(self) -> NDArray[np.float64]:
-        """Returns the point with the least sum of squares, (p,)."""
-        points = self._grid().reshape(-1, self._axes)
-        return points[int(np.argmin(self._terms(points) @ self._weights))]
+        """Returns the point with the least value of the surface within the ranges, (p,)."""
+        return self._lowest({})[0]
 
     def interval(self, axis: int) -> tuple[float | None, float | None]:
         """Returns the bounds of the 95 % interval of a parameter; None where the range ends first.
@@ -479,13 +537,51 @@ class QuadraticSurface:
         free = self._data - self._axes
         if free <= 0:
             return None, None
-        grid = self._grid()
-        squares = np.maximum(self._terms(grid.reshape(-1, self._axes)) @ self._weights, self._least).reshape(grid.shape[:-1])
-        profile = squares.min(axis=tuple(other for other in range(self._axes) if other != axis))
+        minimum, least = self._lowest({})
         most = 1 + stdtrit(free, 0.975) ** 2 / free  # the square of t has the F distribution with 1 and n - p degrees of freedom
-        inside = np.linspace(0, 1, len(profile))[profile <= most * profile.min()]
-        low, high = float(inside.min()), float(inside.max())
-        return None if low <= 0 else low, None if high >= 1 else high
+
+        def above(value: float) -> float:
+            return max(self._lowest({axis: value})[1], self._least) - most * max(least, self._least)
+
+        bounds: list[float | None] = []
+        for end in (0.0, 1.0):
+            outside, inside = end, float(minimum[axis])
+            for _ in range(HALVINGS):
+                middle = (outside + inside) / 2
+                outside, inside = (middle, inside) if above(middle) > 0 else (outside, middle)
+            bounds.append(inside if above(end) > 0 else None)
+        return bounds[0], bounds[1]
+
+    def _lowest(self, given: Mapping[int, float]) -> tuple[NDArray[np.float64], float]:
+        """Returns the point with the least value of the surface where each parameter is from 0 to 1, (p,), and this value.
+
+        The surface need not have a minimum of its own there. Its least value is at a point where some of the parameters are at an end of
+        their range, and the slope along all others is 0: all such points are compared.
+
+        Args:
+            given: Parameters that are not searched: their values by number.
+        """
+        constant, slope, upper = self._weights[0], self._weights[1 : self._axes + 1], np.zeros((self._axes, self._axes))
+        upper[np.triu_indices(self._axes)] = self._weights[self._axes + 1 :]
+        curve = upper + upper.T
+        searched = [axis for axis in range(self._axes) if axis not in given]
+        best, least = np.zeros(self._axes), math.inf
+        for at_end in itertools.product((False, True), repeat=len(searched)):
+            ends = [axis for axis, end in zip(searched, at_end, strict=True) if end]
+            inner = [axis for axis, end in zip(searched, at_end, strict=True) if not end]
+            points = np.zeros((2 ** len(ends), self._axes))
+            points[:, list(given)] = list(given.values())
+            points[:, ends] = list(itertools.product((0.0, 1.0), repeat=len(ends)))
+            if inner:
+                try:
+                    points[:, inner] = -np.linalg.solve(curve[np.ix_(inner, inner)], slope[inner][:, None] + curve[inner] @ points.T).T
+                except np.linalg.LinAlgError:  # it does not bend in some direction: then the same value is at an end, too
+                    continue
+            points = points[np.all((points >= 0) & (points <= 1), axis=1)]
+            values = constant + points @ slope + np.einsum("ij,jk,ik->i", points, curve, points) / 2
+            if len(values) and values.min() < least:
+                best, least = points[int(np.argmin(values))], float(values.min())
+        return best, least
 
 
 # -- means
@@ -655,10 +751,15 @@ def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agre
     varied = len(both) > 2 and wanted.std() > 0 and got.std() > 0
     return Agreement(
         cells=len(both),
+        missing=len(target) - len(both),
         rmse=float(np.sqrt(np.mean((wanted - got) ** 2))),
         r2=float(np.corrcoef(wanted, got)[0, 1] ** 2) if varied else None,
         rows=tuple({**dict(cell), "target": mean, "model": round(found, DIGITS)} for cell, (mean, found) in both.items()),
     )
+
+
+def _agreement_of(found: _Simulated, target: Mapping[Cell, float]) -> Agreement:
+    return replace(agreement(found.means, target), failed=found.failed, trials=found.trials)
 
 
 def to_json(result: FitResult) -> str:

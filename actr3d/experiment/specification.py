@@ -34,9 +34,9 @@ from actr3d.errors import ConfigurationError, DesignError, ExperimentError, alte
 from actr3d.experiment import designs
 from actr3d.experiment.design import Design, Group, Measured, Normal, Uniform, is_design
 from actr3d.experiment.human_data import library_human_data
+from actr3d.experiment.versions import experiment_versions
 from actr3d.output import ModelOutput, printing_to
 from actr3d.parameter_schema import Parameter, default_of
-from actr3d.recording.schema import versions
 from actr3d.runner.build_check import check_build, has_build
 
 if TYPE_CHECKING:
@@ -261,7 +261,7 @@ def specify(
         participants=participants,
         trials=trials,
         values=values or {},
-        versions=versions(),
+        versions=experiment_versions(),
     )
     experiment, people = Experiment(specification), library_human_data()
     human = experiment.design.human

@@ -5,17 +5,28 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import mean, stdev
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import pytest
+from annotated_types import Lt
 
+from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, DesignError, ExperimentError, ModelFileError
 from actr3d.experiment import Design, Group, Measured, Normal, Uniform
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
+from actr3d.parameter_schema import parameters_of
 from tests.helpers.experiments import write_experiment
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sizes(Configuration):
+    a: Annotated[float, Lt(10)] = 1.0
+    b: float = 1.0
+    c: float = 1.0
 
 
 def design_of(**changes: Any) -> Design:
@@ -466,3 +477,22 @@ def test_ratios_become_apertures_and_bars() -> None:
         v = trial.values
         assert v["aperture"] == pytest.approx(v["ratio"] * max(v["bar"], v["shoulder_width"]), abs=1e-4)
         assert v["bar"] == pytest.approx(v["bar_ratio"] * v["shoulder_width"], abs=1e-4)
+
+
+def test_what_is_the_same_for_many_participants_and_cells_is_checked_once() -> None:
+    derived: list[Mapping[str, Any]] = []
+
+    def derive(values: Mapping[str, Any]) -> dict[str, Any]:
+        derived.append(values)
+        return {"b": values["a"]}
+
+    parameters = parameters_of(Sizes)
+    group = Group(participants=50, parameters={"c": 1.0})
+    Design(model="m.py", factors={"a": [1.0, 2.0, 3.0]}, groups={"all": group}, derive=derive).check(parameters)
+    assert len(derived) == 3
+    drawn = Group(participants=5, parameters={"c": Uniform(low=0, high=1)})
+    Design(model="m.py", factors={"a": [1.0, 2.0]}, groups={"all": drawn}, derive=derive).check(parameters)
+    assert len(derived) == 3 + 10
+    for levels in ([1.0, 20.0], [20.0, 1.0]):
+        with pytest.raises(DesignError, match=r"Design, all 1: a: must be < 10"):
+            Design(model="m.py", factors={"b": [1.0, 2.0], "a": levels}, groups={"all": group}).check(parameters)

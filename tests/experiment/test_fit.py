@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.special import stdtrit
 
 from actr3d.cli import main
 from actr3d.errors import Actr3dError, DesignError, ExperimentError, SettingError
@@ -229,9 +230,65 @@ def test_candidates_at_which_the_model_fails_are_bad_ones(tmp_path: Path, client
 def test_a_fit_at_whose_candidates_the_model_always_fails_shows_its_error(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client, "slope=0..3", line=FAILING.replace("FAILS", "slope != 1.0"), options={"participants": 1})
     with pytest.raises(
-        ExperimentError, match=r"no candidate has a mean .*; trial 0 in '.*candidate \w+' failed: ValueError: no line: [\d.]+$"
+        ExperimentError,
+        match=r"no candidate .* without failed trials; trial 0 in '.*candidate \w+' failed: ValueError: no line: [\d.]+$",
     ):
         fit.run(STARTING + 2)
+
+
+def test_a_condition_in_which_a_trial_failed_has_no_mean(tmp_path: Path, client: Any) -> None:
+    """Else, a model that fails in hard trials would be compared by the easy ones."""
+    line = FAILING.replace("FAILS", "x == 5 and abs(slope - 1.35) < 0.1 and self.random.random() < 0.6")
+    steeper = f"{tmp_path / 'line.py'}:steeper"
+    fit = fit_of(tmp_path, client, "slope=0..3", line=line, options={"values": {"offset": 1}})
+    result = fit.run(STARTING, hold_out={steeper: means((10, 20, 30))}, ablate=["slope=1.4"])
+    failing = [one for one in result.tried if one.failed]
+    assert [(one.values["slope"], one.rmse, one.trials) for one in failing] == [(1.35, None, 20)]
+    assert 0 < failing[0].failed < 4
+    assert result.parameters[0].value == 1.65  # the second best, whose trials have not failed
+    assert (result.fit.missing, result.fit.failed, result.fit.trials) == (0, 0, 20)
+    assert (result.held_out[steeper].missing, result.held_out[steeper].failed, result.held_out[steeper].trials) == (0, 0, 36)
+    changed = result.ablated["slope=1.4"]
+    assert (changed.cells, changed.missing, changed.trials) == (4, 1, 20)
+    assert [row["x"] for row in changed.rows] == [1, 2, 3, 4]
+    assert 0 < changed.failed < 4
+
+
+def test_failed_trials_are_shown(tmp_path: Path, capsys: Any) -> None:
+    model, people = tmp_path / "line.py", tmp_path / "people.csv"
+    model.write_text(FAILING.replace("FAILS", "x == 5"), encoding="utf-8")
+    people.write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit"), "--workers", "1"]
+    assert main([*words, "--candidates", "2", "--ablate", "noise=0"]) == 0
+    told = capsys.readouterr().out
+    assert "changed noise=0: RMSE" in told
+    assert "2 means; 4 of 20 trials failed" in told
+    assert "warning: in 2 of 2 candidates, 8 of 40 trials failed" in told
+
+
+def test_all_candidates_are_of_one_model_whatever_becomes_of_its_file(tmp_path: Path, client: Any) -> None:
+    fit = fit_of(tmp_path, client, "slope=0..3", options={"values": {"noise": 0}})
+    (tmp_path / "line.py").write_text("half of a fi", encoding="utf-8")
+    result = fit.run(1, ablate=["offset=7"])
+    assert [row["model"] for row in result.ablated["offset=7"].rows] == [
+        pytest.approx(result.parameters[0].value * x + 7) for x in (1, 2, 3, 4, 5)
+    ]
+
+
+def test_bounds_have_as_many_decimals_as_values() -> None:
+    thirds = Range.from_text("x=0.3333333..0.6666667")
+    assert (thirds.low, thirds.high) == (0.333334, 0.666666)
+    plain = Range.from_text("x=0.57..1.005")
+    assert (plain.low, plain.high) == (0.57, 1.005)
+
+
+def test_a_design_that_is_held_out_twice_is_refused(tmp_path: Path, capsys: Any) -> None:
+    model, people = tmp_path / "line.py", tmp_path / "people.csv"
+    model.write_text(LINE, encoding="utf-8")
+    people.write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    held_out = ["--hold-out", f"{model}:line={people}"] * 2
+    assert main(["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), *held_out]) == 2
+    assert re.search(r"error: --hold-out .*line.py:line: is given twice; give one", capsys.readouterr().err)
 
 
 @pytest.mark.parametrize(
@@ -253,7 +310,7 @@ def test_wrong_ranges_are_refused(text: str, says: str) -> None:
 
 
 def test_parameters_that_the_model_does_not_have_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(DesignError, match=r"--set slop: Design: the model has no parameter 'slop'; did you mean 'slope'"):
+    with pytest.raises(DesignError, match=r"^--parameter slop: Design: the model has no parameter 'slop'; did you mean 'slope'"):
         fit_of(tmp_path, None, "slop=0..1")
 
 
@@ -262,11 +319,11 @@ def test_a_parameter_that_is_given_twice_is_refused(tmp_path: Path) -> None:
         fit_of(tmp_path, None, "slope=0..1", "offset=0..1", "slope=0..3")
 
 
-@pytest.mark.parametrize("levels", ["['near', 'far']", "['near']", "[1, 2]"])
+@pytest.mark.parametrize("levels", ["['near', 'far']", "['near']", "[1, 2]", "[1]"])
 def test_a_parameter_that_is_a_factor_is_refused(tmp_path: Path, levels: str) -> None:
     shown = levels.strip("[]").replace("'", "")
     line = LINE.replace('{"x": [1, 2, 3, 4, 5]}', f'{{"x": [1, 2, 3, 4, 5], "offset": {levels}}}')
-    with pytest.raises(SettingError, match=rf"--parameter offset: is a factor of the design \({shown}\); name one that does not vary"):
+    with pytest.raises(SettingError, match=rf"--parameter offset: is a factor of the design \({shown}\); name a parameter that is none"):
         fit_of(tmp_path, None, "offset=1..3", line=line)
 
 
@@ -356,6 +413,26 @@ def test_a_model_that_is_determined_exactly_has_a_narrow_interval() -> None:
     assert low is not None
     assert high is not None
     assert 0.15 < low <= high < 0.25
+
+
+@pytest.mark.parametrize("parameters", [1, 3, 4, 6])
+def test_the_minimum_and_the_interval_of_a_quadratic_are_exact(parameters: int) -> None:
+    rng = np.random.default_rng(parameters)
+    points = rng.uniform(size=(80, parameters))
+    squares = [1 + 3000 * float(np.sum((point - 0.46) ** 2) + (point[0] - 0.46) * (point[-1] - 0.46)) for point in points]
+    surface = QuadraticSurface(np.vstack([points, np.full(parameters, 0.46)]), [*squares, 1.0], 20)
+    assert surface.minimum() == pytest.approx(np.full(parameters, 0.46), abs=1e-4)
+    curve = np.eye(parameters)
+    curve[0, -1] += 0.5
+    curve[-1, 0] += 0.5
+    half = math.sqrt(stdtrit(20 - parameters, 0.975) ** 2 / (20 - parameters) * np.linalg.inv(curve)[0, 0] / 3000)
+    assert surface.interval(0) == (pytest.approx(0.46 - half, abs=1e-4), pytest.approx(0.46 + half, abs=1e-4))
+
+
+def test_a_saddle_has_its_least_value_at_an_end() -> None:
+    points = np.random.default_rng(1).uniform(size=(80, 3))
+    squares = [2 + (x - 0.3) ** 2 - (y - 0.4) ** 2 + 0.1 * z for x, y, z in points]
+    assert QuadraticSurface(points, squares, 20).minimum() == pytest.approx([0.3, 1, 0], abs=1e-3)
 
 
 def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:

@@ -12,6 +12,7 @@ import pytest
 
 from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
 from actr3d.experiment.aperture.passing import baseline_angle
+from actr3d.experiment.report import statistics
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.report.results import Results, read_results
 from actr3d.experiment.report.statistics import agreement, bootstrap_interval, cell_means, participant_means, run_tests
@@ -157,6 +158,48 @@ def test_with_few_participants_the_tests_of_the_mixed_model_say_that_their_p_is_
     tests = run_tests(read_results(folder), "rt")
     assert tests.mixed_model is not None
     assert not [note for note in tests.notes if says in note]
+
+
+def test_the_mixed_model_tests_an_effect_by_how_much_it_varies_between_participants(tmp_path: Path) -> None:
+    """Without random effects of factors, chi square divided by its degrees of freedom would be many times F here."""
+    path = write_experiment(tmp_path, participants=10, trials=1, factors='{"n": [1, 2, 3], "mode": ["count", "fail"]}')
+    draw = random.Random(2)
+    own = {(who, level): draw.gauss(0, 1) for who in range(1, 11) for level in (0, 1, 2, 3, "count", "fail")}
+
+    def measures(trial: Any) -> dict[str, Any]:
+        who = int(trial.participant.name.split()[1])
+        rt = sum(own[who, level] for level in (0, trial.values["n"], trial.values["mode"])) + draw.gauss(0, 0.1)
+        return {"rt": rt, "luck": 0.5}
+
+    tests = run_tests(read_results(store_rows(tmp_path / "out", str(path), measures)), "rt")
+    anova = {row["effect"]: row["F"] for row in tests.anova.to_dict("records")}
+    wald = {row["effect"]: row["chi2"] / row["df"] for row in tests.mixed_model.to_dict("records")}
+    assert wald == {effect: pytest.approx(anova[effect], rel=0.02) for effect in ("n_", "mode", "n_ × mode")}
+    assert [note for note in tests.notes if "participant × n_" in note and "(sphericity)" in note]
+
+
+def test_normality_is_tested_of_participants_and_not_of_their_cells(tmp_path: Path) -> None:
+    """The cells of one participant are no independent values: of few participants, they would be far from normal."""
+    path = write_experiment(tmp_path, participants=5, trials=1, factors=f'{{"n": {list(range(1, 17))}}}')
+    person, draw = [-1.3, 0.9, 1.1, 1.0, -0.4], random.Random(1)
+
+    def measures(trial: Any) -> dict[str, Any]:
+        return {"rt": person[int(trial.participant.name.split()[1]) - 1] + draw.gauss(0, 0.1), "luck": 0.5}
+
+    tests = run_tests(read_results(store_rows(tmp_path / "out", str(path), measures)), "rt")
+    of_normality = [row for row in tests.assumptions.to_dict("records") if row["test"] == "Shapiro-Wilk"]
+    assert [row["assumption"] for row in of_normality] == ["normality of participants' means", "normality of participants' trends over n_"]
+    assert all(row["holds"] == "yes" for row in of_normality)
+
+
+def test_intervals_are_the_same_however_many_samples_are_drawn_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    values = np.random.default_rng(5).normal(10, 2, 33).tolist()
+    whole = bootstrap_interval(values)
+    monkeypatch.setattr(statistics, "AT_ONCE", 1000)
+    assert bootstrap_interval(values) == whole
+    samples = np.random.default_rng([1987, 33]).integers(0, 33, (4000, 33))
+    low, high = np.quantile(np.array(values)[samples].mean(axis=1), (0.025, 0.975))
+    assert whole == (low, high)
 
 
 def test_the_analysis_of_variance_is_that_of_the_textbook(tmp_path: Path) -> None:

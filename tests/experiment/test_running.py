@@ -29,6 +29,7 @@ from actr3d.experiment.cluster import Progress, cluster_versions, end_processes,
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
+from actr3d.experiment.versions import SOURCES, digest_of
 from tests.helpers.experiments import COUNTER, SLOW_COUNTER, trial_processes, write_experiment
 from tests.helpers.reports import store_rows
 
@@ -166,6 +167,18 @@ def test_workers_with_other_versions_are_refused(tmp_path: Path) -> None:
         ExperimentError, match=r"worker \d+: has other versions: mujoco \S+ \(the client has 1\.2\.3\); install the same on both"
     ):
         run_batch(text, [0], 60, {**cluster_versions(), "mujoco": "1.2.3"})
+
+
+def test_a_changed_file_of_the_library_is_another_version(tmp_path: Path) -> None:
+    assert {"numba", "scipy", "trimesh", "mujoco", SOURCES} <= specify(str(write_experiment(tmp_path))).specification.versions.keys()
+    library = tmp_path / "library"
+    (library / "__pycache__").mkdir(parents=True)
+    (library / "code.py").write_text("x = 1")
+    before = digest_of(library)
+    (library / "__pycache__" / "code.pyc").write_text("compiled")
+    assert digest_of(library) == before
+    (library / "code.py").write_text("x = 2")
+    assert digest_of(library) != before
 
 
 def test_a_client_that_leaves_ends_no_process_of_another(tmp_path: Path) -> None:

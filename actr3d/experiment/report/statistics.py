@@ -5,18 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from itertools import combinations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from actr3d.experiment.report.libraries import mixedlm, noting_warnings, pandas, pingouin
 from actr3d.experiment.report.results import Results
 
 RESAMPLES = 4_000
 """The number of bootstrap samples."""
+AT_ONCE = 1_000_000
+"""The number of values of bootstrap samples that are drawn at a time: memory does not grow with the number of participants."""
 SEED = 1987
 """The seed of the bootstrap; the same for every report."""
 FEWEST = 3
@@ -25,14 +25,10 @@ FEW = 10
 """With fewer participants, bootstrap intervals are known to be too narrow."""
 LEVEL = 0.05
 """The level of significance of the checks of assumptions."""
+MOST = 5_000
+"""The maximum number of participants that the test of Shapiro and Wilk takes; of more, some from all groups are taken."""
 NOTHING = 1e-12
 """A standard deviation below this, relative to the values, is rounding."""
-
-
-@cache
-def _samples(n: int) -> NDArray[np.intp]:
-    """Returns the participants of each bootstrap sample, (RESAMPLES, n)."""
-    return np.random.default_rng([SEED, n]).integers(0, n, (RESAMPLES, n))
 
 
 def bootstrap_interval(values: Sequence[float]) -> tuple[float, float]:
@@ -41,7 +37,11 @@ def bootstrap_interval(values: Sequence[float]) -> tuple[float, float]:
     given = given[np.isfinite(given)]
     if len(given) < 2:
         return float("nan"), float("nan")
-    low, high = np.quantile(given[_samples(len(given))].mean(axis=1), (0.025, 0.975))
+    draw, n = np.random.default_rng([SEED, len(given)]), len(given)
+    rows = max(1, AT_ONCE // n)
+    counts = [min(rows, RESAMPLES - begin) for begin in range(0, RESAMPLES, rows)]
+    means = np.concatenate([given[draw.integers(0, n, (count, n))].mean(axis=1) for count in counts])
+    low, high = np.quantile(means, (0.025, 0.975))
     return float(low), float(high)
 
 
@@ -248,17 +248,24 @@ def _add_sphericity(checks: list[dict[str, Any]], factor: str, found: Any, *, te
 
 
 def _check_assumptions(whole: Any, factors: Sequence[str], grouped: bool, checks: list[dict[str, Any]]) -> None:
-    """Adds the checks of normality, of the residuals of all cells, and of equal variances of the groups."""
+    """Adds the checks of normality, of participants' means and of their effects of each factor, and of equal variances of the groups."""
     pg = pingouin()
-    cell = [*(["group"] if grouped else []), *factors]
-    residuals = whole["value"] - whole.groupby(cell, observed=True)["value"].transform("mean") if cell else whole["value"]
-    # A participant counts once in each cell; with very many cells the test of Shapiro and Wilk takes 5,000 values at most.
-    sample = residuals.to_numpy()[:5000]
-    if np.std(sample) > NOTHING:
+    scores = {"participants' means": _over(whole, [])}
+    for factor in factors:
+        effects = _over(whole, [factor])
+        places = {level: number for number, level in enumerate(dict.fromkeys(whole[factor]))}
+        # Rising along the levels, in their order; of two levels, it is half of their difference.
+        effects["value"] *= effects[factor].map(places).astype(float) - (len(places) - 1) / 2
+        scores[f"participants' trends over {factor}"] = _over(effects, [])
+    for name, of in scores.items():
+        residuals = (of["value"] - of.groupby("group", observed=True)["value"].transform("mean")).to_numpy()
+        sample = residuals[:: -(-len(residuals) // MOST)]
+        if len(sample) <= FEWEST or np.std(sample) <= NOTHING * max(1.0, float(np.abs(whole["value"]).max())):  # the test needs four
+            continue
         found = pg.normality(sample).iloc[0]
         says = "yes" if found["pval"] >= LEVEL else "no: prefer the bootstrap intervals"
         checks.append(
-            {"assumption": "normality of residuals", "test": "Shapiro-Wilk", "statistic": found["W"], "p": found["pval"], "holds": says}
+            {"assumption": f"normality of {name}", "test": "Shapiro-Wilk", "statistic": found["W"], "p": found["pval"], "holds": says}
         )
     if grouped:
         found = pg.homoscedasticity(_over(whole, []), dv="value", group="group").iloc[0]
@@ -269,13 +276,19 @@ def _check_assumptions(whole: Any, factors: Sequence[str], grouped: bool, checks
 
 
 def _mixed_model(means: Any, factors: Sequence[str], grouped: bool, notes: list[str]) -> Any:
-    """Returns the Wald tests of a linear mixed model with a random intercept for each participant; None if it cannot be fitted."""
+    """Returns the Wald tests of a linear mixed model; None if it cannot be fitted.
+
+    Participants differ at random in their mean, and in their effects of each factor, and of each interaction but that of all factors,
+    which is the residual: as in an analysis of variance, an effect is tested by how much it varies between participants.
+    """
     names = [*(["group"] if grouped else []), *factors]
     short = {name: f"f{number}" for number, name in enumerate(names)}
     data = means[["participant", "value", *names]].rename(columns=short)
     terms = " * ".join(f"C({name}, Sum)" for name in short.values())
+    varied = [of for size in range(1, len(factors)) for of in combinations(factors, size)]
+    effects = {f"participant × {' × '.join(of)}": "0 + " + ":".join(f"C({short[name]})" for name in of) for of in varied}
     try:
-        fitted = mixedlm()(f"value ~ {terms}", data, groups=data["participant"]).fit(reml=True)
+        fitted = mixedlm()(f"value ~ {terms}", data, groups=data["participant"], re_formula="1", vc_formula=effects or None).fit(reml=True)
         tests = fitted.wald_test_terms(scalar=True).table
     except (np.linalg.LinAlgError, ValueError) as error:
         notes.append(f"The mixed model cannot be fitted: {error}.")
@@ -289,10 +302,13 @@ def _mixed_model(means: Any, factors: Sequence[str], grouped: bool, notes: list[
         found.append(
             {"effect": " × ".join(back[code] for code in used), "chi2": row["statistic"], "df": row["df_constraint"], "p": row["pvalue"]}
         )
-    between = float(np.sqrt(max(0.0, float(np.asarray(fitted.cov_re).ravel()[0]))))
+    variances = dict(zip(fitted.model.exog_vc.names if effects else (), fitted.vcomp, strict=True))
+    deviating = {"participants": float(np.asarray(fitted.cov_re).ravel()[0]), **variances, "residual": float(fitted.scale)}
+    deviations = ", ".join(f"{name} {float(np.sqrt(max(0.0, variance))):.3g}" for name, variance in deviating.items())
     notes.append(
-        f"Mixed model: random intercept of participants, SD {between:.3g}; residual SD {float(np.sqrt(fitted.scale)):.3g}"
-        + ("." if fitted.converged else "; the fit did not converge, so read it with care.")
+        f"Mixed model: standard deviations of random effects: {deviations}. It takes effects to vary between participants by the same "
+        "amount at all levels of a factor (sphericity): where that does not hold, prefer the corrected p of the analysis of variance."
+        + ("" if fitted.converged else " The fit did not converge, so read it with care.")
     )
     return pandas().DataFrame(found)
 
