@@ -110,7 +110,7 @@ def test_of_two_doorways_it_passes_one(model: Any, seed: int) -> None:
 
 def test_the_width_of_one_of_two_doorways_is_not_changed_in_the_place_of_both(model: Any) -> None:
     simulation: Simulation = model.build(model.Parameters(scene="two doorways"))
-    with pytest.raises(Actr3dError, match="no aperture .aperture. in this scene"):
+    with pytest.raises(Actr3dError, match="no aperture 'aperture' in this scene"):
         simulation.command("aperture", 0.7)
 
 
