@@ -68,8 +68,8 @@ REPULSION, NARROWNESS, REACH = 198.0, 6.5, 0.8
 """It turns away from obstacles with the acceleration k (φ - ψ) exp(-c3 |φ - ψ|) exp(-c4 d); k [1/s²], c3 [1/rad], c4 [1/m].
 Source: Fajen & Warren (2003)."""
 NOTICE = 4.0
-"""Objects count as obstacles up to this distance [m]. Source: chosen, about the protective zone of 3.8 m that Hackney & Cinelli found
-(docs/human-data.md)."""
+"""Objects count as obstacles up to this distance [m]. Source: chosen, about the protective zone of 3.8 m that Hackney et al. (2013)
+found (docs/human-data.md)."""
 BEFORE, LAG, FORGET = 0.15, 0.5, 0.5
 """Obstacles are nearer than the doorway by more than the first number [m] and the way that it walks in the second [s], as it sees one
 after the other; and count this long after they were last noticed [s]. Source: chosen for this model."""
