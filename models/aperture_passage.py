@@ -4,14 +4,16 @@ People turn their shoulders to pass an aperture that is narrower than 1.30 times
 that they can pass without turning if it is wider than 1.16 times that width (Warren & Whang 1987, JEP:HPP 13). What counts is the
 ratio of the aperture to the body. The walker does not know the size of its own body at first: it learns it.
 
-The work is one planning unit (SGOMS) with four unit tasks:
+The work is two planning units (SGOMS). `pass_doorway` has the unit tasks *learn*, *judge*, *approach* and *leave*; `squeeze`, with the
+unit task *turn*, interrupts it before a narrow doorway:
 
 1. *Learn*: the walker turns its shoulders to each side several times. Its width in each posture is stored in declarative memory.
 2. *Judge*: is there an opening that is wide enough to pass without turning? If not, the walker remembers how narrow it can make
    itself, and looks for an opening of that size. If there is none, it declines.
 3. *Approach*: it walks. Its eyes, a parallel system with productions of 10 ms, look for obstacles ahead.
-4. *Squeeze*: an obstacle interrupts the walk. The walker turns its shoulders at a constant speed until vision finds an opening that
-   is wider than its felt width by a margin. Then it walks on, passes, and turns back (*leave*).
+4. *Turn*: an obstacle interrupts the walk. The walker turns its shoulders at a constant speed until vision finds an opening that
+   is wider than its felt width by a margin. Then it walks on.
+5. *Leave*: behind the doorway it turns back, and stands.
 
 The three variants
 ------------------
@@ -223,6 +225,7 @@ class Shoulders(Model):
     def change(self, rate):
         """Continues at another rate [degrees/s], if they are turning for a narrow doorway."""
         if self.parent.b_context["way"] == "narrow" and self.parent.motor[f"{self.groups[0]}_busy"]:
+            self.stop()  # a muscle group that moves refuses another movement
             self.turn(1, rate)
 
     def stop(self):
@@ -393,7 +396,7 @@ class EyesAtOnce(Eyes):
 
 
 class Walker(SGOMS):
-    """The common part of both variants.
+    """The common part of the `descriptive` and the `replication` variant.
 
     Source of the times: productions 50 ms, no latency of declarative memory (docs/human-data.md). Source of the standard deviation of 20 ms:
     the original's angle before wide doorways has one of 4.7 degrees, at 240 degrees/s.

@@ -68,8 +68,8 @@ REPULSION, NARROWNESS, REACH = 198.0, 6.5, 0.8
 """It turns away from obstacles with the acceleration k (φ - ψ) exp(-c3 |φ - ψ|) exp(-c4 d); k [1/s²], c3 [1/rad], c4 [1/m].
 Source: Fajen & Warren (2003)."""
 NOTICE = 4.0
-"""Objects count as obstacles up to this distance [m]. Source: chosen, about the protective zone of 3.8 m that Hackney & Cinelli found
-(docs/human-data.md)."""
+"""Objects count as obstacles up to this distance [m]. Source: chosen, about the protective zone of 3.8 m that Hackney et al. (2013)
+found (docs/human-data.md)."""
 BEFORE, LAG, FORGET = 0.15, 0.5, 0.5
 """Obstacles are nearer than the doorway by more than the first number [m] and the way that it walks in the second [s], as it sees one
 after the other; and count this long after they were last noticed [s]. Source: chosen for this model."""
@@ -150,12 +150,12 @@ class Parameters(Configuration):
     """The parameters of the model."""
 
     aperture: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.5
-    """The free width of the doorway [m], or of each of two."""
+    """The free width of the doorway [m]; or of each of two, which stay as they are during a run."""
 
     shoulder_width: Annotated[float, Ge(0.3), Le(0.7)] = 0.404
     """The shoulder width [m]. Source: the small group of Warren & Whang (1987)."""
 
-    speed: Annotated[float, Ge(0.3), Le(3), Live("parameter", "walker.pace.wanted")] = 1.29
+    speed: Annotated[float, Ge(0.1), Le(3), Live("parameter", "walker.pace.wanted")] = 1.29
     """The walking speed [m/s]. Source: Warren & Whang (1987), small group."""
 
     contact_cost: Annotated[float, Ge(0), Le(1000)] = CONTACT_COST
@@ -361,7 +361,7 @@ class Person(ACTR):
     DM = Memory(b_DM, latency=0, threshold=None)
     nearest = Similar(DM)
     b_experience = Buffer()
-    experience = BlendingMemory(b_experience, latency=0, threshold=None)
+    experience = BlendingMemory(b_experience, latency=0, threshold=None, maximum_time=CYCLE)
     activation_noise = DMNoise(experience, noise=MEMORY_NOISE)
     alike = Similar(experience)
     vision = Vision(b_visual, delay=CYCLE, horizontal_fov=FIELD)
@@ -443,11 +443,34 @@ class Person(ACTR):
         """Has it passed such a doorway without touching it, at whatever speed?"""
         b_visual.clear()
         experience.request(f"event:passage room:{self.room(wide, width, self.shoulders)} free:?")
-        b_goal.set("do:say")
+        b_goal.set(f"do:say door:{wide}")
 
-    def say(b_goal="do:say", b_experience="free:?free"):
-        self.judged = "as it is" if float(free) > LIKELY else "turned"
-        print(f"{self.now():.2f} s: {self.who}can pass {self.judged}")
+    def say(b_goal="do:say door:?door", b_experience="free:?free"):
+        """It has; or it imagines the greatest turn."""
+        b_experience.clear()
+        if float(free) > LIKELY:
+            self.tell("as it is")
+        else:
+            DM.request(f"torso_yaw:{self.side * (1 - HIPS) * TURNS[-1]:.2f} width:?")
+            b_goal.set(f"do:imagine door:{door}")
+
+    def remember_turned_passages(b_goal="do:imagine door:?door", b_DM="width:?width"):
+        """Has it passed such a doorway at all, as narrow as it can be?"""
+        b_DM.clear()
+        experience.request(f"event:passage room:{self.room(door, width, self.shoulders)} passed:?")
+        b_goal.set("do:doubt")
+
+    def say_whether_turned(b_goal="do:doubt", b_experience="passed:?passed"):
+        self.tell("turned" if float(passed) > LIKELY else "not at all")
+
+    def know_nothing(b_goal="do:say", experience="error:True"):
+        """Without experience it judges as it would walk: it turns only if the turn is given."""
+        self.tell("turned" if self.always else "as it is")
+
+    def tell(self, judged):
+        """Says whether and how it can pass."""
+        self.judged = judged
+        print(f"{self.now():.2f} s: {self.who}" + ("cannot pass" if judged == "not at all" else f"can pass {judged}"))
         self.stop()
 
     # -- walking
@@ -566,10 +589,8 @@ class Person(ACTR):
         b_goal.set("do:decline" if float(passed) <= LIKELY else f"do:turn turn:{turn}")
 
     def decline(b_goal="do:decline"):
-        print(f"{self.now():.2f} s: {self.who}cannot pass")
-        self.judged = "not at all"
         motor.stop()
-        self.stop()
+        self.tell("not at all")
 
     def turn(b_goal="do:turn turn:?turn", b_door="far:?far"):
         print(f"{self.now():.2f} s: {self.who}turns by {turn} degrees")
@@ -633,7 +654,7 @@ def build(parameters: Parameters) -> Simulation:
     elif p.scene == "two doorways":
         beside = BETWEEN / 2
         shared = {"width": p.aperture, "closing": p.closing, "segment": beside - p.aperture / 2}
-        doorways = {"aperture": beside, "second": -beside}
+        doorways = {"left_doorway": beside, "right_doorway": -beside}
         parts = [walker, *(Aperture(name=name, position=(DISTANCE, y), **shared) for name, y in doorways.items())]
     agents = {part.name: partial(person, p, part.name) for part in parts if isinstance(part, Mannequin)}
     simulation = Simulation(Scene(parts=(Floor(), *parts)), agents)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from weakref import WeakSet
+from weakref import WeakKeyDictionary
 
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import subtree, top_of
@@ -10,19 +10,20 @@ from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
 from actr3d.errors import did_you_mean
 from actr3d.warnings import warn_at
 
-_CHECKED: WeakSet[type] = WeakSet()
+_CHECKED: WeakKeyDictionary[type, set[frozenset[str]]] = WeakKeyDictionary()
+"""By class of production systems, the attributes of the motor modules that it was checked with."""
 
 
 def check_patterns(motor: Model) -> None:
-    """Warns, once for each class of agent, of patterns that name a muscle group, joint or state that does not exist."""
+    """Warns, once for each class of agent and kind of body, of patterns that name a muscle group, joint or state that does not exist."""
     known = [name for name in vars(motor) if name[0] != "_"]
     for system in subtree(top_of(motor)):
-        if not isinstance(system, ProductionSystem) or type(system) in _CHECKED:
+        if not isinstance(system, ProductionSystem) or frozenset(known) in _CHECKED.get(type(system), ()):
             continue
         productions = rules_of(system).productions
         of_motor = [production for production in productions if any(target is motor for target in production.context.values())]
         if of_motor:
-            _CHECKED.add(type(system))
+            _CHECKED.setdefault(type(system), set()).add(frozenset(known))
         for production in of_motor:
             for condition in production.conditions:
                 key = condition.key

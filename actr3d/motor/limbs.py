@@ -150,10 +150,16 @@ class Limbs:
                 known(name, self.joints, whose, "joint")
             axes = ", ".join(dict.fromkeys(self.joints[joint].axis for joint in of))
             raise WorldError(f"{whose}: '{name}' has several joints; give the axis: {axes}")
-        by_axis = {self.joints[joint].axis: joint for joint, part in self.group_of.items() if part == name}
+        by_axis: dict[str, list[str]] = {}
+        for joint, part in self.group_of.items():
+            if part == name:
+                by_axis.setdefault(self.joints[joint].axis, []).append(joint)
         if not by_axis:
             known(name, dict.fromkeys(self.group_of.values()), whose, "jointed part")
-        return by_axis[known(axis, by_axis, f"{whose}: {name}", "axis")]
+        first, *others = by_axis[known(axis, by_axis, f"{whose}: {name}", "axis")]
+        if others:
+            raise WorldError(f"{whose}: '{name}' has several joints about {axis}; name one of them: {', '.join([first, *others])}")
+        return first
 
     def movement(self, name: str, side: str | None) -> NamedMovement:
         """Returns a named movement of the body.

@@ -45,14 +45,14 @@ class Motor(WithParameters, Port):
     A group carries out one movement at a time; the legs walk and turn in parallel.
 
     Productions match `busy`, and `<group>_busy` of each muscle group; `error` after a refused command, and `refusal`,
-    «busy» or «limit»; `walking` and `turning`; felt values, `<joint>_angle` [degrees], `width`, `depth` and `height` [m],
-    and `middle`, how far the middle of that width is to the left of the base [m].
+    «busy» or «limit»; `walking` and `turning`; felt values, `<joint>_angle` [degrees], or `<joint>_position` [m] of a joint that
+    slides, `width`, `depth` and `height` [m], and `middle`, how far the middle of that width is to the left of the base [m].
     Unknown names and invalid values raise errors.
 
     The module learns what the body consists of in the first tick; earlier commands begin after it. While
     something moves, it feels the body at the end of each tick, and a run without an end continues; at other times it does nothing.
 
-    Angles are degrees in commands, attributes and posture chunks, radians in `body` and `joint()`. Numbers may be text.
+    Angles are degrees and lengths metres in commands, attributes and posture chunks; radians in `body` and `joint()`. Numbers may be text.
 
     Args:
         buffer: Receives each stored posture; None for none.
@@ -60,13 +60,14 @@ class Motor(WithParameters, Port):
             that leave buffers; there a buffer alone is enough.)
         speed: Default speed of joints and of turns of the whole body [degrees/s].
             Source: the original ACT-R 3D's torso and clavicle (docs/human-data.md).
-        angle_grid: Step to which felt angles are rounded [degrees]; this and the next two apply once the body is known.
+        angle_grid: Step to which felt angles are rounded [degrees]; this and the next three apply once the body is known.
         size_grid: Step to which felt lengths are rounded [m]. Source: chosen, fine enough to judge a doorway to a hundredth of the
             shoulder width.
         extreme_step: Distance beyond its former extreme at which a moving joint's posture is stored [degrees]; None
             for never. Source: chosen; about the ten samples to each side that the original took.
+        extreme_slide: The same for a joint that slides [m]. Source: chosen.
         angle_noise: The standard deviation of felt angles [degrees].
-        size_noise: The standard deviation of felt width, depth, height and middle [m].
+        size_noise: The standard deviation of felt width, depth, height and middle, and of the positions of slides [m].
         patience: Time without progress after which a movement ends as «blocked» [s]; None for never. Detection takes
             at most three times as long. Source: chosen.
         preparation: Preparation time of a command [s]. Source: 0 as in the original; ACT-R prepares 0.05 s for each feature
@@ -86,6 +87,7 @@ class Motor(WithParameters, Port):
         angle_grid: float = 1.0,
         size_grid: float = 0.001,
         extreme_step: float | None = 10.0,
+        extreme_slide: float | None = 0.02,
         angle_noise: float = 0.0,
         size_noise: float = 0.0,
         patience: float | None = 0.1,
@@ -102,8 +104,9 @@ class Motor(WithParameters, Port):
         self._ended: list[tuple[Movement, str]] = []
         self._asked = False
         self._wanted: list[str] = []
-        self._further: str | None = None
+        self._further: Sequence[str] = ()
         self._positions: tuple[float, ...] = ()
+        self._box: dict[str, float] = {}
         self._felt_us = 0
         self.busy = False
         self.error = False
@@ -121,6 +124,7 @@ class Motor(WithParameters, Port):
         self.angle_grid = angle_grid
         self.size_grid = size_grid
         self.extreme_step = extreme_step
+        self.extreme_slide = extreme_slide
         self.angle_noise = angle_noise
         self.size_noise = size_noise
         self.patience = patience
@@ -129,7 +133,7 @@ class Motor(WithParameters, Port):
         self._check_parameters(vars(self))
 
     def _check_parameters(self, values: Mapping[str, Any]) -> None:
-        for name in ("speed", "extreme_step", "patience", "angle_grid", "size_grid"):
+        for name in ("speed", "extreme_step", "extreme_slide", "patience", "angle_grid", "size_grid"):
             if values[name] is not None and not 0 < values[name] < HUGE:
                 raise ParameterError(f"Motor.{name}: must be > 0 and < {HUGE:g} (got {values[name]!r})")
         for name in ("angle_noise", "size_noise", "preparation", "initiation"):
@@ -205,7 +209,7 @@ class Motor(WithParameters, Port):
             self._accept()
             self._halt(["walk"] if walk else [], site)
         else:
-            self._begin_or_change("walk", Walk(speed, site), change=walk is not None and walk.begun)
+            self._begin_or_change("walk", Walk(speed, site), change=walk is not None)
 
     def _turn(self, angle: float | None, rate: float, site: CallSite | None) -> None:
         self._need("walk")
@@ -215,11 +219,11 @@ class Motor(WithParameters, Port):
             self._accept()
             self._halt(["turn"] if turn else [], site)
             return
-        endless = isinstance(turn, Turn) and turn.begun and turn.rest is None and angle is None
+        endless = isinstance(turn, Turn) and turn.rest is None and angle is None
         self._begin_or_change("turn", Turn(angle, rate, site), change=endless)
 
     def _begin_or_change(self, key: str, movement: Movement, *, change: bool) -> None:
-        """Begins a movement of the legs, or replaces the one in progress."""
+        """Begins a movement of the legs, or replaces the one in progress; one that is still prepared begins before that."""
         if change:
             self._accept()
             self._after_preparation(self._change, key, movement)
@@ -260,9 +264,9 @@ class Motor(WithParameters, Port):
             WorldError: If there is no such joint, it has no muscles, or a value is invalid.
         """
         pace = self._speed("rotate", speed, angle is not None)
-        usual = speed is None
         to = None if angle is None else number(angle, "rotate: angle")
-        self._command(partial(self._rotate, joint, axis, to, pace, usual), "rotate", joint=joint, axis=axis, angle=angle, speed=speed)
+        act = partial(self._rotate, joint, axis, to, pace, speed is None)
+        self._command(act, "rotate", joint=joint, axis=axis, angle=angle, speed=speed)
 
     def move(self, movement: Any, side: Any = None, angle: Any = None, speed: Any = None) -> None:
         """Makes a named movement of the body.
@@ -270,15 +274,16 @@ class Motor(WithParameters, Port):
         Args:
             movement: Its name.
             side: Its side, if there is one on each: `left` or `right`.
-            angle: Target angle [degrees], in the movement's own direction; None for the limit, or until `stop`.
-            speed: Speed [degrees/s]; without an angle, negative moves in the other direction.
+            angle: Target angle [degrees], or position of slides [m], in the movement's own direction; None for the limit, or until `stop`.
+            speed: Speed [degrees/s]; without an angle, negative moves in the other direction; of slides [m/s], and required.
 
         Raises:
             WorldError: If the body has no such movement, or a value is invalid.
         """
         pace = self._speed(str(movement), speed, angle is not None)
         to = None if angle is None else number(angle, f"{movement}: angle")
-        self._command(partial(self._move, movement, side, to, pace), "move", movement=movement, side=side, angle=angle, speed=speed)
+        act = partial(self._move, movement, side, to, pace, speed is None)
+        self._command(act, "move", movement=movement, side=side, angle=angle, speed=speed)
 
     def rotate_torso(self, angle: Any = None, speed: Any = None) -> None:
         """Turns the torso to an angle [degrees, left is positive], or until its limit; see `move`."""
@@ -301,7 +306,7 @@ class Motor(WithParameters, Port):
 
         Args:
             posture: A buffer that holds it, a chunk, a mapping, or text: joints with angles [degrees], or positions [m].
-            speed: Speed of each joint [degrees/s] or [m/s].
+            speed: Speed of each joint [degrees/s], and of each slide [m/s]; required if there are slides.
 
         Raises:
             ChunkError: If it is not a posture.
@@ -309,7 +314,7 @@ class Motor(WithParameters, Port):
         """
         pace = self._speed("assume", speed, True)
         wanted = Chunk(posture, self.sch.bound)
-        self._command(partial(self._assume, wanted, pace), "assume", posture=wanted, speed=speed)
+        self._command(partial(self._assume, wanted, pace, speed is None), "assume", posture=wanted, speed=speed)
 
     def feel(self, name: str = "felt") -> None:
         """Feels the body at the end of this tick, and stores that posture under a name.
@@ -329,12 +334,10 @@ class Motor(WithParameters, Port):
     def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, usual: bool, site: CallSite | None) -> None:
         limbs = self._known()
         name = limbs.joint(joint, axis)
-        if usual and limbs.joints[name].kind == "slide" and limbs.joints[name].driven:
-            raise WorldError(f"{limbs.plan.name}: joint '{name}' slides; give its speed [m/s]: rotate('{name}', speed=…)")
         target = limbs.limit(name, pace) if to is None else to * limbs.unit[name]
-        self._turn_joints(name, {name: copysign(INFINITE, pace) if target is None else target}, pace, to is None, site)
+        self._turn_joints(name, {name: copysign(INFINITE, pace) if target is None else target}, pace, usual, to is None, site)
 
-    def _move(self, movement: Any, side: Any, to: float | None, pace: float, site: CallSite | None) -> None:
+    def _move(self, movement: Any, side: Any, to: float | None, pace: float, usual: bool, site: CallSite | None) -> None:
         limbs = self._known()
         named = limbs.movement(movement, side)
         if named.to is not None and (to is not None or pace < 0):
@@ -345,22 +348,33 @@ class Motor(WithParameters, Port):
             end = copysign(INFINITE, way * pace) if limit is None else limit
             targets[joint] = way * named.to if named.to is not None else end if to is None else way * to * limbs.unit[joint]
         name = movement if named.side is None else f"{movement}_{named.side}"
-        self._turn_joints(name, targets, pace, to is None and named.to is None, site)
+        self._turn_joints(name, targets, pace, usual, to is None and named.to is None, site)
 
-    def _assume(self, posture: Chunk, pace: float, site: CallSite | None) -> None:
+    def _assume(self, posture: Chunk, pace: float, usual: bool, site: CallSite | None) -> None:
         limbs = self._known()
         ways = {joint: number(posture[joint], f"assume: {joint}") * limbs.unit[joint] for joint in limbs.order if joint in posture}
         if not ways:
             raise WorldError(f"assume: '{posture}' names no joint of {limbs.plan.name}; it has {', '.join(limbs.order) or 'none'}")
-        self._turn_joints("assume", ways, pace, False, site)
+        self._turn_joints("assume", ways, pace, usual, False, site)
 
-    def _turn_joints(self, name: str, ways: Mapping[str, float], pace: float, to_limit: bool, site: CallSite | None) -> None:
-        """Turns joints to positions [rad] or [m], together: one movement for each muscle group."""
+    def _turn_joints(self, name: str, ways: Mapping[str, float], pace: float, usual: bool, to_limit: bool, site: CallSite | None) -> None:
+        """Turns joints to positions [rad] or [m], together: one movement for each muscle group.
+
+        Args:
+            name: The movement.
+            ways: By joint, its target.
+            pace: The speed of each joint, in its unit in commands.
+            usual: Whether that is the default speed, which slides do not have.
+            to_limit: Whether the targets are limits.
+            site: Where the modeller gives the command.
+        """
         limbs = self._known()
         by_group: dict[str, dict[str, float]] = {}
         for joint, target in ways.items():
             if not limbs.joints[joint].driven:
                 raise WorldError(f"{limbs.plan.name}: joint '{joint}' has no muscles that could move it")
+            if usual and limbs.joints[joint].kind == "slide":
+                raise WorldError(f"{limbs.plan.name}: joint '{joint}' slides; give its speed [m/s]: speed=…")
             limbs.check_speed(name, pace * limbs.unit[joint], 2, limbs.unit[joint])
             if abs(target) < INFINITE and not limbs.inside(joint, target):
                 self._refuse(name, "limit")
@@ -368,8 +382,8 @@ class Motor(WithParameters, Port):
             by_group.setdefault(limbs.group_of[joint], {})[joint] = target
         movements: dict[str, Movement] = {}
         for group, targets in by_group.items():
-            speed = abs(pace) * limbs.unit[next(iter(targets))]
-            movements[group] = JointMovement(name, group, speed, site, targets=targets, order=limbs.order, to_limit=to_limit)
+            paces = {joint: abs(pace) * limbs.unit[joint] for joint in targets}
+            movements[group] = JointMovement(name, group, paces, site, targets=targets, order=limbs.order, to_limit=to_limit)
         self._begin(movements)
 
     def _speed(self, call: str, speed: Any, bounded: bool) -> float:
@@ -525,7 +539,7 @@ class Motor(WithParameters, Port):
         if self._schema is None:
             self._update(limbs, reading, dict(zip(limbs.order, reading.positions, strict=True)))
             check_patterns(self)
-        elif before != reading.positions:
+        elif before != reading.positions or self._resized(reading):
             moved = {joint: at for joint, was, at in zip(limbs.order, before, reading.positions, strict=True) if was != at}
             self._update(limbs, reading, moved)
         over: list[tuple[str, str]] = []
@@ -542,37 +556,36 @@ class Motor(WithParameters, Port):
         if any(movement.begun for movement in self._under_way.values()):
             self._ask(by_itself=True)
 
+    def _resized(self, reading: Proprioception) -> bool:
+        """Returns whether the size of the body has changed since it was last felt, such as after a grasp."""
+        return any(abs(getattr(reading, name) - size) > self.size_grid for name, size in self._box.items())
+
     def _update(self, limbs: Limbs, reading: Proprioception, felt: Mapping[str, float]) -> None:
         """Updates the felt positions of some joints, and the felt size of the body."""
         draw = self.random.gauss
-        if self.angle_noise:
-            felt = {joint: at + draw(0, self.angle_noise * limbs.unit[joint]) for joint, at in felt.items()}
+        noise = {"hinge": radians(self.angle_noise), "slide": self.size_noise}
+        felt = {joint: at + draw(0, sd) if (sd := noise[limbs.joints[joint].kind]) else at for joint, at in felt.items()}
         schema = self._schema
         if schema is None:
             limbs.feel(felt)
-            schema = self._schema = BodySchema(limbs, self.angle_grid, self.size_grid, self.extreme_step)
+            schema = self._schema = BodySchema(limbs, self.angle_grid, self.size_grid, self.extreme_step, self.extreme_slide)
             for joint in felt:
                 self._become(limbs.shown_as[joint], schema.at[joint])
         new = schema.feel(felt)
         for joint in new:
             self._become(limbs.shown_as[joint], schema.at[joint])
-        for name in SIZES:
-            noise = draw(0, self.size_noise) if self.size_noise else 0.0
-            self._become(name, schema.size(getattr(reading, name) + noise))
-        further = schema.extremes(new)
-        if further:
-            schema.note(further)
-            self._further = further[0]
+        self._box = {name: getattr(reading, name) for name in SIZES}
+        for name, size in self._box.items():
+            self._become(name, schema.size(size + (draw(0, self.size_noise) if self.size_noise else 0.0)))
+        self._further = schema.extremes(new)
 
     def _remember(self, limbs: Limbs, ended: list[tuple[Movement, str]]) -> None:
         """Stores the posture after movements have ended, at new extremes of joints, and on request."""
         if self._ended:
             ended, self._ended = [*self._ended, *ended], []
-        if self._further is not None:
-            passing = self._under_way.get(limbs.group_of[self._further])
-            if passing is not None:  # else it has just ended, or was pushed
-                self._store(passing.name, "passing", self._further)
-            self._further = None
+        moving = next((joint for joint in self._further if limbs.group_of[joint] in self._under_way), None)
+        if moving is not None:  # others have just ended, or were pushed
+            self._store(self._under_way[limbs.group_of[moving]].name, "passing", moving)
         for movement, end in ended:
             if isinstance(movement, JointMovement):
                 self._store(movement.name, end, next(joint for joint in limbs.order if joint in movement.targets))
@@ -580,6 +593,7 @@ class Motor(WithParameters, Port):
             wanted, self._wanted = self._wanted, []
             for name in wanted:
                 self._store(name, "felt", None)
+        self._further = ()
         if self._waiting:
             self._catch_up()
 
@@ -588,6 +602,7 @@ class Motor(WithParameters, Port):
         schema = self._schema
         assert schema is not None
         posture = schema.posture(name, end, joint, {name: getattr(self, name) for name in SIZES})
+        schema.note(self._further)
         if self._memory is not None:
             collect(self._memory, Chunk(posture))
         if self._buffer is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -41,17 +42,15 @@ class Movement:
     Args:
         name: Its name in the command, with the side if there is one.
         group: The muscle group.
-        pace: Its speed [rad/s] or [m/s].
         site: Where the modeller gives the command.
     """
 
     base = False
     """Whether the legs carry it out."""
 
-    def __init__(self, name: str, group: str, pace: float, site: CallSite | None) -> None:
+    def __init__(self, name: str, group: str, site: CallSite | None) -> None:
         self.name = name
         self.group = group
-        self.pace = pace
         self.site = site
         self.begun = False
         """Whether the body has received the command."""
@@ -69,16 +68,16 @@ class Movement:
         if end is not None:
             return end
         if self._felt:  # it may have begun within the first step
-            self._gone += self._distance(step)
+            self._gone += self._progress(step)
             self._time += step.duration
         self._felt = True
         if patience is None or self._time < patience:
             return None
-        slow = self._gone < HELD * self.pace * self._time and self._gone <= FASTER * self._before
+        slow = self._gone < HELD * self._time and self._gone <= FASTER * self._before
         self._before, self._gone, self._time = self._gone, 0.0, 0.0
         if not slow:
             return None
-        return "done" if self._remaining(step) <= self.pace * step.duration else "blocked"
+        return "done" if self._remaining(step) <= step.duration else "blocked"
 
     def trace_data(self) -> dict[str, Any]:
         """Returns its data for the trace."""
@@ -88,12 +87,12 @@ class Movement:
         """Returns how it has ended, except «blocked»."""
         raise NotImplementedError
 
-    def _distance(self, step: Step) -> float:
-        """Returns the distance moved in a step [rad] or [m]."""
+    def _progress(self, step: Step) -> float:
+        """Returns the time that the distance moved in a step takes at its speed [s]."""
         raise NotImplementedError
 
     def _remaining(self, step: Step) -> float:
-        """Returns the remaining distance [rad] or [m]; a blocked movement within one tick of its target counts as done."""
+        """Returns the time that the remaining distance takes at its speed [s]; a blocked movement within one tick counts as done."""
         return INFINITE
 
 
@@ -103,7 +102,7 @@ class JointMovement(Movement):
     Args:
         name: Its name in the command.
         group: The muscle group.
-        pace: Its speed [rad/s] or [m/s].
+        paces: By joint, its speed [rad/s] or [m/s].
         site: Where the modeller gives the command.
         targets: By joint, its target [rad] or [m]; infinite without an end.
         order: The joints of the body in its order.
@@ -114,14 +113,15 @@ class JointMovement(Movement):
         self,
         name: str,
         group: str,
-        pace: float,
+        paces: Mapping[str, float],
         site: CallSite | None,
         *,
         targets: Mapping[str, float],
         order: Sequence[str],
         to_limit: bool,
     ) -> None:
-        super().__init__(name, group, pace, site)
+        super().__init__(name, group, site)
+        self.paces = paces
         self.targets = targets
         self.to_limit = to_limit
         self._number = {joint: order.index(joint) for joint in targets}
@@ -131,9 +131,9 @@ class JointMovement(Movement):
         """Yields the commands that begin it. A limit on its way is its target, so that it is reached exactly."""
         for joint, target in self.targets.items():
             if abs(target) < INFINITE:
-                yield "position", (joint, target, self.pace), {}
+                yield "position", (joint, target, self.paces[joint]), {}
             else:
-                yield "joint", (joint, self.pace if target > 0 else -self.pace), {}
+                yield "joint", (joint, math.copysign(self.paces[joint], target)), {}
 
     def halt(self) -> Iterable[Order]:
         """Yields the commands that end it at once."""
@@ -143,7 +143,7 @@ class JointMovement(Movement):
     def trace_data(self) -> dict[str, Any]:
         """Returns its data for the trace."""
         ends = {joint: target if abs(target) < INFINITE else None for joint, target in self.targets.items()}
-        return {"movement": self.name, "group": self.group, "to": ends, "speed": self.pace}
+        return {"movement": self.name, "group": self.group, "to": ends, "speed": next(iter(self.paces.values()))}
 
     def _arrived(self, step: Step) -> str | None:
         self._left.intersection_update(step.reading.moving)
@@ -153,12 +153,13 @@ class JointMovement(Movement):
             return "stopped"  # by another command, such as the user's
         return "limit" if self.to_limit else "done"
 
-    def _distance(self, step: Step) -> float:
+    def _progress(self, step: Step) -> float:
         before, now = step.before, step.reading.positions
-        return max([abs(now[n] - before[n]) for n in (self._number[joint] for joint in self._left)])
+        return max([abs(now[n] - before[n]) / self.paces[joint] for joint, n in self._number.items() if joint in self._left])
 
     def _remaining(self, step: Step) -> float:
-        return max(abs(step.reading.positions[self._number[joint]] - self.targets[joint]) for joint in self._left)
+        at = step.reading.positions
+        return max(abs(at[self._number[joint]] - self.targets[joint]) / self.paces[joint] for joint in self._left)
 
 
 class Walk(Movement):
@@ -167,7 +168,7 @@ class Walk(Movement):
     base = True
 
     def __init__(self, speed: float, site: CallSite | None) -> None:
-        super().__init__("walk", BASE_GROUP, abs(speed), site)
+        super().__init__("walk", BASE_GROUP, site)
         self.speed = speed
 
     def trace_data(self) -> dict[str, Any]:
@@ -177,8 +178,8 @@ class Walk(Movement):
     def _arrived(self, step: Step) -> str | None:
         return None if step.reading.walking else "stopped"
 
-    def _distance(self, step: Step) -> float:
-        return step.reading.speed[0] * step.duration * (1 if self.speed > 0 else -1)
+    def _progress(self, step: Step) -> float:
+        return step.reading.speed[0] / self.speed * step.duration
 
 
 class Turn(Movement):
@@ -187,7 +188,7 @@ class Turn(Movement):
     base = True
 
     def __init__(self, angle: float | None, rate: float, site: CallSite | None) -> None:
-        super().__init__("turn", BASE_GROUP, abs(rate), site)
+        super().__init__("turn", BASE_GROUP, site)
         self.rate = rate
         self.rest = angle
         """Rest of the angle at the last reading [rad]; None without an end."""
@@ -202,15 +203,15 @@ class Turn(Movement):
         before, self.rest = self.rest, step.reading.turning
         if self.rest:
             return None
-        return "done" if not self._felt or abs(before) <= 1.5 * self.pace * step.duration else "stopped"
+        return "done" if not self._felt or abs(before) <= 1.5 * abs(self.rate) * step.duration else "stopped"
 
-    def _distance(self, step: Step) -> float:
-        rest = self.rate if self.rest is None else self.rest
-        return step.reading.speed[2] * step.duration * (1 if rest > 0 else -1)
+    def _progress(self, step: Step) -> float:
+        rate = self.rate if self.rest is None else math.copysign(self.rate, self.rest)
+        return step.reading.speed[2] / rate * step.duration
 
 
 def gait(walk: Walk | None, turn: Turn | None) -> Iterable[Order]:
     """Yields the commands that make the legs do exactly this walk and this turn."""
     yield "walk", (walk.speed if walk else 0.0,), {"turn": turn.rate if turn and turn.rest is None else 0.0}
     if turn is not None and turn.rest is not None:
-        yield "turn", (turn.rest, turn.pace), {}
+        yield "turn", (turn.rest, abs(turn.rate)), {}

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from actr3d.motor.limbs import Limbs, on_grid
 
-AWAY = 5.0
-"""Distance from its start from which a posture includes a joint that it does not always include [degrees]. Source: chosen; limbs
-that hold still while others swing yield by about a degree."""
+AWAY, AWAY_SLIDE = 5.0, 0.01
+"""Distance from its start from which a posture includes a joint that it does not always include [degrees], and a slide [m]. Source:
+chosen; limbs that hold still while others swing yield by about a degree."""
 
 
 class BodySchema:
@@ -23,13 +24,15 @@ class BodySchema:
         angle_grid: Step to which angles are rounded [degrees].
         size_grid: Step to which lengths are rounded [m].
         step: Distance beyond the former extreme that makes a new one [degrees]; None for never.
+        slide: The same for slides [m].
     """
 
-    def __init__(self, limbs: Limbs, angle_grid: float, size_grid: float, step: float | None) -> None:
+    def __init__(self, limbs: Limbs, angle_grid: float, size_grid: float, step: float | None, slide: float | None) -> None:
         self._limbs = limbs
         self._size_grid = size_grid
         self._grids = {joint: angle_grid if plan.kind == "hinge" else size_grid for joint, plan in limbs.joints.items()}
-        self._step = step
+        steps = {"hinge": math.inf if step is None else step, "slide": math.inf if slide is None else slide}
+        self._steps = {joint: steps[plan.kind] * limbs.unit[joint] for joint, plan in limbs.joints.items()}
         named = {joint for movement in limbs.plan.movements if movement.to is None for joint, _ in movement.joints}
         self._always = [joint for joint in limbs.order if joint in named or not named]
         self._first = dict(limbs.felt)
@@ -92,17 +95,16 @@ class BodySchema:
 
     def _away(self, joint: str) -> bool:
         limbs = self._limbs
-        return abs(limbs.felt[joint] - self._first[joint]) > AWAY * limbs.unit[joint]
+        away = AWAY * limbs.unit[joint] if limbs.joints[joint].kind == "hinge" else AWAY_SLIDE
+        return abs(limbs.felt[joint] - self._first[joint]) > away
 
     def extremes(self, joints: Iterable[str]) -> tuple[str, ...]:
         """Returns those of some joints that are a step beyond their extremes in all earlier postures."""
-        if self._step is None:
-            return ()
         limbs = self._limbs
         further: list[str] = []
         for joint in joints:
             at = limbs.felt[joint]
-            step = self._step * limbs.unit[joint]
+            step = self._steps[joint]
             if at >= self._most[joint] + step or at <= self._least[joint] - step:
                 further.append(joint)
         return tuple(further)

@@ -51,7 +51,10 @@ class FeatureCache:
         self._now = CachedView(view, time)
 
     def features(self, query: Query) -> Found:
-        """Returns the features that a request's detector finds now, with their changes since the view before."""
+        """Returns the features that a request's detector finds now, with their changes since the view before.
+
+        Each view has its own noise, and the changes are also of that.
+        """
         assert self._now is not None
         found, before = self._now.features(query), self._before
         if before is None or self._now.time - before.time > RECENT:

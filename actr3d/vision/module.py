@@ -14,7 +14,7 @@ from actr3d.camera import CameraParameters, View
 from actr3d.clock import MICROSECONDS
 from actr3d.errors import ParameterError, VisionError
 from actr3d.vision.detectors import DETECTORS
-from actr3d.vision.encoding import Emma, saccade_time
+from actr3d.vision.encoding import PROGRAMMING, Emma, saccade_time
 from actr3d.vision.feature import off_sight
 from actr3d.vision.feature_cache import FeatureCache
 from actr3d.vision.noise import blurred
@@ -53,14 +53,15 @@ class Vision(WithParameters, Searching):
             the feature's name; None: openings by size, obstacles by nearness.
         rule: Choice among several: `share` with probability s_i / sum(s); `sos` as SOS Vision does: each is noticed with
             probability s_i (above 1 counts as 1), one of those is drawn, and described at the end of the delay, if it is still visible
-            and passes all tests; otherwise nothing is found. Requests while it is busy do nothing.
+            and passes all tests; otherwise nothing is found. Top-down requests while it is busy do nothing.
         error_rate: The probability that a search notices nothing.
         edge_noise: The standard deviation of the directions of edges [rad].
-        distance_noise: That of all distances of one view together, as a fraction.
+        distance_noise: That of all distances of one view together, as a fraction. Each search has its own noise, so that with noise
+            also what does not move seems to: `motion` and `time_to_contact` are the change since the view before.
         encoding: Additional time to encode the feature of a top-down request: a time [s], such as 0.085 for a shift of
             attention; or `emma`, or an `Emma`, whose time grows with the angle from the line of sight.
-        saccades: Whether the eye turns to the feature of a top-down request, within its limits; the chunk then waits for it.
-            Without it, EMMA's times are as if the eye turned there and back.
+        saccades: Whether the eye turns to the feature of a top-down request, within its limits; the chunk then waits until it is there,
+            except with EMMA, where encoding may end earlier. Without it, EMMA's times are as if the eye turned there and back.
         private_view: Whether other ports of the agent are refused the raw view (`body.request("view")`), and the pictures `image`
             and `depth`. With False they receive them: the agent then bypasses vision, and the trace shows this.
         camera: The fields of `CameraParameters`: `rows=50`, `horizontal_fov=2.0`.
@@ -120,6 +121,7 @@ class Vision(WithParameters, Searching):
         self._bottom_up: Search | None = None
         self._waiting: Search | None = None
         self._delivered: tuple[Any, int] = (None, 0)
+        self._aim: tuple[int, float, float] = (0, 0.0, 0.0)
         self._last: dict[bool, Search] = {}
 
     def _check_parameters(self, values: Mapping[str, Any]) -> None:
@@ -317,19 +319,26 @@ class Vision(WithParameters, Searching):
         feature = search.feature
         assert feature is not None
         left, up, eccentricity = off_sight(view.axes, feature)
+        landing, direction, elevation = self._aim
+        if sch.now_us < landing:  # the eye will look there before it turns again
+            left, up = math.remainder(feature.direction - direction, 2 * math.pi), feature.elevation - elevation
         begin = max(search.due, sch.now_us)
         encoding = self._encoding
         time, start = encoding.course(eccentricity) if isinstance(encoding, Emma) else (encoding, 0.0)
         if self.saccades and start is not None:
-            sch.call_at(begin + round(start * MICROSECONDS), self._turn_eye, (search, search.begun, left, up))
+            start = begin + round(start * MICROSECONDS)
+            landing = start + round(saccade_time(eccentricity) * MICROSECONDS)
+            prepared = max(begin, start - round(PROGRAMMING * MICROSECONDS))
+            sch.call_at(prepared, self._program_eye, (search, search.begun, start, landing, left, up))
             if not isinstance(encoding, Emma):
                 time = max(time, saccade_time(eccentricity))
         search.due = begin + round(time * MICROSECONDS)
 
-    def _turn_eye(self, search: Search, begun: int, left: float, up: float) -> None:
-        """Turns the eye to the feature of a search, unless another search has replaced it."""
-        if search is self._top_down and search.begun == begun:
-            self._send_command("saccade", left, up)
+    def _program_eye(self, search: Search, begun: int, start: int, landing: int, left: float, up: float) -> None:
+        """Makes sure that the eye turns to the feature of a search at a time [us], unless another search has replaced it by now."""
+        if search is self._top_down and search.begun == begun and search.feature is not None:
+            self._aim = (landing, search.feature.direction, search.feature.elevation)
+            self.sch.call_at(start, self._send_command, ("saccade", left, up))
 
     # -- results
 

@@ -56,7 +56,7 @@ class Query:
                 if sign != "!":
                     return test
             elif isinstance(wanted, str):
-                if (as_text(value) == wanted) != (sign == "is"):
+                if _equal(value, wanted) != (sign == "is"):
                     return test
             elif not HOLDS[sign](feature.at_most(slot, value) if sign[0] == ">" else value, wanted):
                 return test
@@ -191,6 +191,12 @@ class _RequestReader:
         for bound in self._detector.bounds(word):
             hold(bound, number, f"{self._what}: {word}")
         return number / self._detector.unit(word).factor
+
+
+def _equal(value: Any, wanted: str) -> bool:
+    """Returns whether a value is the wanted one: the same number, or the same text."""
+    numbers = _number(value), _number(wanted)
+    return numbers[0] == numbers[1] if None not in numbers else as_text(value) == wanted
 
 
 def _number(value: Any) -> float | None:

@@ -224,6 +224,21 @@ def test_a_walker_that_speeds_up_close_before_it_still_turns_in_time(model: Any,
     assert (simulation.result().outcome, simulation.result().contacts) == ("passed", 0)
 
 
+def test_a_turn_that_is_under_way_gets_faster_with_the_walk(model: Any) -> None:
+    simulation = built(model, aperture=0.4, speed=0.6)
+    body = simulation.world.bodies["walker"]
+    walker = simulation.agents["walker"]
+    simulation.run(until=lambda _: body.base.place[0] > 4 and abs(walker.motor.stance_yaw_angle) > 5)
+    rates: list[float] = []
+    for _ in range(2):
+        before = body.joints["stance_yaw"].position
+        simulation.run(0.1)
+        rates.append(abs(math.degrees(body.joints["stance_yaw"].position - before)) / 0.1)
+        simulation.command("parameter", "walker.pace.wanted", 1.2)
+        simulation.run(0.05)
+    assert rates == [pytest.approx(model.TURNING * speed, rel=0.05) for speed in (0.6, 1.2)]
+
+
 @pytest.mark.daily(1)
 @pytest.mark.parametrize("variant", ["descriptive", "replication"])
 def test_a_speed_may_change_while_it_turns_back(model: Any, variant: str) -> None:

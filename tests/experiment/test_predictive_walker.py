@@ -14,6 +14,7 @@ import pytest
 
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
+from actr3d.errors import Actr3dError
 from actr3d.experiment.aperture import PassageResult, experiences
 from actr3d.experiment.aperture.experience import MASS, MEASURES, passage_remembered
 from actr3d.experiment.specification import Experiment, specify
@@ -105,6 +106,12 @@ def test_of_two_doorways_it_passes_one(model: Any, seed: int) -> None:
     assert x > 7.3
     assert abs(abs(y) - 1.6) < 0.45, "behind one of them"
     assert not simulation.world.bodies["walker"].get("contacts")
+
+
+def test_the_width_of_one_of_two_doorways_is_not_changed_in_the_place_of_both(model: Any) -> None:
+    simulation: Simulation = model.build(model.Parameters(scene="two doorways"))
+    with pytest.raises(Actr3dError, match="no aperture 'aperture' in this scene"):
+        simulation.command("aperture", 0.7)
 
 
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.slow)])
@@ -220,8 +227,13 @@ def test_what_it_expects_to_hit_in_any_posture_it_declines(model: Any, capsys: A
 
 
 def test_it_judges_from_experience_whether_it_can_pass_as_it_is(model: Any) -> None:
-    judged = {aperture: walked(model, task="judge", aperture=aperture)[1].judged for aperture in (0.38, 0.6)}
-    assert judged == {0.38: "turned", 0.6: "as it is"}
+    judged = {aperture: walked(model, task="judge", aperture=aperture)[1].judged for aperture in (0.1, 0.38, 0.6)}
+    assert judged == {0.1: "not at all", 0.38: "turned", 0.6: "as it is"}
+
+
+@pytest.mark.parametrize(("given", "judged"), [({"memories": 0}, "as it is"), ({"turn": 0.0}, "as it is"), ({"turn": 40.0}, "turned")])
+def test_without_experience_it_judges_as_it_would_walk(model: Any, given: dict[str, Any], judged: str) -> None:
+    assert walked(model, until=10, task="judge", aperture=0.45, **given)[1].judged == judged
 
 
 def test_the_effort_of_a_turn_is_the_work_of_the_movements_that_it_makes(model: Any) -> None:
@@ -246,8 +258,13 @@ def test_the_effort_of_a_turn_is_the_work_of_the_movements_that_it_makes(model: 
         assert min(walks) < 1.28
 
 
-def test_without_memories_it_does_not_turn(model: Any) -> None:
-    assert chosen(model, 1, aperture=0.45, memories=0) == 0
+def test_without_memories_it_does_not_turn_and_decides_before_the_doorway(model: Any) -> None:
+    with RunLimits(seed=0, until=60):
+        simulation: Simulation = model.build(model.Parameters(aperture=0.45, memories=0))
+        walker, base = simulation.agents["walker"], simulation.world.bodies["walker"].base
+        simulation.run(until=lambda _: walker.chosen is not None or base.place[0] > 7)
+    assert base.place[0] < 6.5
+    assert walker.chosen == 0
 
 
 def test_a_turn_that_is_given_is_made(model: Any) -> None:

@@ -16,7 +16,7 @@ def test_felt_positions_and_extremes_are_those_of_each_single_reading(step: floa
     draw = random.Random(1)
     now = [draw.uniform(-0.5, 0.5) for _ in limbs.order]
     limbs.feel(dict(zip(limbs.order, now, strict=True)))
-    schema = BodySchema(limbs, 1.0, 0.001, 10.0)
+    schema = BodySchema(limbs, 1.0, 0.001, 10.0, 0.02)
     least, most = list(now), list(now)
     for _ in range(400):
         now = [at + draw.gauss(0, step) for at in now]

@@ -274,6 +274,21 @@ def test_a_change_of_speed_is_prepared_too_and_the_former_speed_goes_on_meanwhil
     assert base.speed[0] == near(0.8, abs=0.02), "a change that is still prepared is gone with the walk that it changes"
 
 
+def test_a_speed_may_change_while_its_movement_is_prepared() -> None:
+    simulation, motor = moving(preparation=0.25)
+    motor.walk(1.0)
+    motor.turn(speed=20)
+    simulation.step(10)
+    motor.walk(1.5)
+    motor.turn(speed=-40)
+    assert (motor.error, motor.refusal) == (False, None)
+    base = simulation.world.bodies["walker"].base
+    simulation.step(20)
+    assert (base.speed[0], math.degrees(base.speed[2])) == (near(1.0, abs=0.02), near(20, abs=0.5))
+    simulation.step(15)
+    assert (base.speed[0], math.degrees(base.speed[2])) == (near(1.5, abs=0.02), near(-40, abs=0.5))
+
+
 # -- what is refused
 
 
@@ -581,6 +596,25 @@ class Slip(ACTR):
     assert len(told) == 1
     simulation.seek(0)
     simulation.step(3)
+
+
+def test_each_kind_of_body_is_checked_for_the_muscle_groups_of_an_agent_once() -> None:
+    text = """
+from actr3d.actr import *
+from actr3d.motor import Motor
+
+class Turner(ACTR):
+    goal = Buffer()
+    motor = Motor()
+    def go(goal="go", motor="torso_busy:False"):
+        pass
+"""
+    make = load_text(text, "turner.py").Turner
+    Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": make}).step(3)
+    with pytest.warns(ModelWarning, match="'motor' has no attribute 'torso_busy'") as told:
+        Simulation(Scene(parts=(Floor(), Car(name="car"))), {"car": make}).step(3)
+    assert len(told) == 1
+    Simulation(Scene(parts=(Floor(), Car(name="car"))), {"car": make}).step(3)
 
 
 def test_proprioception_takes_no_noise() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -87,6 +88,17 @@ def test_turning_the_whole_body_does_not_change_the_felt_size() -> None:
     assert motor.width == 0.444
 
 
+def test_a_changed_size_is_felt_although_no_joint_has_moved() -> None:
+    simulation, motor = moving(size_noise=0.01)
+    reading = simulation.world.bodies["walker"].get("proprioception")
+    motor._feel(reading)
+    width = motor.width
+    motor._feel(reading)
+    assert motor.width == width, "the noise is the same as long as nothing changes"
+    motor._feel(replace(reading, width=0.9))
+    assert motor.width == near(0.9, abs=0.05)
+
+
 # -- postures
 
 
@@ -129,6 +141,17 @@ def test_new_extremes_are_stored_on_the_way_once() -> None:
         assert {chunk["extreme"] for chunk in new} <= {"maximum" if to > 0 else "minimum"}
         widths = [chunk["width"] for chunk in new]
         assert widths == sorted(widths, reverse=True)
+
+
+def test_a_joint_that_a_user_moves_meanwhile_does_not_hide_the_extremes_of_another() -> None:
+    simulation, motor = moving(extreme_step=10)
+    simulation.command("position", "pelvis_yaw", math.radians(35), math.radians(120), body="walker")
+    motor.rotate_torso(45, 120)
+    until(simulation, lambda: not motor.busy)
+    passing = postures(motor, "end:passing")
+    assert [chunk["torso_yaw"] for chunk in passing] == near([11, 22, 32, 43], abs=2)
+    assert all(chunk["posture"] == "rotate_torso" for chunk in passing)
+    assert "pelvis_yaw" in passing[0]
 
 
 def test_postures_felt_again_merge_and_are_recalled_the_better() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import FrozenInstanceError, fields, replace
+from dataclasses import FrozenInstanceError, dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from actr3d.camera import GeometricCamera, View
 from actr3d.errors import VisionError
 from actr3d.vision import DETECTORS, Detector, Feature, Obstacle, detector
 from actr3d.vision.detectors.obstacle import obstacle
+from actr3d.vision.request_parser import read_request
 from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, World
 from tests.helpers.camera_scenes import compiled, seen
 from tests.helpers.small_agents import near
@@ -232,6 +233,22 @@ def test_a_model_can_define_a_detector() -> None:
     assert seeing.visual.chunk["width"] == near(0.03, abs=0.001)
     agent(OWN)  # loaded again, it takes its own place
     assert DETECTORS["thin"].parameters == ("most",)
+
+
+@pytest.mark.usefixtures("registry")
+def test_a_plain_number_is_compared_as_a_number() -> None:
+    @dataclass(frozen=True, kw_only=True)
+    class Sign(Feature):
+        score: float
+
+    @detector(Sign)
+    def signs(view: View) -> tuple[Sign, ...]:
+        return ()
+
+    sign = Sign(distance=1.0, direction=0.0, score=2.0)
+    for wanted, passes in (("2.0", True), ("2", True), ("!2.0", False), ("2.5", False), (2, True), (2.0, True), ("!two", True)):
+        query = read_request("feature:sign", {"score": wanted}, DETECTORS, {}, "vision")
+        assert (query.failing(sign) is None) == passes, wanted
 
 
 @pytest.mark.usefixtures("registry")

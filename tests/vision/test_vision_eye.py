@@ -178,6 +178,56 @@ def test_emma_sets_the_time_of_a_chunk_and_turns_the_eye_where_it_may() -> None:
     assert math.degrees(eye_of(covert.world)[0]) == near(0, abs=1e-6)
 
 
+LOOKS = """
+from actr3d.actr import *
+from actr3d.vision import Vision
+class Agent(Model):
+    visual = Buffer()
+    vision = Vision(visual, encoding="emma", saccades=True)
+    def start(self):
+        self.vision.request("feature:opening", height=1)
+        yield 0.05 + SECONDS
+        self.vision.request("feature:opening", height=WANTED)
+"""
+"""An agent that requests something else some time after its first shift of attention."""
+NEAR = Scene(parts=(Floor(), Aperture(width=0.8, position=(5.0, 0.77)), Mannequin(name="walker")))
+"""A doorway that is encoded after the turn of the eye is prepared, and before it begins."""
+
+
+def looked(seconds: float, wanted: float = 50) -> tuple[Simulation, int]:
+    """Returns what happens if the agent requests an opening of another height so many seconds after its first shift of attention, and how
+    often the eye turns."""
+    kind = agent(LOOKS.replace("SECONDS", str(seconds)).replace("WANTED", str(wanted)))
+    simulation = Simulation(NEAR, {"walker": kind}, seed=1, trace="all")
+    simulation.run(1)
+    return simulation, [data.get("word") for _, data in events(simulation.trace, "request")].count("saccade")
+
+
+def test_with_emma_the_eye_turns_although_encoding_ends_before_it_is_there() -> None:
+    simulation, _ = looked(5)
+    direction = simulation.agents["walker"].visual.chunk["direction"]
+    encoded, start = Emma().course(math.radians(direction))
+    assert start is not None
+    assert 0.135 < encoded < start
+    ((time, _),) = list(events(simulation.trace, "sight"))
+    assert time == near(0.05 + encoded, abs=4e-3), "the direction is rounded"
+    assert math.degrees(eye_of(simulation.world)[0]) == near(direction, abs=0.2)
+
+
+@pytest.mark.parametrize(("seconds", "turns"), [(0.12, 0), (0.14, 1), (0.18, 1)])
+def test_with_emma_a_request_calls_off_a_turn_of_the_eye_until_it_is_prepared(seconds: float, turns: int) -> None:
+    simulation, turned = looked(seconds)
+    assert simulation.agents["walker"].vision.error
+    assert turned == turns
+
+
+@pytest.mark.parametrize("seconds", [0.14, 0.18])
+def test_the_eye_looks_at_what_it_saw_before_it_had_turned_to_something_else(seconds: float) -> None:
+    simulation, turned = looked(seconds, 1)
+    assert turned == 2
+    assert math.degrees(eye_of(simulation.world)[0]) == near(simulation.agents["walker"].visual.chunk["direction"], abs=0.3)
+
+
 def test_a_request_that_is_replaced_turns_no_eye() -> None:
     kind = agent(
         """
