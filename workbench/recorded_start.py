@@ -76,7 +76,5 @@ def parsed(text: bytes) -> Beginning:
     except UnicodeEncodeError as error:
         raise RecordingError(f"the recording cannot be opened: a text in it cannot be encoded ({error.reason})") from None
     except OverflowError:
-        raise RecordingError(
-            "the recording cannot be opened: its seed, a parameter or a command has a whole number of over 64 bits"
-        ) from None
+        raise RecordingError("the recording cannot be opened: a whole number in it has more than 64 bits") from None
     return began

@@ -161,7 +161,7 @@ class Writer:
                 with closing(sqlite3.connect(part.absolute())) as copy, copy:
                     self._add_facts(copy, facts)
                 part.rename(path)
-            except Exception as error:
+            except (sqlite3.Error, OSError, ValueError, MemoryError) as error:
                 _remove(part)
                 raise RecordingError(f"cannot write the recording '{path}': {_reason(error)}") from None
 

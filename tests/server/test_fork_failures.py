@@ -1,4 +1,4 @@
-"""A worker that cannot be forked is reported, and the others go on; so is the end of the process that forks them, in each way it may end."""
+"""A worker that cannot be forked is reported, and the others go on; so is the end of the process that forks them."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ def test_a_recording_with_values_that_no_worker_receives_is_refused(desk: Desk, 
     change = "INSERT OR REPLACE INTO facts VALUES ('{}', '{}')"
     for fact, value, problem in (
         ("helpers", '{"helper": ["helper.py", "\\ud800"]}', "a text in it cannot be encoded"),
-        ("seed", str(2**64), "a whole number of over 64 bits"),
+        ("seed", str(2**64), "a whole number in it has more than 64 bits"),
     ):
         forge(path, change.format(fact, value))
         with pytest.raises(RecordingError, match=problem):

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 import pytest
@@ -434,7 +434,7 @@ def test_sessions_of_models_that_could_not_be_built_make_room(desk: Desk, tmp_pa
     for _ in range(MAX_SESSIONS + 1):
         session = desk.do(sessions.open("model.py", {}, seed=1, record=True, run=False))
         while not session.is_over:
-            time.sleep(0.005)
+            sleep(0.005)
     assert len(sessions.all()) == MAX_SESSIONS
 
 
