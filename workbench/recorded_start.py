@@ -66,9 +66,15 @@ def parsed(text: bytes) -> Beginning:
     """Parses the JSON that `written` returned.
 
     Raises:
-        RecordingError: If it is nested too deeply.
+        RecordingError: If a worker cannot receive its values.
     """
     try:
-        return msgspec.convert(json.loads(text), Beginning)
+        began = msgspec.convert(json.loads(text), Beginning)
+        msgspec.msgpack.encode(began)
     except RecursionError:
         raise RecordingError("the recording cannot be read: its values are nested too deeply") from None
+    except UnicodeEncodeError as error:
+        raise RecordingError(f"the recording cannot be opened: a text in it cannot be encoded ({error.reason})") from None
+    except OverflowError:
+        raise RecordingError("the recording cannot be opened: a whole number in it has more than 64 bits") from None
+    return began

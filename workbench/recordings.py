@@ -74,6 +74,11 @@ class Recordings:
             erase(path)
         self.labels.forget(path.stem for path in erased)
 
+    def discard(self, path: Path) -> None:
+        """Deletes the recording of a run that nobody needs, unless a user has labelled it; none while labels are missing."""
+        if self.labels.problem is None and path.stem not in self.labels.all():
+            erase(path)
+
     def rename(self, name: str, to: str) -> None:
         """Renames a recording; a recording that a user has named is kept until a user deletes it.
 

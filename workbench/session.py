@@ -17,7 +17,7 @@ from workbench.event_log import EventLog
 from workbench.overlays import ViewSettings
 from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
-from workbench.retention import erase
+from workbench.recordings import Recordings
 from workbench.run_request import LaunchedRun, RunOptions, digest_of_file, start_of
 from workbench.worker.messages import ENDED, At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
@@ -33,7 +33,7 @@ class Session(Broadcast, Receiver):
         name: The name of the session.
         path: The model file.
         workers: The pool that starts workers.
-        recording: Returns a new file for a recording of a model with the given name.
+        recordings: The folder of the recordings.
         shown_path: The model's path as pages show it.
         lists_changed: Called whenever lists of recordings must be read again because of a run of this session.
     """
@@ -43,7 +43,7 @@ class Session(Broadcast, Receiver):
         name: str,
         path: Path,
         workers: Workers,
-        recording: Callable[[str], Path],
+        recordings: Recordings,
         shown_path: str,
         lists_changed: Callable[[], None],
     ) -> None:
@@ -87,7 +87,7 @@ class Session(Broadcast, Receiver):
         self.real_time = False
         """Whether runs with a body go in real time; until a user chooses a speed."""
         self._workers = workers
-        self._new_recording = recording
+        self._recordings = recordings
         self._lists_changed = lists_changed
         self._listed: tuple[Any, ...] = ()
         """What lists show of the run on screen."""
@@ -112,6 +112,11 @@ class Session(Broadcast, Receiver):
     def _newest(self) -> LaunchedRun | None:
         return self._loading or self._shown
 
+    @property
+    def _going(self) -> list[LaunchedRun]:
+        """The runs whose workers have not ended: that on screen, and that being built."""
+        return [one for one in (self._shown, self._loading) if one is not None and not one.over.is_set()]
+
     async def begin(self, options: RunOptions | None = None) -> None:
         """Starts a new run in a new worker; the old run stays on screen until the new one is built, so that an error does not remove it.
 
@@ -124,7 +129,7 @@ class Session(Broadcast, Receiver):
         """
         async with self._beginning:
             options = options or RunOptions()
-            record = str(self._new_recording(self.path.stem)) if options.record else None
+            record = str(self._recordings.new(self.path.stem)) if options.record else None
             more: dict[str, Any] = {"record": record, "factor": self.speed, "real_time": self.real_time, "breakpoints": self.breakpoints}
             start = start_of(self.path, options, attempt=self._attempt + 1, **more)
             self._attempt = start.attempt
@@ -142,7 +147,8 @@ class Session(Broadcast, Receiver):
                 launched.worker.kill()
                 return
             if self._loading is not None:
-                self._leave(self._loading.worker, self._loading.start.record)
+                record = self._loading.start.record
+                self._leave(self._loading.worker, None if record is None else Path(record))
             self._await(launched)
 
     def adopt(self, worker: Worker) -> None:
@@ -225,18 +231,12 @@ class Session(Broadcast, Receiver):
 
     def _swap(self, launched: LaunchedRun, facts: Facts) -> None:
         """Shows a newly built run in place of the previous one."""
-        before, worker, spare = self._shown, self._worker, self.spare_recording
+        worker, useless = self._worker, self._useless_recording
         self._shown, self._loading = launched, None
-        useless = None
-        if before is not None:
-            # A run that waits at its start may not have sent its first state yet.
-            waits = self.state is None and not before.start.run
-            useless = before.start.record if waits or never_begun(self.state, self.log) else None
-        useless = useless or (None if spare is None else str(spare))
         if worker is not None:
             self._leave(worker, useless)
         elif useless is not None:
-            erase(Path(useless))
+            self._recordings.discard(useless)
         self.run += 1
         self.epoch += 1
         self.log = EventLog()
@@ -308,14 +308,14 @@ class Session(Broadcast, Receiver):
         """Whether the current run is going on."""
         return self.state is not None and self.state.status == "running"
 
-    def _leave(self, worker: Worker, useless: str | None = None) -> None:
+    def _leave(self, worker: Worker, useless: Path | None) -> None:
         """Ends a worker in the background; then deletes its recording if that is useless."""
         self._asked.add(worker)
 
         async def end() -> None:
             await worker.stop()
             if useless is not None:
-                erase(Path(useless))
+                self._recordings.discard(useless)
             self._lists_changed()
 
         self.run_task(end())
@@ -323,7 +323,7 @@ class Session(Broadcast, Receiver):
     async def stop(self) -> None:
         """Ends the workers, whatever they are doing, and reads their last messages; after at most two seconds they are gone."""
         self._given_up = self._attempt  # including an attempt that has no worker yet
-        ending = [one for one in (self._shown, self._loading) if one is not None and not one.over.is_set()]
+        ending = self._going
         self._asked.update(one.worker for one in ending)
         await asyncio.gather(*(one.worker.stop() for one in ending))
         with suppress(TimeoutError):
@@ -333,10 +333,10 @@ class Session(Broadcast, Receiver):
 
     async def close(self) -> None:
         """Stops the workers, informs the watchers, and cancels all tasks."""
-        spare = self.spare_recording
+        useless = self._useless_recording
         await self.stop()
-        if spare is not None:
-            erase(spare)
+        if useless is not None:
+            self._recordings.discard(useless)
         self._notify_watchers(None)
         tasks = list(self._tasks)
         if tasks:
@@ -445,11 +445,25 @@ class Session(Broadcast, Receiver):
         return Path(start.record)
 
     @property
+    def _useless_recording(self) -> Path | None:
+        """The recording of the run on screen if nobody needs it: the run never began, or only repeats an opened recording."""
+        start = self.start
+        if start is None or start.record is None:
+            return None
+        waits = self.state is None and not start.run  # it may not have sent its first state yet
+        return Path(start.record) if waits or never_begun(self.state, self.log) else self.spare_recording
+
+    @property
     def is_outdated(self) -> bool:
         """Whether the run on screen waits at its start and its file has another text by now: nothing is lost if it is made again."""
         if self._shown is None or self.is_loading or not never_begun(self.state, self.log) or not self.path.is_file():
             return False
         return self._shown.is_stale(digest_of_file(self.path))
+
+    @property
+    def writing(self) -> list[Path]:
+        """The recordings that runs are still writing: that on screen, and that being built, which is a program's from its first line."""
+        return [Path(one.start.record) for one in self._going if one.start.record is not None]
 
     @property
     def alive(self) -> bool:

@@ -82,11 +82,7 @@ class Sessions:
 
     def writing(self) -> dict[str, str]:
         """Returns the recordings that runs are still writing, with the names of their sessions."""
-        return {
-            Path(session.start.record).stem: session.name
-            for session in self.all()
-            if session.alive and session.start is not None and session.start.record is not None
-        }
+        return {path.stem: session.name for session in self.all() for path in session.writing}
 
     def view(self, name: str) -> SceneView | None:
         """Returns the 3D view of a session; None if the run on screen has no world."""
@@ -204,7 +200,7 @@ class Sessions:
         ended: Session | None = None
         if len(self._sessions) >= MAX_SESSIONS:
             # Users who try many models leave sessions behind: their runs are recorded and can be opened again.
-            idle = [one for one in self.all() if one.state is not None and not one.feeds and not one.going_on]
+            idle = [one for one in self.all() if not one.feeds and (one.is_over or (one.state is not None and not one.going_on))]
             if not idle:
                 busy = "each is shown on a page or still running: close a page, or stop a run"
                 raise SessionError(f"there are {MAX_SESSIONS} sessions already, and {busy}")
@@ -212,7 +208,7 @@ class Sessions:
             await self.close(ended.name)
         self._count += 1
         name = f"s{self._count}"
-        session = Session(name, path, self.workers, self.recordings.new, model, self.listings_changed)
+        session = Session(name, path, self.workers, self.recordings, model, self.listings_changed)
         self._sessions[name] = session
         self._views[name] = SceneView(session)
         if ended is not None:
@@ -221,7 +217,8 @@ class Sessions:
 
     def _report_ended(self, ended: Session) -> None:
         """Informs all browsers that a session was ended to make room for another one."""
-        where = "its recording is under Runs" if ended.recording or ended.recorded else "it was not recorded"
+        recorded = ended.recorded is not None or ended.recording in [path.stem for path in self.recordings.all()]
+        where = "its recording is under Runs" if recorded else "it was not recorded"
         text = f"At most {MAX_SESSIONS} models can be open: the run of {ended.model}, which no page showed, was ended; {where}."
         for session in self.all():
             session.add_notice(Notice(level="warning", text=text))

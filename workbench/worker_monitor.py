@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from abc import ABC, abstractmethod
 
@@ -70,23 +71,28 @@ class WorkerMonitor:
         """When the last message had arrived before the worker did not even answer where it is."""
 
     async def serve(self) -> None:
-        """Starts the worker's job, passes on its messages, and reports how it ended."""
-        worker = self._worker
-        worker.send(self._start)
-        printing = asyncio.create_task(self._print())
-        watching = asyncio.create_task(self._watch())
+        """Starts the worker's job, passes on its messages, and reports how it ended, or that it was ended because serving it failed."""
+        worker, tasks = self._worker, list[asyncio.Task[None]]()
         try:
+            worker.send(self._start)
+            printing = asyncio.create_task(self._print())
+            tasks += (printing, asyncio.create_task(self._watch()))
             over = await self._hear_out()
             if not over:
                 await worker.stop()
             status = await asyncio.shield(worker.exit)  # the awaiting task may be cancelled, the worker must not be
             worker.kill()  # and the processes that it has started
             await asyncio.wait([printing], timeout=1)
-            self._receiver.take_end(worker, "" if over else _why(status, subject_of(self._start)))
+            ending = "" if over else _why(status, subject_of(self._start))
+        except Exception as error:
+            logging.getLogger("workbench").exception("a worker could not be served")
+            worker.kill()
+            ending = f"{subject_of(self._start)} was ended by an error of the workbench itself: {type(error).__name__}: {error}"
         finally:
-            printing.cancel()
-            watching.cancel()
+            for task in tasks:
+                task.cancel()
             worker.release()
+        self._receiver.take_end(worker, ending)
 
     async def _hear_out(self) -> bool:
         """Receives messages until the worker has ended, even if other processes hold its connection open.

@@ -17,14 +17,19 @@ COMPANIONS = ("-wal", "-shm", "-journal")
 
 
 def opened(path: Path) -> sqlite3.Connection:
-    """Returns a connection to a recording's file: it never creates a file, follows no links, and reads no huge values.
+    """Returns a connection to a recording's file: it never creates a file, and reads no huge values.
+
+    For a symbolic link to a recording, SQLite uses the journal beside the recording itself; so that is what is checked.
 
     Raises:
         RecordingError: If there is no such file, it cannot be opened, or it has a rollback journal.
     """
     try:
+        path = path.resolve(strict=True)
         there = path.is_file()
-    except ValueError:  # not a valid path
+    except PermissionError as error:
+        raise RecordingError(f"cannot open the recording '{path}': {error.strerror}") from None
+    except (OSError, RuntimeError, ValueError):  # nothing there, a loop of links, or not a valid path
         there = False
     if not there:
         raise RecordingError(f"no recording '{path}'")

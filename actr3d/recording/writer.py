@@ -20,7 +20,7 @@ from actr3d.recording.checksums import Checksums
 from actr3d.recording.key import make_key, seal
 from actr3d.recording.schema import COLUMNS, LEFT, SCHEMA
 from actr3d.trace import TraceEvent
-from actr3d.values import plain_to_json
+from actr3d.values import escape_surrogates, plain_to_json
 
 INTERVAL = 0.25
 """The interval at which new items are written, besides on request [s of real time]; a killed run loses at most the items of one
@@ -161,7 +161,7 @@ class Writer:
                 with closing(sqlite3.connect(part.absolute())) as copy, copy:
                     self._add_facts(copy, facts)
                 part.rename(path)
-            except (sqlite3.Error, OSError, ValueError) as error:
+            except (sqlite3.Error, OSError, ValueError, MemoryError) as error:
                 _remove(part)
                 raise RecordingError(f"cannot write the recording '{path}': {_reason(error)}") from None
 
@@ -193,8 +193,11 @@ class Writer:
                 return
             try:
                 work(*args)
-            except (sqlite3.Error, OSError, ValueError) as error:
+            except BaseException as error:
+                # Items may be lost, whatever was raised: nothing may be written after a gap.
                 self.failure = RecordingError(f"cannot write the recording '{self.path}': {_reason(error)}{self._kept()}")
+                if not isinstance(error, Exception):
+                    raise
 
     def _kept(self) -> str:
         """Returns how much is kept of a recording that can no longer be written; removes the file if it has nothing of the run."""
@@ -280,7 +283,7 @@ class Writer:
             work(*args)
             self._file.execute("COMMIT")
             self._safe = dict(self._written)
-        except sqlite3.Error:
+        except BaseException:
             if self._file.in_transaction:
                 self._file.execute("ROLLBACK")
             raise
@@ -293,7 +296,7 @@ class Writer:
             last = self._delete(table, kept[table])
             if last is not None:
                 things = json.loads(last[2])[: kept[table] - last[0]]
-                self._insert(table, len(things), len(things), json.dumps(things, ensure_ascii=False))
+                self._insert(table, len(things), len(things), escape_surrogates(json.dumps(things, ensure_ascii=False)))
         last = self._delete("states", kept["states"])
         if last is not None:
             first, _, data, marks, contacts, _ = last
@@ -352,13 +355,15 @@ def _remove(path: Path) -> None:
             path.with_name(f"{path.name}{suffix}").unlink(missing_ok=True)
 
 
-def _reason(error: Exception) -> str:
+def _reason(error: BaseException) -> str:
     """Returns why a file cannot be written."""
     if isinstance(error, FileExistsError):
         return "it exists already, and a recording does not replace what is there"
     if isinstance(error, OSError):
         return error.strerror or str(error)
-    return "the disk is full" if "full" in str(error) else str(error)
+    if isinstance(error, (sqlite3.Error, ValueError)):
+        return "the disk is full" if "full" in str(error) else str(error)
+    return f"{type(error).__name__}: {error}".removesuffix(": ")
 
 
 def _all_of(queue: deque[Any]) -> list[Any]:

@@ -7,6 +7,7 @@ import sqlite3
 import struct
 from collections.abc import Callable
 from contextlib import closing
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -70,7 +71,12 @@ def gone(path: Path) -> None:
     path.unlink()
 
 
-@pytest.mark.parametrize(("change", "problem"), [(link, "its journal is a symbolic link"), (gone, "no recording")])
+def loop(path: Path) -> None:
+    path.unlink()
+    path.symlink_to(path)
+
+
+@pytest.mark.parametrize(("change", "problem"), [(link, "its journal is a symbolic link"), (gone, "no recording"), (loop, "no recording")])
 def test_files_beside_a_recording_and_missing_ones_are_reported(path: Path, change: Callable[[Path], None], problem: str) -> None:
     kept = path.with_name("kept.sqlite")
     shutil.copy(path, kept)
@@ -99,11 +105,16 @@ def test_a_journal_that_names_another_file_does_not_delete_it(path: Path, tmp_pa
     victim.write_text("four years")
     monkeypatch.setattr(opening, "PATIENCE", 0.1)
     readers: list[Callable[[Path], Any]] = [opened, Recorded, lambda there: EXPORTS["sqlite"](there, tmp_path / "copy")]
-    for read in readers:
+    (link := tmp_path / "link.sqlite").symlink_to(path)
+    for read, there in product(readers, (path, link)):
         with_journal_of(victim, path)
-        with pytest.raises(RecordingError, match="lies beside it"):
-            read(path)
+        with pytest.raises(RecordingError, match=r"run.sqlite' is not read: 'run.sqlite-journal' lies beside it"):
+            read(there)
         assert victim.read_text() == "four years"
-    with closing(sqlite3.connect(path)) as file:  # what SQLite does by itself
+    path.with_name(f"{path.name}-journal").unlink()
+    with Recorded(link) as recorded:
+        assert recorded.event_count == 3
+    with_journal_of(victim, path)
+    with closing(sqlite3.connect(link)) as file:  # what SQLite does by itself
         file.execute("SELECT * FROM facts")
     assert not victim.exists()

@@ -10,15 +10,16 @@ import sqlite3
 import subprocess
 import sys
 import time
-from contextlib import closing
+from contextlib import closing, nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
 import pytest
 
 from actr3d.errors import RecordingError, SimulationError
-from actr3d.recording import Recorded, Recording
+from actr3d.recording import Recorded, Recording, writer
 from actr3d.recording.schema import versions
 from actr3d.runner.replay import replay
 from actr3d.trace import TraceEvent
@@ -106,6 +107,48 @@ def test_unusual_values_are_recorded_as_in_the_trace(tmp_path: Path) -> None:
     assert first.data["inf"] == "inf"
     assert first.data["1"] == "number"
     assert json.loads(first.to_json())["data"]["word"].startswith("größe ")
+
+
+@pytest.mark.parametrize("error", [MemoryError(), KeyboardInterrupt()])
+def test_whatever_loses_items_stops_the_recording(error: BaseException, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def raising(*_: object) -> str:
+        raise error
+
+    recording = Recording(tmp_path / "run", {"kind": "simulation"})
+    with monkeypatch.context() as patch:
+        patch.setattr(writer, "plain_to_json", raising)
+        recording.event(TraceEvent(5, "top", "state", {"number": 1}))
+        with pytest.raises(type(error)) if isinstance(error, KeyboardInterrupt) else nullcontext():
+            recording._writer.flush()
+    recording.event(TraceEvent(6, "top", "state", {"number": 2}))
+    with pytest.raises(RecordingError, match=f"cannot write the recording '.*run': {type(error).__name__}; nothing of the run is kept"):
+        recording.check()
+    with pytest.raises(RecordingError):
+        recording.close()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_answer_that_cannot_be_recorded_keeps_what_came_before(tmp_path: Path) -> None:
+    recording = Recording(tmp_path / "run", {"kind": "simulation"})
+    recording.event(TraceEvent(5, "top", "state", {"number": 1}))
+    recording.flush()
+    recording.event(TraceEvent(6, "top", "state", {"number": 2}))
+    recording.answer(1, 1, "walker", "sensor", np.array([object()]))
+    recording.flush()
+    with pytest.raises(RecordingError, match=r"TypeError: .*; the first 1 events of the run are kept, nothing of what came after"):
+        recording.close()
+    with Recorded(tmp_path / "run") as recorded:
+        assert [event.data["number"] for event in recorded.events()] == [1]
+
+
+def test_a_text_that_no_encoding_has_stays_when_a_run_goes_back(tmp_path: Path) -> None:
+    events = [TraceEvent(time, "top", "state", {"word": "größe \ud800", "answer": math.inf}) for time in (5, 6)]
+    with Recording(tmp_path / "run", {"kind": "simulation"}) as recording:
+        for event in events:
+            recording.event(event)
+        recording.cut(0, 1, 0, 0)
+    with Recorded(tmp_path / "run") as recorded:
+        assert [event.to_json() for event in recorded.events()] == [events[0].to_json()]
 
 
 @pytest.mark.daily(1)
@@ -412,8 +455,6 @@ def test_a_copy_that_cannot_be_written_leaves_nothing_and_the_recording_goes_on(
 
 
 def test_each_second_of_simulated_time_is_written_however_soon_it_comes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from actr3d.recording import writer
-
     monkeypatch.setattr(writer, "INTERVAL", 1_000)  # nothing is written for the time on the wall
     simulation = driving()
     recording, events = simulation.record(tmp_path / "run"), Recording(tmp_path / "events", {"kind": "program"})

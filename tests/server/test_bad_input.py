@@ -128,6 +128,12 @@ def test_errors_name_the_place_and_do_not_echo_the_input(server: Served) -> None
             422,
             "body.command.set.value: must be a finite",
         ),
+        (
+            "/api/sessions",
+            f'{{"model": "counting.py", "settings": {{"a": {2**64}}}}}',
+            422,
+            "body.settings.a: a whole number has at most 64 bits",
+        ),
         ("/api/sessions", f'{{"{"x" * 200}secret": 1}}', 422, "body.model: Field required"),
         ("/api/sessions", f'{{"model": "counting.py", "{"x" * 200}secret": 1}}', 422, "body.xxx"),
     ):

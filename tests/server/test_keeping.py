@@ -121,6 +121,46 @@ def test_a_run_that_never_began_leaves_no_recording(desk: Desk, tmp_path: Path) 
     assert {summary.id for summary in desk.listed(tmp_path)[1]} == names
 
 
+def test_a_labelled_recording_of_a_run_that_never_began_is_kept(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "print('hello')\n", record=True)
+    name, recordings = talk.facts["recording"], talk.sessions.recordings
+    recordings.labels.change(name, {"note": "the first"})
+    talk.say("restart")
+    talk.wait(lambda: talk.facts["recording"] != name and talk.state["status"] == "paused")
+    desk.do(talk.sessions.close(talk.session.name))
+    assert recordings.path(name).is_file()
+    assert [path.stem for path in recordings.all()] == [name]
+    assert recordings.labels.all()[name].note == "the first"
+
+
+def test_a_run_that_never_began_leaves_no_recording_when_its_session_is_closed(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "print('hello')\n", record=True)
+    desk.do(talk.sessions.close(talk.session.name))
+    assert talk.sessions.recordings.all() == []
+
+
+def test_the_recording_of_a_program_is_being_written_from_its_first_line(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SLOW, record=True, run=True, wait=None)
+    mark = tmp_path / "begun"
+    while not mark.is_file():
+        time.sleep(0.01)
+    assert talk.facts["loading"]
+    (path,) = talk.sessions.recordings.all()
+    assert talk.sessions.writing() == {path.stem: talk.session.name}
+    desk.do(talk.sessions.close(talk.session.name))
+    assert talk.sessions.writing() == {}
+
+
+SLOW = """
+import pathlib, time
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Scene
+pathlib.Path(__file__).with_name("begun").touch()
+time.sleep(1000)
+Simulation(Scene(parts=(Floor(),)), {}).run(1)
+"""
+
+
 def test_quick_restarts_leave_no_recordings_of_runs_that_never_began(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, "print('hello')\n", record=True)
     for pause in (0.0, 0.02, 0.05, 0.1, 0.0):

@@ -13,7 +13,8 @@ import socket
 import sys
 import weakref
 from collections.abc import Callable, Coroutine
-from contextlib import closing
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing, suppress
 from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any
@@ -328,3 +329,20 @@ def test_the_server_of_a_notebook_shows_simulations_and_recordings_and_ends_with
     server.end()
     assert server._process.wait(20) == 0
     monkeypatch.delitem(sys.modules, "doorway")
+
+
+def test_an_answer_that_comes_late_is_not_that_to_the_next_request(monkeypatch: pytest.MonkeyPatch) -> None:
+    server = object.__new__(widget.Server)  # without a process: the test answers in its place
+    server._control, its_end = socket.socketpair()
+    with server._control, its_end:
+        monkeypatch.setattr(widget, "PATIENCE", 0.01)
+        with pytest.raises(NotebookError, match="does not answer: timed out"):
+            server.ask({"session": "first"})
+        monkeypatch.setattr(widget, "PATIENCE", 60)
+        with ThreadPoolExecutor() as pool:
+            second = pool.submit(server.ask, {"session": "second"})
+            for _ in range(2):  # only now, both are answered
+                data, (answering,), _, _ = socket.recv_fds(its_end, 1000, 2)
+                with socket.socket(fileno=answering) as wire, suppress(BrokenPipeError):
+                    wire.sendall(data)
+            assert second.result() == {"session": "second"}

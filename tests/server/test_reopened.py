@@ -10,9 +10,10 @@ from typing import Any
 
 import pytest
 
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, RecordingError
 from actr3d.recording import Recorded
 from actr3d.runner.replay import replay
+from tests.helpers.recording_forgery import forge
 from tests.helpers.sessions import Desk, Talk
 from tests.helpers.workbench_server import MODELS
 
@@ -91,6 +92,21 @@ def test_a_recording_shows_all_its_time_at_its_start_and_does_again_what_it_did(
     }
     assert again.facts["cuts"] == []
     assert again.notices == []
+
+
+def test_a_recording_with_values_that_no_worker_receives_is_refused(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, COUNTING, record=True, run=True, wait="ended")
+    name = talk.facts["recording"]
+    desk.do(talk.sessions.close(talk.session.name))
+    path = talk.sessions.recordings.path(name)
+    change = "INSERT OR REPLACE INTO facts VALUES ('{}', '{}')"
+    for fact, value, problem in (
+        ("helpers", '{"helper": ["helper.py", "\\ud800"]}', "a text in it cannot be encoded"),
+        ("seed", str(2**64), "a whole number in it has more than 64 bits"),
+    ):
+        forge(path, change.format(fact, value))
+        with pytest.raises(RecordingError, match=problem):
+            desk.do(talk.sessions.reopen(name))
 
 
 def test_the_end_of_a_recording_is_where_it_ended(desk: Desk, tmp_path: Path) -> None:

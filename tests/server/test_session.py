@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 import pytest
@@ -423,6 +424,18 @@ def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
     ended = "the run of model.py, which no page showed, was ended; it was not recorded"
     assert all(any(ended in notice.decode() for _, notice in session.notices) for session in (newest, opened[0]))
     assert [session.name for session in sessions.all()] == ["s1", "s2", "s3", "s5", "s6", "s7", "s8", f"s{MAX_SESSIONS + 1}"]
+
+
+def test_sessions_of_models_that_could_not_be_built_make_room(desk: Desk, tmp_path: Path) -> None:
+    from workbench.sessions import MAX_SESSIONS
+
+    sessions = desk.sessions(tmp_path)
+    (tmp_path / "model.py").write_text("print 'Python 2'\n", encoding="utf-8")
+    for _ in range(MAX_SESSIONS + 1):
+        session = desk.do(sessions.open("model.py", {}, seed=1, record=True, run=False))
+        while not session.is_over:
+            sleep(0.005)
+    assert len(sessions.all()) == MAX_SESSIONS
 
 
 def test_there_is_a_bound_to_sessions_that_are_opened_at_once(desk: Desk, tmp_path: Path) -> None:

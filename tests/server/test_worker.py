@@ -275,6 +275,15 @@ def test_much_that_is_printed_does_not_hold_up_the_run(desk: Desk, tmp_path: Pat
     assert lines == [f"line {n}" for n in range(30000)]
 
 
+def test_a_worker_that_cannot_be_told_its_job_is_ended(desk: Desk, tmp_path: Path) -> None:
+    source = of("goal.set('done')")
+    talk = desk.begin(tmp_path, source, settings={"n": 2**64}, wait=None)
+    notice = talk.wait_for_notice("the model's process was ended by an error of the workbench itself: OverflowError")
+    assert notice["level"] == "error"
+    assert not talk.facts["loading"]
+    runs_again(talk, tmp_path)
+
+
 def test_loading_can_be_stopped(desk: Desk, tmp_path: Path) -> None:
     source = "while True: pass\ndef build() -> Simulation: ...\n"
     talk = desk.begin(tmp_path, source, wait=None)

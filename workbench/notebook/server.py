@@ -8,6 +8,7 @@ import os
 import signal
 import socket
 import sys
+from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -68,7 +69,7 @@ class Requests:
     """Carries out what the notebook asks for: to show a simulation at the other end of a socket, or a recording.
 
     Args:
-        control: The socket of the requests, one at a time; the server ends when it is closed.
+        control: The socket of the requests, each with a socket for its answer; the server ends when it is closed.
         app: The application.
         gate: Grants access to it.
     """
@@ -77,34 +78,38 @@ class Requests:
         self._control = control
         self._sessions: Sessions = app.state.sessions
         self._gate = gate
-        self._task: asyncio.Task[None] | None = None
+        self._tasks: set[asyncio.Task[None]] = set()
 
     def begin(self) -> None:
         """Waits for requests from now on."""
         asyncio.get_running_loop().add_reader(self._control, self._hear)
 
     def _hear(self) -> None:
-        data, descriptors, _, _ = socket.recv_fds(self._control, LONGEST, 1)
+        data, descriptors, _, _ = socket.recv_fds(self._control, LONGEST, 2)
         if data:
-            self._task = asyncio.create_task(self._answer(json.loads(data), descriptors))
+            answering, *wires = [socket.socket(fileno=descriptor) for descriptor in descriptors]
+            task = asyncio.create_task(self._answer(json.loads(data), answering, wires))
+            self._tasks.add(task)
+            task.add_done_callback(self._tasks.discard)
         else:
             asyncio.get_running_loop().remove_reader(self._control)
             signal.raise_signal(signal.SIGINT)  # the usual way to end a server
 
-    async def _answer(self, request: dict[str, Any], descriptors: list[int]) -> None:
+    async def _answer(self, request: dict[str, Any], answering: socket.socket, wires: list[socket.socket]) -> None:
         try:
-            session = await self._shown(request, descriptors)
+            session = await self._shown(request, wires)
             answer = {"session": session.name, "port": self._gate.port, "ticket": self._gate.issue_ticket()}
         except (Actr3dError, OSError) as error:
             answer = {"error": str(error)}
-        self._control.send(json.dumps(answer).encode())
+        with answering, suppress(ConnectionError):  # the user has interrupted the cell
+            answering.sendall(json.dumps(answer).encode())
 
-    async def _shown(self, request: dict[str, Any], descriptors: list[int]) -> Session:
+    async def _shown(self, request: dict[str, Any], wires: list[socket.socket]) -> Session:
         """Returns the session that shows what is asked for."""
         if "session" in request:
             return self._sessions.get(request["session"])
-        if descriptors:
-            return await self._sessions.adopt(await NotebookWorker.at(socket.socket(fileno=descriptors[0])), NAME)
+        if wires:
+            return await self._sessions.adopt(await NotebookWorker.at(wires[0]), NAME)
         path = Path(request["recording"])
         copy = self._sessions.recordings.new(path.stem)
         await asyncio.to_thread(_copy, path, copy)

@@ -62,9 +62,15 @@ class Server:
         Raises:
             NotebookError: If the server refuses it, or does not answer.
         """
+        # A connection for this answer alone: an answer that comes after a user has interrupted the cell is not that to another request.
+        answering, its_end = socket.socketpair()
+        answering.settimeout(PATIENCE)
         try:
-            socket.send_fds(self._control, [json.dumps(request).encode()], [] if wire is None else [wire.fileno()])
-            data = self._control.recv(65_536)
+            with answering, answering.makefile("rb") as answers:
+                with its_end:
+                    files = [its_end.fileno(), *([] if wire is None else [wire.fileno()])]
+                    socket.send_fds(self._control, [json.dumps(request).encode()], files)
+                data = answers.read()
         except OSError as error:
             raise NotebookError(f"the process that serves the widgets does not answer: {error}") from None
         answer = json.loads(data) if data else {"error": "the process that serves the widgets has ended"}

@@ -32,6 +32,8 @@ def _plain(value: Any) -> Any:
         raise ValueError("must be a number, a text, true, false or null")
     if isinstance(value, float) and not isfinite(value):
         raise ValueError("must be a finite number")
+    if isinstance(value, int) and not -(2**63) <= value < 2**63:
+        raise ValueError("a whole number has at most 64 bits: it must be at least -2**63 and less than 2**63")
     return value
 
 

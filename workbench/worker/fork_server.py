@@ -10,6 +10,7 @@ has stopped one nor ends what they leave behind.
 
 from __future__ import annotations
 
+import errno
 import gc
 import os
 import select
@@ -25,7 +26,8 @@ from workbench.worker.orphans import adopt, end_orphans
 
 ANSWER = struct.Struct("!Bqi")
 """A reply: its kind (BORN, DEAD, HALTED or READY), the process id, and a status. For DEAD, the status is that of
-`os.waitstatus_to_exitcode`; for HALTED, the signal that has stopped the worker, or 0 if it continues.
+`os.waitstatus_to_exitcode`; for HALTED, the signal that has stopped the worker, or 0 if it continues. A BORN whose process id is
+negative reports that no worker could be forked, by the number of the error.
 """
 BORN, DEAD, READY, HALTED = 1, 2, 3, 4
 ASK = struct.Struct("!i")
@@ -93,7 +95,8 @@ def main(number: int) -> None:
         if not data:
             break
         pid = _born(control, (woken, wake), descriptors, ASK.unpack(data)[0])
-        children.add(pid)
+        if pid > 0:
+            children.add(pid)
         _answer(control, BORN, pid, 0)
     _end_all(control, children)
 
@@ -131,10 +134,13 @@ def _answer(control: socket.socket, *what: int) -> None:
 
 
 def _born(control: socket.socket, pipe: tuple[int, int], descriptors: list[int], memory: int) -> int:
-    """Forks a worker and returns its process id; does not return in the worker."""
+    """Forks a worker and returns its process id, or the negative number of the error; does not return in the worker."""
     from workbench.worker.main import main as work
 
-    pid = os.fork()
+    try:
+        pid = os.fork()
+    except OSError as error:
+        pid = -(error.errno or errno.EAGAIN)
     if pid == 0:
         sys.dont_write_bytecode = True  # on a full disk, Python leaves half a file of it, and fails to read it ever after
         signal.set_wakeup_fd(-1)

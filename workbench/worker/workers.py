@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 import signal
 import socket
@@ -111,6 +112,7 @@ class Workers:
         self._early: dict[int, int] = {}
         """Exit statuses of workers that ended before the server knew of them."""
         self._born: asyncio.Queue[int] = asyncio.Queue()
+        """The process id of each new worker; the negative number of the error if there is none, or 0 if there are no more."""
         self._ready = asyncio.Event()
         self._launching = asyncio.Lock()
         self._listening: asyncio.Task[None] | None = None
@@ -169,27 +171,32 @@ class Workers:
         finally:
             wire.close()
             os.close(output)
-        if pid < 0:
-            raise OSError(NO_MORE)
+        if pid <= 0:
+            raise OSError(f"no worker can be started: {os.strerror(-pid)}" if pid else NO_MORE)
         return pid
 
     async def _listen(self, zygote: Zygote) -> None:
         loop = asyncio.get_running_loop()
         rest = b""
-        while data := await loop.sock_recv(zygote.control, 4096):
-            rest += data
-            while len(rest) >= ANSWER.size:
-                what, pid, status = ANSWER.unpack(rest[: ANSWER.size])
-                rest = rest[ANSWER.size :]
-                if what == READY:
-                    self._ready.set()
-                elif what == BORN:
-                    self._born.put_nowait(pid)
-                elif what == HALTED and pid in self._alive:
-                    self._alive[pid].halted = status
-                elif what == DEAD:
-                    self._bury(pid, status)
+        with suppress(OSError):  # the connection is reset if a request was left unread
+            while data := await loop.sock_recv(zygote.control, 4096):
+                rest += data
+                while len(rest) >= ANSWER.size:
+                    self._take(*ANSWER.unpack(rest[: ANSWER.size]))
+                    rest = rest[ANSWER.size :]
         await self._begin_again(zygote)
+
+    def _take(self, what: int, pid: int, status: int) -> None:
+        """Handles a reply of the process from which workers are forked."""
+        if what == READY:
+            self._ready.set()
+        elif what == BORN:
+            self._early.pop(pid, None)  # of an earlier process, if nobody has asked for its status
+            self._born.put_nowait(pid)
+        elif what == HALTED and pid in self._alive:
+            self._alive[pid].halted = status
+        elif what == DEAD:
+            self._bury(pid, status)
 
     def _bury(self, pid: int, status: int) -> None:
         worker = self._alive.pop(pid, None)
@@ -212,7 +219,7 @@ class Workers:
         useful = self._ready.is_set()
         if useful:  # from now on, callers wait for the new process
             self._ready.clear()
-            self._born.put_nowait(-1)
+            self._born.put_nowait(0)
         else:  # a process that failed to load would fail again
             self._report_end()
         workers = list(self._alive.values())
@@ -224,13 +231,17 @@ class Workers:
         await asyncio.to_thread(zygote.end)
         if useful:
             self._zygote = None
-            self.begin()
+            try:
+                self.begin()
+            except OSError:
+                logging.getLogger("workbench").exception("no more workers can be started")
+                self._report_end()
 
     def _report_end(self) -> None:
         """Reports to all callers that wait for a worker that none can be started."""
         self._control = None
         self._ready.set()
-        self._born.put_nowait(-1)
+        self._born.put_nowait(0)
 
     async def close(self) -> None:
         """Ends all workers, and the process that has started them."""
