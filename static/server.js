@@ -82,9 +82,10 @@ export function sinceNow() {
   return () => now === wishes;
 }
 
-/** Shows a session from now on. */
+/** Shows a session from now on. One that is shown already stays attached: another `attach` would lose the pending replies. */
 export function show(session) {
-  if (session !== shown) leave();
+  if (session === shown) return;
+  leave();
   shown = session;
   if (socket?.readyState === WebSocket.OPEN) attach();
   else connect();
@@ -121,7 +122,7 @@ export async function showModel(model, { run = false } = {}) {
   const { sessions, ready } = await call("GET", "/api/sessions");
   const there = sessionOf(model, sessions);
   if (!wanted() && !run) return;
-  if (wanted()) opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
+  if (wanted() && session.peek() === null) opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
   try {
     if (there && (run || there.outdated)) await call("POST", `/api/sessions/${there.id}/command`, { command: { type: "restart", run } });
     const { id } = there ?? (await call("POST", "/api/sessions", { model, run, real_time: true }));
@@ -171,6 +172,7 @@ function connect() {
   };
   socket.onclose = ({ reason }) => {
     connected.value = false;
+    update(); // otherwise the next connection sends these updates again
     abandon(() => new Error(reason ? `the workbench ended the connection: ${reason}` : "the connection was lost"));
     if (session.peek()) seeWhetherRestarted();
     setTimeout(connect, AGAIN);

@@ -164,6 +164,25 @@ def test_a_question_to_a_run_that_is_shown_no_more_does_not_keep_others_waiting(
     shows(page, "#time", "0.02 s")
 
 
+def test_what_is_asked_of_a_run_is_answered_though_the_run_is_shown_again_meanwhile(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    answer = page.evaluate(
+        """async () => {
+          const { say, show } = await part("server.js");
+          const { session } = await part("store.js");
+          const answers = [];
+          for (let n = 0; n < 5; n += 1) {
+            answers.push(say({ type: "step" }));
+            show(session.value.id);
+          }
+          const late = new Promise((resolve) => setTimeout(resolve, 10_000, "no answer"));
+          return Promise.race([Promise.all(answers).then(() => "answered"), late]);
+        }"""
+    )
+    assert answer == "answered"
+    shows(page, "#time", "0.05 s")
+
+
 @pytest.mark.slow
 def test_keys_say_nothing_to_a_run_that_is_not_shown_any_more(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("counting.py")
