@@ -115,36 +115,40 @@ export function sessionOf(model, sessions) {
 }
 
 /** Shows a model: its open session, or a new one. With `run` it runs from its start, with the file's current text; a run that still waits at
- * its start is always one of the current text. */
+ * its start is always one of the current text. Returns whether it is shown: the user may have chosen something else meanwhile. */
 export async function showModel(model, { run = false } = {}) {
   const wanted = wish();
   if (model !== session.peek()?.model || session.peek().recorded !== null) leave();
   const { sessions, ready } = await call("GET", "/api/sessions");
   const there = sessionOf(model, sessions);
-  if (!wanted() && !run) return;
+  if (!wanted() && !run) return false;
   if (wanted() && session.peek() === null) opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
   try {
     if (there && (run || there.outdated)) await call("POST", `/api/sessions/${there.id}/command`, { command: { type: "restart", run } });
     const { id } = there ?? (await call("POST", "/api/sessions", { model, run, real_time: true }));
     if (wanted()) show(id);
+    return wanted();
   } catch (error) {
     if (wanted()) opening.value = null;
     throw error;
   }
 }
 
-/** Shows a recording: the session that replays it, or a new one. With `trust` its code runs regardless of its origin; with `run` it goes on. */
+/** Shows a recording: the session that replays it, or a new one. With `trust` its code runs regardless of its origin; with `run` it goes on.
+ * Returns whether it is shown: the user may have chosen something else meanwhile. */
 export async function showRecording(id, { trust = false, run = false } = {}) {
   const wanted = wish();
   const waits = opening.peek() === null && session.peek() === null;
   if (waits) opening.value = { text: `The recording ${id} is being opened …`, slow: false };
   try {
     const found = await call("POST", `/api/recordings/${encodeURIComponent(id)}/open`, { real_time: true, trust });
-    if (!wanted()) return;
+    if (!wanted()) return false;
     show(found.id);
     if (run) order({ type: "run" });
+    return true;
   } catch (error) {
-    if (wanted() && waits) opening.value = null;
+    if (!wanted()) return false;
+    if (waits) opening.value = null;
     throw error;
   }
 }

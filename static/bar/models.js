@@ -8,6 +8,7 @@ import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
 import { travel } from "../timeline/seek.js";
+import { followWindows, passOn } from "../windows.js";
 
 /** The model files of the folder: {path, title, kind}. */
 export const models = signal([]);
@@ -46,19 +47,21 @@ export async function listModels() {
 export async function choose(path) {
   note(path);
   try {
-    await showModel(path);
+    if (await showModel(path)) passOn({ model: path, recorded: null });
   } catch (error) {
     complain(error.message);
   }
 }
 
-/** Shows a recording, which has its own address, so that the browser's «back» leads to what was shown before. Returns
- * whether it is shown: the user may decline. With `run` it goes on at once. */
+/** Shows a recording, which has its own address, so that the browser's «back» leads to what was shown before. Returns whether it is shown:
+ * null if the user declines, false if the user has chosen something else meanwhile. With `run` it goes on at once. */
 export async function chooseRecording(id, { run = false } = {}) {
   const left = session.peek();
-  if ((await openRecording(id, run)) === null) return false;
+  const isShown = await openRecording(id, run);
+  if (!isShown) return isShown;
   if (left && left.recorded === null) before.value = { model: left.model, id: left.id };
   goToAddress("run", id);
+  passOn({ recorded: id });
   return true;
 }
 
@@ -75,17 +78,21 @@ async function holderOf(id, time) {
 
 /** Shows the open session of a model that writes a recording, where it is, if the model's address leads to that session. Returns whether it does. */
 export async function chooseLive(id) {
+  const wanted = sinceNow();
   const { sessions } = await call("GET", "/api/sessions");
   const live = sessions.find((one) => one.recording === id && one.alive && one === sessionOf(one.model, sessions));
-  if (live) await choose(live.model);
+  if (live && wanted()) await choose(live.model);
   return live !== undefined;
 }
 
 /** Shows a moment [s] of a recorded run, as a link asks for it: the run itself if it is still open, or else its recording. Returns whether it
- * is shown. */
+ * is shown, as `chooseRecording`. */
 async function chooseMoment(run, time) {
+  const isWanted = sinceNow();
   const id = await holderOf(run, time);
-  if (!(await chooseLive(id)) && !(await chooseRecording(id))) return false;
+  if (!isWanted()) return false;
+  const isShown = (await chooseLive(id)) || (await chooseRecording(id));
+  if (!isShown) return isShown;
   leaveMoment();
   const wanted = sinceNow();
   const end = effect(() => {
@@ -101,7 +108,7 @@ async function chooseMoment(run, time) {
   return true;
 }
 
-/** Shows the run that the address names, at its moment, if it has one. Returns whether it is shown. */
+/** Shows the run that the address names, at its moment, if it has one. Returns whether it is shown, as `chooseRecording`. */
 async function chooseAddressed(id) {
   const time = addressedTime();
   if (time !== null) return chooseMoment(id, time);
@@ -111,7 +118,7 @@ async function chooseAddressed(id) {
   return isShown;
 }
 
-/** Shows a recording, after asking if its code comes from elsewhere; returns null if the user declines. */
+/** Shows a recording, after asking if its code comes from elsewhere; returns whether it is shown, as `chooseRecording`. */
 function openRecording(id, run = false) {
   return withTrust(id, "Opening it", (trust) => showRecording(id, { trust, run }));
 }
@@ -125,6 +132,8 @@ export function showSession({ model: path, recorded }) {
   return chooseRecording(recorded).catch((error) => complain(error.message));
 }
 
+followWindows(showSession);
+
 /** Runs a model from its start with the current text of its file; throws an Error with the reason if it fails. */
 export async function runModel(path) {
   if (session.value?.model === path && session.value.recorded === null && connected.value) {
@@ -132,7 +141,7 @@ export async function runModel(path) {
     return;
   }
   note(path);
-  await showModel(path, { run: true });
+  if (await showModel(path, { run: true })) passOn({ model: path, recorded: null });
 }
 
 /** Remembers which model is shown, also for the next time the page is loaded. */
@@ -182,7 +191,7 @@ export async function begin() {
   let problem = null;
   if (run !== null) {
     try {
-      if (await chooseAddressed(run)) return;
+      if ((await chooseAddressed(run)) !== null) return;
     } catch (error) {
       problem = `The recording «${run}» cannot be opened: ${error.message}`;
     }
