@@ -274,6 +274,35 @@ def test_a_recording_chosen_while_another_is_deleted_stays_chosen(pages: Callabl
     expect(second).to_have_attribute("aria-selected", "true")
 
 
+def test_a_model_chosen_while_a_recording_is_opened_stays_chosen(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("counting.py", refusals=True)
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    page.click("#restart")
+    shows(page, "#status", "at its start")
+    edit(page, "counting.py")
+    open_tab(page, "Runs")
+    with holding(page, "**/open", lambda _: True) as held:
+        page.locator(".runs-table tbody tr:not(.space):not(.present)").first.dblclick()
+        until(page, lambda: bool(held))
+        choose(page, "doorway.py")
+        shows(page, "#status", "at its start")
+    expect(page.get_by_text("Opening …")).to_have_count(0)
+    expect(page.locator(".recording-banner")).to_have_count(0)
+    assert page.url.endswith("/?model=doorway.py")
+    for session in workbench.get("/api/sessions").json()["sessions"]:
+        if session["model"] == "counting.py":
+            workbench.post(f"/api/sessions/{session['id']}/close")
+    page.route("**/api/sessions", lambda route: route.fulfill(status=422, json={"error": "no room"}) if route.request.method == "POST" else route.continue_())
+    page.get_by_label("Model", exact=True).select_option("counting.py")  # with a text open, in which messages are marked
+    shows(page, ".toast", "no room")
+    open_tab(page, "Messages")
+    expect(page.get_by_text("no room")).to_have_count(1)
+    expect(page.get_by_text("The page has a fault")).to_have_count(0)
+    page.unroute("**/api/sessions")
+
+
 @pytest.mark.slow
 def test_a_slow_replay_shows_its_progress_until_it_is_ready(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
