@@ -158,7 +158,8 @@ function attach() {
   socket.send(JSON.stringify({ type: "attach", session: shown, run: known.run, epoch: known.epoch, events: first + list.length, page }));
 }
 
-function connect() {
+/** Opens the websocket, unless it is open; a connection that is lost is opened again. */
+export function connect() {
   if (socket && socket.readyState <= WebSocket.OPEN) return;
   socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`);
   socket.onopen = () => {

@@ -1,9 +1,9 @@
 // Chooses the model or recording to show: opens its session or starts one, and puts the choice into the page's address.
 
-import { effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
+import { computed, effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
-import { call, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
+import { call, connect, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
 import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
@@ -18,7 +18,7 @@ function shortName(path) {
   return models.value.some((one) => one.path !== path && nameOf(one.path) === nameOf(path)) ? path : nameOf(path);
 }
 
-/** The path of the folder. */
+/** The path of the folder; empty before it is known. */
 export const folder = signal("");
 /** Whether the manual is there. */
 export const hasManual = signal(false);
@@ -26,6 +26,10 @@ export const hasManual = signal(false);
 export const noManual = signal(null);
 /** The model that is shown. */
 export const model = signal(null);
+
+const NO_MODELS = "There is no model in the folder yet: make one in the tab Editor, or put a Python file there.";
+/** What there is to do while no model is shown. */
+export const toShowOne = computed(() => (models.value.length > 0 ? "No model is shown: choose one above." : folder.value ? NO_MODELS : "No model is shown."));
 
 const FIRST = ["aperture_passage.py", "doorway.py"];
 
@@ -175,6 +179,7 @@ commandsOf(() => models.value.map(({ path, title }) => ({ text: `Model: ${path}`
 
 /** Shows what the address names, or the model shown last, when the page is opened. */
 export async function begin() {
+  connect();
   try {
     await listModels();
   } catch (error) {
@@ -183,7 +188,7 @@ export async function begin() {
   }
   const paths = models.value.map(({ path }) => path);
   if (paths.length === 0) {
-    complain("There is no model in the folder yet: make one in the tab Editor, or put a Python file there.", "info");
+    complain(NO_MODELS, "info");
     return;
   }
   if (model.value !== null) return; // the user has already chosen one
