@@ -274,6 +274,32 @@ def test_a_recording_chosen_while_another_is_deleted_stays_chosen(pages: Callabl
     expect(second).to_have_attribute("aria-selected", "true")
 
 
+def test_an_experiment_or_trial_that_is_ready_late_does_not_replace_what_is_shown_by_then(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="experiments")
+    shows(page, "#status", "at its start")
+    trial: list[Route] = []
+    page.route("**/api/experiments/one/trial", lambda route: trial.append(route))
+    page.evaluate("""() => void part("experiments/list.js").then(({ openTrial }) => openTrial("one", 7))""")
+    until(page, lambda: bool(trial))
+    choose(page, "doorway.py")
+    trial[0].fulfill(json={"recording": "late"})
+    open_tab(page, "Messages")
+    expect(page.get_by_text("Trial 7 was run again and recorded as late: it is among the runs.")).to_be_visible()
+    assert page.url.endswith("/?model=doorway.py")
+
+    open_tab(page, "Experiments")
+    started: list[Route] = []
+    page.route("**/api/experiments", lambda route: started.append(route) if route.request.method == "POST" else route.continue_())
+    page.get_by_role("button", name="New experiment").click()
+    page.evaluate("""() => void part("experiments/list.js").then(async ({ startExperiment }) => { await startExperiment({}); window.isStarted = true; })""")
+    until(page, lambda: bool(started))
+    page.get_by_role("button", name="Experiments", exact=True).click()
+    started[0].fulfill(json={"id": "late"})
+    until(page, lambda: bool(page.evaluate("() => window.isStarted")))
+    expect(page.get_by_role("button", name="New experiment")).to_be_visible()
+    assert page.evaluate("async () => (await part('experiments/list.js')).shown.value") == ""
+
+
 def test_a_model_chosen_while_a_recording_is_opened_stays_chosen(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("counting.py", refusals=True)
     shows(page, "#status", "at its start")
