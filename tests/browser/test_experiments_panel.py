@@ -136,7 +136,11 @@ def test_numbers_that_cannot_be_run_are_named_before_anything_runs(pages: Callab
 
 def test_the_duration_of_a_trial_is_asked_each_time_the_form_is_shown(pages: Callable[..., Page], design: str) -> None:
     page = pages(design.partition(":")[0], tab="experiments")
-    answers = [{"seconds_a_trial": 2.5, "error": "line 7\nValueError: no"}, {"seconds_a_trial": 2.5, "error": "line 7\nValueError: no"}, {"seconds_a_trial": 0.5, "error": ""}]
+    answers = [
+        {"seconds_a_trial": 2.5, "error": "line 7\nValueError: no"},
+        {"seconds_a_trial": 2.5, "error": "line 7\nValueError: no"},
+        {"seconds_a_trial": 0.5, "error": ""},
+    ]
 
     def answer(route: Route) -> None:
         if json.loads(route.request.post_data or "")["trial"]:

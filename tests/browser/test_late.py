@@ -291,7 +291,9 @@ def test_an_experiment_or_trial_that_is_ready_late_does_not_replace_what_is_show
     started: list[Route] = []
     page.route("**/api/experiments", lambda route: started.append(route) if route.request.method == "POST" else route.continue_())
     page.get_by_role("button", name="New experiment").click()
-    page.evaluate("""() => void part("experiments/list.js").then(async ({ startExperiment }) => { await startExperiment({}); window.isStarted = true; })""")
+    page.evaluate(
+        """() => void part("experiments/list.js").then(async ({ startExperiment }) => { await startExperiment({}); window.isStarted = true; })"""
+    )
     until(page, lambda: bool(started))
     page.get_by_role("button", name="Experiments", exact=True).click()
     started[0].fulfill(json={"id": "late"})
@@ -320,7 +322,10 @@ def test_a_model_chosen_while_a_recording_is_opened_stays_chosen(pages: Callable
     for session in workbench.get("/api/sessions").json()["sessions"]:
         if session["model"] == "counting.py":
             workbench.post(f"/api/sessions/{session['id']}/close")
-    page.route("**/api/sessions", lambda route: route.fulfill(status=422, json={"error": "no room"}) if route.request.method == "POST" else route.continue_())
+    page.route(
+        "**/api/sessions",
+        lambda route: route.fulfill(status=422, json={"error": "no room"}) if route.request.method == "POST" else route.continue_(),
+    )
     page.get_by_label("Model", exact=True).select_option("counting.py")  # with a text open, in which messages are marked
     shows(page, ".toast", "no room")
     open_tab(page, "Messages")

@@ -37,7 +37,9 @@ def test_a_folder_without_models_is_said_to_have_none(pages: Callable[..., Page]
     page.route("**/api/models", lambda route: route.fulfill(json={"folder": "/empty", "models": [], "manual": False, "no_manual": None}))
     page.reload()
     expect(page.locator("#connection")).to_have_text("connected")
-    expect(page.locator("#scene")).to_contain_text("There is no model in the folder yet: make one in the tab Editor, or put a Python file there.")
+    expect(page.locator("#scene")).to_contain_text(
+        "There is no model in the folder yet: make one in the tab Editor, or put a Python file there."
+    )
     page.route("**/api/models", lambda route: route.fulfill(status=422, json={"error": "the folder cannot be read"}))
     page.reload()
     expect(page.locator("#connection")).to_have_text("connected")
