@@ -292,7 +292,9 @@ def test_an_experiment_or_trial_that_is_ready_late_does_not_replace_what_is_show
     page.route("**/api/experiments", lambda route: started.append(route) if route.request.method == "POST" else route.continue_())
     page.get_by_role("button", name="New experiment").click()
     page.evaluate(
-        """() => void part("experiments/list.js").then(async ({ startExperiment }) => { await startExperiment({}); window.isStarted = true; })"""
+        """() => void part("experiments/list.js")
+            .then(({ startExperiment }) => startExperiment({}))
+            .then(() => (window.isStarted = true))"""
     )
     until(page, lambda: bool(started))
     page.get_by_role("button", name="Experiments", exact=True).click()
