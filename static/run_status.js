@@ -2,6 +2,7 @@
 // texts for the same status.
 
 import { computed } from "./vendor/preact.js";
+import { toShowOne } from "./bar/models.js";
 import { connected, opening, restarted, session, state } from "./store.js";
 import { embedded } from "./windows.js";
 
@@ -16,7 +17,7 @@ const STOP = embedded === null ? "it answers after this step. Stop ends it." : "
 /** The states: `line` is a word or two, `text` describes the status and what to do. Both receive the result of `known`. */
 const STATUSES = {
   restarted: { line: () => (embedded === null ? "stopped with the workbench" : "stopped with the kernel"), text: () => RESTARTED },
-  none: { line: () => "no run", text: () => "No model is shown: choose one above." },
+  none: { line: () => "no run", text: () => toShowOne.value },
   loading: { line: loadingLine, text: () => opening.value?.text ?? "The model is being loaded …" },
   unloadable: { line: () => "the model cannot be loaded", text: () => `This model cannot be loaded: ${FIX}` },
   ready: { line: withReason, text: ({ kind }) => (kind === "program" ? "Press Run: the program creates its agent while it runs." : "Press Run, or step.") },

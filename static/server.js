@@ -82,9 +82,10 @@ export function sinceNow() {
   return () => now === wishes;
 }
 
-/** Shows a session from now on. */
+/** Shows a session from now on. One that is shown already stays attached: another `attach` would lose the pending replies. */
 export function show(session) {
-  if (session !== shown) leave();
+  if (session === shown) return;
+  leave();
   shown = session;
   if (socket?.readyState === WebSocket.OPEN) attach();
   else connect();
@@ -114,36 +115,40 @@ export function sessionOf(model, sessions) {
 }
 
 /** Shows a model: its open session, or a new one. With `run` it runs from its start, with the file's current text; a run that still waits at
- * its start is always one of the current text. */
+ * its start is always one of the current text. Returns whether it is shown: the user may have chosen something else meanwhile. */
 export async function showModel(model, { run = false } = {}) {
   const wanted = wish();
   if (model !== session.peek()?.model || session.peek().recorded !== null) leave();
   const { sessions, ready } = await call("GET", "/api/sessions");
   const there = sessionOf(model, sessions);
-  if (!wanted() && !run) return;
-  if (wanted()) opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
+  if (!wanted() && !run) return false;
+  if (wanted() && session.peek() === null) opening.value = ready ? { text: `${model} is being loaded …`, slow: false } : { text: FIRST_START, slow: true };
   try {
     if (there && (run || there.outdated)) await call("POST", `/api/sessions/${there.id}/command`, { command: { type: "restart", run } });
     const { id } = there ?? (await call("POST", "/api/sessions", { model, run, real_time: true }));
     if (wanted()) show(id);
+    return wanted();
   } catch (error) {
     if (wanted()) opening.value = null;
     throw error;
   }
 }
 
-/** Shows a recording: the session that replays it, or a new one. With `trust` its code runs regardless of its origin; with `run` it goes on. */
+/** Shows a recording: the session that replays it, or a new one. With `trust` its code runs regardless of its origin; with `run` it goes on.
+ * Returns whether it is shown: the user may have chosen something else meanwhile. */
 export async function showRecording(id, { trust = false, run = false } = {}) {
   const wanted = wish();
   const waits = opening.peek() === null && session.peek() === null;
   if (waits) opening.value = { text: `The recording ${id} is being opened …`, slow: false };
   try {
     const found = await call("POST", `/api/recordings/${encodeURIComponent(id)}/open`, { real_time: true, trust });
-    if (!wanted()) return;
+    if (!wanted()) return false;
     show(found.id);
     if (run) order({ type: "run" });
+    return true;
   } catch (error) {
-    if (wanted() && waits) opening.value = null;
+    if (!wanted()) return false;
+    if (waits) opening.value = null;
     throw error;
   }
 }
@@ -153,7 +158,8 @@ function attach() {
   socket.send(JSON.stringify({ type: "attach", session: shown, run: known.run, epoch: known.epoch, events: first + list.length, page }));
 }
 
-function connect() {
+/** Opens the websocket, unless it is open; a connection that is lost is opened again. */
+export function connect() {
   if (socket && socket.readyState <= WebSocket.OPEN) return;
   socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`);
   socket.onopen = () => {
@@ -171,6 +177,7 @@ function connect() {
   };
   socket.onclose = ({ reason }) => {
     connected.value = false;
+    update(); // otherwise the next connection sends these updates again
     abandon(() => new Error(reason ? `the workbench ended the connection: ${reason}` : "the connection was lost"));
     if (session.peek()) seeWhetherRestarted();
     setTimeout(connect, AGAIN);

@@ -3,7 +3,7 @@
 import { addressed, page } from "./address.js";
 import { show } from "./server.js";
 import { complain, session } from "./store.js";
-import { effect } from "./vendor/preact.js";
+import { computed, effect } from "./vendor/preact.js";
 
 const PATIENCE = 400; // how long a window waits for the page that has opened it [ms]
 const SIZES = { scene: [960, 720], timeline: [1200, 420] }; // [px]
@@ -32,10 +32,21 @@ function announce() {
 
 if (alone === null) {
   channel.addEventListener("message", ({ data }) => data.page === page && data.asked && announce());
+  const shown = computed(() => session.value?.id);
   effect(() => {
-    session.value?.id;
+    shown.value;
     announce();
   });
+}
+
+/** Makes the page show what was chosen in this window of it: a `model`, or the recording `recorded` if that is not null. */
+export function passOn(chosen) {
+  if (alone !== null) channel.postMessage({ page, chosen });
+}
+
+/** Calls a function with what is chosen in windows of this page. */
+export function followWindows(work) {
+  if (alone === null) channel.addEventListener("message", ({ data }) => data.page === page && data.chosen && work(data.chosen));
 }
 
 /** Follows the page that has opened this window; `otherwise` is called if there is none any more. */
@@ -44,7 +55,7 @@ export function follow(otherwise) {
   channel.addEventListener("message", ({ data }) => {
     if (data.page !== page || !data.shown) return;
     clearTimeout(timer);
-    if (data.shown !== session.peek()?.id) show(data.shown);
+    show(data.shown);
   });
   channel.postMessage({ page, asked: true });
 }

@@ -3,7 +3,7 @@
 import { html, useEffect } from "./vendor/preact.js";
 import { Bar } from "./bar/bar.js";
 import { Clock } from "./bar/clock.js";
-import { begin } from "./bar/models.js";
+import { begin, listModels } from "./bar/models.js";
 import { RecordingBanner } from "./bar/recorded.js";
 import { StatusLine } from "./bar/status.js";
 import { Transport } from "./bar/transport.js";
@@ -21,7 +21,7 @@ import { Tabs } from "./parts/tabs.js";
 import { Toasts } from "./parts/toasts.js";
 import { Scene } from "./panels/scene.js";
 import { Timeline } from "./panels/timeline.js";
-import { hurried, session } from "./store.js";
+import { complain, hurried, session } from "./store.js";
 import { show } from "./server.js";
 import { alone, embedded, follow, openWindow } from "./windows.js";
 
@@ -32,7 +32,7 @@ const VIEWS = { ...Object.fromEntries(PANELS.map(({ id, title, View }) => [id, {
 /** The tabs: in a notebook, without those of a models folder. */
 const TABS = PANELS.filter(({ id }) => embedded === null || !["about", "parameters", "editor", "experiments", "runs"].includes(id));
 
-TABS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => (openTab.value = id) }));
+TABS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => (openTab.value = id), ready: () => alone === null, why: () => "This window shows one panel." }));
 const openPanel = command({ text: "Open the panel in a window of its own", group: "Page", work: () => openWindow(openTab.value), ready: () => alone === null });
 noteKey("1 … 9, 0", "Open a tab", "Panels");
 noteKey("w", "Why, of a line of the firing trace", "Panels");
@@ -76,14 +76,17 @@ function WholePage() {
   </div>`;
 }
 
-/** One panel in a window of its own; links to other panels show them here. */
+/** One panel in a window of its own; links to other panels show them here, with the way back. */
 function OnePanel() {
   const { title, View } = VIEWS[openTab.value] ?? PANELS[0];
   const model = session.value?.model ?? "";
-  useEffect(() => follow(begin), []);
+  useEffect(() => {
+    listModels().catch((error) => complain(error.message));
+    follow(begin);
+  }, []);
   useEffect(() => void (document.title = `${title} · ${model}`), [title, model]);
   return html`<div class="workbench alone ${hurried.value ? "hurried" : ""}">
-    <header class="bar"><h1>${title}</h1><span class="mono quiet">${model}</span><span class="stretch"></span><${Clock} /></header>
+    <header class="bar">${openTab.value !== alone && VIEWS[alone] ? html`<button onClick=${() => (openTab.value = alone)}><${Icon} name="back" />${VIEWS[alone].title}</button>` : null}<h1>${title}</h1><span class="mono quiet">${model}</span><span class="stretch"></span><${Clock} /></header>
     <main class="alone-view" aria-label=${title}><${View} /></main>
     <${StatusLine} />
   </div>`;

@@ -155,6 +155,7 @@ class Session(Broadcast, Receiver):
         """Shows a run that has been built elsewhere: in the process of a notebook."""
         self._attempt += 1
         self._after_end = "the notebook no longer has this simulation"
+        self.real_time = True
         launched = LaunchedRun(Start(path=str(self.path), folder=str(self.path.parent), attempt=self._attempt, real_time=True), worker)
         self.run_task(WorkerMonitor(worker, launched.start, self).serve())
         self._await(launched)
@@ -374,6 +375,7 @@ class Session(Broadcast, Receiver):
     def set_speed(self, factor: float | None) -> None:
         """Stores the speed for this and later runs, as a multiple of real time; None for as fast as possible."""
         self.speed, self.real_time = factor, False
+        self.changed(facts=True)
 
     def set_breakpoints(self, productions: tuple[str, ...]) -> None:
         """Stores the breakpoints for this and later runs."""
@@ -397,6 +399,10 @@ class Session(Broadcast, Receiver):
             if loading is not None:
                 return await self._waiting.ask(loading.worker, command)
         return await self._waiting.ask(self._worker, command)
+
+    async def apply_setting(self, command: object) -> Reply:
+        """Sends the newest run a command that sets what the session also stores for later runs; does nothing if there is no run."""
+        return Reply(id=0) if self.is_over else await self.ask(command)
 
     async def ask_all(self, command: object) -> Reply:
         """Sends a command to the worker of the run on screen, and to that of the run being built."""
@@ -489,6 +495,8 @@ class Session(Broadcast, Receiver):
             "listings": self.listings,
             **self.look.as_dict(),
             "breakpoints": self.breakpoints,
+            "speed": self.speed,
+            "real_time": self.real_time,
             "settings": start.settings if start is not None else {},
             "seed": None if facts is None else _exactly(facts.seed),
             "stale": self._shown is not None and self._shown.is_stale(digest),

@@ -1,13 +1,14 @@
 // Chooses the model or recording to show: opens its session or starts one, and puts the choice into the page's address.
 
-import { effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
+import { computed, effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
-import { call, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
+import { call, connect, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
 import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
 import { travel } from "../timeline/seek.js";
+import { followWindows, passOn } from "../windows.js";
 
 /** The model files of the folder: {path, title, kind}. */
 export const models = signal([]);
@@ -17,7 +18,7 @@ function shortName(path) {
   return models.value.some((one) => one.path !== path && nameOf(one.path) === nameOf(path)) ? path : nameOf(path);
 }
 
-/** The path of the folder. */
+/** The path of the folder; empty before it is known. */
 export const folder = signal("");
 /** Whether the manual is there. */
 export const hasManual = signal(false);
@@ -25,6 +26,10 @@ export const hasManual = signal(false);
 export const noManual = signal(null);
 /** The model that is shown. */
 export const model = signal(null);
+
+const NO_MODELS = "There is no model in the folder yet: make one in the tab Editor, or put a Python file there.";
+/** What there is to do while no model is shown. */
+export const toShowOne = computed(() => (models.value.length > 0 ? "No model is shown: choose one above." : folder.value ? NO_MODELS : "No model is shown."));
 
 const FIRST = ["aperture_passage.py", "doorway.py"];
 
@@ -46,19 +51,21 @@ export async function listModels() {
 export async function choose(path) {
   note(path);
   try {
-    await showModel(path);
+    if (await showModel(path)) passOn({ model: path, recorded: null });
   } catch (error) {
     complain(error.message);
   }
 }
 
-/** Shows a recording, which has its own address, so that the browser's «back» leads to what was shown before. Returns
- * whether it is shown: the user may decline. With `run` it goes on at once. */
+/** Shows a recording, which has its own address, so that the browser's «back» leads to what was shown before. Returns whether it is shown:
+ * null if the user declines, false if the user has chosen something else meanwhile. With `run` it goes on at once. */
 export async function chooseRecording(id, { run = false } = {}) {
   const left = session.peek();
-  if ((await openRecording(id, run)) === null) return false;
+  const isShown = await openRecording(id, run);
+  if (!isShown) return isShown;
   if (left && left.recorded === null) before.value = { model: left.model, id: left.id };
   goToAddress("run", id);
+  passOn({ recorded: id });
   return true;
 }
 
@@ -75,17 +82,21 @@ async function holderOf(id, time) {
 
 /** Shows the open session of a model that writes a recording, where it is, if the model's address leads to that session. Returns whether it does. */
 export async function chooseLive(id) {
+  const wanted = sinceNow();
   const { sessions } = await call("GET", "/api/sessions");
   const live = sessions.find((one) => one.recording === id && one.alive && one === sessionOf(one.model, sessions));
-  if (live) await choose(live.model);
+  if (live && wanted()) await choose(live.model);
   return live !== undefined;
 }
 
 /** Shows a moment [s] of a recorded run, as a link asks for it: the run itself if it is still open, or else its recording. Returns whether it
- * is shown. */
+ * is shown, as `chooseRecording`. */
 async function chooseMoment(run, time) {
+  const isWanted = sinceNow();
   const id = await holderOf(run, time);
-  if (!(await chooseLive(id)) && !(await chooseRecording(id))) return false;
+  if (!isWanted()) return false;
+  const isShown = (await chooseLive(id)) || (await chooseRecording(id));
+  if (!isShown) return isShown;
   leaveMoment();
   const wanted = sinceNow();
   const end = effect(() => {
@@ -101,7 +112,7 @@ async function chooseMoment(run, time) {
   return true;
 }
 
-/** Shows the run that the address names, at its moment, if it has one. Returns whether it is shown. */
+/** Shows the run that the address names, at its moment, if it has one. Returns whether it is shown, as `chooseRecording`. */
 async function chooseAddressed(id) {
   const time = addressedTime();
   if (time !== null) return chooseMoment(id, time);
@@ -111,7 +122,7 @@ async function chooseAddressed(id) {
   return isShown;
 }
 
-/** Shows a recording, after asking if its code comes from elsewhere; returns null if the user declines. */
+/** Shows a recording, after asking if its code comes from elsewhere; returns whether it is shown, as `chooseRecording`. */
 function openRecording(id, run = false) {
   return withTrust(id, "Opening it", (trust) => showRecording(id, { trust, run }));
 }
@@ -125,6 +136,8 @@ export function showSession({ model: path, recorded }) {
   return chooseRecording(recorded).catch((error) => complain(error.message));
 }
 
+followWindows(showSession);
+
 /** Runs a model from its start with the current text of its file; throws an Error with the reason if it fails. */
 export async function runModel(path) {
   if (session.value?.model === path && session.value.recorded === null && connected.value) {
@@ -132,7 +145,7 @@ export async function runModel(path) {
     return;
   }
   note(path);
-  await showModel(path, { run: true });
+  if (await showModel(path, { run: true })) passOn({ model: path, recorded: null });
 }
 
 /** Remembers which model is shown, also for the next time the page is loaded. */
@@ -166,6 +179,7 @@ commandsOf(() => models.value.map(({ path, title }) => ({ text: `Model: ${path}`
 
 /** Shows what the address names, or the model shown last, when the page is opened. */
 export async function begin() {
+  connect();
   try {
     await listModels();
   } catch (error) {
@@ -174,7 +188,7 @@ export async function begin() {
   }
   const paths = models.value.map(({ path }) => path);
   if (paths.length === 0) {
-    complain("There is no model in the folder yet: make one in the tab Editor, or put a Python file there.", "info");
+    complain(NO_MODELS, "info");
     return;
   }
   if (model.value !== null) return; // the user has already chosen one
@@ -182,7 +196,7 @@ export async function begin() {
   let problem = null;
   if (run !== null) {
     try {
-      if (await chooseAddressed(run)) return;
+      if ((await chooseAddressed(run)) !== null) return;
     } catch (error) {
       problem = `The recording «${run}» cannot be opened: ${error.message}`;
     }

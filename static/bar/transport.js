@@ -81,8 +81,14 @@ const faster = registered("speed", "Faster", "+", () => changeSpeed(1));
 const slower = registered("speed", "Slower", "-", () => changeSpeed(-1));
 commandsOf(() => SPEEDS.map(([text], n) => ({ text: `Speed: ${text}`, group: "Run", work: () => setSpeed(n), ready: () => Boolean(session.value) })));
 
+/** Returns the maximum speed of this and later runs: the chosen one; if none was chosen, that of the run, which depends on whether it has a body. */
+function reportedSpeed() {
+  const { speed = null, real_time: inRealTime } = session.value ?? {};
+  return inRealTime ? (state.value === null ? 1 : state.value.wanted) : speed;
+}
+
 const speed = optimistic(
-  () => state.value?.wanted ?? null,
+  reportedSpeed,
   (factor) => ({ type: "speed", factor }),
 );
 

@@ -105,7 +105,7 @@ function lineIn(path, { file, line, detail }) {
 /** Returns the mark of a notice at the current position of its line; null if it belongs to another text, or the line was changed. */
 function markOf(document, { level, text, detail, version, ...place }) {
   const line = lineIn(document.path, { ...place, detail });
-  const other = document.path === session.peek().model && version !== document.version;
+  const other = document.path === session.peek()?.model && version !== document.version;
   if (line === null || document.base === null || other) return null;
   const mark = markAt(document.base, "run", { level, message: text, detail, line });
   if (mark.from === null) return mark;

@@ -1,6 +1,6 @@
 // New, duplicate, rename, delete: asks for a name, and shows what is wrong with it.
 
-import { choose, listModels, models, note } from "../bar/models.js";
+import { before, choose, listModels, models, note } from "../bar/models.js";
 import { asked, confirmed } from "../parts/dialog.js";
 import { call, sinceNow } from "../server.js";
 import { complain, session } from "../store.js";
@@ -9,29 +9,29 @@ import { TEMPLATES } from "./templates.js";
 
 /** Creates a new model file, and shows its text here and its run in the page, as choosing a model does. */
 export async function makeNew() {
-  const before = shown.peek();
+  const last = shown.peek();
   const wanted = sinceNow();
   const choices = TEMPLATES.map(({ value, text }) => ({ value, text }));
   const file = await named("New model", "Name of the file", "my_model.py", "Create", { choices }, (path, choice) => {
     const { source } = TEMPLATES.find(({ value }) => value === choice);
     return call("PUT", "/api/model", { path, text: source, version: null });
   });
-  if (showNew(file, before) && wanted()) choose(file.path);
+  if (showNew(file, last) && wanted()) choose(file.path);
 }
 
 /** Opens a new file, unless the user has chosen another one since; returns whether it is opened. */
-function showNew(file, before) {
-  const isWanted = file !== null && shown.peek() === before;
+function showNew(file, last) {
+  const isWanted = file !== null && shown.peek() === last;
   if (isWanted) open(file.path);
   return isWanted;
 }
 
 /** Copies the saved version of a model file. */
 export async function duplicate(path) {
-  const before = shown.peek();
+  const last = shown.peek();
   const to = path.replace(/\.py$/, "_copy.py");
   const file = await named(`Duplicate ${path}`, "Name of the copy", to, "Duplicate", {}, (name) => call("POST", "/api/model/duplicate", { path, to: name }));
-  showNew(file, before);
+  showNew(file, last);
 }
 
 /** Renames a model file; its run continues. */
@@ -39,7 +39,9 @@ export async function rename(path) {
   const file = await named(`Rename ${path}`, "New name", path, "Rename", {}, (to) => (to === path ? null : call("POST", "/api/model/rename", { path, to })));
   if (!file) return;
   renamed(path, file);
-  if (session.value?.model === path || session.value?.model === file.path) note(file.path);
+  if (before.value?.model === path) before.value = { ...before.value, model: file.path };
+  const { model, recorded } = session.value ?? {};
+  if (recorded === null && [path, file.path].includes(model)) note(file.path);
 }
 
 /** Moves a model file to the trash folder, after asking. */

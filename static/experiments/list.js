@@ -3,7 +3,7 @@
 import { confirmed } from "../parts/dialog.js";
 import { remembered } from "../local_storage.js";
 import { withTrust } from "../runs/trust.js";
-import { call, isLeft } from "../server.js";
+import { call, isLeft, sinceNow } from "../server.js";
 import { chooseRecording } from "../bar/models.js";
 import { complain } from "../store.js";
 import { effect, signal, untracked } from "../vendor/preact.js";
@@ -49,6 +49,7 @@ export function follow() {
   let timer = 0;
   async function again() {
     await listExperiments();
+    clearTimeout(timer); // another request may have ended meanwhile
     if (!over) timer = setTimeout(again, experiments.value?.some((one) => isRunning(one) || one.state === "elsewhere") ? WHILE_RUNNING : OTHERWISE);
   }
   const stop = effect(() => {
@@ -88,11 +89,12 @@ async function doing(text, work, cancel = null) {
 
 const pathOf = (id) => `/api/experiments/${encodeURIComponent(id)}`;
 
-/** Starts an experiment and shows it; throws an Error with the reason if it cannot be run. */
+/** Starts an experiment and shows it, unless the user has left the form meanwhile; throws an Error with the reason if it cannot be run. */
 export async function startExperiment(wanted) {
+  const form = shown.peek();
   const { id } = await call("POST", "/api/experiments", wanted);
   await listExperiments();
-  showExperiment(id);
+  if (shown.peek() === form) showExperiment(id);
 }
 
 export function stopExperiment({ id }) {
@@ -110,15 +112,18 @@ export async function makeReport({ id }) {
   if ((await doing("Making the report …", make, cancel)) && shown.value === id) part.value = "report";
 }
 
-/** Runs a trial again, records it, and shows the recording. */
+/** Runs a trial again, records it, and shows the recording, unless the user has chosen something else meanwhile. */
 export function openTrial(id, number) {
   const cancel = new AbortController();
+  const wanted = sinceNow();
   const record = (trust) => call("POST", `${pathOf(id)}/trial`, { number, trust }, cancel.signal);
   return doing(
     `Running trial ${number} again …`,
     async () => {
       const made = await withTrust(id, "Opening a trial", record, "experiments");
-      if (made !== null) await chooseRecording(made.recording);
+      if (made === null) return;
+      if (wanted()) await chooseRecording(made.recording);
+      else complain(`Trial ${number} was run again and recorded as ${made.recording}: it is among the runs.`, "info");
     },
     cancel,
   );
@@ -128,5 +133,5 @@ export function openTrial(id, number) {
 export async function deleteExperiment({ id, name, done }) {
   const text = `Its ${done.toLocaleString("en")} finished trials go to the trash folder .workbench/trash.`;
   if (!(await confirmed(`Delete the experiment ${name}?`, text, "Delete"))) return;
-  if (await doing("Deleting …", () => call("POST", `${pathOf(id)}/delete`, {}))) shown.value = "";
+  if ((await doing("Deleting …", () => call("POST", `${pathOf(id)}/delete`, {}))) && shown.value === id) shown.value = "";
 }

@@ -12,14 +12,13 @@ import { durationText, levelsText, readLevels } from "./wording.js";
 
 const PAUSE = 700; // how long the user has not typed before the design is checked [ms]
 const DESIGN = remembered("design", "");
+const UNKNOWN = { facts: null, seconds: null, error: null };
 const NOTHING = { values: {}, participants: "", trials: "", workers: "" };
 
 /** The designs, and the number of processors: {designs: [{id, name, file, description}], processors, most: {participants, trials, workers}}; null before they are known. */
 const known = signal(null);
 /** What was entered, by design: {values: {name: text}, participants, trials, workers}. */
 const drafts = signal({});
-/** The duration of a trial by design [s]. */
-const seconds = signal({});
 
 const draftOf = (design) => drafts.value[design] ?? NOTHING;
 
@@ -55,25 +54,25 @@ function wantedOf(design, facts) {
   return { wanted, problem, trials };
 }
 
-/** Reads the facts of a design, and then how long a trial takes; returns {facts, error}. */
+/** Reads the facts of a design, and then how long a trial takes [s]: the server measures it once for each version of the design's files. Returns
+ * {facts, seconds, error}. */
 function useFacts(design) {
-  const found = useSignal({ of: "", facts: null, error: null });
+  const found = useSignal({ of: "", ...UNKNOWN });
+  const known = () => (found.value.of === design ? found.value : UNKNOWN);
   useEffect(() => {
     if (!design) return undefined;
     const leave = new AbortController();
     const ask = (trial) => call("POST", "/api/designs/check", { design, trial }, leave.signal);
     async function read() {
       const facts = await ask(false);
-      found.value = { of: design, facts, error: null };
-      if (seconds.value[design] !== undefined) return;
-      const { seconds_a_trial, error } = await ask(true);
-      seconds.value = { ...seconds.value, [design]: seconds_a_trial };
-      if (error) found.value = { of: design, facts, error: `A trial fails: ${error.trim().split("\n").at(-1)}` };
+      found.value = { ...UNKNOWN, of: design, facts };
+      const { seconds_a_trial: seconds, error } = await ask(true);
+      found.value = { of: design, facts, seconds, error: error ? `A trial fails: ${error.trim().split("\n").at(-1)}` : null };
     }
-    read().catch((error) => !leave.signal.aborted && (found.value = { ...found.value, of: design, error: error.message, facts: found.value.of === design ? found.value.facts : null }));
+    read().catch((error) => !leave.signal.aborted && (found.value = { ...known(), of: design, error: error.message }));
     return () => leave.abort();
   }, [design]);
-  return found.value.of === design ? found.value : { facts: null, error: null };
+  return known();
 }
 
 /** Checks what was changed in the server when the user pauses; returns {error, waiting}: what is wrong, or null. */
@@ -175,15 +174,14 @@ function valuesText(values) {
   return Object.entries(values ?? {}).map(([name, value]) => `${name}: ${value}`).join(", ");
 }
 
-function estimate(design, trials, workers) {
-  const each = seconds.value[design];
-  if (each === undefined) return "measuring the duration of a trial …";
+function estimate(each, trials, workers) {
+  if (each === null) return "measuring the duration of a trial …";
   const processes = Math.max(1, Math.min(workers ?? Infinity, known.value.processors));
   const all = (each * trials) / processes;
   return `${all < 1 ? "" : "about "}${durationText(all)} (${each < 0.1 ? each.toFixed(3) : each.toFixed(2)} s a trial)`;
 }
 
-function Foot({ design, facts, error }) {
+function Foot({ design, facts, seconds, error }) {
   const starting = useSignal(false);
   const refused = useSignal({ of: "", error: null });
   const { wanted, problem, trials } = wantedOf(design, facts);
@@ -206,7 +204,7 @@ function Foot({ design, facts, error }) {
   return html`
     ${trouble ? html`<pre class="trouble" role="alert">${trouble}</pre>` : null}
     <div class="foot">
-      <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${estimate(design, trials, wanted.workers)}${waiting ? " · checking …" : ""}</span>`}</span>
+      <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${error && seconds === null ? "" : estimate(seconds, trials, wanted.workers)}${waiting ? " · checking …" : ""}</span>`}</span>
       <span class="stretch"></span>
       <button class="primary" disabled=${starting.value || full || problem !== null || trials === null} title=${full ? "Two experiments are already running" : "Run all trials in the background"} onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}</button>
     </div>
@@ -230,7 +228,7 @@ export function NewExperiment() {
   const wanted = isPicked.value || own.includes(last) ? last : (own[0] ?? last);
   const chosen = wanted ?? designs.find(({ file }) => file !== null) ?? designs[0];
   const design = chosen?.id ?? "";
-  const { facts, error } = useFacts(design);
+  const { facts, seconds, error } = useFacts(design);
   return html`
     <div class="tools">
       <button class="bare" title="All experiments" onClick=${() => (shown.value = "")}><span class="back"><${Icon} name="right" /></span>Experiments</button>
@@ -241,6 +239,6 @@ export function NewExperiment() {
       ${chosen ? html`<div class="description"><${Prose} text=${chosen.description} /></div>` : null}
       ${facts ? html`<${Form} key=${design} design=${design} facts=${facts} />` : null}
     </div>
-    ${chosen ? html`<${Foot} key=${design} design=${design} facts=${facts} error=${error} />` : null}
+    ${chosen ? html`<${Foot} key=${design} design=${design} facts=${facts} seconds=${seconds} error=${error} />` : null}
   `;
 }

@@ -4,7 +4,7 @@ import { chooseRecording } from "../bar/models.js";
 import { signal } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { confirmed } from "../parts/dialog.js";
-import { call } from "../server.js";
+import { call, sinceNow } from "../server.js";
 import { complain, session } from "../store.js";
 import { forgetRun, listRuns } from "./list.js";
 import { chosen } from "./table.js";
@@ -23,9 +23,10 @@ const cancels = new Map();
 export async function openRun(run) {
   if (busy.value || run.problem) return;
   busy.value = { text: "Opening …" };
+  const wanted = sinceNow();
   try {
     await leaveOthers(run.id);
-    await chooseRecording(run.id);
+    if (wanted()) await chooseRecording(run.id);
   } catch (error) {
     complain(`${run.model} of ${whenText(run.made)} cannot be opened: ${error.message}`);
   }

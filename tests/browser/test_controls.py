@@ -83,6 +83,23 @@ def test_a_breakpoint_that_an_edit_has_lost_is_kept_and_said_to_be(pages: Callab
     expect(page.locator(".stops")).to_have_count(0)
 
 
+def test_the_speed_and_breakpoints_chosen_without_a_run_are_shown_and_are_those_of_the_next_run(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py", paced=True, tab="productions")
+    shows(page, "#status", "at its start")
+    speed = page.get_by_label("Speed", exact=True)
+    expect(speed.locator("option:checked")).to_have_text("1 x")
+    page.click("#stop")
+    shows(page, "#status", "stopped")
+    speed.select_option("5 x")
+    page.keyboard.press("Control+k")
+    page.get_by_role("combobox", name="Search").fill("Breakpoint on turn")
+    page.keyboard.press("Enter")
+    page.click("#run")
+    shows(page, "#status", "breakpoint: turn fired")
+    expect(speed.locator("option:checked")).to_have_text("5 x")
+    expect(page.locator(".toast")).to_have_count(0)
+
+
 def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     open_tab(page, "Parameters")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from collections.abc import Callable, Iterator
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.helpers.experiments import SLOW_COUNTER, write_experiment
 from tests.helpers.page import open_tab, until
@@ -131,6 +132,61 @@ def test_numbers_that_cannot_be_run_are_named_before_anything_runs(pages: Callab
     expect(foot).to_contain_text("12,000,000 trials")
     expect(page.get_by_role("alert")).to_contain_text("must give at most 10,000,000 trials in all (got 12,000,000)")
     assert workbench.get("/api/experiments").json() == before
+
+
+def test_the_duration_of_a_trial_is_asked_each_time_the_form_is_shown(pages: Callable[..., Page], design: str) -> None:
+    page = pages(design.partition(":")[0], tab="experiments")
+    answers = [
+        {"seconds_a_trial": 2.5, "error": "line 7\nValueError: no"},
+        {"seconds_a_trial": 2.5, "error": "line 7\nValueError: no"},
+        {"seconds_a_trial": 0.5, "error": ""},
+    ]
+
+    def answer(route: Route) -> None:
+        if json.loads(route.request.post_data or "")["trial"]:
+            route.fulfill(json=answers.pop(0))
+        else:
+            route.continue_()
+
+    page.route("**/api/designs/check", answer)
+    for expected in ("2.50 s a trial", "2.50 s a trial", "0.50 s a trial"):
+        page.get_by_role("button", name="New experiment").click()
+        page.get_by_label("Design", exact=True).select_option(design)
+        expect(page.locator(".foot")).to_contain_text(expected)
+        problem = page.get_by_role("alert")
+        if answers:
+            expect(problem).to_have_text("A trial fails: ValueError: no")
+        else:
+            expect(problem).to_have_count(0)
+        page.get_by_role("button", name="Experiments", exact=True).click()
+
+
+TIMERS = """async () => {
+  const { follow, shown } = await part("experiments/list.js");
+  const later = new Set();
+  const [set, clear] = [window.setTimeout, window.clearTimeout];
+  window.setTimeout = (work, after) => {
+    const number = set(work, after);
+    if (after === 5000) later.add(number);
+    return number;
+  };
+  window.clearTimeout = (number) => (later.delete(number), clear(number));
+  window.fetch = async () => new Response('{"experiments": []}');
+  const read = () => new Promise((resolve) => set(resolve, 100));
+  const end = follow();
+  for (const id of ["new", "", "new", ""]) shown.value = id;
+  await read();
+  const going = later.size;
+  shown.value = "new";
+  end();
+  await read();
+  return [going, later.size];
+}"""
+
+
+def test_one_request_for_the_list_of_experiments_is_made_at_a_time(page: Page) -> None:
+    assert page.evaluate(TIMERS) == [1, 0]
+    page.reload()  # with the own functions of the browser
 
 
 SLOWLY = """() => { const fetched = window.fetch;

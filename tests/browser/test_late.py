@@ -164,6 +164,25 @@ def test_a_question_to_a_run_that_is_shown_no_more_does_not_keep_others_waiting(
     shows(page, "#time", "0.02 s")
 
 
+def test_what_is_asked_of_a_run_is_answered_though_the_run_is_shown_again_meanwhile(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    answer = page.evaluate(
+        """async () => {
+          const { say, show } = await part("server.js");
+          const { session } = await part("store.js");
+          const answers = [];
+          for (let n = 0; n < 5; n += 1) {
+            answers.push(say({ type: "step" }));
+            show(session.value.id);
+          }
+          const late = new Promise((resolve) => setTimeout(resolve, 10_000, "no answer"));
+          return Promise.race([Promise.all(answers).then(() => "answered"), late]);
+        }"""
+    )
+    assert answer == "answered"
+    shows(page, "#time", "0.05 s")
+
+
 @pytest.mark.slow
 def test_keys_say_nothing_to_a_run_that_is_not_shown_any_more(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("counting.py")
@@ -253,6 +272,68 @@ def test_a_recording_chosen_while_another_is_deleted_stays_chosen(pages: Callabl
     expect(first).to_have_count(0)
     drawn(page)
     expect(second).to_have_attribute("aria-selected", "true")
+
+
+def test_an_experiment_or_trial_that_is_ready_late_does_not_replace_what_is_shown_by_then(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="experiments")
+    shows(page, "#status", "at its start")
+    trial: list[Route] = []
+    page.route("**/api/experiments/one/trial", lambda route: trial.append(route))
+    page.evaluate("""() => void part("experiments/list.js").then(({ openTrial }) => openTrial("one", 7))""")
+    until(page, lambda: bool(trial))
+    choose(page, "doorway.py")
+    trial[0].fulfill(json={"recording": "late"})
+    open_tab(page, "Messages")
+    expect(page.get_by_text("Trial 7 was run again and recorded as late: it is among the runs.")).to_be_visible()
+    assert page.url.endswith("/?model=doorway.py")
+
+    open_tab(page, "Experiments")
+    started: list[Route] = []
+    page.route("**/api/experiments", lambda route: started.append(route) if route.request.method == "POST" else route.continue_())
+    page.get_by_role("button", name="New experiment").click()
+    page.evaluate(
+        """() => void part("experiments/list.js")
+            .then(({ startExperiment }) => startExperiment({}))
+            .then(() => (window.isStarted = true))"""
+    )
+    until(page, lambda: bool(started))
+    page.get_by_role("button", name="Experiments", exact=True).click()
+    started[0].fulfill(json={"id": "late"})
+    until(page, lambda: bool(page.evaluate("() => window.isStarted")))
+    expect(page.get_by_role("button", name="New experiment")).to_be_visible()
+    assert page.evaluate("async () => (await part('experiments/list.js')).shown.value") == ""
+
+
+def test_a_model_chosen_while_a_recording_is_opened_stays_chosen(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("counting.py", refusals=True)
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    page.click("#restart")
+    shows(page, "#status", "at its start")
+    edit(page, "counting.py")
+    open_tab(page, "Runs")
+    with holding(page, "**/open", lambda _: True) as held:
+        page.locator(".runs-table tbody tr:not(.space):not(.present)").first.dblclick()
+        until(page, lambda: bool(held))
+        choose(page, "doorway.py")
+        shows(page, "#status", "at its start")
+    expect(page.get_by_text("Opening …")).to_have_count(0)
+    expect(page.locator(".recording-banner")).to_have_count(0)
+    assert page.url.endswith("/?model=doorway.py")
+    for session in workbench.get("/api/sessions").json()["sessions"]:
+        if session["model"] == "counting.py":
+            workbench.post(f"/api/sessions/{session['id']}/close")
+    page.route(
+        "**/api/sessions",
+        lambda route: route.fulfill(status=422, json={"error": "no room"}) if route.request.method == "POST" else route.continue_(),
+    )
+    page.get_by_label("Model", exact=True).select_option("counting.py")  # with a text open, in which messages are marked
+    shows(page, ".toast", "no room")
+    open_tab(page, "Messages")
+    expect(page.get_by_text("no room")).to_have_count(1)
+    expect(page.get_by_text("The page has a fault")).to_have_count(0)
+    page.unroute("**/api/sessions")
 
 
 @pytest.mark.slow

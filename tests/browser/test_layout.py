@@ -134,6 +134,33 @@ def test_a_panel_has_a_window_of_its_own_which_follows_the_page(pages: Pages) ->
     expect(window).to_have_title("Buffers · counting.py")
 
 
+def test_what_is_chosen_in_a_window_of_its_own_is_shown_by_the_page(pages: Pages) -> None:
+    page = pages("counting.py", tab="editor")
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    with page.context.expect_page() as opened:
+        arrange(page, "Panels", "Open in a window")
+    window = opened.value
+    file = window.get_by_label("File", exact=True)
+    expect(file.locator("option", has_text="doorway.py")).to_have_count(1)
+    window.get_by_role("heading", name="Editor").click()
+    window.keyboard.press("1")
+    file.select_option("doorway.py")
+    window.get_by_role("button", name=re.compile("^(Save and )?run$", re.I)).click()
+    expect(page.get_by_label("Model", exact=True)).to_have_value("doorway.py")
+    shows(page, "#status", "ended")
+    expect(window).to_have_title("Editor · doorway.py")
+    recorded = window.evaluate("async () => (await part('store.js')).session.value.recording")
+    window.evaluate("async () => { (await part('open_tab.js')).openTab.value = 'runs'; }")
+    window.locator(f"[data-run='{recorded}']").dblclick()
+    expect(page.locator(".recording-banner")).to_contain_text("doorway.py")
+    assert page.url.endswith(f"?run={recorded}")
+    expect(window).to_have_title("Runs · doorway.py")
+    window.get_by_role("button", name="Editor", exact=True).click()
+    expect(window).to_have_title("Editor · doorway.py")
+
+
 def test_a_link_leads_to_a_moment_of_a_run(pages: Pages, workbench: Served) -> None:
     page = pages("counting.py")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])

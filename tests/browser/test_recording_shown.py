@@ -283,6 +283,25 @@ def test_a_link_to_a_moment_past_the_end_of_a_recording_leads_to_the_branch_that
     expect(other.locator(".branch-name", has_text="at 0.30 s")).to_be_visible()
 
 
+def test_a_recording_stays_shown_while_its_file_is_renamed(pages: Pages, workbench: Served) -> None:
+    (workbench.folder / "first.py").write_text((workbench.folder / "counting.py").read_text(encoding="utf-8"), encoding="utf-8")
+    name = recorded(workbench, "first.py")
+    page = pages("first.py", tab="editor")
+    shows(page, "#status", "at its start")
+    page.evaluate("async (name) => (await part('bar/models.js')).chooseRecording(name)", name)
+    banner = page.locator(".recording-banner")
+    expect(banner).to_contain_text(name)
+    page.get_by_label("File", exact=True).select_option("first.py")
+    page.get_by_role("button", name="Rename").click()
+    page.get_by_label("New name").fill("second.py")
+    page.keyboard.press("Enter")
+    expect(page.get_by_label("File", exact=True)).to_have_value("second.py")
+    assert page.url.endswith(f"/?run={name}")
+    banner.get_by_role("button", name="Back to the run of second.py").click()
+    shows(page, "#status", "at its start")
+    assert page.url.endswith("/?model=second.py")
+
+
 @pytest.mark.slow
 def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_deleted_without_the_other(
     pages: Pages, workbench: Served

@@ -31,6 +31,22 @@ def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> N
     expect(page.locator("#scene progress")).to_have_count(0)
 
 
+def test_a_folder_without_models_is_said_to_have_none(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py", refusals=True)
+    shows(page, "#status", "paused")
+    page.route("**/api/models", lambda route: route.fulfill(json={"folder": "/empty", "models": [], "manual": False, "no_manual": None}))
+    page.reload()
+    expect(page.locator("#connection")).to_have_text("connected")
+    expect(page.locator("#scene")).to_contain_text(
+        "There is no model in the folder yet: make one in the tab Editor, or put a Python file there."
+    )
+    page.route("**/api/models", lambda route: route.fulfill(status=422, json={"error": "the folder cannot be read"}))
+    page.reload()
+    expect(page.locator("#connection")).to_have_text("connected")
+    shows(page, ".toast", "the folder cannot be read")
+    expect(page.locator("#scene")).to_contain_text("No model is shown.")
+
+
 def test_its_own_faults_do_not_bury_other_messages(page: Page) -> None:
     shows(page, "#status", "paused")
     open_tab(page, "Messages")

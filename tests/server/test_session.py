@@ -168,6 +168,18 @@ def test_the_speed_is_held_and_measured(desk: Desk, tmp_path: Path) -> None:
     assert talk.until("ended")["measured"] is None
 
 
+def test_speed_and_breakpoints_without_a_run_are_those_of_the_next_run(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, DOORWAY, real_time=True)
+    assert (talk.facts["speed"], talk.facts["real_time"]) == (None, True)
+    desk.do(talk.session.stop())
+    talk.say("speed", factor=20)
+    talk.say("breakpoints", productions=["turn"])
+    assert (talk.facts["speed"], talk.facts["real_time"]) == (20, False)
+    talk.say("restart", run=True)
+    talk.wait(lambda: talk.state["reason"] == "breakpoint: turn fired")
+    assert talk.state["wanted"] == 20
+
+
 def test_a_user_makes_the_run_go_another_way(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, DOORWAY)
     ended(talk)

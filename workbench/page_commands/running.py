@@ -79,7 +79,7 @@ class Speed(PageCommand):
 
     async def serve(self, session: Session) -> Reply:
         session.set_speed(self.factor)
-        return await session.ask(self)
+        return await session.apply_setting(self)
 
     def carry_out(self, controller: RunController) -> None:
         controller.pacer.set(self.factor)
@@ -96,7 +96,7 @@ class Breakpoints(PageCommand):
     async def serve(self, session: Session) -> Reply:
         before = session.breakpoints
         session.set_breakpoints(self.productions)
-        reply = await session.ask(self)
+        reply = await session.apply_setting(self)
         if reply.error is not None and session.breakpoints == self.productions:
             session.set_breakpoints(before)  # the run does not know one of the names
         return reply
