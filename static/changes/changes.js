@@ -3,9 +3,9 @@
 import { change } from "../bar/branch.js";
 import { commandsOf } from "../commands.js";
 import { systemsOf } from "../inspector/agents.js";
+import { literal } from "../parameters/values.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
-import { literal } from "../parameters/values.js";
 import { Problem } from "../parts/problem.js";
 import { alive, complain, session, state } from "../store.js";
 import { computed, html, signal, useId, useRef, useState } from "../vendor/preact.js";

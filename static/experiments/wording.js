@@ -1,8 +1,8 @@
 // Experiments as text: states, rates, levels.
 
+import { literal } from "../parameters/values.js";
 import { counted } from "../parts/count.js";
 import { valueText } from "../parts/chunk.js";
-import { literal } from "../parameters/values.js";
 import { labelOf } from "../runs/wording.js";
 
 const STATES = { running: "running", stopping: "stopping …", stopped: "stopped", finished: "finished", failed: "ended early", elsewhere: "run by another process" };

@@ -111,6 +111,24 @@ def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..
     expect(page.get_by_text("seed 7", exact=True)).to_be_visible()
 
 
+@pytest.mark.slow
+def test_a_parameter_that_is_emptied_during_a_run_stays_empty(pages: Callable[..., Page], workbench: Served) -> None:
+    shutil.copy(MODELS / "aperture_passage.py", workbench.folder)
+    page = pages("aperture_passage.py", tab="parameters")
+    speed = page.get_by_label("speed", exact=True)
+    speed.fill("2")
+    page.get_by_role("button", name="Restart with these").click()
+    becomes_true(page, "async () => (await part('store.js')).session.value.settings.speed === 2")
+    shows(page, "#status", "at its start")
+    speed.fill("")
+    speed.press("Enter")
+    becomes_true(page, "async () => (await part('store.js')).state.value?.parameters.speed === null")
+    expect(speed).to_have_value("")
+    page.get_by_role("button", name="Restart with these").click()
+    becomes_true(page, "async () => !('speed' in (await part('store.js')).session.value.settings)")
+    (workbench.folder / "aperture_passage.py").unlink()
+
+
 def test_the_eye_is_shown_small_and_large(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     inset = page.get_by_role("complementary", name="Retina")

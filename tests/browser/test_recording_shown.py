@@ -283,6 +283,21 @@ def test_a_link_to_a_moment_past_the_end_of_a_recording_leads_to_the_branch_that
     expect(other.locator(".branch-name", has_text="at 0.30 s")).to_be_visible()
 
 
+def test_a_recording_of_a_model_that_is_gone_shows_the_parameters_of_its_run(pages: Pages, workbench: Served) -> None:
+    file = shutil.copy(MODELS / "doorway.py", workbench.folder / "gone.py")
+    session = workbench.post("/api/sessions", {"model": "gone.py", "settings": {"width": 0.9}}).json()["id"]
+    workbench.post(f"/api/sessions/{session}/command", {"command": {"type": "step"}})
+    name = workbench.get(f"/api/sessions/{session}").json()["session"]["recording"]
+    workbench.post(f"/api/sessions/{session}/close")
+    file.unlink()
+    page = pages("counting.py", tab="parameters")
+    page.goto(f"{workbench.url}/?run={name}")
+    expect(page.locator(".note")).to_have_text("The model's file is gone from the folder: this run cannot be restarted with other values.")
+    expect(page.get_by_role("table", name="Parameters").get_by_role("row", name="width")).to_have_text("width0.9")
+    expect(page.locator("#panel-parameters")).not_to_contain_text("declares no parameters")
+    expect(page.locator(".toast")).to_have_count(0)
+
+
 @pytest.mark.slow
 def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_deleted_without_the_other(
     pages: Pages, workbench: Served
