@@ -115,7 +115,7 @@ function pairOf(experiment, other) {
 }
 
 function Menus({ experiment, facts, columns, chosen }) {
-  const set = (changes) => (choices.value = { ...choices.value, [experiment.name]: { ...chosen, ...changes } });
+  const set = (changes) => (choices.value = { ...choices.newest(), [experiment.name]: { ...chosen, ...changes } });
   const keys = [...(chosen.over ? [chosen.over] : []), ...keysOf(facts, columns)];
   const measures = columns.filter(isMeasure);
   const measured = (measure) => set({ measure, ...(overOf(columns, measure) ? { x: overOf(columns, measure) } : {}) });

@@ -313,6 +313,27 @@ def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     expect(bar).to_have_attribute("aria-valuenow", str(after))
 
 
+def test_what_was_not_set_is_not_remembered_and_no_tab_loses_what_another_has_settled(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py", 2560, 1400)
+    bar = page.get_by_role("separator", name="Width of the panels")
+    expect(bar).to_have_attribute("aria-valuenow", str(round(0.38 * 2560)))
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.reload()
+    expect(bar).to_have_attribute("aria-valuenow", "784")
+    shows(page, "#status", "at its start")
+    other = page.context.new_page()
+    other.goto(page.url)
+    shows(other, "#status", "at its start")
+    settle = "async ([kind, number]) => (await part('store.js')).settle(kind, [{ number }])"
+    page.evaluate(settle, ["cleared", 3])
+    other.evaluate(settle, ["seen", 5])
+    page.reload()
+    shows(page, "#status", "at its start")
+    settled = "async (kind) => { const { isSettled } = await part('store.js'); return [3, 5, 6].filter((number) => isSettled({ number }, kind)); }"
+    assert page.evaluate(settled, "cleared") == [3]
+    assert page.evaluate(settled, "seen") == [3, 5]
+
+
 @pytest.mark.slow
 def test_nothing_overflows_at_any_usual_size(pages: Callable[..., Page]) -> None:
     for width, height in ((1280, 800), (1920, 1080), (1024, 700), (853, 533)):
