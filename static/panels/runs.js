@@ -58,8 +58,8 @@ function Runs() {
     ${body(all, ordered, search)}
     ${idle > 0 ? html`<p class="left-out">${idle} never begun ${idle === 1 ? "is" : "are"} left out <button class="bare" onClick=${() => (withIdle.value = true)}>Show</button></p>` : null}
     <${Chosen} list=${picked} />
-    <${Comparison} />
-  </div>`;
+  </div>
+  <${Comparison} />`;
 }
 
 function body(all, ordered, search) {

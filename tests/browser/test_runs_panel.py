@@ -308,6 +308,24 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
 
 
 @pytest.mark.slow
+def test_an_opened_recording_is_the_present_run_and_keys_in_a_comparison_do_nothing_in_the_list(page: Page, two: list[str]) -> None:
+    open_tab(page, "Runs")
+    row(page, two[0]).dblclick()
+    expect(page.locator(".recording-banner")).to_contain_text(two[0])
+    expect(row(page, two[0]).locator(".present-mark")).to_have_text("present")
+    row(page, two[1]).click()
+    page.get_by_role("button", name="Compare with the present run").click()
+    dialog = page.get_by_role("dialog", name="Two runs")
+    expect(dialog.locator(".compare-run").last).to_contain_text("present")
+    only = dialog.get_by_label("differences only")
+    only.press("Delete")
+    expect(page.get_by_role("dialog")).to_have_count(1)
+    only.press("Enter")
+    expect(page.get_by_text("Opening …")).to_have_count(0)
+    assert page.url.endswith(f"run={two[0]}")
+
+
+@pytest.mark.slow
 def test_changes_during_a_run_are_shown_beside_its_initial_values(page: Page, two: list[str]) -> None:
     expect(page.locator("#status")).to_have_text(re.compile("at its start"))
     page.click("#step")
