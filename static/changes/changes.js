@@ -47,7 +47,7 @@ function unitOf({ unit }) {
   return [shown, factor];
 }
 
-/** Returns what a text in a field stands for: {value}, null for nothing; or {problem}. */
+/** Returns the value of the text of a field: {value}, null for an empty number; or {problem}. */
 function read(field, text) {
   const { name, takes, required } = field;
   if (takes.includes("number")) {

@@ -3,7 +3,7 @@
 import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { remembered } from "../local_storage.js";
 import { alive, session, shownRecording, state } from "../store.js";
-import { agoText, branchText, differentText, endedText, originText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./wording.js";
+import { agoText, branchText, differentText, endedText, firstMeasure, originText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./wording.js";
 
 const ROW = 44; // [px]; style.css has the same
 const AROUND = 6; // the number of rows drawn beyond the visible ones
@@ -13,7 +13,7 @@ const KEYS = {
   made: { column: "when", text: "Began", of: (run) => run.made },
   model: { column: "model", text: "Model", of: (run) => run.model },
   seed: { column: "model", text: "Seed", of: (run) => run.seed ?? -1 },
-  outcome: { column: "outcome", text: "Outcome", of: (run) => `${outcomeText(run)} ${(run.result?.peak_angle_deg ?? 0).toFixed(2).padStart(9, "0")}` },
+  outcome: { column: "outcome", text: "Outcome", of: (run) => `${outcomeText(run)} ${(firstMeasure(run)?.[1] ?? 0).toFixed(2).padStart(9, "0")}` },
   ended: { column: "outcome", text: "End", of: endedText },
   time: { column: "time", text: "Time", of: (run) => run.time },
   size: { column: "time", text: "Size", of: (run) => run.size },

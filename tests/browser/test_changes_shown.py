@@ -146,11 +146,11 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
     expect(rows.nth(1)).to_contain_text("theirs")  # this page hears of it, although it has not listed
     page.get_by_label("Name", exact=True).fill("<i>to five</i>")
     page.get_by_label("Tags").fill("long, kept, long")
-    page.get_by_role("button", name="Keep", exact=True).click()
+    page.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_role("dialog").get_by_role("alert")).to_have_text(
-        "another browser has changed the name to 'theirs' in the meantime. Keep replaces that."
+        "another browser has changed the name to 'theirs' in the meantime. Save replaces that."
     )
-    page.get_by_role("button", name="Keep", exact=True).click()
+    page.get_by_role("button", name="Save", exact=True).click()
     expect(rows.nth(1)).to_contain_text("<i>to five</i>")
     label = {"name": "<i>to five</i>", "note": "as it was", "tags": ["long", "kept"]}
     assert workbench.get(f"/api/recordings/{branch}").json()["label"] == label
@@ -168,7 +168,7 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
 
     # the branch is shown as a recording with its own address; a change there is a branch of it, and the live run is left alone
     rows.nth(1).locator(".branch-name").click()
-    shows(page, ".recording-banner", r"0\.30 s are known")
+    shows(page, ".recording-banner", r"0\.30 s recorded")
     expect(page).to_have_url(re.compile(r"/\?run="))
     shows(page, "#time", r"0\.12 s")  # from where it differs
     say(page, type="seek", time=0.2)

@@ -332,7 +332,10 @@ def test_what_was_not_set_is_not_remembered_and_no_tab_loses_what_another_has_se
     other.evaluate(settle, ["seen", 5])
     page.reload()
     shows(page, "#status", "at its start")
-    settled = "async (kind) => { const { isSettled } = await part('store.js'); return [3, 5, 6].filter((number) => isSettled({ number }, kind)); }"
+    settled = """async (kind) => {
+      const { isSettled } = await part("store.js");
+      return [3, 5, 6].filter((number) => isSettled({ number }, kind));
+    }"""
     assert page.evaluate(settled, "cleared") == [3]
     assert page.evaluate(settled, "seen") == [3, 5]
 

@@ -303,6 +303,8 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     assert plot.locator("output").all_text_contents().count("–") == 1
     written = "async () => (await part('runs/wording.js')).measureText('x_n_s', 0)"
     assert page.evaluate(written) == "0 N s"
+    first = "async () => (await part('runs/wording.js')).resultText({ result: { outcome: 'hit', impulse_n_s: 2, peak_angle_deg: 3 } })"
+    assert page.evaluate(first) == "2.0 N s"
     page.keyboard.press("Escape")
     expect(dialog).to_have_count(0)
 
