@@ -156,10 +156,10 @@ export function settle(kind, messages) {
   const numbers = messages.map(({ number }) => number);
   const [least, most] = [Math.min(0, ...numbers), Math.max(-1, ...numbers)];
   if (least < (ownSettled.peek()[kind] ?? 0)) ownSettled.value = { ...ownSettled.peek(), [kind]: least };
-  const known = settled.peek()[settledKey()] ?? {};
-  if (session.peek() === null || most <= (known[kind] ?? -1)) return;
-  const others = Object.entries(settled.peek()).filter(([key]) => key !== settledKey()).slice(-MAX_SETTLED);
-  settled.value = { ...Object.fromEntries(others), [settledKey()]: { ...known, [kind]: most } };
+  const key = settledKey();
+  if (session.peek() === null || most <= (settled.peek()[key]?.[kind] ?? -1)) return;
+  const { [key]: known = {}, ...others } = settled.newest();
+  settled.value = { ...Object.fromEntries(Object.entries(others).slice(-MAX_SETTLED)), [key]: { ...known, [kind]: Math.max(most, known[kind] ?? -1) } };
 }
 
 /** Returns a key for the run that is shown. */

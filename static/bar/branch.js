@@ -40,7 +40,7 @@ const closed = signal(alreadyShown.peek());
 
 function Notice({ which, title, children }) {
   useEffect(() => {
-    if (!alreadyShown.peek().includes(which)) alreadyShown.value = [...alreadyShown.peek(), which].slice(-MAX_SHOWN);
+    if (!alreadyShown.newest().includes(which)) alreadyShown.value = [...alreadyShown.newest(), which].slice(-MAX_SHOWN);
   }, [which]);
   return html`<span class="former branched" role="status" title=${title}>
     <span>${children}</span>

@@ -57,7 +57,7 @@ export function RecordingBanner() {
         <span class="path" title=${model}><bdi>${model}</bdi></span>
         <span class="when" title=${when}>${when}</span>
         <span title=${branched ? "It differs from the recording that was opened, or goes beyond it; this is recorded as a branch." : "Running it shows again what happened."}>
-          ${branched ? "Recorded as a branch" : `${(state.value?.furthest ?? 0).toFixed(2)} s are known`}
+          ${branched ? "Recorded as a branch" : `${(state.value?.furthest ?? 0).toFixed(2)} s recorded`}
         </span>
       </div>
     </div>

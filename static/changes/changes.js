@@ -3,10 +3,11 @@
 import { change } from "../bar/branch.js";
 import { commandsOf } from "../commands.js";
 import { systemsOf } from "../inspector/agents.js";
+import { literal } from "../parameters/values.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { Problem } from "../parts/problem.js";
-import { alive, session, state } from "../store.js";
+import { alive, complain, session, state } from "../store.js";
 import { computed, html, signal, useId, useRef, useState } from "../vendor/preact.js";
 
 /** All changes that this run accepts: {word, of, title, help, text, fields: [{name, takes, required, default, unit, help}]}. */
@@ -17,13 +18,12 @@ export function changesOf(of) {
   return changes.value.filter((one) => one.of === of);
 }
 
-/** Makes a change; returns null, or the text of the problem. */
+/** Makes a change; returns {made, problem}: whether it is made, and why it cannot be. The user may also decide against it: then there is no problem. */
 async function make(word, named) {
   try {
-    await change({ type: "command", word, named });
-    return null;
+    return { made: await change({ type: "command", word, named }), problem: null };
   } catch (error) {
-    return error.message.replace(`${word}.`, ""); // the form names the field alone
+    return { made: false, problem: error.message.replace(`${word}.`, "") }; // the form names the field alone
   }
 }
 
@@ -31,9 +31,9 @@ async function make(word, named) {
 export function useChange() {
   const [problem, setProblem] = useState(null);
   const send = async (word, named) => {
-    const text = await make(word, named);
-    setProblem(text);
-    return text === null;
+    const { made, problem: found } = await make(word, named);
+    setProblem(found);
+    return made;
   };
   return { problem, send, forget: () => setProblem(null) };
 }
@@ -47,9 +47,20 @@ function unitOf({ unit }) {
   return [shown, factor];
 }
 
-function valueOf(field, text) {
-  if (field.takes.includes("number")) return text.trim() === "" ? null : Number(text) / unitOf(field)[1];
-  return text;
+/** Returns the value of the text of a field: {value}, null for an empty number; or {problem}. */
+function read(field, text) {
+  const { name, takes, required } = field;
+  if (takes.includes("number")) {
+    const value = text.trim() === "" ? null : Number(text) / unitOf(field)[1];
+    const wrong = value === null ? required : !Number.isFinite(value);
+    return wrong ? { problem: `${name}: must be a number (got '${text}')` } : { value };
+  }
+  if (!takes.includes(" | ")) return { value: text };
+  try {
+    return { value: literal(text.trim()) };
+  } catch {
+    return { problem: `${name}: the quotation marks are wrong (got '${text}')` };
+  }
 }
 
 const pathsOf = (kind) => Object.entries(state.value?.parts ?? {}).flatMap(([path, { is }]) => (is === kind ? [path] : []));
@@ -89,28 +100,30 @@ function Fields({ fields, values, choices }) {
   });
 }
 
-/** Asks for the fields of a change that are not given, and makes it; an error is shown in the dialog, which stays open then. */
-export function askAndMake(one, given = {}) {
+/** Asks for the fields of a change that are not given, and makes it; an error is shown in the dialog, which stays open then, or among the
+ * messages if the user has closed it. */
+export async function askAndMake(one, given = {}) {
   const fields = one.fields.filter(({ name }) => !(name in given));
   const values = Object.fromEntries(fields.map((field) => [field.name, firstOf(field)]));
   const choices = Object.fromEntries(fields.map((field) => [field.name, choicesOf(field)]));
   const problem = signal(null);
+  let closed = false;
   const Body = () => html`<p class="quiet">${one.help}</p><${Fields} fields=${fields} values=${values} choices=${choices} /><${Problem} text=${problem.value} />`;
   const check = async () => {
     const named = { ...given };
     for (const field of fields) {
-      const value = valueOf(field, String(values[field.name]));
-      const isNumber = field.takes.includes("number");
-      if (isNumber && (value === null ? field.required : !Number.isFinite(value))) {
-        problem.value = `${field.name}: must be a number (got '${values[field.name]}')`;
-        return false;
-      }
+      const { value, problem: wrong = null } = read(field, String(values[field.name]));
+      problem.value = wrong;
+      if (wrong) return false;
       if (value !== null || field.required) named[field.name] = value;
     }
-    problem.value = await make(one.word, named);
-    return problem.value === null;
+    const { made, problem: found } = await make(one.word, named);
+    problem.value = found;
+    if (closed && found) complain(`${one.title}: ${found}`);
+    return made;
   };
-  return dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: "Cancel", value: null }, { text: one.title, value: true, kind: "primary" }], check });
+  await dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: "Cancel", value: null }, { text: one.title, value: true, kind: "primary" }], check });
+  closed = true;
 }
 
 commandsOf(() => (alive.value ? changes.value.map((one) => ({ text: `${one.title} …`, group: `Change by hand: ${one.of}`, work: () => askAndMake(one) })) : []));
@@ -144,7 +157,8 @@ export function ChangeMenu({ of, given, label }) {
   };
   const act = async (one) => {
     const more = needsMore(one, given);
-    if (more || (await send(one.word, given))) box.current?.hidePopover();
+    const done = more || (await send(one.word, given));
+    box.current?.togglePopover(!done); // a dialog that has asked has closed the menu, which shows the problem
     if (more) askAndMake(one, given);
   };
   return html`<button class="bare change-more" popovertarget=${id} aria-label="Change ${label}" title="Change ${label}" disabled=${!alive.value} onClick=${place}><${Icon} name="more" /></button>

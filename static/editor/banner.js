@@ -1,8 +1,15 @@
 // A banner between the text and its problems for decisions: the file has changed, or the run is one of an earlier text.
 
+import { confirmed } from "../parts/dialog.js";
 import { html } from "../vendor/preact.js";
 import { close, save } from "./documents.js";
 import { former, runNew } from "./stale_run.js";
+
+/** Closes a text whose file is gone, after asking. */
+async function leave({ path }) {
+  const text = "Its file is gone from the folder: this text is the only copy. It is lost, with what is not saved.";
+  if (await confirmed(`Close ${path}?`, text, "Close, and lose the text")) close(path);
+}
 
 /** @param document The text that is shown. @param compare Shows both texts if the file has another one. */
 export function Strip({ document, compare }) {
@@ -12,7 +19,7 @@ export function Strip({ document, compare }) {
     return html`<div class="strip bad" role="alert">
       <span>The file is gone from the folder.</span>
       <button onClick=${() => save(document)}>Save it again</button>
-      <button onClick=${() => close(document.path)}>Close</button>
+      <button onClick=${() => leave(document)}>Close</button>
     </div>`;
   }
   if (theirs) {

@@ -9,17 +9,25 @@ const LOCK = "actr3d.tab.";
 const MAX_DRAFTS = 20;
 const LARGEST = 2_000_000; // all drafts together [characters]; browsers store about five million per site
 
+const keyOf = (path) => `${PREFIX}${ownName} ${path}`;
+
 /** The files with a draft of this tab. */
 export const drafted = signal([]);
 
 /** Determines which drafts belong to this tab: its own from before a reload, and those of closed tabs, the newest of each file. A draft of a
- * file that has one here stays where it is, until a tab has none. */
+ * file that has one here stays where it is, until a tab has none. A browser that gives the page no locks, as over http from another machine,
+ * does not show which tabs are closed: then it has its own alone. */
 export const ready = settle();
 
 async function settle() {
+  const { locks } = navigator;
+  if (!locks) {
+    refresh();
+    return;
+  }
   // The lock shows that the tab is open; it is not waited for, as the page before a reload may still have it.
-  navigator.locks?.request(LOCK + ownName, () => new Promise(() => {}));
-  const held = ((await navigator.locks?.query())?.held ?? []).map(({ name }) => name);
+  locks.request(LOCK + ownName, () => new Promise(() => {}));
+  const held = (await locks.query()).held.map(({ name }) => name);
   for (const { key, draft } of all().reverse()) {
     const owner = key.slice(PREFIX.length).split(" ", 1)[0];
     if (owner === ownName || held.includes(LOCK + owner) || read(draft.path)) continue;
@@ -28,8 +36,6 @@ async function settle() {
   }
   refresh();
 }
-
-const keyOf = (path) => `${PREFIX}${ownName} ${path}`;
 
 /** Returns all drafts of all tabs, the oldest first. */
 function all() {

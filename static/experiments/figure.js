@@ -8,6 +8,7 @@ import { Problem } from "../parts/problem.js";
 import { savePicture } from "../parts/picture.js";
 import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
+import { unitOf } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { whenText } from "../runs/wording.js";
 import { dark } from "../theme.js";
@@ -20,7 +21,6 @@ import { columnText, doneText } from "./wording.js";
 const MAX_LINES = 12;
 const MAX_BUTTONS = 300; // points that keys can reach
 const REACH = 12; // [px]
-const UNITS = [["_deg", "°"], ["_m_s", "m/s"], ["_m", "m"], ["_n", "N"], ["_s", "s"]];
 const EMPTY = [];
 
 /** What was chosen for the figures of a design: {name: {measure, x, by}}. */
@@ -103,8 +103,9 @@ function combinationsOf(answers, by, facts) {
   return all.toSorted((one, other) => rank(one).reduce((found, place, n) => found || place - rank(other)[n], 0));
 }
 
-function unitOf(answer) {
-  return answer.unit ?? UNITS.find(([end]) => answer.measure.endsWith(end))?.[1] ?? "";
+function unitOfMeasure({ unit: declared, measure }) {
+  const { unit, factor } = unitOf(measure);
+  return declared ?? (factor === 1 ? unit : ""); // the values are in the unit of the table
 }
 
 /** Returns the entries of the legend for two experiments, whose lines are whole and dashed; null if there is only one. */
@@ -115,7 +116,7 @@ function pairOf(experiment, other) {
 }
 
 function Menus({ experiment, facts, columns, chosen }) {
-  const set = (changes) => (choices.value = { ...choices.value, [experiment.name]: { ...chosen, ...changes } });
+  const set = (changes) => (choices.value = { ...choices.newest(), [experiment.name]: { ...chosen, ...changes } });
   const keys = [...(chosen.over ? [chosen.over] : []), ...keysOf(facts, columns)];
   const measures = columns.filter(isMeasure);
   const measured = (measure) => set({ measure, ...(overOf(columns, measure) ? { x: overOf(columns, measure) } : {}) });
@@ -228,8 +229,8 @@ function Plot({ lines, known, about, children }) {
       <b>${title}</b>
       <span class="legend">${legend.map((line) => html`<span key=${line.key}><${Sample} line=${line} />${line.name}</span>`)}</span>
       ${children}
-      <button class="bare" title="Keep the figure as a PNG" onClick=${() => save("png")}><${Icon} name="download" />PNG</button>
-      <button class="bare" title="Keep the figure as an SVG" onClick=${() => save("svg")}><${Icon} name="download" />SVG</button>
+      <button class="bare" title="Save the figure as a PNG" onClick=${() => save("png")}><${Icon} name="download" />PNG</button>
+      <button class="bare" title="Save the figure as an SVG" onClick=${() => save("svg")}><${Icon} name="download" />SVG</button>
     </figcaption>
     <div class="area ${hit.length > 0 ? "hit" : ""}" ref=${area} onPointerMove=${point} onPointerLeave=${leave} onClick=${() => show(hit)}>
       <canvas ref=${canvas} role="img" aria-label=${title} style=${{ width: `${width}px`, height: `${height}px` }}></canvas>
@@ -281,7 +282,7 @@ export function Figure({ experiment, facts, columns: all }) {
     <${Problem} text=${error} />
     ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
     ${answer && lines.length > 0
-      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOf(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOfMeasure(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
       : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
   `;
 }

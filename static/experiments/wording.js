@@ -1,5 +1,6 @@
 // Experiments as text: states, rates, levels.
 
+import { literal } from "../parameters/values.js";
 import { counted } from "../parts/count.js";
 import { valueText } from "../parts/chunk.js";
 import { labelOf } from "../runs/wording.js";
@@ -39,16 +40,10 @@ export function changedText(changed) {
 /** Returns a level as text that `readLevels` reads as the same value. */
 function levelText(level) {
   if (typeof level !== "string") return level === null ? "none" : String(level);
-  return /^[^\s",;][^",;]*[^\s",;]$|^[^\s",;]$/.test(level) && typeof readLevel(level) === "string" ? level : JSON.stringify(level);
+  return /^[^\s",;][^",;]*[^\s",;]$|^[^\s",;]$/.test(level) && typeof literal(level) === "string" ? level : JSON.stringify(level);
 }
 
 export const levelsText = (levels) => levels.map(levelText).join(", ");
-
-function readLevel(text) {
-  if (text.includes('"')) return JSON.parse(text);
-  if (text !== "" && Number.isFinite(Number(text))) return Number(text);
-  return { true: true, false: false, none: null, True: true, False: false, None: null }[text] ?? (/^[Nn]one$/.test(text) ? null : text);
-}
 
 /** Returns the levels that a text lists, separated by commas, and what is wrong: {levels, problem}; one of them is null. Texts may be in quotes. */
 export function readLevels(text) {
@@ -60,7 +55,7 @@ export function readLevels(text) {
   }
   if (parts.some((part) => part.trim() === "")) return wrong(parts.length === 1 ? "there is none" : "one is empty");
   try {
-    const levels = parts.map((part) => readLevel(part.trim()));
+    const levels = parts.map((part) => literal(part.trim()));
     const twice = levels.find((level, place) => levels.indexOf(level) < place);
     return twice === undefined ? { levels, problem: null } : wrong(`${levelText(twice)} is there twice`);
   } catch {

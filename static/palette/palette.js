@@ -62,7 +62,7 @@ function take({ of, heading }) {
   refusal.value = of.ready() ? "" : `«${of.text}» is not possible now. ${of.why()}`;
   if (refusal.value) return;
   shown.value = 0;
-  if (heading !== "Manual") recent.value = [nameOf(of), ...recent.value.filter((name) => name !== nameOf(of))].slice(0, MAX_RECENT);
+  if (heading !== "Manual") recent.value = [nameOf(of), ...recent.newest().filter((name) => name !== nameOf(of))].slice(0, MAX_RECENT);
   setTimeout(() => run(of)); // after the palette has closed and given back the focus
 }
 

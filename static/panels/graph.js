@@ -171,9 +171,9 @@ function explain({ system, name }) {
 function Legend() {
   return html`<ul class="graph-legend" aria-label="Edges">
     <li class="reads">a production reads a buffer</li>
-    <li class="writes">has written to it</li>
-    <li class="asks">has asked a module</li>
-    <li class="fills">a module has filled a buffer</li>
+    <li class="writes">writes to it in this run</li>
+    <li class="asks">asks a module in this run</li>
+    <li class="fills">a module fills a buffer in this run</li>
     <li class="thick">now</li>
   </ul>`;
 }

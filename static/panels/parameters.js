@@ -4,6 +4,7 @@ import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { change } from "../bar/branch.js";
 import { seedProblem } from "../bar/seed.js";
 import { rangeOf, read, valuesText, written } from "../parameters/values.js";
+import { valueText } from "../parts/chunk.js";
 import { call, isLeft, order } from "../server.js";
 import { runStatus } from "../run_status.js";
 import { complain, session, state } from "../store.js";
@@ -15,7 +16,7 @@ let of = {};
 
 /** Reads the model's parameters again if the model, the run or the text has changed. Entered values stay, except those
  * that are now in effect. */
-async function follow({ id, model, run, digest }) {
+async function follow({ id, model, run, digest, gone }) {
   if (of.id === id && of.run === run && of.digest === digest) return;
   const other = of.id !== id;
   const asked = { id, run, digest };
@@ -27,6 +28,7 @@ async function follow({ id, model, run, digest }) {
   } else {
     drafts.value = Object.fromEntries(Object.entries(drafts.value).filter(([name, text]) => text !== written(session.value.parameters?.[name])));
   }
+  if (gone) return;
   try {
     const answer = await call("GET", `/api/model?path=${encodeURIComponent(model)}`);
     if (of === asked) listing.value = answer.listing;
@@ -42,12 +44,18 @@ function inForce({ name, live, default: otherwise }) {
   const begun = session.value?.parameters?.[name];
   const widths = Object.values(state.value?.apertures ?? {});
   if (begun !== undefined && live?.word === "aperture" && widths.length === 1) return Number(widths[0].toFixed(4));
-  const value = state.value?.parameters[name] ?? begun;
+  const changed = state.value?.parameters ?? {};
+  const value = name in changed ? changed[name] : begun; // a value may be changed to none (null)
   return value === undefined ? otherwise : value;
 }
 
 function known() {
   return (listing.value?.parameters ?? []).filter((parameter) => parameter.known);
+}
+
+/** Whether the model has another text than the run by now. */
+function isStale() {
+  return Boolean(session.value?.stale) && !session.value.gone;
 }
 
 /** The initial values of the run's parameters that no longer exist in the text. */
@@ -149,18 +157,33 @@ function Field({ parameter }) {
   </div>`;
 }
 
+const GONE = "The model's file is gone from the folder: this run cannot be restarted with other values.";
+
+/** The values of the run alone, if there is no text that declares its parameters. */
+function OfRun({ values }) {
+  return html`<div class="parameters">
+    <p class="note">${GONE}</p>
+    ${Object.keys(values).length === 0 ? html`<p class="empty">This run has no parameters.</p>` : null}
+    <table aria-label="Parameters"><tbody>
+      ${Object.entries(values).map(([name, value]) => html`<tr key=${name}><th scope="row">${name}</th><td class="mono">${valueText(value)}</td></tr>`)}
+    </tbody></table>
+  </div>`;
+}
+
 function Parameters() {
   const shown = session.value;
   useLayoutEffect(() => void (shown && follow(shown))); // before anything can be typed into a field of the previous model
   if (!shown) return html`<p class="empty">${runStatus.value.text}</p>`;
-  if (listing.value === null) return html`<p class="empty">Reading the model …</p>`;
+  if (listing.value === null) return shown.gone ? html`<${OfRun} values=${shown.parameters ?? {}} />` : html`<p class="empty">Reading the model …</p>`;
   const fields = known();
   const changed = waiting().length;
   const former = forgotten();
+  const stale = isStale();
   const problem = seed.value.trim() === "" ? null : seedProblem(seed.value);
   return html`<form class="parameters" onSubmit=${restart}>
-    ${shown.stale ? html`<p class="note">The model's text has changed since this run began; the next run has the new one.</p>` : null}
-    ${shown.stale && former.length
+    ${shown.gone ? html`<p class="note">${GONE}</p>` : null}
+    ${stale ? html`<p class="note">The model's text has changed since this run began; the next run has the new one.</p>` : null}
+    ${stale && former.length
       ? html`<p class="note">The text has no parameter <b class="mono">${former.join(", ")}</b> any more, with which this run began: «Restart with these» leaves it out.</p>`
       : null}
     ${changed ? html`<p class="note">${changed === 1 ? "One value is" : `${changed} values are`} not in force yet: restart to use ${changed === 1 ? "it" : "them"}.</p>` : null}
@@ -173,7 +196,7 @@ function Parameters() {
       <p class="help">${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}The seed of all random choices; empty: that of the present run.</p>
     </div>
     <footer>
-      <button class="primary" disabled=${problems() || Boolean(problem) || (shown.loading && state.value === null)}>Restart with these</button>
+      <button class="primary" disabled=${shown.gone || problems() || Boolean(problem) || (shown.loading && state.value === null)}>Restart with these</button>
       <button type="button" onClick=${reset} disabled=${fields.length === 0}>Defaults</button>
       <button type="button" onClick=${() => ((drafts.value = {}), (seed.value = ""))} disabled=${Object.keys(drafts.value).length === 0 && !seed.value}>Undo</button>
     </footer>
@@ -185,5 +208,5 @@ export const panel = {
   title: "Parameters",
   order: 6,
   View: Parameters,
-  badge: () => (session.value?.stale || waiting().length ? { text: "", title: "not in force yet" } : null),
+  badge: () => (isStale() || waiting().length ? { text: "", title: "not in force yet" } : null),
 };

@@ -3,6 +3,7 @@
 import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { command } from "../commands.js";
 import { Comparison } from "../compare/compare.js";
+import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Chosen } from "../runs/chosen.js";
 import { openTab } from "../open_tab.js";
@@ -56,10 +57,10 @@ function Runs() {
     ${problem.value ? html`<p class="problem bad" role="alert">The recordings cannot be listed: ${problem.value} <button onClick=${listRuns}>Try again</button></p>` : null}
     ${warning.value ? html`<p class="problem bad" role="alert">${warning.value}</p>` : null}
     ${body(all, ordered, search)}
-    ${idle > 0 ? html`<p class="left-out">${idle} never begun ${idle === 1 ? "is" : "are"} left out <button class="bare" onClick=${() => (withIdle.value = true)}>Show</button></p>` : null}
+    ${idle > 0 ? html`<p class="left-out">${counted(idle, "recording")} without a step ${idle === 1 ? "is" : "are"} not listed <button class="bare" onClick=${() => (withIdle.value = true)}>Show</button></p>` : null}
     <${Chosen} list=${picked} />
-    <${Comparison} />
-  </div>`;
+  </div>
+  <${Comparison} />`;
 }
 
 function body(all, ordered, search) {

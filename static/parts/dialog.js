@@ -1,19 +1,19 @@
 // Dialogs, based on the browser's own: they hold the focus, and Escape closes them.
 
 import { Problem } from "./problem.js";
-import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
+import { html, signal, useEffect, useId, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 
-const open = signal(null);
-/** The dialog whose entries are being checked; null for none. */
-const checking = signal(null);
+/** The open dialogs; the last one is on top. */
+const open = signal([]);
+let opened = 0;
 
-/** Shows a dialog: `title`, `body` (made by `html`) and `actions` [{text, kind, value, busy?}]. Returns the value of the chosen action;
+/** Shows a dialog, on top of those that are open: `title`, `body` (made by `html`) and `actions` [{text, kind, value, busy?}]. Returns the value of the chosen action;
  * null if it is closed. With `ask` {label, value, problem?, choices?} it has a text field, and the entered text is returned;
  * with choices [{value, text}], {text, choice}. With `check` it stays open until that function has checked the result of an action and
  * returned true; the function shows itself what is wrong, and meanwhile the action's button has the text `busy`. */
 export function dialog({ title, body = null, actions = [{ text: "Close", value: null }], ask = undefined, check = undefined }) {
-  open.peek()?.resolve(null); // a new dialog replaces the open one
-  return new Promise((resolve) => (open.value = { title, body, actions, ask, check, resolve }));
+  opened += 1;
+  return new Promise((resolve) => (open.value = [...open.peek(), { number: opened, title, body, actions, ask, check, resolve }]));
 }
 
 /** Asks for confirmation; returns whether the user agrees. */
@@ -29,35 +29,42 @@ export function asked(title, label, value, action, more = {}) {
 
 /** The container of the dialogs. */
 export function Dialogs() {
+  return open.value.map((shown) => html`<${Dialog} key=${shown.number} shown=${shown} />`);
+}
+
+function Dialog({ shown }) {
   const box = useRef(null);
   const line = useRef(null);
-  const shown = open.value;
+  const id = useId();
+  const checking = useSignal(false);
   // At once: the next key press is meant for the dialog.
   useLayoutEffect(() => {
-    if (!shown) return;
-    box.current.showModal();
+    const own = box.current;
+    own.showModal();
     const { activeElement } = document;
     if (activeElement.matches("input:not([type=radio], [type=checkbox])")) activeElement.select(); // typing replaces the selected text
-  }, [shown]);
-  const isChecking = shown !== null && checking.value === shown;
+    return () => own.close(); // which returns the focus, such as to a field of the dialog below
+  }, []);
+  const isChecking = checking.value;
   useEffect(() => {
     // A button loses the focus when it is disabled.
-    const wrong = isChecking || box.current?.contains(document.activeElement) ? null : box.current?.querySelector("[aria-invalid=true]");
+    const wrong = isChecking || box.current.contains(document.activeElement) ? null : box.current.querySelector("[aria-invalid=true]");
     wrong?.focus();
     wrong?.select();
   }, [isChecking]);
-  if (!shown) return null;
+
+  const isOpen = () => open.peek().includes(shown);
 
   async function done(value) {
     if (value && isChecking) return;
     const result = shown.ask && value ? written() : value;
     if (value && shown.check) {
-      checking.value = shown;
+      checking.value = true;
       const fine = await shown.check(result);
-      if (checking.peek() === shown) checking.value = null;
-      if (!fine || open.peek() !== shown) return;
+      checking.value = false;
+      if (!fine || !isOpen()) return;
     }
-    open.value = null;
+    open.value = open.peek().filter((other) => other !== shown);
     shown.resolve(result);
   }
 
@@ -73,15 +80,15 @@ export function Dialogs() {
     done(first.value);
   }
 
-  return html`<dialog ref=${box} aria-labelledby="dialog-title" onClose=${() => open.value === shown && done(null)} onKeyDown=${press}>
-    <h2 id="dialog-title">${shown.title}</h2>
+  return html`<dialog ref=${box} aria-labelledby=${id} onClose=${() => isOpen() && done(null)} onKeyDown=${press}>
+    <h2 id=${id}>${shown.title}</h2>
     ${shown.body}
     ${shown.ask
       ? html`<label class="field">
           ${shown.ask.label}
-          <input ref=${line} autofocus value=${shown.ask.value} spellcheck=${false} aria-invalid=${Boolean(shown.ask.problem)} aria-describedby="dialog-problem" />
+          <input ref=${line} autofocus value=${shown.ask.value} spellcheck=${false} aria-invalid=${Boolean(shown.ask.problem)} aria-describedby="${id}-problem" />
         </label>
-        <${Problem} id="dialog-problem" text=${shown.ask.problem} />`
+        <${Problem} id="${id}-problem" text=${shown.ask.problem} />`
       : null}
     ${shown.ask?.choices?.map(
       ({ value, text }, n) => html`<label class="choice"><input type="radio" name="choice" value=${value} defaultChecked=${n === 0} />${text}</label>`,

@@ -100,9 +100,9 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
         })}
       </span>
       <span class="plot-time number quiet">${at === null ? "" : timeText(at, 0.01)}</span>
-      <button class="bare" title="Keep the plot as a PNG" onClick=${() => save("png")}><${Icon} name="download" />PNG</button>
-      <button class="bare" title="Keep the plot as an SVG" onClick=${() => save("svg")}><${Icon} name="download" />SVG</button>
-      <button class="bare" title="Keep the values as CSV" onClick=${() => save("csv")}><${Icon} name="download" />CSV</button>
+      <button class="bare" title="Save the plot as a PNG" onClick=${() => save("png")}><${Icon} name="download" />PNG</button>
+      <button class="bare" title="Save the plot as an SVG" onClick=${() => save("svg")}><${Icon} name="download" />SVG</button>
+      <button class="bare" title="Save the values as CSV" onClick=${() => save("csv")}><${Icon} name="download" />CSV</button>
     </figcaption>
     <div class="plot-area" style=${{ height: `${height}px` }}>
       <canvas

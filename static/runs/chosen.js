@@ -4,11 +4,12 @@ import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { Icon } from "../parts/icon.js";
 import { remembered } from "../local_storage.js";
+import { shownRecording } from "../store.js";
 import { compareRuns } from "../compare/compare.js";
 import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./actions.js";
 import { download, Downloads } from "./downloads.js";
 import { labelRun } from "./label.js";
-import { present, runs } from "./list.js";
+import { runs } from "./list.js";
 import { endedText, labelOf, measureText, originText, outcomeText, whenInFull } from "./wording.js";
 
 const FORMATS = [
@@ -80,13 +81,13 @@ function Facts({ run }) {
 
 function One({ run }) {
   const idle = busy.value !== null || Boolean(run.problem);
-  const own = run.id === present.value;
-  const noCompare = own ? "It is the present run" : present.value ? "Beside the present run" : "The present run is not recorded";
+  const own = run.id === shownRecording.value;
+  const noCompare = own ? "It is the present run" : shownRecording.value ? "Beside the present run" : "The present run is not recorded";
   return html`
     <div class="actions" role="toolbar" aria-label="The chosen run">
       <button class="primary" disabled=${idle} title="Open this run again (double-click)" onClick=${() => openRun(run)}>Open</button>
       <button disabled=${idle || Boolean(replays.value[run.id]?.since)} title="Run it again in a process of its own, and compare every byte" onClick=${() => replayRun(run)}>Replay</button>
-      <button disabled=${idle || own || !present.value} title=${noCompare} onClick=${() => compareRuns(run.id, present.value)}>Compare with the present run</button>
+      <button disabled=${idle || own || !shownRecording.value} title=${noCompare} onClick=${() => compareRuns(run.id, shownRecording.value)}>Compare with the present run</button>
       <button disabled=${Boolean(run.problem)} title="Give it a name, a note and tags; it is then never deleted automatically" onClick=${() => labelRun(run)}>Name …</button>
       <span class="stretch"></span>
       <button class="danger bare" aria-label="Delete" title="Delete (Del)" disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /></button>

@@ -36,11 +36,11 @@ export async function labelRun(run) {
       const now = error.status === 409 ? await call("GET", path).catch(() => null) : null;
       if (now) {
         before = now.label;
-        problem.value += ". Keep replaces that.";
+        problem.value += ". Save replaces that.";
       }
       return false;
     }
   };
-  const actions = [{ text: "Cancel", value: null }, { text: "Keep", value: true, kind: "primary" }];
+  const actions = [{ text: "Cancel", value: null }, { text: "Save", value: true, kind: "primary" }];
   if (await dialog({ title: "Name of the run", body: html`<${Body} />`, actions, check })) await listRuns();
 }

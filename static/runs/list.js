@@ -17,9 +17,6 @@ export const problem = signal(null);
 /** What is wrong with the names and notes of recordings; null if nothing is. */
 export const warning = signal(null);
 export const loading = signal(false);
-/** The recording that the current run writes; null if there is none. */
-export const present = computed(() => session.value?.recording ?? null);
-
 /** Whether all recordings of the server are in `runs`. */
 export const isComplete = computed(() => runs.value !== null && runs.value.length >= total.value);
 
@@ -79,10 +76,11 @@ export async function listRuns() {
 
 /** Reads the list again soon if the file of the current run is missing, or its end is not up to date: it is written a moment later. */
 function awaitEnd(mine) {
-  const own = runs.value?.find(({ id }) => id === present.value);
+  const { recording = null } = session.value ?? {};
+  const own = runs.value?.find(({ id }) => id === recording);
   const { status, furthest } = state.value ?? {};
   const goesOn = own?.ended && own.time > furthest + 1e-6; // it had ended, but was changed in its past
-  const late = own ? goesOn || (status === "ended" && !own.ended) : present.value !== null && session.value.alive;
+  const late = own ? goesOn || (status === "ended" && !own.ended) : recording !== null && session.value.alive;
   tries = late ? tries + 1 : 0;
   if (tries > 0 && tries <= MAX_TRIES) setTimeout(() => mine === asked && listRuns(), LATER);
 }

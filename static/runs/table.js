@@ -2,9 +2,8 @@
 
 import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { remembered } from "../local_storage.js";
-import { alive, session, state } from "../store.js";
-import { present } from "./list.js";
-import { agoText, branchText, differentText, endedText, originText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./wording.js";
+import { alive, session, shownRecording, state } from "../store.js";
+import { agoText, branchText, differentText, endedText, firstMeasure, originText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./wording.js";
 
 const ROW = 44; // [px]; style.css has the same
 const AROUND = 6; // the number of rows drawn beyond the visible ones
@@ -14,7 +13,7 @@ const KEYS = {
   made: { column: "when", text: "Began", of: (run) => run.made },
   model: { column: "model", text: "Model", of: (run) => run.model },
   seed: { column: "model", text: "Seed", of: (run) => run.seed ?? -1 },
-  outcome: { column: "outcome", text: "Outcome", of: (run) => `${outcomeText(run)} ${(run.result?.peak_angle_deg ?? 0).toFixed(2).padStart(9, "0")}` },
+  outcome: { column: "outcome", text: "Outcome", of: (run) => `${outcomeText(run)} ${(firstMeasure(run)?.[1] ?? 0).toFixed(2).padStart(9, "0")}` },
   ended: { column: "outcome", text: "End", of: endedText },
   time: { column: "time", text: "Time", of: (run) => run.time },
   size: { column: "time", text: "Size", of: (run) => run.size },
@@ -61,7 +60,7 @@ function Length({ run }) {
 
 function Row({ run, list, number, now, toggle, open }) {
   const isChosen = chosen.value.has(run.id);
-  const own = run.id === present.value;
+  const own = run.id === shownRecording.value;
   const different = differentText(run);
   const { name = "", tags = [] } = run.label ?? {};
   return html`<tr
@@ -81,7 +80,7 @@ function Row({ run, list, number, now, toggle, open }) {
         ${name ? html`<b>${name}</b>` : null}<span class=${name ? "path quiet" : "path"}><bdi>${run.model || run.id}</bdi></span>
         ${tags.map((tag) => html`<span key=${tag} class="tag">${tag}</span>`)}
       </span>
-      <small>${run.session ? html`<b class="present-mark" title=${own ? "The run that is shown" : "A session that is open still writes it"}>${own ? "present" : "open"}</b> · ` : null}${run.problem ? "" : html`${run.branched === null ? null : html`<b title="branch ${originText(run, list)}">${branchText(run)}</b> · `}${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
+      <small>${own || run.session ? html`<b class="present-mark" title=${own ? "The run that is shown" : "A session that is open still writes it"}>${own ? "present" : "open"}</b> · ` : null}${run.problem ? "" : html`${run.branched === null ? null : html`<b title="branch ${originText(run, list)}">${branchText(run)}</b> · `}${different ? html`<span class="mono">${different}</span> · ` : ""}seed ${String(run.seed ?? "–")}`}</small>
     </td>
     <td class="outcome ${run.problem || run.failed ? "bad" : ""}" title=${endedText(run)}>
       <span>${outcomeText(run)} <span class="number">${resultText(run)}</span></span><small>${endedText(run)}</small>

@@ -84,11 +84,23 @@ export function outcomeText(run) {
   return run.session ? "not over" : "not finished";
 }
 
-/** Returns the most informative number of a result. */
+/** Returns the first measure that follows the outcome in a result, as [name, value]; null if there is none, or it is no number. */
+export function firstMeasure({ result }) {
+  const { outcome, ...measures } = result ?? {};
+  const [first] = Object.entries(measures);
+  return outcome && typeof first?.[1] === "number" ? first : null;
+}
+
+/** Returns the first measure that follows the outcome in a result, as text; an empty text if there is none. */
 export function resultText(run) {
-  const angle = run.result?.peak_angle_deg;
-  if (typeof angle === "number") return `${angle.toFixed(1)}°`;
-  return "";
+  const [name, value] = firstMeasure(run) ?? [];
+  if (name === undefined) return "";
+  const { unit, digits, factor } = unitOf(name);
+  return withUnit(Number.isInteger(value) && unit === "" ? value : (value * factor).toFixed(digits), unit);
+}
+
+function withUnit(text, unit) {
+  return `${text}${unit && unit !== "°" ? " " : ""}${unit}`;
 }
 
 /** Returns how a run ended, as text. */
@@ -108,7 +120,7 @@ export function labelOf(name) {
 export function measureText(name, value) {
   if (typeof value !== "number") return value === null || value === undefined ? "–" : valueText(value);
   const { unit, factor } = unitOf(name);
-  return `${valueText(value * factor)}${unit && unit !== "°" ? " " : ""}${unit}`;
+  return withUnit(valueText(value * factor), unit);
 }
 
 /** Returns all text that a search includes. */

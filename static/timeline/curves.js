@@ -45,7 +45,7 @@ const model = computed(() => session.value?.model ?? null);
 const kept = computed(() => chosenOf.value.find((one) => one.model === model.value)?.names ?? null);
 
 function keep(names) {
-  chosenOf.value = [...chosenOf.peek().filter((one) => one.model !== model.peek()), ...(names === null ? [] : [{ model: model.peek(), names }])].slice(-MAX_MODELS);
+  chosenOf.value = [...chosenOf.newest().filter((one) => one.model !== model.peek()), ...(names === null ? [] : [{ model: model.peek(), names }])].slice(-MAX_MODELS);
 }
 
 function usual(all) {

@@ -49,7 +49,7 @@ export async function savePictures() {
   </label>`;
   const kinds = [{ text: "SVG", value: "svg" }, { text: "PNG", value: "png", kind: "primary" }];
   if (offered.length > 0) kinds.unshift({ text: "CSV", value: "csv" });
-  const kind = await dialog({ title: "Keep a picture or its values", body, actions: [{ text: "Cancel", value: null }, ...kinds] });
+  const kind = await dialog({ title: "Save a picture or its values", body, actions: [{ text: "Cancel", value: null }, ...kinds] });
   if (!kind) return;
   const plot = which.peek() === "" ? null : offered[Number(which.peek())];
   const name = pictureName(session.peek(), plot ? plot.title : "timeline");

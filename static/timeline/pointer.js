@@ -1,9 +1,8 @@
 // The actions of the pointer, the wheel and the keys on the timeline.
 
-import { running } from "../store.js";
 import { placeOf, secondsPerPixel, timeOf } from "./draw.js";
 import { AXIS, column } from "./rows.js";
-import { furthest, goTicks, orderThere, present, seek } from "./seek.js";
+import { furthest, goTicks, present, seek } from "./seek.js";
 import { pan, span, zoom } from "./view.js";
 
 const GRIP = 4; // the distance at which the border of the column of names can be dragged [px]
@@ -86,7 +85,6 @@ export function press(event) {
   const to = { Home: 0, End: furthest.peek() }[event.key];
   if (ticks !== undefined) goTicks(event.shiftKey ? FEW * ticks : ticks);
   else if (to !== undefined) seek(to);
-  else if (event.key === " ") orderThere({ type: running.peek() ? "pause" : "run" });
   else if (event.key === "ArrowDown" || event.key === "ArrowUp") event.currentTarget.parentElement.parentElement.scrollBy(0, event.key === "ArrowDown" ? 36 : -36);
   else return;
   event.preventDefault();

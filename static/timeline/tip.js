@@ -18,7 +18,7 @@ export function found(row, time, secondsPerPixel) {
 
 function Times({ band }) {
   if (band.mark) return html`<p class="number quiet">at ${timeText(band.from, 0.001)}</p>`;
-  const to = band.to === null ? "now" : timeText(band.to, 0.001);
+  const to = band.to === null ? "the newest moment" : timeText(band.to, 0.001);
   const length = band.to === null ? "" : `, ${((band.to - band.from) * 1000).toFixed(0)} ms`;
   return html`<p class="number quiet">${timeText(band.from, 0.001)} to ${to}${length}${band.end ? `, ${band.end}` : ""}</p>`;
 }

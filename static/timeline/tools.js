@@ -50,7 +50,7 @@ const zoomIn = registered("Zoom in", "z", () => near(1 / STEP));
 const zoomOut = registered("Zoom out", "Shift+z", () => near(STEP));
 const showAll = registered("Show all of the run", "f", fit);
 const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0);
-const keep = registered("Keep the timeline or a plot as a picture, or its values as CSV", null, savePictures, () => Boolean(session.value));
+const keep = registered("Save the timeline or a plot as a picture, or its values as CSV", null, savePictures, () => Boolean(session.value));
 const openTimeline = command({ text: "Open the timeline in a window of its own", group: "Page", work: () => openWindow("timeline") });
 commandsOf(() => names.value.map(({ name }) => {
   const shown = plotted.value.includes(name);
@@ -87,7 +87,7 @@ export function Tools() {
       <button class="bare" title=${buttonTitle(zoomOut, "Show more; also the wheel")} aria-label="Zoom out" onClick=${zoomOut.work}>−</button>
       <button class="bare" aria-pressed=${mode.value === "fit"} title=${buttonTitle(showAll)} onClick=${fit}>Fit</button>
     </div>
-    <button class="bare" disabled=${!keep.ready()} title=${buttonTitle(keep)} aria-label="Keep a picture" onClick=${savePictures}><${Icon} name="download" /></button>
+    <button class="bare" disabled=${!keep.ready()} title=${buttonTitle(keep)} aria-label="Save a picture" onClick=${savePictures}><${Icon} name="download" /></button>
     <${ManualLink} page="timeline" title="Timeline" />
     <${AreaMenu} area="timeline" opening=${openTimeline} />
   </div>`;

@@ -155,7 +155,7 @@ def test_a_recording_that_is_changed_is_not_said_to_have_a_branch(pages: Callabl
     for one in workbench.get("/api/sessions").json()["sessions"]:
         workbench.post(f"/api/sessions/{one['id']}/close")
     page.goto(f"{page.url.partition('?')[0]}?run={name}")
-    expect(page.locator(".recording-banner")).to_contain_text("1.00 s are known")
+    expect(page.locator(".recording-banner")).to_contain_text("1.00 s recorded")
     change_the_past(page)
     shows(page, ".branched", r"The recording keeps the run up to 1\.00 s")
     expect(page.locator(".branched")).not_to_contain_text("branch")

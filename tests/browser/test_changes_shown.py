@@ -146,11 +146,11 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
     expect(rows.nth(1)).to_contain_text("theirs")  # this page hears of it, although it has not listed
     page.get_by_label("Name", exact=True).fill("<i>to five</i>")
     page.get_by_label("Tags").fill("long, kept, long")
-    page.get_by_role("button", name="Keep", exact=True).click()
+    page.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_role("dialog").get_by_role("alert")).to_have_text(
-        "another browser has changed the name to 'theirs' in the meantime. Keep replaces that."
+        "another browser has changed the name to 'theirs' in the meantime. Save replaces that."
     )
-    page.get_by_role("button", name="Keep", exact=True).click()
+    page.get_by_role("button", name="Save", exact=True).click()
     expect(rows.nth(1)).to_contain_text("<i>to five</i>")
     label = {"name": "<i>to five</i>", "note": "as it was", "tags": ["long", "kept"]}
     assert workbench.get(f"/api/recordings/{branch}").json()["label"] == label
@@ -168,7 +168,7 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
 
     # the branch is shown as a recording with its own address; a change there is a branch of it, and the live run is left alone
     rows.nth(1).locator(".branch-name").click()
-    shows(page, ".recording-banner", r"0\.30 s are known")
+    shows(page, ".recording-banner", r"0\.30 s recorded")
     expect(page).to_have_url(re.compile(r"/\?run="))
     shows(page, "#time", r"0\.12 s")  # from where it differs
     say(page, type="seek", time=0.2)
@@ -226,6 +226,51 @@ def test_things_in_the_scene_are_moved_and_pushed_by_numbers(pages: Callable[...
     say(page, type="command", word="move", values=["walker", 2.0, 1.0, 0.5])
     say(page, type="command", word="aperture", values=[0.4])
     assert commands(page) == ["move walker to (1, 1.5) m, 90°", "move walker to (2, 1) m, 29°", "aperture 50 -> 40 cm"]
+
+
+def test_a_form_stays_open_while_the_page_asks_whether_what_lies_ahead_may_be_lost(pages: Callable[..., Page]) -> None:
+    page = pages(refusals=True)
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.05)
+    shows(page, "#time", r"0\.05 s")
+    say(page, type="seek", time=0.02)
+    shows(page, "#time", r"0\.02 s")
+    page.route("**/api/recordings/*", lambda route: route.fulfill(status=404, json={"error": "there is no such recording"}))
+    page.get_by_role("button", name="Move, push …").click()
+    page.get_by_role("button", name="Move …", exact=True).click()
+    form, question = page.get_by_role("dialog", name="Move"), page.get_by_role("dialog", name="Change the past?")
+    x = form.locator("input").first
+    x.fill("7")
+    form.locator("input").nth(1).fill("1.5")
+    x.press("Enter")
+    question.get_by_role("button", name="Cancel").click()
+    expect(x).to_have_value("7")
+    expect(x).to_be_focused()
+    expect(form.get_by_role("alert")).to_have_count(0)
+    x.press("Enter")
+    question.get_by_role("button", name="Change it, and lose the rest").click()
+    expect(form.get_by_role("alert")).to_contain_text("it would be inside 'aperture_left'")
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+
+    # a parameter may have values of several types
+    page.keyboard.press("Control+k")
+    page.keyboard.insert_text("set parameter")
+    page.keyboard.press("Enter")
+    form = page.get_by_role("dialog", name="Set parameter")
+    form.locator("input").first.fill("walker.speed")
+    value = form.locator("input").last
+    value.fill('"1')
+    value.press("Enter")
+    expect(form.get_by_role("alert")).to_have_text("value: the quotation marks are wrong (got '\"1')")
+    for text in ("fast", "1.5"):
+        value.fill(text)
+        value.press("Enter")
+        question.get_by_role("button", name="Change it, and lose the rest").click()
+        if text == "fast":
+            expect(form.get_by_role("alert")).to_contain_text("must be a number (got 'fast')")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    until(page, lambda: commands(page) == ["speed 1.2 -> 1.5 m/s"])
 
 
 WARNS = """import warnings

@@ -128,6 +128,24 @@ def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..
     expect(page.get_by_text("seed 7", exact=True)).to_be_visible()
 
 
+@pytest.mark.slow
+def test_a_parameter_that_is_emptied_during_a_run_stays_empty(pages: Callable[..., Page], workbench: Served) -> None:
+    shutil.copy(MODELS / "aperture_passage.py", workbench.folder)
+    page = pages("aperture_passage.py", tab="parameters")
+    speed = page.get_by_label("speed", exact=True)
+    speed.fill("2")
+    page.get_by_role("button", name="Restart with these").click()
+    becomes_true(page, "async () => (await part('store.js')).session.value.settings.speed === 2")
+    shows(page, "#status", "at its start")
+    speed.fill("")
+    speed.press("Enter")
+    becomes_true(page, "async () => (await part('store.js')).state.value?.parameters.speed === null")
+    expect(speed).to_have_value("")
+    page.get_by_role("button", name="Restart with these").click()
+    becomes_true(page, "async () => !('speed' in (await part('store.js')).session.value.settings)")
+    (workbench.folder / "aperture_passage.py").unlink()
+
+
 def test_the_eye_is_shown_small_and_large(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     inset = page.get_by_role("complementary", name="Retina")
@@ -202,6 +220,9 @@ def test_keys_do_what_the_buttons_do_and_a_question_mark_shows_them(pages: Calla
     first = page.evaluate(ENDED)
     page.keyboard.press("Space")
     until(page, lambda: page.evaluate(ENDED) not in (None, first))
+    second = page.evaluate(ENDED)
+    page.locator("#timeline").press("Space")
+    until(page, lambda: page.evaluate(ENDED) not in (None, first, second))
     page.keyboard.press("Home")
     shows(page, "#time", "0.00 s")
     page.keyboard.press("End")
@@ -310,6 +331,30 @@ def test_sizes_theme_and_tab_are_remembered(pages: Callable[..., Page]) -> None:
     expect(bar).to_have_count(0)  # a model without a body leaves the room of the scene to the panels
     choose(page, "doorway.py")
     expect(bar).to_have_attribute("aria-valuenow", str(after))
+
+
+def test_what_was_not_set_is_not_remembered_and_no_tab_loses_what_another_has_settled(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py", 2560, 1400)
+    bar = page.get_by_role("separator", name="Width of the panels")
+    expect(bar).to_have_attribute("aria-valuenow", str(round(0.38 * 2560)))
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.reload()
+    expect(bar).to_have_attribute("aria-valuenow", "784")
+    shows(page, "#status", "at its start")
+    other = page.context.new_page()
+    other.goto(page.url)
+    shows(other, "#status", "at its start")
+    settle = "async ([kind, number]) => (await part('store.js')).settle(kind, [{ number }])"
+    page.evaluate(settle, ["cleared", 3])
+    other.evaluate(settle, ["seen", 5])
+    page.reload()
+    shows(page, "#status", "at its start")
+    settled = """async (kind) => {
+      const { isSettled } = await part("store.js");
+      return [3, 5, 6].filter((number) => isSettled({ number }, kind));
+    }"""
+    assert page.evaluate(settled, "cleared") == [3]
+    assert page.evaluate(settled, "seen") == [3, 5]
 
 
 @pytest.mark.slow

@@ -379,6 +379,36 @@ def test_text_in_fields_stays_as_it_was_typed(pages: Callable[..., Page]) -> Non
     expect(speed).to_have_value("1.3")
 
 
+def test_over_http_from_another_machine_text_is_copied_by_hand_and_drafts_stay_with_their_tabs(
+    pages: Callable[..., Page], workbench: Served
+) -> None:
+    """There, the browser gives a page neither a clipboard nor locks."""
+    (workbench.folder / "kept.py").write_text("a = 1\n", encoding="utf-8")
+    page = pages("counting.py")
+    page.context.add_init_script("delete Navigator.prototype.clipboard; delete Navigator.prototype.locks")
+    page.on("dialog", lambda dialog: dialog.accept())  # the browser asks about the unsaved text
+    page.reload()
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#time", r"0\.05 s")
+    page.get_by_role("button", name="Copy a link").click()
+    text = page.get_by_role("dialog", name="Copy the text").get_by_label("Text to copy")
+    expect(text).to_have_value(re.compile(r"\?run=counting-[\w-]+&t=0\.05"))
+    expect(text).to_be_focused()
+    assert text.evaluate("field => field.selectionEnd - field.selectionStart === field.value.length")
+    page.keyboard.press("Escape")
+    edit(page, "kept.py")
+    write(page, "b = 2\n")
+    until(page, lambda: page.evaluate("Object.keys(localStorage).some((key) => key.endsWith(' kept.py'))"))
+    other = page.context.new_page()
+    other.goto(page.url)
+    edit(other, "kept.py")
+    expect(other.locator(CODE)).to_have_text("a = 1")
+    page.reload()
+    edit(page, "kept.py")
+    expect(page.locator(CODE)).to_have_text("a = 1b = 2")
+
+
 def test_a_dialog_takes_what_is_pressed_at_once(page: Page) -> None:
     shows(page, "#status", "at its start")
     opened = page.evaluate(

@@ -34,7 +34,7 @@ def test_a_recording_has_an_address_of_its_own_and_leads_back(pages: Pages, work
     page.get_by_role("button", name="Open", exact=True).click()
     banner = page.locator(".recording-banner")
     expect(banner).to_contain_text(name)
-    expect(banner).to_contain_text("6.80 s are known")
+    expect(banner).to_contain_text("6.80 s recorded")
     expect(banner.locator(".when")).to_have_text(re.compile(r"^made \S+ \d+, \d{4}, \d\d:\d\d:\d\d$"))  # not «3:03:40 PM»
     shows(page, "#time", "t = 0.00 s")
     assert page.url.endswith(f"/?run={name}")
@@ -85,7 +85,7 @@ def test_the_page_fits_its_window_whatever_a_recording_is_called(pages: Pages, w
         shows(page, "#status", "at its start")
         page.goto(f"{workbench.url}/?run={name}")
         banner = page.locator(".recording-banner")
-        expect(banner).to_contain_text("s are known")
+        expect(banner).to_contain_text("s recorded")
         for width, height in ((1280, 800), (853, 533)):
             page.set_viewport_size({"width": width, "height": height})
             assert page.evaluate("document.documentElement.scrollWidth") == width
@@ -153,7 +153,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     page, other = pages("counting.py", tab="buffers", refusals=True), pages("counting.py", tab="buffers")
     for one in (page, other):
         one.goto(f"{workbench.url}/?run={name}")
-        expect(one.locator(".recording-banner")).to_contain_text("6.80 s are known")
+        expect(one.locator(".recording-banner")).to_contain_text("6.80 s recorded")
         shows(one, "#time", "t = 0.00 s")
     asked = page.get_by_role("dialog")
 
@@ -232,7 +232,7 @@ def test_a_changed_recording_has_the_address_and_the_link_of_the_branch_that_it_
     shows(page, "#status", "at its start")
     page.goto(f"{workbench.url}/?run={name}")
     banner = page.locator(".recording-banner")
-    expect(banner).to_contain_text("3.35 s are known")
+    expect(banner).to_contain_text("3.35 s recorded")
     branch = changed_at(page, 0.2, name)
     expect(banner).to_contain_text(branch)
     say(page, type="step", ticks=2)
@@ -245,14 +245,14 @@ def test_a_changed_recording_has_the_address_and_the_link_of_the_branch_that_it_
     shows(other, "#time", r"t = 0\.22 s")
     expect(other).to_have_url(f"{workbench.url}/?run={branch}")
     other.goto(f"{workbench.url}/?run={name}&t=0.3")  # the recording, as it was
-    expect(other.locator(".recording-banner")).to_contain_text("3.35 s are known")
+    expect(other.locator(".recording-banner")).to_contain_text("3.35 s recorded")
     shows(other, "#time", r"t = 0\.30 s")
     shows(page, "#time", r"t = 0\.22 s")
     page.reload()
     expect(banner).to_contain_text(branch)
     shows(page, "#time", r"t = 0\.22 s")
     page.go_back()
-    expect(banner).to_contain_text("3.35 s are known")
+    expect(banner).to_contain_text("3.35 s recorded")
     page.go_forward()
     expect(banner).to_contain_text(branch)
     shows(page, "#time", r"t = 0\.22 s")
@@ -270,7 +270,7 @@ def test_a_link_to_a_moment_past_the_end_of_a_recording_leads_to_the_branch_that
     shows(page, "#status", "at its start")
     page.goto(f"{workbench.url}/?run={name}")
     banner = page.locator(".recording-banner")
-    expect(banner).to_contain_text("0.30 s are known")
+    expect(banner).to_contain_text("0.30 s recorded")
     say(page, type="until", time=0.5)
     expect(banner).to_contain_text("Recorded as a branch")
     shows(page, "#time", r"t = 0\.50 s")
@@ -302,6 +302,22 @@ def test_a_recording_stays_shown_while_its_file_is_renamed(pages: Pages, workben
     assert page.url.endswith("/?model=second.py")
 
 
+def test_a_recording_of_a_model_that_is_gone_shows_the_parameters_of_its_run(pages: Pages, workbench: Served) -> None:
+    file = workbench.folder / "gone.py"
+    shutil.copy(MODELS / "doorway.py", file)
+    session = workbench.post("/api/sessions", {"model": "gone.py", "settings": {"width": 0.9}}).json()["id"]
+    workbench.post(f"/api/sessions/{session}/command", {"command": {"type": "step"}})
+    name = workbench.get(f"/api/sessions/{session}").json()["session"]["recording"]
+    workbench.post(f"/api/sessions/{session}/close")
+    file.unlink()
+    page = pages("counting.py", tab="parameters")
+    page.goto(f"{workbench.url}/?run={name}")
+    expect(page.locator(".note")).to_have_text("The model's file is gone from the folder: this run cannot be restarted with other values.")
+    expect(page.get_by_role("table", name="Parameters").get_by_role("row", name="width")).to_have_text("width0.9")
+    expect(page.locator("#panel-parameters")).not_to_contain_text("declares no parameters")
+    expect(page.locator(".toast")).to_have_count(0)
+
+
 @pytest.mark.slow
 def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_deleted_without_the_other(
     pages: Pages, workbench: Served
@@ -317,13 +333,13 @@ def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_dele
     first = page.locator(".branch-name", has_text="at 0.10 s")
     first.click()
     banner, time = page.locator(".recording-banner"), page.locator("#time")
-    expect(banner).to_contain_text("0.30 s are known")
+    expect(banner).to_contain_text("0.30 s recorded")
     name = page.url.partition("run=")[2]
     branch = changed_at(page, 0.2, name)
     other.goto(page.url)
     expect(other.locator(".recording-banner")).to_contain_text("Recorded as a branch")
     first.click()
-    expect(banner).to_contain_text("0.30 s are known")
+    expect(banner).to_contain_text("0.30 s recorded")
     expect(page).to_have_url(f"{workbench.url}/?run={name}")
     expect(time).to_contain_text("t = 0.20 s")  # from where it differs
     at(page, 0.25)
@@ -334,7 +350,7 @@ def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_dele
     expect(page).to_have_url(f"{workbench.url}/?run={branch}")
     row(page, name).click()
     page.get_by_role("button", name="Open", exact=True).click()
-    expect(banner).to_contain_text("0.30 s are known")
+    expect(banner).to_contain_text("0.30 s recorded")
     row(page, branch).click()
     page.get_by_role("button", name="Open", exact=True).click()
     expect(banner).to_contain_text("Recorded as a branch")

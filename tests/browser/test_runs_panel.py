@@ -303,8 +303,28 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     assert plot.locator("output").all_text_contents().count("–") == 1
     written = "async () => (await part('runs/wording.js')).measureText('x_n_s', 0)"
     assert page.evaluate(written) == "0 N s"
+    first = "async () => (await part('runs/wording.js')).resultText({ result: { outcome: 'hit', impulse_n_s: 2, peak_angle_deg: 3 } })"
+    assert page.evaluate(first) == "2.0 N s"
     page.keyboard.press("Escape")
     expect(dialog).to_have_count(0)
+
+
+@pytest.mark.slow
+def test_an_opened_recording_is_the_present_run_and_keys_in_a_comparison_do_nothing_in_the_list(page: Page, two: list[str]) -> None:
+    open_tab(page, "Runs")
+    row(page, two[0]).dblclick()
+    expect(page.locator(".recording-banner")).to_contain_text(two[0])
+    expect(row(page, two[0]).locator(".present-mark")).to_have_text("present")
+    row(page, two[1]).click()
+    page.get_by_role("button", name="Compare with the present run").click()
+    dialog = page.get_by_role("dialog", name="Two runs")
+    expect(dialog.locator(".compare-run").last).to_contain_text("present")
+    only = dialog.get_by_label("differences only")
+    only.press("Delete")
+    expect(page.get_by_role("dialog")).to_have_count(1)
+    only.press("Enter")
+    expect(page.get_by_text("Opening …")).to_have_count(0)
+    assert page.url.endswith(f"run={two[0]}")
 
 
 @pytest.mark.slow

@@ -92,3 +92,33 @@ def test_all_panels_say_the_same_of_the_state_of_the_run_and_what_to_do(pages: C
     open_tab(page, "Productions")
     expect(page.locator("#why-text")).to_contain_text("end: matches")  # it can still be asked
     expect(page.locator("#panel-productions p.empty")).to_have_count(0)
+
+
+NOTHING_MATCHES = """
+from actr3d.actr import *
+
+class Mind(ACTR):
+    goal = Buffer()
+
+    def init():
+        goal.set('one')
+
+    def two(goal='two'):
+        goal.set('three')
+
+Mind().run()
+"""
+
+
+def test_a_run_that_is_over_at_time_0_is_not_said_to_be_before_its_first_event(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "matches_nothing.py").write_text(NOTHING_MATCHES, encoding="utf-8")
+    page = pages("doorway.py")
+    note = page.get_by_text("This is before the first event")
+    expect(note).to_be_visible()
+    choose(page, "matches_nothing.py")
+    page.click("#run")
+    shows(page, "#status", "^ended")
+    shows(page, "#time", r"0\.00 s")
+    shows(page, "tr[data-path$=goal]", "one")
+    expect(note).to_have_count(0)
+    (workbench.folder / "matches_nothing.py").unlink()

@@ -281,7 +281,7 @@ def test_pictures(ended: Page, tmp_path: Path) -> None:
     page = ended
 
     def kept(kind: str, what: str | None = None) -> Path:
-        page.get_by_role("button", name="Keep a picture").click()
+        page.get_by_role("button", name="Save a picture").click()
         if what is not None:
             page.get_by_label("Of what").select_option(what)
         with page.expect_download() as download:
@@ -730,7 +730,7 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
         assert float(full[2]) == pytest.approx(float(full[1]), abs=0.01)
     assert re.search(r"left\.go utility 0\.\d+", tips[0.15])
     assert "left.go utility –\n" in tips[0.4]
-    page.get_by_role("button", name="Keep a picture").click()
+    page.get_by_role("button", name="Save a picture").click()
     with page.expect_download() as taken:
         page.get_by_role("dialog").get_by_role("button", name="CSV").click()
     rows = list(csv.DictReader(Path(taken.value.path()).read_text().splitlines()))

@@ -19,13 +19,13 @@ class SetParameter(AgentChange):
 
     word = "parameter"
     of = "parameter"
-    title = "Set"
+    title = "Set parameter"
     text = "{path} {value}"
 
     path: str
     """Its path, such as `walker.memory.latency`."""
     value: bool | int | float | str | None
-    """Its new value."""
+    """Its new value: a number, true, false, none or a text; a text that reads like one of the others in quotation marks."""
 
     def carry_out(self, on: Parts) -> None:
         place, _, name = self.path.rpartition(".")
