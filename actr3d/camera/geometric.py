@@ -30,6 +30,7 @@ class GeometricCamera:
     inside a geom its inner sides are seen. Signed distance fields are an exception: they are seen as the meshes that MuJoCo draws
     for them, which differ slightly from what its rays hit. Flexes and skins are not seen, and a warning names them. Changes in
     `mj_model` (sizes, colours, heights, poses) take effect at the next look; only the list of geoms and their types is read once.
+    The sensor `view` looks again after a step, or after `World.changed`.
 
     A camera is not thread-safe.
     """
@@ -105,10 +106,10 @@ class GeometricCamera:
         Only for observers such as displays and tests: cognition does not know the names of geoms.
 
         Raises:
-            CameraError: If there is no such geom.
+            CameraError: If no geom has this name.
         """
         names = names_of(self._mj_model, "geom")
-        if geom not in names:
+        if not geom or geom not in names:
             raise CameraError(f"GeometricCamera.label_of: no geom {geom!r}")
         object = int(self._objects[names.index(geom)])
         return int(self._labels[object]) or None if object > 0 else None

@@ -20,9 +20,6 @@ EDGES = ("x1", "x2", "d1", "d2", "a1", "a2")
 NOISY = (*EDGES, "xn", "dn")
 """The fields that noise can be added to."""
 
-Extent = list[float]
-"""`[x1, x2, d1, d2, a1, a2]`, see `View`."""
-
 
 @dataclass(frozen=True, eq=False)
 class View:
@@ -59,10 +56,10 @@ class View:
         """
         return self.extents
 
-    def as_dict(self) -> dict[float, dict[int, list[Extent]]]:
+    def as_dict(self) -> dict[float, dict[int, list[list[float]]]]:
         """Returns `{y: {label: [[x1, x2, d1, d2, a1, a2], ...]}}`, a new dict at each call; empty rows are included."""
         ys = [(row + 0.5) / self.rows for row in range(self.rows)]
-        view: dict[float, dict[int, list[Extent]]] = {y: {} for y in ys}
+        view: dict[float, dict[int, list[list[float]]]] = {y: {} for y in ys}
         for row, label, _, *extent in self.extents.tolist():
             view[ys[row]].setdefault(label, []).append(extent[: len(EDGES)])
         return view

@@ -17,7 +17,7 @@ from actr3d.errors import Actr3dError, WorldError, alternatives
 from actr3d.world.actuated_dofs import ActuatedDofs
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.base import Base
-from actr3d.world.bounding_box import BoundingBox, Extent
+from actr3d.world.bounding_box import BoundingBox, Bounds
 from actr3d.world.command_registry import CommandRegistry, known, number
 from actr3d.world.contacts import BodyContacts, Touch
 from actr3d.world.frames import WORLD_FRAME, Frame, upright_frame
@@ -136,7 +136,7 @@ class Body:
         self._used: list[Any] = []
         """The keys of those that the agent has used up to the present, in the order of first use."""
         self.noise = SensorNoise(seed, self.name)
-        self.extent = Extent(model, physics.mj_data, self.geoms)
+        self.bounds = Bounds(model, physics.mj_data, self.geoms)
         self.actuators: tuple[str, ...] = ACTUATORS.of(self)
         self.sensors: tuple[str, ...] = SENSORS.of(self)
         self._noise: dict[str, StandardDeviation] = {
@@ -333,7 +333,7 @@ class Body:
             WorldError: If there is no such frame.
         """
         self.physics.refresh()
-        return self.extent.box(*self.frame(frame), self.contacts.held())
+        return self.bounds.box(*self.frame(frame), self.contacts.held())
 
     def frame(self, name: str) -> Frame:
         """Returns a frame at the positions of the last refresh.

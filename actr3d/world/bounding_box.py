@@ -52,7 +52,7 @@ class BoundingBox:
         return self.upper[2] - self.lower[2]
 
 
-class Extent:
+class Bounds:
     """Computes bounding boxes of some geoms.
 
     The extent of a shape from its centre along a unit vector u, given in its own frame, is its support function:
@@ -111,7 +111,7 @@ class Extent:
 
 
 def _there(model: MjModel, geom: int) -> bool:
-    """Returns whether a geom is visible or has contacts, and is finite."""
+    """Returns whether a geom is visible or has contacts, and is not a plane."""
     material = int(model.geom_matid[geom])
     alpha = model.geom_rgba[geom, 3] if material < 0 else model.mat_rgba[material, 3]
     touches = model.geom_contype[geom] or model.geom_conaffinity[geom]

@@ -17,7 +17,7 @@ from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, WorldError, did_you_mean
 from actr3d.warnings import warn_modeller
 from actr3d.world.asset_folder import Files, Folder, digest, resolved
-from actr3d.world.mesh import UNSEEN, Quaternion, orientation
+from actr3d.world.mesh import INVISIBLE, Quaternion, orientation
 from actr3d.world.mjcf_rewrite import Document, read_imported
 from actr3d.world.scene import on_one_line
 from actr3d.world.scene_objects import Heading, Name
@@ -226,7 +226,7 @@ def _hide(geoms: list[Any], urdf: bool) -> None:
     for geom in geoms:
         if (urdf and seen and geom not in seen) or (not urdf and geom.group >= HIDDEN_GROUP):
             geom.material = ""
-            geom.rgba = UNSEEN["rgba"]
+            geom.rgba = INVISIBLE["rgba"]
             geom.group = max(geom.group, HIDDEN_GROUP)
 
 

@@ -24,7 +24,7 @@ from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Nam
 
 Quaternion = tuple[float, float, float, float]
 
-UNSEEN = {"rgba": (0.0, 0.0, 0.0, 0.0), "group": 3}
+INVISIBLE = {"rgba": (0.0, 0.0, 0.0, 0.0), "group": 3}
 """Options of an invisible geom for contacts: rays ignore alpha 0, MuJoCo's viewers do not draw group 3."""
 
 GREY = (0.6, 0.6, 0.6, 1.0)
@@ -146,7 +146,7 @@ class Mesh(Configuration):
             contype=0,
             conaffinity=0,
         )
-        hidden = {**UNSEEN, **({"solref": WALL_SOLREF} if self.mass is None else {})}
+        hidden = {**INVISIBLE, **({"solref": WALL_SOLREF} if self.mass is None else {})}
         if self.collision == "hull":
             body.add_geom(name=f"{self.name}_hull", type=mjtGeom.mjGEOM_MESH, meshname=self.name, mass=0, **hidden)
         elif self.collision == "parts":

@@ -35,7 +35,7 @@ MAX_FORCE = 1e5
 LONGEST = 60.0
 """Longest push [s]. Source: chosen for this library."""
 
-Pose = tuple[float, float, float]
+Placement = tuple[float, float, float]
 """Place and heading of an object: x [m], y [m], heading [rad]."""
 
 
@@ -53,7 +53,7 @@ NONE = Depth(0.0, PRESSED)
 
 
 class Objects:
-    """Finds, moves and pushes the objects of a world that are not fixed for ever.
+    """Finds, moves and pushes the objects of a world that can move or be moved by hand.
 
     Args:
         physics: The compiled scene and its state.
@@ -80,7 +80,7 @@ class Objects:
         """The names of all objects that can be moved."""
         return (*self._bodies, *self._obstacles, *self._loose)
 
-    def pose(self, name: str) -> Pose:
+    def pose(self, name: str) -> Placement:
         """Returns where an object is.
 
         Raises:

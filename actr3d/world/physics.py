@@ -65,7 +65,7 @@ class Physics:
         return self.steps * self.timestep_us
 
     def changed(self) -> None:
-        """Marks derived quantities as out of date, after positions, speeds or commands have changed."""
+        """Marks derived quantities as out of date, after positions, speeds, commands or the compiled model have changed."""
         self._refreshed = self._solved = False
         self.moment += 1
 

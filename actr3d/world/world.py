@@ -165,7 +165,10 @@ class World:
             raise WorldError(f"World.{what}: an observer cannot change the world; call simulation.command after the run")
 
     def changed(self) -> None:
-        """Marks derived quantities as out of date, after positions, speeds or commands have changed."""
+        """Marks derived quantities and views as out of date.
+
+        Call it after you have changed positions, speeds or commands in `mj_data`, or sizes, colours or other numbers in `mj_model`.
+        """
         self.physics.changed()
 
     def refresh(self) -> None:

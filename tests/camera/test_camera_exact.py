@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from actr3d.camera import CameraParameters, GeometricCamera, View
+from actr3d.errors import CameraError
 from tests.helpers.camera_scenes import compiled, seen
 
 ABOUT = 1e-9
@@ -127,6 +128,13 @@ def test_the_ground_hides_and_is_not_in_the_view() -> None:
     wall = '<geom name="wall" type="box" size=".1 9 9" pos="2 0 1"/>'
     _, view = seen(wall + '<geom type="sphere" size=".3" pos="3 0 1.5"/>', background=("wall",))
     assert len(view.as_array()) == 0
+
+
+def test_a_geom_without_a_name_has_no_label() -> None:
+    camera, _ = seen('<geom type="sphere" size=".3" pos="3 0 1.5"/>')
+    for name in ("", "ball"):
+        with pytest.raises(CameraError, match=f"no geom '{name}'"):
+            camera.label_of(name)
 
 
 def test_a_finite_plane_ends() -> None:

@@ -171,6 +171,15 @@ def test_a_recording_keeps_what_a_view_was_in_short(tmp_path: Path) -> None:
     assert all(set(event.data["value"]) == {"rows", "extents", "crc32"} for event in answers)
 
 
+def test_a_change_of_the_compiled_model_is_seen_after_it_was_told() -> None:
+    world = doorway()
+    walker = world.bodies["walker"]
+    seen = len(walker.get("view").as_array())
+    world.mj_model.geom_rgba[:, 3] = 0
+    world.changed()
+    assert len(walker.get("view").as_array()) == 0 < seen
+
+
 def test_noise_of_a_view_can_be_on_the_nearest_point_too() -> None:
     walker = doorway().bodies["walker"]
     exact = walker.get("view", rows=1).as_array()

@@ -12,7 +12,7 @@ from mujoco import MjData, MjModel
 from numpy.typing import NDArray
 
 from actr3d.experiment.aperture.kernel import least_distances
-from actr3d.world.bounding_box import Extent
+from actr3d.world.bounding_box import Bounds
 from actr3d.world.scene_objects import Gap
 
 PRESSED = 1e-5
@@ -31,7 +31,7 @@ class Clearance:
 
     def __init__(self, model: MjModel, data: MjData, geoms: NDArray[np.intp], gap: Gap) -> None:
         self._model, self._data, self._geoms, self._gap = model, data, geoms, gap
-        self._extent = Extent(model, data, geoms)
+        self._bounds = Bounds(model, data, geoms)
         c, s = math.cos(gap.heading), math.sin(gap.heading)
         self._axes = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
         self._middle = np.array([*gap.position, 0.0])
@@ -43,7 +43,7 @@ class Clearance:
             held: More geoms that count as the body's: held objects.
         """
         half = self._gap.thickness / 2
-        box = self._extent.box(self._middle, self._axes, held)
+        box = self._bounds.box(self._middle, self._axes, held)
         return max(box.lower[0] - half, -half - box.upper[0])
 
     def rooms(self, held: Sequence[int] = ()) -> tuple[float, float] | None:
@@ -73,7 +73,7 @@ class Clearance:
             middle = float((data.geom_xpos[geom] - self._middle) @ self._axes[:, 0])
             if abs(middle) - self._model.geom_rbound[geom] >= half:
                 continue
-            box = Extent(self._model, data, np.array([geom])).box(self._middle, self._axes)
+            box = Bounds(self._model, data, np.array([geom])).box(self._middle, self._axes)
             pressed = max(0.0, *(-mujoco.mj_geomDistance(self._model, data, geom, segment, 10.0, None) for segment in self._gap.segments))
             if min(half - box.lower[0], half + box.upper[0]) > pressed + PRESSED:
                 return True

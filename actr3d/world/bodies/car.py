@@ -20,7 +20,7 @@ from actr3d.world.velocity_servo import add_servo
 GRAVITY = 9.81
 """[m/s^2]; determines the load of the tyres."""
 
-CLEARANCE = 0.15
+GROUND_CLEARANCE = 0.15
 """Below the car's floor [m]. Source: chosen for this library."""
 
 WAIST = 0.62
@@ -100,8 +100,8 @@ class Car(Configuration):
         super().__post_init__()
         if self.rear >= self.wheelbase:
             raise ConfigurationError(f"Car.rear: must be < the wheelbase of {self.wheelbase:g} m (got {self.rear!r})")
-        if WAIST * self.size[2] <= CLEARANCE:
-            raise ConfigurationError(f"Car.size: its height must be > {CLEARANCE / WAIST:.2f} m (got {self.size!r})")
+        if WAIST * self.size[2] <= GROUND_CLEARANCE:
+            raise ConfigurationError(f"Car.size: its height must be > {GROUND_CLEARANCE / WAIST:.2f} m (got {self.size!r})")
 
     def anatomy(self) -> Anatomy:
         """Returns its description for a `Body`."""
@@ -142,8 +142,8 @@ class Car(Configuration):
         body.add_geom(
             name=self._name("hull"),
             type=mjtGeom.mjGEOM_BOX,
-            pos=[middle, 0, (CLEARANCE + waist) / 2],
-            size=[long / 2, wide / 2, (waist - CLEARANCE) / 2],
+            pos=[middle, 0, (GROUND_CLEARANCE + waist) / 2],
+            size=[long / 2, wide / 2, (waist - GROUND_CLEARANCE) / 2],
             rgba=self.colour,
             **hull,
         )

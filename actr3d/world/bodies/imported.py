@@ -10,7 +10,7 @@ from actr3d.errors import WorldError
 from actr3d.world.anatomy import Anatomy, NamedMovement, body_kind
 from actr3d.world.imported import Imported
 
-AHEAD = (0, -1, 0, 0, 0, 1)
+ALONG_X = (0, -1, 0, 0, 0, 1)
 """The axes of a camera that looks along x, with z up: its own x to the right and y up."""
 
 
@@ -49,7 +49,7 @@ class ImportedBody(Imported):
             site = mj_spec.site(name)
             if mj_spec.camera(name) is None:
                 inner = site.parent.add_frame(pos=site.pos, quat=site.quat)
-                site.parent.add_camera(name=name, xyaxes=AHEAD, fovy=60).set_frame(inner)
+                site.parent.add_camera(name=name, xyaxes=ALONG_X, fovy=60).set_frame(inner)
 
     def _root(self) -> str:
         roots = self.roots()

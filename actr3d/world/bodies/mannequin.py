@@ -50,7 +50,7 @@ SKIN = (0.78, 0.64, 0.53)
 """The colour of head and hands."""
 SHADES = {"pelvis": 0.6, "leg": 0.6, "thigh": 0.6, "shank": 0.6, "foot": 0.35, "eye": 0.15}
 """How dark trousers, shoes and eye are, as a fraction of the shirt's colour."""
-AHEAD = 0.002
+EYE_GAP = 0.002
 """Distance of the viewpoint in front of the eyeball [m], so that the eyeball does not block the view."""
 
 TURN = 150.0
@@ -393,7 +393,7 @@ class _Builder:
         self._segment("eye", "head", (front - r, 0, person.eyes))
         self._geom("eye", "eye", mjtGeom.mjGEOM_SPHERE, (front - r, 0, person.eyes), (r, 0, 0), 0.0001, touches=False)
         body, _ = self.bodies["eye"]
-        ahead = [r + AHEAD, 0, 0]
+        ahead = [r + EYE_GAP, 0, 0]
         body.add_site(name=self._name("eye"), pos=ahead)
         body.add_camera(name=self._name("eye"), pos=ahead, xyaxes=[0, -1, 0, 0, 0, 1], fovy=60)
 
