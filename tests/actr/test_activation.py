@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actr3d.actr import Buffer, Chunk, DMBaseLevel, DMFixed, DMNoise, Memory, MemorySubModule
-from actr3d.errors import ChunkError
+from actr3d.errors import ChunkError, ParameterError
 from tests.helpers.small_agents import living, near
 
 getcontext().prec = 40
@@ -230,3 +230,25 @@ def test_modules_add_up_in_order_and_may_be_ones_own() -> None:
     assert agent.memory._buffer.chunk == Chunk("a x")
     assert agent.memory.get_activation("a x") == 3 + 0.1
     assert agent.own.seen == [("matched", ["a x", "a y"]), ("recalled", "a x", near(0.05 * math.exp(-3.1), abs=1e-6))]
+
+
+@pytest.mark.parametrize("limit", [0, 1, 2, None])
+def test_the_order_in_which_uses_are_declared_does_not_count_in_act_r_7(limit: int | None) -> None:
+    found: list[float] = []
+    for times in ([50, 10, 30], [10, 30, 50], [30, 50, 10]):
+        memory = Memory(Buffer())
+        agent = living("act-r-7", memory=memory, base=DMBaseLevel(memory, limit=limit))
+        for time in times:
+            agent.memory.add("x", time=time)
+        agent.run(1)
+        found.append(agent.memory.get_activation("x"))
+    assert found == near([found[0]] * 3)
+
+
+def test_times_that_are_not_kept_cannot_come_back() -> None:
+    memory = Memory(Buffer())
+    agent = living(memory=memory, base=DMBaseLevel(memory, limit=0))
+    agent.memory.add("x")
+    agent.memory.add("x")
+    with pytest.raises(ParameterError, match=r"DMBaseLevel\.limit: must be a number, because times of references have not been kept"):
+        agent.base.limit = None

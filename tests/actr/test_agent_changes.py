@@ -8,7 +8,9 @@ from typing import Any
 
 import pytest
 
+from actr3d.actr.changes import Parts
 from actr3d.actr.loading import load_text
+from actr3d.change import CHANGES
 from actr3d.errors import Actr3dError
 from actr3d.recording import Recorded
 from actr3d.runner.replay import replay
@@ -222,3 +224,27 @@ def test_an_acted_change_waits_for_no_other_agent() -> None:
 
     changed = story(two(), lambda simulation: simulation.command("forbid_once", "first", "up"))
     assert changed == story(two(), lambda _: None)
+
+
+@pytest.mark.parametrize("word", ["strengthen", "add_chunk"])
+def test_a_chunk_given_by_hand_does_not_hide_a_failed_retrieval(word: str) -> None:
+    text = """
+from actr3d.actr import *
+class Agent(ACTR):
+    goal, retrieval = Buffer(), Buffer()
+    memory = Memory(retrieval)
+    base = DMBaseLevel(memory)
+    def init():
+        memory.add("a b")
+        goal.set("begin")
+    def ask(goal="begin"):
+        memory.request("c ?")
+        goal.set("wait")
+    def failed(goal="wait", memory="error:True"): goal.set("failed")
+"""
+    agent = load_text(text, "failing.py").Agent()
+    agent.run(0.12)
+    assert agent.memory.error
+    CHANGES[word]("memory", "a b").carry_out(Parts([agent]))  # pyright: ignore[reportCallIssue] # a dataclass
+    agent.run(0.1)
+    assert str(agent.goal.chunk) == "failed"

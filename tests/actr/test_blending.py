@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actr3d.actr import BlendingMemory, Buffer, Chunk, DMFixed, DMNoise, Memory, Partial
+from actr3d.errors import ParameterError
 from tests.helpers.small_agents import living, near
 
 getcontext().prec = 60
@@ -120,7 +121,7 @@ def test_activations_of_any_size(profile: str, level: float) -> None:
     agent.memory.add("n:1", fixed=level)
     agent.memory.add("n:2", fixed=level + math.log(3))
     agent.memory.request("n:?")
-    agent.run(10)
+    agent.run()
     assert agent.buffer.chunk["n"] == near(1.75, rel=1e-9)
 
 
@@ -261,3 +262,9 @@ def test_values_of_any_kind_can_be_blended() -> None:
     agent.memory.request("v:?")
     agent.run(10)
     assert agent.buffer.chunk["v"] == [1, 2]
+
+
+def test_a_temperature_must_be_positive() -> None:
+    agent = blending()
+    with pytest.raises(ParameterError, match=r"BlendingMemory\.temperature: must be > 0 \(got 0\)"):
+        agent.memory.temperature = 0

@@ -10,6 +10,7 @@ import pytest
 
 from actr3d.actr import Buffer, Chunk, DMBaseLevel, DMFixed, DMNoise, Memory, MemorySubModule
 from actr3d.actr.chunks.pattern import Pattern
+from actr3d.actr.declarative.memory import LONGEST
 from actr3d.errors import ChunkError, ModelWarning
 from tests.helpers.small_agents import living, near
 
@@ -67,7 +68,18 @@ def test_activations_of_any_size(profile: str, activation: float, latency: float
     if latency == 0 or activation > 1000:
         assert time == 0
     else:
-        assert time == (latency if (latency, activation) == (0.05, 0) else 10)
+        assert time == (latency if (latency, activation) == (0.05, 0) else 10 if profile == "python-actr" else LONGEST)
+
+
+def test_act_r_7_has_no_maximum_time_unless_one_is_set() -> None:
+    agent = remembering("act-r-7", latency=1, threshold=-10)
+    agent.memory.add("a", fixed=-3)
+    assert arrival(agent, "a") == (near(math.exp(3), abs=1e-3), Chunk("a"))
+    assert arrival(remembering("act-r-7", threshold=None), "a") == (10, None)
+    agent.memory.maximum_time = 2.5
+    agent.memory.request("a")
+    agent.run()
+    assert agent.now() == near(math.exp(3) + 2.5, abs=1e-3)
 
 
 def test_an_activation_that_is_no_number_never_wins_and_is_said() -> None:

@@ -10,7 +10,7 @@ import pytest
 from actr3d.actr import ACTR, BlendingMemory, Buffer, Chunk, DMBaseLevel, DMNoise, Memory, Model, Partial, ProductionSystem
 from actr3d.actr.kernel.profile import ACT_R_7
 from actr3d.actr.loading import load_text
-from actr3d.errors import ParameterError
+from actr3d.errors import ModelWarning, ParameterError
 from tests.helpers.small_agents import living, near
 
 LEVELS = ["agent", "memory", "instance"]
@@ -62,7 +62,7 @@ def test_a_chunk_added_in_a_class_body(level: str) -> None:
     cls: Any = type("Agent", (ACTR,), parts | ({"profile": "act-r-7"} if level == "agent" else {}))
     agent = cls(profile="act-r-7") if level == "instance" else cls()
     agent.run(1)
-    assert agent.memory.get_activation("a") == near(math.log(2 / 0.5))
+    assert agent.memory.get_activation("a") == near(math.log(2 / 0.5) - 0.5 * math.log(4))  # the oldest use is 4 s ago
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -267,3 +267,9 @@ def test_an_environment_chooses_for_all_its_agents() -> None:
     plain = module.Other()
     plain.run(0)
     assert plain.agent.memory.latency == 0.05
+
+
+def test_a_misspelt_profile_of_an_environment_is_reported() -> None:
+    with pytest.warns(ModelWarning, match=r"World\.profile: no profile 'act-r7'; did you mean 'act-r-7'"):
+        type("World", (Model,), {"profile": "act-r7"})().run(0)
+    type("Person", (Model,), {"profile": "tall"})().run(0)

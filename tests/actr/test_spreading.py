@@ -140,3 +140,41 @@ def test_other_memory_modules_accept_the_same_chunk_twice_too(kind: Any) -> None
     before = module.activation(agent.memory.dm[0])
     module.create(agent.memory.dm[0])
     assert module.activation(agent.memory.dm[0]) == before
+
+
+def test_chunks_that_have_left_the_memory_or_changed_do_not_count_in_act_r_7() -> None:
+    memory, goal = Memory(Buffer()), Buffer()
+    spreading = DMSpreading(memory, goal)
+    spreading.strength = 2
+    agent = living("act-r-7", memory=memory, goal=goal, spreading=spreading)
+    agent.goal.set("x")
+    chunks: Any = agent.memory.dm
+
+    def strength(fan: int) -> Any:
+        return near(2 - math.log(1 + fan))
+
+    agent.memory.add("x y")
+    assert agent.memory.get_activation("x y") == strength(1)
+    agent.memory.clear()
+    agent.memory.add("x y")
+    assert agent.memory.get_activation("x y") == strength(1)
+    agent.memory.add("x z")
+    assert agent.memory.get_activation("x y") == strength(2)
+    chunks[1][0] = "w"
+    assert agent.memory.get_activation("x y") == strength(1)
+    chunks.append(Chunk("x z"))
+    assert agent.memory.get_activation("x y") == strength(2)
+    chunks[2][0] = "w"
+    assert agent.memory.get_activation("x y") == strength(1)
+
+
+def test_inhibition_counts_from_the_latest_use_in_act_r_7() -> None:
+    memory = Memory(Buffer())
+    agent = living("act-r-7", memory=memory, inhibition=DMInhibition(memory))
+    agent.run(10)
+    agent.memory.add("a", time=3)
+    agent.memory.add("b", time=20)
+    agent.memory.add("b", time=5)
+    agent.memory.add("b", time=9)
+    for text, age in (("a", 3), ("b", 5)):
+        assert agent.memory.get_activation(text) == near(-math.log(1 + 1 / age / 5))

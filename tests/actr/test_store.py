@@ -6,6 +6,7 @@ import copy
 import pickle
 from typing import Any
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -14,6 +15,7 @@ from actr3d.actr.chunks.chunk import as_text
 from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.declarative.chunk_query import search_for
+from actr3d.errors import ChunkError
 
 VALUES: list[Any] = ["x", "y", "1", 1, 1.0, True, None, 0.1, "0.1", (1, 2), [1], {"k": 1}]
 SLOTS: list[Any] = ["a", "b", 0, 1]
@@ -139,3 +141,17 @@ def test_a_search_finds_what_trying_every_chunk_finds(
     expected = [id(chunk) for chunk in store if pattern.match(chunk) is not None]
     assert [id(chunk) for chunk in search_for(text, bound, None).among(store)] == expected
     assert [id(chunk) for chunk in search_for((text,), bound, None).among(store)] == expected
+
+
+@pytest.mark.parametrize(
+    ("method", "values"),
+    [("remove", (Chunk("a b"),)), ("pop", (0,)), ("clear", ()), ("__delitem__", (0,)), ("__setitem__", (0, Chunk("c d")))],
+)
+def test_a_chunk_that_has_left_the_memory_is_not_held(method: str, values: tuple[Any, ...]) -> None:
+    memory = Memory(Buffer())
+    memory.add("a b")
+    chunk = memory.dm[0]
+    getattr(memory.dm, method)(*values)
+    assert not memory.dm.holds(chunk)
+    with pytest.raises(ChunkError, match="holds no chunk 'a b'"):
+        memory.get_activation(chunk)

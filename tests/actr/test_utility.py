@@ -10,6 +10,8 @@ import pytest
 
 import actr3d.actr as library
 from actr3d.actr import PMPGC, PMTD, PMNew, PMNoise, PMPGCMixedWeighted, PMPGCSuccessWeighted, ProceduralSubModule
+from actr3d.actr.loading import load_text
+from actr3d.errors import ProductionException
 from tests.helpers.python_actr_reference import model_file
 from tests.helpers.small_agents import near
 
@@ -145,3 +147,32 @@ def test_modules_of_ones_own_add_up() -> None:
     agent.reward(1)
     assert agent.get_activation("two") == near(2.75 + 0.2 * (1 - 0.1))
     assert agent.get_activation("six") is None
+
+
+@pytest.mark.parametrize("utility", ["'0.6'", "None", "float('nan')"])
+def test_a_utility_that_is_no_number_is_refused_where_the_production_is_made(utility: str) -> None:
+    text = f"from actr3d.actr import *\nclass A(ACTR):\n    goal = Buffer()\n    def go(goal='a', utility={utility}): pass\n"
+    with pytest.raises(ProductionException, match=r"production 'go' \(u\.py:4\): its utility must be a number \(got ('0\.6'|None|nan)\)"):
+        load_text(text, "u.py").A().run()
+
+
+def test_a_production_whose_learned_utility_is_no_number_is_named() -> None:
+    text = """
+from actr3d.actr import *
+class Odd(ProceduralSubModule):
+    def utility(self, prod): return float('nan')
+class A(ACTR):
+    goal = Buffer()
+    odd = Odd()
+    def init(): goal.set('a')
+    def go(goal='a'): pass
+    def stay(goal='a'): pass
+"""
+    with pytest.raises(ProductionException, match=r"production 'go' \(u\.py:9\): its utility is not a number"):
+        load_text(text, "u.py").A().run()
+
+
+def test_a_history_of_an_unknown_production_is_refused_with_the_names() -> None:
+    agent = steps(learn=PMPGC())
+    with pytest.raises(KeyError, match=r"PMPGC\.set: no production 'onee'; did you mean 'one'"):
+        agent.learn.set("onee", successes=1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from actr3d.actr.changes.agent_change import AgentChange, Parts, chunk_of
-from actr3d.actr.declarative.memory import Memory
+from actr3d.actr.declarative.memory import Memory, collect
 from actr3d.change import change
 
 
@@ -25,4 +25,5 @@ class AddChunk(AgentChange):
     """The chunk, as a model writes it: `count 3`, `item:cup size:2`."""
 
     def carry_out(self, on: Parts) -> None:
-        on.part(Memory, self.memory, "memory").add(chunk_of(self.chunk, self.memory))
+        memory = on.part(Memory, self.memory, "memory")
+        collect(memory, chunk_of(self.chunk, self.memory))  # a failed retrieval stays one

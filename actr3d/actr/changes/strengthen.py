@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from actr3d.actr.changes.agent_change import AgentChange, Parts
 from actr3d.actr.declarative.activation import DMFixed, MemorySubModule
-from actr3d.actr.declarative.memory import Memory
+from actr3d.actr.declarative.memory import Memory, collect
 from actr3d.actr.kernel.tracing import chunk_text
 from actr3d.change import change
 from actr3d.errors import ChunkError
@@ -37,4 +37,4 @@ class Strengthen(AgentChange):
             raise ChunkError(f"no chunk '{self.chunk}' in '{self.memory}'; `add_chunk` adds it")
         if all(type(module).merge in WITHOUT_EFFECT for module in memory.adaptors):
             raise ChunkError(f"'{self.memory}' has no base level (DMBaseLevel), so a chunk that is added again is not stronger")
-        memory.add(known[self.chunk])
+        collect(memory, known[self.chunk])  # a failed retrieval stays one

@@ -147,7 +147,8 @@ class DMBaseLevel(MemorySubModule):
         memory: The memory.
         decay: d; None for no base level.
         limit: None for the exact form B = ln sum t_j^-d; 0 for the optimized form ln(n / (1 - d)) - d ln L; k for the
-            hybrid form, which keeps the k latest times. By default the profile's: exact, or optimized in ACT-R 7.
+            hybrid form, which keeps the k latest times (in Python ACT-R those added last). By default the profile's: exact, or optimized
+            in ACT-R 7.
 
     Source: Anderson & Lebiere (1998); hybrid form: Petrov (2006).
     """
@@ -169,6 +170,11 @@ class DMBaseLevel(MemorySubModule):
 
     @limit.setter
     def limit(self, value: int | None) -> None:
+        if value is None and self.parent is not None and any(len(getattr(c, "times", ())) < getattr(c, "count", 0) for c in self.parent.dm):
+            raise ParameterError(
+                f"{type(self).__name__}.limit: must be a number, because times of references have not been kept (got None); set it before "
+                "chunks are added again"
+            )
         self._limit = value
 
     def create(self, chunk: Any, time: float = 0.0, baselevel: Any = None, **keys: Any) -> None:
@@ -181,11 +187,14 @@ class DMBaseLevel(MemorySubModule):
             chunk.baselevel = baselevel
 
     def merge(self, chunk: Any, time: float = 0.0, baselevel: Any = None, **keys: Any) -> None:
-        chunk.times.append(self.now() - time)
+        at = self.now() - time
+        chunk.first = min(chunk.first, at)
+        chunk.times.append(at)
         chunk.count += 1
         limit = self.limit
         if limit is not None and len(chunk.times) > limit:
-            chunk.times = chunk.times[-limit:] if limit else []
+            times = sorted(chunk.times) if self.rules.optimized_learning else chunk.times  # Python ACT-R keeps those added last
+            chunk.times = times[-limit:] if limit else []
         if baselevel == "calculate":
             chunk.__dict__.pop("baselevel", None)
         elif baselevel is not None:
@@ -214,7 +223,7 @@ class DMBaseLevel(MemorySubModule):
         if forgotten > 0 and limit is not None:
             latest = now - times[0] if times else None
             if rules.optimized_learning:
-                latest = None if latest is None else max(latest, youngest)
+                latest = max(now - min(times), youngest) if times else None
                 total += _forgotten(forgotten, max(now - chunk.first, youngest), latest, d, youngest)
             else:  # it also counts a chunk's life from when it was added, even if it is declared to be older
                 total += _forgotten(forgotten, now - chunk.creation, latest, d, youngest)

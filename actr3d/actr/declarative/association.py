@@ -91,6 +91,9 @@ class DMAssociate(MemorySubModule):
 class DMInhibition(MemorySubModule):
     """Inhibits recently used chunks: -ln(1 + t^-decayScale / timeScale), t since the latest use [s].
 
+    In Python ACT-R, the `time` of a chunk's first `memory.add` counts as the clock time of its use, not as so many seconds ago, and that
+    of later ones does not count.
+
     Args:
         memory: The memory.
         decayScale: The decay rate of the inhibition.
@@ -106,13 +109,16 @@ class DMInhibition(MemorySubModule):
         self.timeScale = timeScale
 
     def create(self, chunk: Any, time: float = 0.0, **keys: Any) -> None:
+        # Both are kept, because the profile is not known yet for a chunk that is added in a class's body.
         chunk.mostRecentTime = time
+        chunk.latestUse = self.now() - time
 
     def merge(self, chunk: Any, time: float = 0.0, **keys: Any) -> None:
         chunk.mostRecentTime = self.now()
+        chunk.latestUse = max(getattr(chunk, "latestUse", -math.inf), self.now() - time)
 
     def activation(self, chunk: Any) -> float:
-        latest: float | None = getattr(chunk, "mostRecentTime", None)
+        latest: float | None = getattr(chunk, "mostRecentTime" if self.rules is PYTHON_ACTR else "latestUse", None)
         if latest is None:
             raise ChunkError(f"DMInhibition has no data about chunk '{chunk}': add it with memory.add, after the module is made")
         age = self.now() - latest

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Annotated, Any
+
+from annotated_types import Gt
 
 from actr3d.actr.chunks.chunk import Chunk, as_text
 from actr3d.actr.declarative.activation import DMNoise
@@ -12,6 +14,7 @@ from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.declarative.partial_matching import Partial
 from actr3d.actr.declarative.retrieval_record import Retrieval
 from actr3d.actr.declarative.spreading import names_a_chunk
+from actr3d.actr.kernel.parameters import check_attribute
 
 
 class BlendingMemory(Memory):
@@ -40,8 +43,13 @@ class BlendingMemory(Memory):
     Source: Lebiere (1999), Kognitionswissenschaft 8; ACT-R 7, extras/blending/blending-read-me.txt, methods a to c.
     """
 
-    temperature: float | None
+    temperature: Annotated[float, Gt(0)] | None
     """t; the profile's if it is None or was never set."""
+
+    def __setattr__(self, key: str, value: Any) -> None:
+        if key == "temperature":
+            check_attribute(type(self), key, value)
+        super().__setattr__(key, value)
 
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
         matches = [match for match in matches if not math.isnan(match.activation)]

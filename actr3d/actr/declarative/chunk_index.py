@@ -24,18 +24,26 @@ class ListObserver(Protocol):
         ...
 
 
-def _mutator(name: str) -> Callable[..., Any]:
-    """Makes a method that does the same as the list's, and then discards the indexes."""
+def _mutator(name: str, *, removes: bool = False) -> Callable[..., Any]:
+    """Makes a method that does the same as the list's, and then discards the indexes.
+
+    Args:
+        name: The name of the method.
+        removes: Whether it may remove chunks.
+    """
     original = getattr(list, name)
 
     def method(self: ChunkStore, *args: Any, **keys: Any) -> Any:
         observer = self.observer
-        before = list(self) if observer is not None and observer.listening else None
+        listening = observer is not None and observer.listening
+        before = list(self) if removes or listening else []
         try:
             return original(self, *args, **keys)
         finally:
             self.forget_order()
-            if observer is not None and before is not None:
+            if removes:
+                self.release(before)
+            if observer is not None and listening:
                 observer.changed(name.strip("_"), before, self)
 
     method.__name__ = name
@@ -55,6 +63,8 @@ class ChunkStore(list[Chunk]):
 
     def __init__(self, chunks: Iterable[Chunk] = ()) -> None:
         super().__init__(chunks)
+        self.version = 0
+        """The number of changes other than `keep`."""
         self._slots: dict[Slot, Postings] = {}
         self._holders: dict[Slot, list[Chunk]] = {}
         self._changeable: set[Slot] = set()
@@ -64,6 +74,7 @@ class ChunkStore(list[Chunk]):
 
     def forget_order(self) -> None:
         """Discards the indexes, because chunks were added, removed or changed."""
+        self.version += 1
         self._slots.clear()
         self._holders.clear()
         self._changeable.clear()
@@ -72,15 +83,15 @@ class ChunkStore(list[Chunk]):
     extend = _mutator("extend")
     append = _mutator("append")
     insert = _mutator("insert")
-    remove = _mutator("remove")
-    pop = _mutator("pop")
-    clear = _mutator("clear")
+    remove = _mutator("remove", removes=True)
+    pop = _mutator("pop", removes=True)
+    clear = _mutator("clear", removes=True)
     sort = _mutator("sort")
     reverse = _mutator("reverse")
-    __setitem__ = _mutator("__setitem__")
-    __delitem__ = _mutator("__delitem__")
+    __setitem__ = _mutator("__setitem__", removes=True)
+    __delitem__ = _mutator("__delitem__", removes=True)
     __iadd__ = _mutator("__iadd__")
-    __imul__ = _mutator("__imul__")
+    __imul__ = _mutator("__imul__", removes=True)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> ChunkStore:
         copied = memo[id(self)] = ChunkStore()
@@ -101,6 +112,13 @@ class ChunkStore(list[Chunk]):
                 holders.append(chunk)
         if self._equals is not None:
             self._equals.setdefault(_likeness(chunk), []).append(chunk)
+
+    def since(self, number: int) -> list[Chunk]:
+        """Returns the chunks from a number on, counted from 0; from now on the list is notified of their changes."""
+        chunks = self[number:]
+        for chunk in chunks:
+            self._adopt(chunk)
+        return chunks
 
     def holds(self, chunk: object) -> bool:
         """Returns whether this very chunk, not only an equal one, is known to be in the list."""
@@ -153,6 +171,13 @@ class ChunkStore(list[Chunk]):
             if type(value) not in LASTING_TYPES:
                 self._changeable.add(slot)
             postings.setdefault(as_text(value), []).append(chunk)
+
+    def release(self, before: list[Chunk]) -> None:
+        """Notes in the chunks that have left the list that it is not notified of their changes any more."""
+        here = set(map(id, self))
+        for chunk in before:
+            if id(chunk) not in here:
+                chunk.stores = tuple([store for store in chunk.stores if store is not self])
 
     def _adopt(self, chunk: Chunk) -> None:
         """Registers the list with a chunk, to be notified of its changes."""

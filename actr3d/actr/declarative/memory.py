@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from annotated_types import Ge
 
 from actr3d.actr.chunks.chunk import Chunk
-from actr3d.actr.declarative.activation import MemorySubModule
+from actr3d.actr.declarative.activation import BY_PROFILE, ByProfile, MemorySubModule
 from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.declarative.chunk_query import search_for
 from actr3d.actr.declarative.finst import Finst
@@ -30,6 +30,9 @@ from actr3d.trace import Trace
 from actr3d.warnings import warn_modeller
 from actr3d.weak_cache import weak_cache
 
+LONGEST = 1e9
+"""The duration of a retrieval that never ends [s], such as that of a chunk whose activation is minus infinity."""
+
 
 class Memory(WithParameters, Model):
     """Declarative memory: stores chunks, and puts the most active one that matches a request into a buffer.
@@ -38,7 +41,8 @@ class Memory(WithParameters, Model):
         buffer: The buffer for retrieved chunks.
         latency: F in the retrieval time F exp(-A) [s]; None for the profile's.
         threshold: The minimum activation for retrieval; None for no minimum.
-        maximum_time: The maximum duration of a retrieval or its failure [s].
+        maximum_time: The maximum duration of a retrieval or its failure [s]; by default the profile's: 10 s, or none in ACT-R 7. Without
+            a threshold, a failure takes this time, or 10 s if there is no maximum.
         finst_size: The number of retrieved chunks that are marked as such.
         finst_time: The lifetime of these marks [s].
         profile: «python-actr» or «act-r-7»; None for the agent's.
@@ -48,6 +52,7 @@ class Memory(WithParameters, Model):
     """
 
     latency: NotNegative
+    maximum_time: Annotated[Extended, Ge(0)]
 
     @named_parameters
     def __init__(
@@ -55,7 +60,7 @@ class Memory(WithParameters, Model):
         buffer: Buffer,
         latency: NotNegative | None = None,
         threshold: Extended | None = 0,
-        maximum_time: Annotated[Extended, Ge(0)] = 10.0,
+        maximum_time: Annotated[Extended, Ge(0)] | ByProfile = BY_PROFILE,
         finst_size: Count = 4,
         finst_time: NotNegative = 3.0,
         profile: str | Profile | None = None,
@@ -67,10 +72,11 @@ class Memory(WithParameters, Model):
         self.error = False
         self.busy = False
         self.adaptors: list[MemorySubModule] = []
-        self.latency: float = self.rules.latency if latency is None else latency
+        self.latency = self.rules.latency if latency is None else latency
         self._latency_given = latency is not None
         self.threshold = threshold
-        self.maximum_time = maximum_time
+        self.maximum_time = self.rules.maximum_time if isinstance(maximum_time, ByProfile) else maximum_time
+        self._maximum_time_given = not isinstance(maximum_time, ByProfile)
         self.partials: list[Partial] = []
         self.finst = Finst(self, size=finst_size, time=finst_time)
         self.record_all_chunks = False
@@ -89,6 +95,8 @@ class Memory(WithParameters, Model):
         self._own_chunks(self.dm)
         if not self._latency_given:
             self.__dict__["latency"] = self.rules.latency
+        if not self._maximum_time_given:
+            self.__dict__["maximum_time"] = self.rules.maximum_time
         if self.rules.harvest and self.parent is not None:
             self.sch.harvests = True
             harvesters: list[Harvester] = self.parent.__dict__.setdefault("_harvesters", [])
@@ -100,8 +108,8 @@ class Memory(WithParameters, Model):
             if not isinstance(value, ChunkStore):
                 value = ChunkStore(value)  # a modeller's own list of chunks
             self._own_chunks(value)
-        elif key == "latency":
-            self.__dict__["_latency_given"] = True
+        elif key in ("latency", "maximum_time"):
+            self.__dict__[f"_{key}_given"] = True
         elif key not in self.__dict__:
             warn_of_slip(self, key)
         Model.__setattr__(self, key, value)
@@ -287,15 +295,17 @@ class Memory(WithParameters, Model):
     def _time(self, activation: float) -> float:
         """Returns F exp(-A), at most the maximum time [s]."""
         try:
-            time = min(self.latency * math.exp(-activation), self.maximum_time) if self.latency else 0.0
+            time = min(self.latency * math.exp(-activation), self.maximum_time, LONGEST) if self.latency else 0.0
         except OverflowError:
-            time = self.maximum_time
+            time = min(self.maximum_time, LONGEST)
         profile = self._profile
         return round(time * 1000) / 1000 if profile is not None and profile.whole_milliseconds else time
 
     def _time_of_failure(self) -> float:
         """Returns the time until a request fails [s]."""
-        return self.maximum_time if self.threshold is None else self._time(self.threshold)
+        if self.threshold is not None:
+            return self._time(self.threshold)
+        return PYTHON_ACTR.maximum_time if math.isinf(self.maximum_time) else self.maximum_time
 
     # -- activation
 

@@ -10,6 +10,7 @@ from typing import Any
 from actr3d.actr.chunks.chunk import Chunk, as_text
 from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.declarative.activation import ActivatedMemory, MemorySubModule
+from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.parameters import named_parameters
 from actr3d.errors import ChunkError
@@ -38,6 +39,9 @@ class DMSpreading(MemorySubModule):
         self.weight: dict[Any, float] = dict.fromkeys(buffers, 1)
         self.slots: dict[Any, int] = {}
         self._counted: set[_Same] = set()
+        self._store: ChunkStore | None = None
+        self._version = self._size = 0
+        """The version of the list of chunks that is counted, and how many of them are."""
         self._warned: set[Any] = set()
         for chunk in memory.dm:
             self.create(chunk)
@@ -48,17 +52,37 @@ class DMSpreading(MemorySubModule):
         In python_actr 1.9.5 a module that is made when the memory already has chunks must be given each of them by the model;
         here it counts them by itself, with the same result.
         """
+        if self.rules.spread_by_slots:
+            return  # see `_count`
         same = _Same(chunk)
         if same in self._counted:
             return
         self._counted.add(same)
+        self._add(chunk)
+
+    def _add(self, chunk: Any) -> None:
         for value in map(countable, chunk.values()):
             self.slots[value] = self.slots.get(value, 0) + 1
+
+    def _count(self) -> None:
+        """Counts the values of the chunks that are in the memory now (ACT-R 7); Python ACT-R still counts chunks that have left it."""
+        assert self.parent is not None
+        store = self.parent.dm
+        if store is not self._store or store.version != self._version:
+            self._store, self._version, self._size = store, store.version, 0
+            self.slots.clear()
+            self._counted.clear()
+        if len(store) > self._size:
+            for chunk in store.since(self._size):
+                self._add(chunk)
+            self._size = len(store)
 
     def activation(self, chunk: Any) -> float:
         total = 0.0
         values: list[Any] = list(chunk.values())
         by_slots = self.rules.spread_by_slots
+        if by_slots:
+            self._count()
         for buffer in self.buffers:
             source: Chunk | None = buffer.chunk
             if source is None:
@@ -109,7 +133,7 @@ class DMSpreading(MemorySubModule):
         return 0.0
 
     def _occurrences(self, value: Any) -> int:
-        """Returns the number of slots of the memory's chunks that have a value."""
+        """Returns the number of slots of the memory's chunks that have a value; in Python ACT-R, of all that it ever had."""
         return self.slots.get(countable(value), 0)
 
 

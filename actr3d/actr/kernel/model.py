@@ -20,7 +20,7 @@ from actr3d.actr.kernel.source_code import written_for_python_actr
 from actr3d.actr.kernel.tracing import UNWATCHED, traceable
 from actr3d.actr.kernel.tree import TreeNode, forget_place, keep_path, lineage, note_move, path_of, subtree, top_of
 from actr3d.clock import seconds
-from actr3d.errors import SchedulerError, hint_for
+from actr3d.errors import SchedulerError, did_you_mean, hint_for
 from actr3d.trace import Trace, TraceEvent, run_of, top_path, with_number
 from actr3d.values import COLLECTIONS
 from actr3d.warnings import warn_modeller
@@ -149,8 +149,11 @@ class Model(TreeNode):
         """Processes the class's attributes before its objects are converted; for subclasses."""
         own = self.__dict__
         wanted = own.get("profile") or objects.get("profile")
-        if isinstance(wanted, str) and wanted in PROFILES:  # an environment's, for all its agents
-            own["_profile"] = PROFILES[wanted]
+        if isinstance(wanted, str):  # an environment's, for all its agents, unless the word means something else to the modeller
+            if wanted in PROFILES:
+                own["_profile"] = PROFILES[wanted]
+            elif hint := did_you_mean(wanted, PROFILES):
+                warn_modeller(f"{type(self).__name__}.profile: no profile {wanted!r}{hint}")
 
     # -- the tree
 

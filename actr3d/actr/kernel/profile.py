@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from actr3d.errors import ParameterError, did_you_mean
@@ -23,6 +24,8 @@ class Profile:
     """Whether each buffer's weight is divided among its chunk-valued slots, and the fan is (1 + slots_j) / slots_ji."""
     latency: float
     """The default latency factor F [s]."""
+    maximum_time: float
+    """The default maximum duration of a retrieval [s]."""
     whole_milliseconds: bool
     """Whether times are whole milliseconds."""
     negations_cost: bool
@@ -50,6 +53,7 @@ PYTHON_ACTR = Profile(
     optimized_learning=False,
     spread_by_slots=False,
     latency=0.05,
+    maximum_time=10.0,
     whole_milliseconds=False,
     negations_cost=False,
     blend_every_slot=False,
@@ -66,6 +70,7 @@ ACT_R_7 = Profile(
     optimized_learning=True,
     spread_by_slots=True,
     latency=1.0,
+    maximum_time=math.inf,
     whole_milliseconds=True,
     negations_cost=True,
     blend_every_slot=True,

@@ -13,6 +13,7 @@ from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.production import Production
 from actr3d.actr.procedural.production_system import ProductionSystem, trace_utility_parts
 from actr3d.actr.procedural.utility import ProceduralSubModule, known_part
+from actr3d.errors import ProductionException
 from actr3d.trace import Trace
 
 LAST = -1000
@@ -125,7 +126,11 @@ class ACTR(ProductionSystem):
             for adaptor in self._adaptors:
                 adaptor.below_threshold()
             return None
-        return pick(self.random, [p for p, u in zip(matching, utilities, strict=True) if u == best])
+        equal = [p for p, u in zip(matching, utilities, strict=True) if u == best]
+        if not equal:
+            unknown = next(p for p, u in zip(matching, utilities, strict=True) if u != u)
+            raise ProductionException(f"production '{unknown.name}' ({unknown.place}): its utility is not a number (nan)")
+        return pick(self.random, equal)
 
     # -- what a trace receives about utilities
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ast
 import inspect
+import math
 from collections.abc import Callable, Sequence
 from functools import cached_property, lru_cache
+from numbers import Real
 from typing import Any, Protocol
 
 from actr3d.actr.chunks.pattern import Bindings, conditions
@@ -57,7 +59,11 @@ class Production:
         self.name = name
         self.original_func = func
         patterns = defaults_of(func) or {}
-        self.base_utility = patterns.pop("utility", 0)
+        self.base_utility = utility = patterns.pop("utility", 0)
+        if not isinstance(utility, Real) or math.isnan(utility):
+            raise ProductionException(f"production '{name}' ({self.place}): its utility must be a number (got {utility!r})").at(
+                *location(func)
+            )
         self.pattern_specs = patterns
         self.keys = list(patterns)
         try:

@@ -12,6 +12,7 @@ from actr3d.actr.kernel.noise import logistic_noise
 from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.kernel.tree import path_of
 from actr3d.actr.procedural.production import Production
+from actr3d.errors import alternatives
 from actr3d.trace import Trace
 
 
@@ -193,7 +194,10 @@ class PMPGC(ProceduralSubModule):
             KeyError: If the agent has no production of that name.
         """
         if isinstance(prod, str):
-            prod = {p.name: p for p in _productions_of(self.parent)}[prod]
+            known = {p.name: p for p in _productions_of(self.parent)}
+            if prod not in known:
+                raise KeyError(f"{type(self).__name__}.set: no production '{prod}'{alternatives(prod, known)}")
+            prod = known[prod]
         if successes is not None:
             prod.successes = successes
         if failures is not None:
