@@ -264,7 +264,7 @@ def _add_experiment(commands: Any) -> None:
     experiment.add_argument("--out", metavar="FOLDER", help="the new folder for the results (default: the name of the design)")
     experiment.add_argument("--resume", action="store_true", help="continue the experiment that is in the folder")
     experiment.add_argument("--any-version", action="store_true", help="continue although packages have other versions now")
-    experiment.add_argument("--check", action="store_true", help="check the design, run one trial, and print what would run")
+    experiment.add_argument("--check", action="store_true", help="check the design, run two trials, and print what would run")
     experiment.add_argument("--json", action="store_true", help="print one JSON object a line: progress, and what is found")
     experiment.add_argument("--trial", type=int, metavar="ID", help="run this trial of the experiment in FOLDER again")
     experiment.add_argument("--record", metavar="RECORDING", help="with --trial: record it to this new file")
@@ -382,6 +382,8 @@ def _experiment(options: argparse.Namespace) -> int:
         return command.run_again(options.name, options.trial, options.record, out)
     numbers = _numbers(options)
     if options.check:
+        if idle := [f"--{name.replace('_', '-')}" for name in BESIDE_CHECK if getattr(options, name)]:
+            raise SettingError(f"--check: runs two trials in this process and keeps nothing; leave out {' and '.join(idle)}")
         return command.check(options.name, out, **numbers)
     how = {name: getattr(options, name) for name in ("workers", "scheduler", "resume", "any_version")}
     if command.is_folder(options.name) and not any((*numbers.values(), *how.values(), options.out)):
@@ -409,6 +411,8 @@ def _report(options: argparse.Namespace) -> int:
 
 BESIDE_TRIAL = ("set", "participants", "trials", "workers", "scheduler", "out", "resume", "check")
 """The options of `actr3d experiment` that mean nothing for one trial."""
+BESIDE_CHECK = ("workers", "scheduler", "out", "resume", "any_version")
+"""The options of `actr3d experiment` that mean nothing for a check."""
 
 
 def _numbers(options: argparse.Namespace) -> dict[str, Any]:

@@ -44,7 +44,7 @@ class Configuration:
     """Checks the fields of a frozen dataclass against their declared types and bounds.
 
     A subclass is a `@dataclass(frozen=True, kw_only=True)`. A field's bounds are part of its type, such as
-    `Annotated[float, Gt(0)]` (from `annotated_types`: `Gt`, `Ge`, `Lt`, `Le`, `MultipleOf`); its unit and source are in the
+    `Annotated[float, Gt(0)]` (from `annotated_types`: `Gt`, `Ge`, `Lt`, `Le`, `MinLen`); its unit and source are in the
     docstring below it. Whole numbers are accepted for `float`; NaN is rejected, and infinities are, unless
     the type is marked `Infinite()`.
     """

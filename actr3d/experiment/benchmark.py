@@ -112,8 +112,9 @@ class _Trials:
 
 
 def _cost(work: Callable[[], object]) -> float:
-    """Returns what some work costs as a multiple of the physics steps in it, both in one run: the machine's speed does not matter."""
-    step, now, inside = mujoco.mj_step, time.perf_counter, 0.0
+    """Returns what some work costs as a multiple of the physics steps in it, both in processor time of one run: neither the machine's
+    speed nor what else it does matters."""
+    step, now, inside = mujoco.mj_step, time.thread_time, 0.0
 
     def timed(*given: Any) -> None:
         nonlocal inside

@@ -10,6 +10,7 @@ import logging
 import os
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
@@ -29,7 +30,7 @@ from actr3d.experiment.measures import check_row
 from actr3d.experiment.specification import Experiment
 from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.trial import Row
-from actr3d.experiment.trial_process import TrialProcess
+from actr3d.experiment.trial_process import LEFT, TrialProcess
 from actr3d.experiment.versions import experiment_versions
 
 BATCH = 1.0
@@ -41,7 +42,9 @@ MAX_BATCH = 200
 AHEAD = 2
 """The number of batches for each worker that are submitted at a time."""
 PATIENCE = 30.0
-"""The maximum time to wait for a scheduler, and for the first worker [s]."""
+"""The maximum time to wait for a scheduler [s]. Workers may come, and go, at any time."""
+KILLS = 3
+"""How often Dask may give up a single trial, each time because several workers in a row ended while they had it, until it has failed."""
 PACKAGES = ("dask", "distributed")
 """Packages whose versions the client and the workers must share; no row depends on them."""
 SETTINGS: dict[str, Any] = {
@@ -72,7 +75,7 @@ class Batch:
     """What a worker has done."""
 
     rows: list[tuple[int, Row, float]]
-    """The number of each trial, the part of its row that `run_trial` returns, and its duration [s]."""
+    """The number of each trial, its row, and its duration [s]. Of a trial that did not answer, only what ended it is in the row."""
     worker: str
     about: dict[str, dict[str, str | None]] = field(default_factory=dict[str, dict[str, "str | None"]])
     """Units and meanings of columns."""
@@ -135,7 +138,7 @@ def run_experiment(
         experiment: The experiment.
         store: Its folder.
         client: The `distributed.Client` of the cluster.
-        show: Called after each batch of trials.
+        show: Called after each batch of trials, and when the number of workers changes.
         stop: Ends the run after the batches that have finished, when it is set by another thread.
         sure: Whether the measures of the design are known to be those of some trials; else the run ends if the first trial lacks one.
 
@@ -170,6 +173,8 @@ class _Run:
         self._versions = ", ".join(f"{name} {text}" for name, text in experiment_versions().items())
         self._done, self._failures, self._seconds, self._sure = done, failures, BATCH, sure
         self._waiting: dict[Any, list[int]] = {}
+        self._killed: Counter[int] = Counter()
+        self._shown = 0
         self._finished: SimpleQueue[Any] = SimpleQueue()
 
     def all(self, numbers: Iterator[int]) -> None:
@@ -197,7 +202,10 @@ class _Run:
 
     def _next_batches(self, numbers: Iterator[int]) -> Iterator[list[int]]:
         """Yields batches until each worker has enough of them; the last ones are small, so that all workers end at about the same time."""
-        most = max(1, self._workers()) * AHEAD
+        workers = self._workers()
+        if workers != self._shown:
+            self._report()
+        most = max(1, workers) * AHEAD
         usual = min(MAX_BATCH, round(BATCH / max(self._seconds, 1e-6)))
         for _ in range(most - len(self._waiting)):
             left = len(self._experiment.design) - self._done - sum(map(len, self._waiting.values()))
@@ -221,7 +229,7 @@ class _Run:
         try:
             batch = cast("Batch", future.result(timeout=PATIENCE))
         except KilledWorker:
-            self._submit(numbers)
+            self._split(numbers)
             return
         except (CancelledError, TimeoutError, OSError):
             if self._client.status != "running":
@@ -230,18 +238,42 @@ class _Run:
             return
         if batch.rows[0][0] == 0:
             check_row(batch.rows[0][1], sure=self._sure)
+        self._add(batch)
+        if left := numbers[len(batch.rows) :]:
+            self._submit(left)
+        self._report()
+
+    def _add(self, batch: Batch) -> None:
+        """Stores rows; with the columns that the worker had, if it answered."""
         columns_of = self._experiment.design.columns_of
-        rows = [Finished(row={**columns_of(number), **row}, wall_s=round(wall, 4), worker=batch.worker) for number, row, wall in batch.rows]
+        rows = [
+            Finished(row=row if "trial" in row else {**columns_of(number), **row}, wall_s=round(wall, 4), worker=batch.worker)
+            for number, row, wall in batch.rows
+        ]
         self._done += self._store.add(rows, self._versions, self._experiment.about | batch.about)
         self._failures += sum(one.row["error"] is not None for one in rows)
-        self._seconds = sum(one.wall_s for one in rows) / len(rows)
-        if left := numbers[len(rows) :]:
-            self._submit(left)
+        if batch.worker:
+            self._seconds = sum(one.wall_s for one in rows) / len(rows)
+
+    def _split(self, numbers: list[int]) -> None:
+        """Submits each trial alone of a batch whose workers ended again and again: one of them may end them. A single trial that still
+        does is stored as one that failed."""
+        if len(numbers) > 1:
+            for number in numbers:
+                self._submit([number])
+            return
+        self._killed[numbers[0]] += 1
+        if self._killed[numbers[0]] < KILLS:
+            self._submit(numbers)
+            return
+        row = {"end": "crash", "error": "the workers that ran the trial ended, again and again: has one enough memory for it?"}
+        self._add(Batch(rows=[(numbers[0], row, 0.0)], worker=""))
         self._report()
 
     def _report(self) -> None:
         total = len(self._experiment.design)
-        self._show(Progress(done=self._done, total=total, failures=self._failures, workers=self._workers()))
+        self._shown = self._workers()
+        self._show(Progress(done=self._done, total=total, failures=self._failures, workers=self._shown))
 
     def _lost(self) -> NoReturn:
         total = len(self._experiment.design)
@@ -290,16 +322,16 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
     rows: list[tuple[int, Row, float]] = []
     end = time.perf_counter() + LONGEST_BATCH
     for number in numbers:
-        begin = time.perf_counter()
-        if rows and begin >= end:
+        if rows and time.perf_counter() >= end:
             break
         row = process.run(specification, number, limit)
-        rows.append((number, row, time.perf_counter() - begin))
+        rows.append((number, {**process.columns, **row}, process.seconds))
     return Batch(rows=rows, worker=worker, about=process.about)
 
 
 def end_processes(client: str) -> None:
-    """Ends those processes of this one that run the trials of a client."""
+    """Ends those processes of this one that run the trials of a client, for which none begins any more."""
+    LEFT.add(client)
     with _LOCK:
         for process in _PROCESSES.values():
             if process.client == client:

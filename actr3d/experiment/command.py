@@ -76,7 +76,7 @@ def list_designs(out: Output) -> int:
 
 
 def check(name: str, out: Output, *, values: Mapping[str, Any], participants: int | None = None, trials: int | None = None) -> int:
-    """Checks a design, runs its first trial, and prints what the experiment would be; returns the exit code.
+    """Checks a design, runs its first two trials, and prints what the experiment would be; returns the exit code.
 
     Raises:
         ExperimentError: If the design is not valid.
@@ -89,15 +89,16 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     out.event("facts", facts)
     process, text = TrialProcess(), experiment.specification.to_json()
     try:
-        process.run(text, 0, design.limit)  # the first one includes the start of the process
-        begin = time.perf_counter()
-        row = process.run(text, min(1, total - 1), design.limit)
-        seconds = time.perf_counter() - begin
+        first = process.run(text, 0, design.limit)  # it also takes the time of what is loaded or compiled once
+        check_row(first)
+        second = process.run(text, min(1, total - 1), design.limit)
+        check_row(second, sure=first["error"] is None)
+        seconds = process.seconds
     finally:
         process.end()
-    check_row(row)
+    failed = [(number, row["error"]) for number, row in enumerate((first, second)[:total]) if row["error"] is not None]
     groups = {name: group.participants for name, group in design.groups.items()}
-    about = {**facts, "seconds_a_trial": round(seconds, 3), "error": row["error"]}
+    about = {**facts, "seconds_a_trial": round(seconds, 3), "error": failed[0][1] if failed else None}
     out.event("check", about)
     people = ", ".join(f"{count} {name}" for name, count in groups.items())
     out.line((str(about["name"]), "bold"), f": {total:,} trials of '{about['model']}' by participants: {people}")
@@ -106,9 +107,9 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     out.line(
         f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / (os.cpu_count() or 1):,.0f} s on this computer"
     )
-    if row["error"] is not None:
-        out.line(f"the trial failed: {row['error']}")
-    return 0 if row["error"] is None else 1
+    for number, error in failed:
+        out.line(f"trial {number} failed: {error}")
+    return 1 if failed else 0
 
 
 def run(
@@ -337,8 +338,10 @@ def _opened(
     any_version: bool,
 ) -> tuple[Experiment, Store, bool]:
     """Creates or opens the folder of an experiment, which `opened` closes; also returns whether its measures are known to be right."""
-    if is_folder(name):
-        if values or participants is not None or trials is not None or folder is not None:
+    changed = bool(values) or participants is not None or trials is not None or folder is not None
+    # The folder of an experiment has the name of its design, unless it was given another one.
+    if is_folder(name) and not (changed and name in library_designs()):
+        if changed:
             raise ExperimentError(f"'{name}' is an experiment, whose design is fixed; name a design to run it with other values")
         if not resume:
             raise ExperimentError(f"'{name}' is an experiment; continue it with --resume")
@@ -455,7 +458,7 @@ def _lines(out: Output, about: Mapping[str, str]) -> Callable[[State], None]:
         out.event("progress", {**about, **asdict(state)})
         if not begin:
             begin.append((now, state.done))
-        if now - last[0] >= EVERY:
+        if now - last[0] >= EVERY or not state.workers:
             last[0] = now
             out.line(f"{state.done:,} of {state.total:,} trials, {state.failures:,} failed, {_rate(begin[0], state)}")
 
@@ -464,8 +467,8 @@ def _lines(out: Output, about: Mapping[str, str]) -> Callable[[State], None]:
 
 def _rate(begin: tuple[float, int], state: State) -> str:
     took, done = time.monotonic() - begin[0], state.done - begin[1]
-    workers = "1 worker" if state.workers == 1 else f"{state.workers} workers"
-    if not done:
+    workers = {0: "no workers: waiting for one", 1: "1 worker"}.get(state.workers, f"{state.workers} workers")
+    if not done or not state.workers:
         return workers
     left = (state.total - state.done) * took / done
     return f"{done / took:,.1f}/s, {workers}, {left:,.0f} s left"

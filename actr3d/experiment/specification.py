@@ -1,7 +1,8 @@
 """Specifications of experiments: everything that determines the rows of an experiment, as one JSON document.
 
-A specification holds the texts of the design and of the model, so that workers need no files, and later changes to these files
-change nothing.
+A specification holds the texts of the design and of the model, so that workers need none of these files, and later changes to them
+change nothing. It does not hold other files that a model reads, such as a table of words: each worker reads them when a trial runs, so
+they must be there, and stay the same.
 """
 
 from __future__ import annotations
@@ -15,11 +16,12 @@ import re
 import sys
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import asdict, dataclass, field, fields
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import actr3d
 from actr3d.actr.compat.old_names import is_old_name
@@ -59,7 +61,7 @@ class Source(Configuration):
 
 @dataclass(frozen=True, kw_only=True)
 class Specification(Configuration):
-    """Everything that determines the rows of an experiment."""
+    """Everything that determines the rows of an experiment, but for data files that the model reads."""
 
     name: str
     """The name of the design."""
@@ -179,6 +181,20 @@ class Experiment:
             if self.blueprint is None and self.design.results is None and not self.design.measures:
                 raise DesignError("Design.measures: must name the variables of the program that are its measures (got none)", "measures")
 
+    def load_again(self, helpers: HelperTexts | None = None) -> None:
+        """Loads the file of the design again, so that `derive` and `results` find none of its variables as an earlier trial left them.
+
+        Args:
+            helpers: Provides the helper modules of the design; see `Specification.sealed`.
+        """
+        if self.written.derive is None and self.written.results is None:
+            return
+        source, name = self.specification.design, self.specification.name
+        written, fresh = design_in(load_quietly(source, helpers), name, source), copy(self.design)
+        for function in ("derive", "results"):  # the table of trials stays, which takes long to compute
+            object.__setattr__(fresh, function, getattr(written, function))
+        self.design = fresh
+
     def _changed_as(self, specification: Specification) -> Design:
         """Returns the design of the file with the numbers and values of a specification."""
         return self.written.changed(participants=specification.participants, trials=specification.trials, values=specification.values)
@@ -260,7 +276,7 @@ def specify(
         model=_source_of(model),
         participants=participants,
         trials=trials,
-        values=values or {},
+        values=_as_json(values or {}),
         versions=experiment_versions(),
     )
     experiment, people = Experiment(specification), library_human_data()
@@ -271,6 +287,13 @@ def specify(
             files = "a file is given to actr3d report --human, or actr3d fit --target"
             raise DesignError(f"Design.human: must name human data of the library (got '{human}'; {files}){hint}", "human")
     return experiment
+
+
+def _as_json(value: Any) -> Any:
+    """Returns a value as the specification's JSON has it on a worker: a tuple is a list. Seeds name values, so both must be the same."""
+    if isinstance(value, Mapping):
+        return {name: _as_json(one) for name, one in cast("Mapping[Any, Any]", value).items()}
+    return [*map(_as_json, cast("Sequence[Any]", value))] if isinstance(value, (list, tuple)) else value
 
 
 def _file_of(name: str) -> tuple[Path, str]:

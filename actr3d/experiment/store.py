@@ -12,6 +12,7 @@ from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from socket import gethostname
 from typing import Any, Self, cast
 
 from actr3d.errors import ExperimentError
@@ -101,6 +102,7 @@ class Store:
     def _opened(self) -> sqlite3.Connection:
         """Opens the table of trials to write, or only to read where nothing can be written."""
         path = self.folder / TRIALS
+        self._check_host()
         try:
             return _connected(path, f"PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; {_SCHEMA}")
         except sqlite3.OperationalError as error:
@@ -110,6 +112,24 @@ class Store:
             log = path.with_name(f"{path.name}-wal")
             options = "mode=ro" if log.exists() else "mode=ro&immutable=1"
             return _connected(f"{path.absolute().as_uri()}?{options}", "SELECT 1 FROM trial, column LIMIT 0")
+
+    def _check_host(self) -> None:
+        """Checks that no process on another computer writes: SQLite's log must not be shared by several.
+
+        Raises:
+            ExperimentError: If one does.
+        """
+        process = host = ""
+        try:
+            with (self.folder / LOCK).open(encoding="utf-8") as file:
+                process, _, host = file.read().partition("\n")
+                if host and host != gethostname():
+                    fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            where = f"process {process} on the computer '{host}' writes it now"
+            raise ExperimentError(f"'{self.folder}': {where}; use it there, or wait until that has ended") from None
+        except OSError:  # there is no lock, or none that can be read: then nothing is known of another computer
+            return
 
     @classmethod
     def create(cls, folder: Path | str, specification: Specification) -> Store:
@@ -307,10 +327,12 @@ def only_process(folder: Path, what: str) -> Generator[None]:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             file.seek(0)
-            raise ExperimentError(f"'{folder}': another process ({file.read().strip()}) runs {what}") from None
-        with suppress(OSError):  # only the number of the process, for the error above, is lost if the disk is full
+            process, _, host = file.read().partition("\n")
+            where = f"{process} on '{host}'" if host and host != gethostname() else process
+            raise ExperimentError(f"'{folder}': another process ({where}) runs {what}") from None
+        with suppress(OSError):  # only the number of the process and its computer, for errors, are lost if the disk is full
             file.truncate(0)
-            os.write(file.fileno(), str(os.getpid()).encode())
+            os.write(file.fileno(), f"{os.getpid()}\n{gethostname()}".encode())
         yield
 
 

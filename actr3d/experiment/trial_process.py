@@ -33,6 +33,9 @@ LOOK = 1.0
 ATTEMPTS = 3
 """How often a trial is tried whose process ends without an answer: another program may have ended it."""
 
+LEFT: set[str] = set()
+"""The clients that have left the cluster: none of their trials begins."""
+
 TIME_LIMIT = "time limit"
 """What the column `end` says of a trial that was ended at its limit."""
 
@@ -47,6 +50,10 @@ class TrialProcess:
         self._folder = ""
         """The folder for the temporary files of the process."""
         self._loaded: str | None = None
+        self.columns: Row = {}
+        """The columns of the last trial that are known before it runs, as this process had them; none if it did not answer."""
+        self.seconds = 0.0
+        """The duration of the last trial, without the start of the process [s]."""
         self.client = ""
         """The client of the cluster whose trials it runs."""
         self.about: dict[str, dict[str, str | None]] = {}
@@ -61,19 +68,25 @@ class TrialProcess:
             limit: Its maximum wall time [s].
 
         Raises:
-            ExperimentError: If the experiment cannot be loaded, or `close` is called meanwhile.
+            ExperimentError: If the experiment cannot be loaded, `close` is called meanwhile, or its client has left.
         """
-        loaded, code = False, ""
+        loaded, code, self.columns = False, "", {}
         with self._busy:
             for _ in range(ATTEMPTS):
+                if self.client in LEFT:
+                    raise ExperimentError("the experiment was stopped")
                 loaded = self._load(specification)
+                begin = time.perf_counter()
                 try:
                     answer = self._ask(json.dumps(number), limit) if loaded else None
                 except TimeoutError:
+                    self.seconds = time.perf_counter() - begin
                     self._end()
                     return {"end": TIME_LIMIT, "error": f"the trial took longer than its limit of {limit:g} s, and was ended"}
+                self.seconds = time.perf_counter() - begin
                 if answer is not None:
                     self.about |= answer["about"]
+                    self.columns = answer["columns"]
                     return answer["row"]
                 code = self._code()
         if not loaded:
@@ -222,12 +235,12 @@ def _answer(asked: _Questions, answers: BinaryIO) -> None:
                 described = 0
                 own = os.getpid()
                 while isinstance(question := asked.next(), int):
-                    row = _row_of(experiment, question, helpers)
+                    columns, row = _row_of(experiment, question, helpers)
                     if os.getpid() != own:  # the model has forked, and this is its child
                         os._exit(0)
                     news = experiment.about if len(experiment.about) > described else {}
                     described = len(experiment.about)
-                    answers.write(json.dumps({"row": row, "about": news}, allow_nan=False).encode() + b"\n")
+                    answers.write(json.dumps({"columns": columns, "row": row, "about": news}, allow_nan=False).encode() + b"\n")
                     if not gc.get_freeze_count():
                         # All is loaded now, and stays: to look through it for garbage again and again takes time.
                         gc.collect()
@@ -240,12 +253,16 @@ def _answer(asked: _Questions, answers: BinaryIO) -> None:
             question = asked.next()
 
 
-def _row_of(experiment: Experiment, number: int, helpers: HelperTexts) -> Row:
-    """Returns what `run_trial` does; also for a trial that cannot even begin, because `derive` fails for its values."""
+def _row_of(experiment: Experiment, number: int, helpers: HelperTexts) -> tuple[Row, Row]:
+    """Returns the columns of a trial that are known before it runs, and what `run_trial` does; also for a trial that cannot even begin,
+    because `derive` fails for its values."""
+    columns = experiment.design.underived_trial(number).columns
     try:
-        return run_trial(experiment, experiment.design.trial(number), helpers)
+        experiment.load_again(helpers)
+        trial = experiment.design.trial(number)
+        return trial.columns, run_trial(experiment, trial, helpers)
     except Exception as error:  # noqa: BLE001 - every error of a trial belongs in its row
-        return {"end": "error", "error": traceback_report(error).text.strip()}
+        return columns, {"end": "error", "error": traceback_report(error).text.strip()}
 
 
 class _Questions:

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from actr3d.experiment.aperture.constraints import Findings, equivalence
+from actr3d.experiment.aperture.constraints import Findings, equivalence, margin
 from actr3d.experiment.aperture.critical_ratio import critical_ratio
 from actr3d.experiment.aperture.original import original_means
 from actr3d.experiment.aperture.passing import Passing
@@ -60,6 +60,10 @@ def test_a_turning_point_that_may_lie_beyond_the_trials_has_an_open_interval() -
     assert beyond is not None
     assert beyond.high == math.inf
     assert 1.5 < beyond.low < beyond.value == 1.8
+    assert beyond.beyond
+    open_only = critical_ratio((ratio, n < most) for ratio, most in ((0.9, 20), (1.2, 19), (1.5, 12), (1.8, 9)) for n in range(3, 23))
+    assert open_only is not None
+    assert not open_only.beyond
 
 
 def test_equivalence_takes_small_differences_and_small_spread() -> None:
@@ -123,8 +127,8 @@ def as_it_is(one: Passing) -> Passing:
 def test_a_walker_that_does_not_turn_has_no_margin() -> None:
     """At wide apertures there is more room than anyone wants, which is no margin."""
     found = findings(lambda one: with_margin(one, 0.07 if one.angle else 0.14))
-    assert found.margin("large", "fast", 0.45) == pytest.approx(0.07)
-    assert found.margin("small", "normal", 0.7) is None
+    assert {margin(one) for one in found.passings if (one.group, one.condition, one.aperture) == ("large", "fast", 0.45)} == {(0.07, 0.07)}
+    assert {margin(one) for one in found.passings if (one.group, one.condition, one.aperture) == ("small", "normal", 0.7)} == {None}
     assert found.untouched().met
 
 
@@ -134,6 +138,8 @@ def test_a_model_of_people_meets_all_constraints() -> None:
 
 BAD: dict[str, tuple[list[int], Callable[[Passing], Passing]]] = {
     "turns more before a wider one": ([1], lambda one: with_angle(one, 60.0) if one.aperture == 0.45 else one),
+    "never turns": ([1], lambda one: with_angle(one, 0.0)),
+    "turns by the same angle everywhere": ([1, 7], lambda one: with_angle(one, 20.0)),
     "turns everywhere": ([7, 4], lambda one: with_angle(one, max(one.angle or 0, 18.0))),
     "turns by width alone": ([2, 3, 4], lambda one: with_angle(one, max(0.0, 300 * (0.6 - one.aperture)))),
     "turns at a smaller ratio": ([4], lambda one: one if one.ratio < 1.2 else with_angle(one, 0.0)),
@@ -182,6 +188,16 @@ def test_a_participant_without_an_angle_is_left_out_wherever_it_has_none(conditi
     assert len(scores[0]) == (5 if conditions == ("fast",) else 4)
     few = Findings(one if one.participant[-1] in "01" else replace(one, angle=None) for one in GOOD)
     assert few.scores() is None
+
+
+def test_groups_coincide_only_where_they_turn() -> None:
+    never, same = findings(lambda one: with_angle(one, 0.0)).same_ratio(), findings(lambda one: with_angle(one, 20.0)).same_ratio()
+    assert (never.met, never.found) == (None, "it needs walkers that turn")
+    assert (same.met, same.found) == (None, "it needs participants that differ")
+
+
+def test_judgements_that_are_all_alike_have_no_boundary() -> None:
+    assert Findings([]).judged(math.nan).met is None
 
 
 def test_a_critical_ratio_that_the_trials_leave_open_is_not_tested() -> None:

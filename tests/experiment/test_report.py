@@ -15,13 +15,16 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
-from actr3d.experiment.aperture.analysis import passing_apertures
+from actr3d.experiment.aperture.analysis import frame_of, passing_apertures, passings_of, with_greatest_angles
+from actr3d.experiment.aperture.constraints import Findings
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.report.analyses import ANALYSES
+from actr3d.experiment.report.beside import beside_experiment
 from actr3d.experiment.report.command import write_report
 from actr3d.experiment.report.figures import legend_columns
 from actr3d.experiment.report.libraries import pingouin
-from actr3d.experiment.report.results import read_results
+from actr3d.experiment.report.results import by_number, read_results
+from actr3d.experiment.report.statistics import cell_means
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
@@ -242,6 +245,42 @@ def test_two_experiments_are_compared(tmp_path: Path) -> None:
     assert float(fit["rt"]["mean_difference"]) == pytest.approx(-0.1, abs=0.002)
     assert "differs from this experiment (“now”) in: seed: 2 there, 1 now." in page(one)
     assert ">two</text>" in (one / "report/figures/measure_rt.svg").read_text(encoding="utf-8")
+
+
+def test_an_experiment_in_a_folder_with_the_name_of_a_column_is_compared(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path, participants=3))
+    one = store_rows(tmp_path / "one", path, count)
+    for name in ("model", "group", "measure"):
+        write_report(one, compare=store_rows(tmp_path / name, path, count))
+        assert {"group", "model", "beside", "measure"} <= table(one, "means_beside_other")[0].keys()
+        assert f'<th scope="col" class=number>{name}</th>' in page(one)
+
+
+def test_angles_of_walkers_that_do_not_reach_the_wall_are_the_greatest_ones_in_both_experiments(tmp_path: Path) -> None:
+    def stopping(trial: Any) -> dict[str, Any]:
+        return {**walk(trial), "peak_angle_deg": 60.0, **({"wall_angle_deg": None, "outcome": "stopped"} if trial.number % 2 else {})}
+
+    results = read_results(store_rows(tmp_path / "out", "warren_whang_1987", stopping, trials=2, participants=2))
+    beside = beside_experiment(by_number(results), by_number(results))
+    assert beside is not None
+    frame = frame_of(results, Findings(passings_of(results)))
+    assert (frame["angle"] == 60).sum() >= len(frame) / 2
+    model = cell_means(frame, "angle", ["group", "condition", "level"])["mean"].tolist()
+    assert with_greatest_angles(beside, "aperture").of("wall_angle_deg")["mean"].tolist() == model
+
+
+def test_critical_ratios_beyond_the_trials_are_in_no_mean(tmp_path: Path) -> None:
+    def turning(trial: Any) -> dict[str, Any]:
+        first = trial.participant.name == "small 1"
+        upright = trial.values["aperture"] > (0.49 if first else 0.44) and (not first or trial.repetition <= 3)
+        return {**walk(trial), "wall_angle_deg": 0.0 if upright else 40.0}
+
+    values = {"aperture": [0.35, 0.4, 0.45, 0.5], "condition": ["normal"]}
+    folder = store_rows(tmp_path / "out", "warren_whang_1987", turning, trials=10, participants=3, values=values)
+    write_report(folder)
+    assert [(row["group"], row["n"]) for row in table(folder, "critical_ratios_of_groups")] == [("small", "2"), ("large", "3")]
+    assert [row["participant"] for row in table(folder, "critical_ratios") if row["beyond"] == "yes"] == ["small 1"]
+    assert "1 of 6 values are most likely beyond the ratios of the trials" in page(folder)
 
 
 def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) -> None:

@@ -17,9 +17,11 @@ from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from distributed import KilledWorker
 
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
@@ -198,6 +200,43 @@ def test_a_client_that_leaves_ends_no_process_of_another(tmp_path: Path) -> None
     assert process in trial_processes()
     end_processes("one")
     assert process not in trial_processes()
+
+
+def test_a_trial_whose_client_leaves_does_not_begin_again(tmp_path: Path) -> None:
+    begun = tmp_path / "begun"
+    lines = ["import os, time", f"with open({str(begun)!r}, 'a') as file:", "    print(os.getpid(), file=file)", "time.sleep(60)"]
+    waiting = COUNTER.replace("model.run()", "\n".join([*lines, "model.run()"]))
+    text = specify(str(write_experiment(tmp_path, model=waiting))).specification.to_json()
+    with ThreadPoolExecutor(1) as pool:
+        batch = pool.submit(run_batch, text, [0], 60, cluster_versions(), "leaving")
+        while not begun.exists() and not batch.done():
+            time.sleep(0.02)
+        end_processes("leaving")
+        with pytest.raises(ExperimentError, match="the experiment was stopped"):
+            batch.result(60)
+    assert len(begun.read_text().split()) == 1
+
+
+def test_a_trial_that_ends_its_workers_again_and_again_is_a_failure_and_the_rest_goes_on(tmp_path: Path, client: Any) -> None:
+    path = write_experiment(tmp_path, factors='{"n": [1]}', participants=1, trials=6)
+    submit, tried = client.submit, list[list[int]]()
+
+    def submit_or_kill(function: Any, specification: str, numbers: list[int], *given: Any, **options: Any) -> Any:
+        tried.append(numbers)
+        return submit(kill if 3 in numbers else function, specification, numbers, *given, **options)
+
+    def kill(*_: Any) -> None:
+        raise KilledWorker("trial", SimpleNamespace(address="tcp://one"), 3)  # pyright: ignore[reportArgumentType]
+
+    client.submit = submit_or_kill
+    try:
+        rows = list(csv.DictReader(io.StringIO(run_here(client, path, tmp_path / "out"))))
+    finally:
+        del client.submit
+    assert [row["end"] for row in rows] == ["end"] * 3 + ["crash"] + ["end"] * 2
+    assert "the workers that ran the trial ended, again and again" in rows[3]["error"]
+    assert tried.count([3]) == cluster.KILLS
+    assert rows[3]["seed"] == "1 all 1 n=1 4"
 
 
 def test_no_scheduler_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -25,8 +25,9 @@ import pytest
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
 from actr3d.experiment import measures
+from actr3d.experiment.cluster import cluster_versions, run_batch
 from actr3d.experiment.measures import variables_set_in
-from actr3d.experiment.specification import Experiment, specify
+from actr3d.experiment.specification import Experiment, Specification, specify
 from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import run_trial
@@ -787,3 +788,77 @@ def test_a_damaged_table_is_named(tmp_path: Path, damage: str) -> None:
         assert store.failures == 0
         with pytest.raises(ExperimentError, match=r"trials\.sqlite: is damaged"):
             list(store.rows())
+
+
+def test_a_trial_finds_no_variable_of_the_design_as_an_earlier_one_left_it(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, factors='{"n": [1]}', participants=1, trials=3)
+    text = path.read_text(encoding="utf-8").replace("limit=60", "limit=60, results=results, derive=derive")
+    more = [
+        "import beside\nSEEN = []\n",
+        "def derive(values):",
+        "    beside.SEEN.append(1)",
+        "    return {'seen': len(beside.SEEN)}\n",
+        "def results(program):",
+        "    SEEN.append(program.rt)",
+        "    return {'rt': len(SEEN), 'luck': 0.5}\n",
+    ]
+    path.write_text("\n".join(more) + text, encoding="utf-8")
+    (tmp_path / "counter.py").write_text(COUNTER.replace("n = 3", "n = 3\nseen = 0"), encoding="utf-8")
+    (tmp_path / "beside.py").write_text("SEEN = []\n", encoding="utf-8")
+    process, specification = TrialProcess(), specify(str(path)).specification.to_json()
+    try:
+        for number in (0, 1, 2):
+            assert process.run(specification, number, 60)["rt"] == 1
+            assert process.columns["seen"] == 1
+    finally:
+        process.close()
+
+
+def test_a_list_that_is_set_is_the_same_for_client_and_worker(tmp_path: Path) -> None:
+    """The seed names the levels: a tuple there and a list here would be two seeds."""
+    path = write_experiment(tmp_path, factors='{"n": [1], "pair": [None]}', model=COUNTER.replace("n = 3", "n = 3\npair = None"))
+    experiment = specify(str(path), values={"pair": [(1, 2), (3, 4)]})
+    again = Experiment(Specification.from_json(experiment.specification.to_json(), "here"))
+    assert [trial.columns for trial in again.design.table()] == [trial.columns for trial in experiment.design.table()]
+    assert "pair=[1, 2]" in experiment.design.trial(0).seed or "pair=[3, 4]" in experiment.design.trial(0).seed
+
+
+def test_a_row_has_the_values_that_ran(tmp_path: Path) -> None:
+    """Also where the design draws numbers of its own."""
+    path = write_experiment(tmp_path, factors='{"mode": ["count"]}', participants=1, trials=2)
+    derive = "limit=60, derive=lambda v: {'n': os.getpid()}, results=lambda program: {'rt': program.n, 'luck': 0}"
+    path.write_text("import os\n" + path.read_text(encoding="utf-8").replace("limit=60", derive), encoding="utf-8")
+    (tmp_path / "counter.py").write_text(COUNTER.replace("model.run()", "model.run(0)"), encoding="utf-8")
+    batch = run_batch(specify(str(path)).specification.to_json(), [0, 1], 60, cluster_versions())
+    for _, row, _ in batch.rows:
+        assert row["rt"] == row["n"] != os.getpid()
+
+
+def test_a_folder_that_another_computer_writes_is_not_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "out"
+    with Store.create(folder, specify(str(write_experiment(tmp_path))).specification) as store, store.only_writer():
+        Store(folder).close()
+        monkeypatch.setattr("actr3d.experiment.store.gethostname", lambda: "elsewhere")
+        with pytest.raises(ExperimentError, match=rf"out': process {os.getpid()} on the computer '.+' writes it now; use it there"):
+            Store(folder)
+    Store(folder).close()
+
+
+def test_a_design_of_the_library_runs_beside_a_folder_of_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    monkeypatch.chdir(tmp_path)
+    Store.create("utility_learning", specify("utility_learning").specification).close()
+    words = ["experiment", "utility_learning", "--participants", "1", "--trials", "1", "--workers", "1"]
+    assert main([*words, "--out", "small"]) == 0
+    assert "trials in 'small', 0 finished" in capsys.readouterr().out
+    assert main(["experiment", "./utility_learning", "--participants", "1"]) == 1
+    assert "is an experiment, whose design is fixed" in capsys.readouterr().err
+
+
+def test_a_check_names_the_trial_that_fails_and_takes_no_options_of_a_run(tmp_path: Path, capsys: Any) -> None:
+    model = COUNTER.replace('if mode == "fail"', "if n == 1")
+    path = write_experiment(tmp_path, factors='{"n": [1, 2]}', participants=1, trials=1, model=model)
+    path.write_text(path.read_text(encoding="utf-8").replace("limit=60", 'limit=60, order="fixed"'), encoding="utf-8")
+    assert main(["experiment", str(path), "--check"]) == 1
+    assert "trial 0 failed: " in capsys.readouterr().out
+    assert main(["experiment", str(path), "--check", "--out", "x", "--workers", "2"]) == 2
+    assert "--check: runs two trials in this process and keeps nothing; leave out --workers and --out" in capsys.readouterr().err

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,9 @@ NEEDED = (
     "start_heading",
 )
 """The columns that a `Passing` is made of."""
+BEYOND = "beyond: the value is most likely beyond the ratios of the trials, and is only a bound; it is in no mean."
+OF_WALKS = ("aperture", "shoulder_width", "wall_angle_deg", "clearance_left_m", "clearance_right_m", "contacts", "outcome")
+"""The columns that every experiment with walks through apertures has."""
 SIDES_DIFFER = 0.001
 """Sides that differ by less than this in every trial are equal [m]."""
 
@@ -102,7 +106,7 @@ def frame_of(results: Results, findings: Findings) -> Any:
     return frame
 
 
-@analysis("aperture", "shoulder_width", "wall_angle_deg", "clearance_left_m", "clearance_right_m", "contacts", "outcome")
+@analysis(*OF_WALKS)
 def passing_apertures(results: Results, others: Sequence[Beside]) -> list[Section]:
     """Returns the sections on walking through apertures."""
     by = "aperture" if "aperture" in results.factors else "ratio"
@@ -135,6 +139,7 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
         one = critical_ratio(zip(of["ratio"], of["passable"] < 0.5, strict=True))
         values = (math.nan,) * 3 if one is None else (one.value, one.low, one.high)
         found.append({"group": group, "participant": participant, **dict(zip(("boundary", "low", "high"), values, strict=True))})
+        found[-1]["beyond"] = "yes" if one is not None and one.beyond else "no"
     people = pd.DataFrame(found)
     means = cell_means(rows, "passable", ["group", "ratio"])
     curves: list[Curve] = []
@@ -153,16 +158,18 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
             title="Boundary of each participant",
             frame=people,
             note="Half of the judgements there are «can pass», by a logistic fit; low, high: 95 % interval of the profile likelihood, "
-            "infinite where it goes beyond the ratios of the trials.",
+            "infinite where it goes beyond the ratios of the trials. " + BEYOND,
             digits={"boundary": 3, "low": 3, "high": 3},
         ),
     ]
     if of_all is not None:
-        low, high = bootstrap_interval(people["boundary"].tolist())
-        mean = people["boundary"].mean()
+        within: list[float] = people[people["beyond"] == "no"]["boundary"].dropna().tolist()
+        low, high = bootstrap_interval(within)
+        mean = float(np.mean(within)) if within else math.nan
         parts.append(
             f"Mean boundary {mean:.3f} (95 % interval over participants {low:.3f} to {high:.3f}); of all judgements {of_all.value:.3f}."
         )
+        parts += _left_out(people, "boundary")
     parts.append(
         "The boundary of the descriptive and of the replication variant is a parameter of the model (1.16, 1.139): only its spread follows "
         "from the noise of vision. That of the predictive variant follows from its experiences."
@@ -193,7 +200,7 @@ class Rotation:
     """
 
     def __init__(self, findings: Findings, frame: Any, others: Sequence[Beside]) -> None:
-        self._findings, self._others = findings, others
+        self._findings, self._others = findings, [with_greatest_angles(one, findings.by) for one in others]
         self._by_aperture = findings.by == "aperture"
         self._x_label = "aperture [cm]" if self._by_aperture else OF_RATIO
         self._frame = frame
@@ -353,6 +360,16 @@ class Rotation:
         return [Table(name="aic", title="Ratio or width?", frame=pandas().DataFrame(rows), note=note, digits={"aic": 1})]
 
 
+def with_greatest_angles(one: Beside, by: str) -> Beside:
+    """Returns means beside those of the model; the angles of another experiment are those of the model: of walkers that did not reach the
+    wall, the greatest ones."""
+    if one.results is None or not {by, *OF_WALKS} <= set(one.results.rows):
+        return one
+    findings = Findings(passings_of(one.results), by)
+    means = cell_means(frame_of(one.results, findings), "angle", ["group", "condition", "level"])
+    return replace(one, frame=means.rename(columns={"level": by}).assign(measure="wall_angle_deg"))
+
+
 def _curves_beside(others: Sequence[Beside], measure: str, cell: dict[str, str], label: str, x: str, scale: float) -> list[Curve]:
     """Returns the means of people and of other experiments in a cell; those of all groups or conditions count for each of them."""
     found: list[Curve] = []
@@ -392,7 +409,7 @@ def _critical_ratios(findings: Findings) -> Parts:
     note = (
         f"Logistic: half of the trials are turned by more than {TURNED:g} degrees above the participant's baseline, its median angle above "
         f"{WIDE:g} A/S. low, high: 95 % interval of the profile likelihood, infinite where it goes beyond the ratios of the "
-        "trials; an abrupt change is known to one step of apertures. "
+        f"trials; an abrupt change is known to one step of apertures. {BEYOND} "
         "Bend: piecewise-linear fit; it is too large for a rotation that falls more steeply near its end."
     )
     parts: Parts = []
@@ -407,7 +424,7 @@ def _critical_ratios(findings: Findings) -> Parts:
         )
     summary: list[dict[str, Any]] = []
     for (group, condition), of in frame.groupby(["group", "condition"], sort=False):
-        values: list[float] = of["critical_ratio"].dropna().tolist()
+        values: list[float] = of[of["beyond"] == "no"]["critical_ratio"].dropna().tolist()
         low, high = bootstrap_interval(values)
         bends: list[float] = of["bend"].dropna().tolist()
         row = {"group": group, "condition": condition, "mean": float(np.mean(values)) if values else math.nan, "low": low, "high": high}
@@ -426,10 +443,23 @@ def _critical_ratios(findings: Findings) -> Parts:
                 "there are too few to say where turning begins."
             )
         )
-    return parts
+    return [*parts, *_left_out(frame, "critical_ratio")]
 
 
-def _fits(of: Sequence[Passing], curve: tuple[list[float], list[float]]) -> dict[str, float]:
+def _left_out(frame: Any, column: str) -> list[Caution]:
+    """Returns a caution if some of the values of participants are only bounds."""
+    beyond = frame[frame["beyond"] == "yes"]
+    if not len(beyond):
+        return []
+    known = int(frame[column].notna().sum())
+    text = (
+        f"{len(beyond)} of {known} values are most likely beyond the ratios of the trials. They are in no mean of participants, so that "
+        "mean is not that of all: wider or narrower apertures would tell."
+    )
+    return [Caution(text)]
+
+
+def _fits(of: Sequence[Passing], curve: tuple[list[float], list[float]]) -> dict[str, Any]:
     """Returns both fits of one participant at one speed."""
     wide = [one.angle or 0.0 for one in of if one.ratio > WIDE]
     base = float(np.median(wide)) if wide else 0.0
@@ -441,6 +471,7 @@ def _fits(of: Sequence[Passing], curve: tuple[list[float], list[float]]) -> dict
         "critical_ratio": math.nan if logistic is None else logistic.value,
         "low": math.nan if logistic is None else logistic.low,
         "high": math.nan if logistic is None else logistic.high,
+        "beyond": "yes" if logistic is not None and logistic.beyond else "no",
         "baseline_deg": base if wide else math.nan,
         "bend": math.nan if line is None else line.ratio,
     }

@@ -98,14 +98,11 @@ class Findings:
         self.plain = [one for one in self.passings if one.bar_ratio == 1 and one.straight]
         """The trials without a bar that is wider than the body, which begin in line with the doorway."""
         self._people: defaultdict[tuple[str, str, str], defaultdict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
-        self._margins: defaultdict[tuple[str, str, float], list[float]] = defaultdict(list)
         self._trials: defaultdict[tuple[str, str, str], list[Passing]] = defaultdict(list)
         for one in self.plain:
             if one.angle is not None:
                 self._people[one.group, one.condition, one.participant][self.level(one)].append(one.angle)
                 self._trials[one.group, one.condition, one.participant].append(one)
-            if (sides := margin(one)) is not None:
-                self._margins[one.group, one.condition, self.level(one)].append(min(sides))
         self._shoulders = {(one.group, one.participant): one.shoulders for one in self.plain}
         self.groups = list(dict.fromkeys(one.group for one in self.plain))
         self.conditions = list(dict.fromkeys(one.condition for one in self.plain))
@@ -124,11 +121,6 @@ class Findings:
         """Returns the mean angle of a cell, of the participants' means [degrees]."""
         found = (self._angles(group, condition, one).get(level) for one in self.people(group))
         return mean(mean(angles) for angles in found if angles)
-
-    def margin(self, group: str, condition: str, level: float) -> float | None:
-        """Returns the mean margin on the narrower side, of the walkers in a cell that turned [m]; None if none did."""
-        margins = self._margins.get((group, condition, level))
-        return mean(margins) if margins else None
 
     def people(self, group: str) -> list[str]:
         """Returns the participants of a group."""
@@ -162,7 +154,8 @@ class Findings:
         """Returns all nine constraints.
 
         Args:
-            boundary: The ratio from which the model judges that it can pass without turning; None if it was not asked.
+            boundary: The ratio from which the model judges that it can pass without turning; None if it was not asked, NaN if it judges
+                all alike.
         """
         made: list[Callable[[], Constraint]] = [self.falls, self.wider_turns_more, self.same_ratio, self.critical, self.faster_turns_more]
         made += [self.untouched, self.upright, self.longer_bar]
@@ -179,8 +172,11 @@ class Findings:
             for condition in self.conditions
         ]
         rise = max((b - a for curve in curves for a, b in pairwise(curve)), default=math.inf)
+        fall = min((curve[0] - curve[-1] for curve in curves if len(curve) > 1), default=-math.inf)
         found = f"largest rise from one aperture to the next {rise:.1f} degrees" if rise > 0 else "no rise from one aperture to the next"
-        return Constraint(number=1, says=says, met=rise <= STEADY, found=found)
+        if fall <= STEADY:  # an angle that stays as it is does not fall
+            found += f"; from the narrowest to the widest it falls by no more than {fall:.1f} degrees in a cell"
+        return Constraint(number=1, says=says, met=rise <= STEADY < fall, found=found)
 
     def wider_turns_more(self) -> Constraint:
         """2: the large group turns more at equal width below about 63 cm."""
@@ -232,9 +228,13 @@ class Findings:
 
     def same_ratio(self) -> Constraint:
         """3: the groups agree on the ratio: two one-sided t tests of participants."""
-        says, test = "groups coincide on A/S", self.ratio_test
-        if test is None:
+        says, scores, test = "groups coincide on A/S", self.scores(), self.ratio_test
+        if scores is None or test is None:
             return _untested(3, says, "it needs two groups of three or more participants, and common ratios between 1.0 and 1.4")
+        if max(map(mean, scores)) <= TURNED:  # then they differ by less than the bound anyway
+            return _untested(3, says, "it needs walkers that turn")
+        if math.isnan(test.df):
+            return _untested(3, says, "it needs participants that differ")
         found = f"large minus small {test.difference:.1f} degrees, within {SAME:g}: p = {test.p:.3g}"
         return Constraint(number=3, says=says, met=test.p < 0.05, found=found)
 
@@ -352,6 +352,8 @@ class Findings:
         says = "«can pass» from about 1.16, below 1.30"
         if boundary is None:
             return _untested(9, says, "it needs judgements, as in the design passability_judgement")
+        if math.isnan(boundary):
+            return _untested(9, says, "it needs judgements of both kinds: all were the same")
         met = PASSABLE[0] <= boundary <= PASSABLE[1]
         return Constraint(number=9, says=says, met=met, found=f"from {boundary:.3f}")
 

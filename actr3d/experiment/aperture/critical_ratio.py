@@ -28,6 +28,9 @@ class CriticalRatio:
     """Minus infinity if the interval goes beyond the smallest ratio of the trials."""
     high: float
     """Infinity if it goes beyond the largest one."""
+    beyond: bool
+    """Whether the critical ratio is most likely smaller than the smallest ratio of the trials, or larger than the largest one: then the
+    value is only a bound."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,11 +72,12 @@ def critical_ratio(trials: Iterable[tuple[float, bool]]) -> CriticalRatio | None
         if likelihood.max() < profile.max() - CHI_SQUARED / 2:
             break  # the likelihood is concave in the slope: on all shallower ones it is smaller still
     best = profile.max()
-    top: list[float] = centres[profile >= best - 1e-3].tolist()
+    likely = profile >= best - 1e-3
+    top: list[float] = centres[likely].tolist()
     inside = profile >= best - CHI_SQUARED / 2
     within: list[float] = centres[inside].tolist()
     low, high = -np.inf if inside[0] else within[0], np.inf if inside[-1] else within[-1]
-    return CriticalRatio(value=(top[0] + top[-1]) / 2, low=low, high=high)
+    return CriticalRatio(value=(top[0] + top[-1]) / 2, low=low, high=high, beyond=bool(likely[0] or likely[-1]))
 
 
 def bend(ratios: Sequence[float], angles: Sequence[float]) -> Bend | None:

@@ -30,6 +30,8 @@ class Beside:
     frame: Any
     """A `DataFrame` with `group`, the factors of the design, `measure`, `mean`, `sd`, `low`, `high` and `n`; a group or a level that is
     None (NaN for numbers) is a mean over all."""
+    results: Results | None = None
+    """The trials of another experiment; None for people."""
 
     def of(self, measure: str) -> Any:
         """Returns the rows of a measure."""
@@ -120,7 +122,7 @@ def beside_experiment(others: Sequence[Results], parts: Sequence[Results]) -> Be
         return None
     frame = pd.concat(pieces, ignore_index=True)
     columns = ["group", *factors_of(parts), "measure", "mean", "sd", "low", "high", "n"]
-    return Beside(label=others[0].label, look="other", frame=frame.reindex(columns=columns))
+    return Beside(label=others[0].label, look="other", frame=frame.reindex(columns=columns), results=others[0])
 
 
 def matched(results: Results, beside: Beside, measure: str) -> Any:

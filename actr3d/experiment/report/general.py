@@ -128,9 +128,9 @@ def comparison_section(results: Results, other: Results, parts: Sequence[Results
 def _matched_table(parts: Sequence[Results], beside: Beside, name: str, title: str) -> Table:
     pieces = [matched(part, beside, measure).assign(measure=measure) for part in parts for measure in part.measures]
     frame = pandas().concat([piece for piece in pieces if len(piece)], ignore_index=True)
-    frame = frame.rename(columns={"beside": beside.label.replace(" ", "_")})
     first = ["measure", "group", *factors_of(parts)]
-    return Table(name=name, title=title, frame=frame[[*first, *(c for c in frame if c not in first)]], folded=True)
+    frame = frame[[*first, *(column for column in frame if column not in first)]]
+    return Table(name=name, title=title, frame=frame, heads={"beside": beside.label}, folded=True)
 
 
 def measure_sections(parts: Sequence[Results], others: Sequence[Beside]) -> list[Section]:

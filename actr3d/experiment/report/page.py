@@ -136,7 +136,7 @@ def _table(table: Table) -> str:
 
 def _head(name: str, table: Table) -> str:
     """Returns the name of a column with its unit; degrees are short there, because many columns have them."""
-    return name_with_unit(name, table.units.get(name, "")).replace("[degrees]", "[°]")
+    return name_with_unit(table.heads.get(name, name), table.units.get(name, "")).replace("[degrees]", "[°]")
 
 
 def _cell(name: str, value: Any, numeric: set[str], table: Table) -> str:

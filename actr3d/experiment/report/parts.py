@@ -18,6 +18,8 @@ class Table:
     """A `pandas.DataFrame`; its columns are those of the file."""
     note: str = ""
     """What a reader has to know."""
+    heads: Mapping[str, str] = field(default_factory=dict[str, str])
+    """What the page shows instead of the names of columns."""
     units: Mapping[str, str] = field(default_factory=dict[str, str])
     """Units of columns; the page shows them in the head of the table."""
     digits: Mapping[str, int] = field(default_factory=dict[str, int])
