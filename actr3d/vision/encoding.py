@@ -9,13 +9,12 @@ from typing import Annotated
 from annotated_types import Gt, Lt
 
 from actr3d.configuration import Configuration
+from actr3d.world.actuators.motion import SACCADE, SACCADE_PER_RAD
 
 PREPARATION = 0.135
 """From a shift of attention until an eye movement can no longer be called off [s]. Source: EMMA (Salvucci 2001)."""
 PROGRAMMING = 0.05
 """From then until the eye begins to move [s]. Source: the same."""
-SACCADE, PER_DEGREE = 0.02, 0.002
-"""Duration of an eye movement: 20 ms and 2 ms for each degree [s] [s/degree]. Source: the same (docs/human-data.md)."""
 
 LONGEST = 1e6
 """Upper bound of encoding [s]: for large angles the equation gives years, and then overflows."""
@@ -25,7 +24,7 @@ LARGEST = 700.0
 
 def saccade_time(angle: float) -> float:
     """Returns the duration of an eye movement over an angle [rad], in seconds."""
-    return SACCADE + PER_DEGREE * math.degrees(abs(angle))
+    return SACCADE + SACCADE_PER_RAD * abs(angle)
 
 
 @dataclass(frozen=True, kw_only=True)
