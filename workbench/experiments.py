@@ -126,7 +126,8 @@ class Experiments:
         self._recordings = sessions.recordings
         self._root = sessions.folder.root / OWN / "experiments"
         self._running: dict[str, RunningExperiment] = {}
-        self._starting = 0
+        self._starting: set[str] = set()
+        """The experiments whose commands are being started."""
         self._closed = False
         self._counts: dict[str, tuple[Any, dict[str, Any]]] = {}
         """The numbers of finished and failed trials by name, and the stamps of the tables in which they were counted."""
@@ -298,10 +299,15 @@ class Experiments:
             OSError: If no process can be started.
         """
         folder = self._trusted(name, trust=trust)
-        if name in self._running or folder.is_locked:
+        if self._runs(folder):
             raise ExperimentRunError("this experiment is already running")
         arguments = ["experiment", str(folder.path), "--json", "--resume"]
         await self._begin(name, arguments, folder.notes.workers if workers is None else workers, new=False)
+
+    def _runs(self, folder: ExperimentFolder) -> bool:
+        """Returns whether an experiment runs or is about to, here or elsewhere."""
+        name = folder.path.name
+        return name in self._running or name in self._starting or folder.is_locked
 
     async def _begin(self, name: str, arguments: Sequence[str], workers: int | None, *, new: bool) -> None:
         """Starts a command that runs an experiment, and waits until it has checked the design.
@@ -314,16 +320,19 @@ class Experiments:
         """
         if self._closed:
             raise ExperimentRunError("the workbench is closing")
-        if len(self._running) + self._starting >= MAX_RUNNING:
+        if len(self._running) + len(self._starting) >= MAX_RUNNING:
             raise ExperimentRunError(f"{MAX_RUNNING} experiments are already running: stop one, or wait for its end")
         folder = ExperimentFolder(self._root / name)
         facts = None if new else folder.facts
-        self._starting += 1
+        self._starting.add(name)
         try:
             number = [] if workers is None else [f"--workers={workers}"]
             command = await ExperimentCommand.start([*arguments, *number], self._made_root())
         finally:
-            self._starting -= 1
+            self._starting.discard(name)
+        if self._closed:
+            await command.kill()
+            raise ExperimentRunError("the workbench is closing")
         run = self._running[name] = RunningExperiment(command, facts, self._counts.get(name, (None, _NOTHING))[1]["done"])
         began: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         run.task = asyncio.create_task(self._follow(folder, run, began, workers, new=new))
@@ -458,7 +467,7 @@ class Experiments:
             OSError: If it cannot be moved.
         """
         folder = self.folder(name)
-        if name in self._running or folder.is_locked:
+        if self._runs(folder):
             raise ExperimentRunError("this experiment runs: stop it, then delete it")
         if folder.elsewhere.is_dir():
             move_to_trash(self._models.root, folder.elsewhere)

@@ -14,8 +14,9 @@ import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 
-from actr3d.actr.loading.source_text import read_source
+from actr3d.actr.loading.source_text import decode_source, read_bytes
 from actr3d.errors import Actr3dError
 
 LARGEST = 1_000_000
@@ -64,6 +65,7 @@ class ModelFolder:
 
     def __init__(self, root: Path) -> None:
         self.root = root.resolve()
+        self._saving = Lock()
 
     def paths(self) -> list[str]:
         """Returns the paths of all model files, sorted by folder depth and name, without hidden files and links that lead outside."""
@@ -132,14 +134,25 @@ class ModelFolder:
         try:
             if where.stat().st_size > LARGEST:
                 raise FileError(f"'{path}' is larger than {LARGEST:,} bytes")
-            return ModelFile(path=path, text=read_source(where), version=self.version(where))
+            text, version = self.text_and_version(where)
+            return ModelFile(path=path, text=text, version=version)
         except OSError as error:
             raise FileError(f"cannot read '{path}': {error.strerror}") from None
 
     @staticmethod
     def version(where: Path) -> str:
         """Returns the version of a file's current text: a hash of its bytes."""
-        return hashlib.sha256(where.read_bytes()).hexdigest()
+        return _version(where.read_bytes())
+
+    @staticmethod
+    def text_and_version(where: Path) -> tuple[str, str]:
+        """Returns the current text of a file and its version, from the same bytes.
+
+        Raises:
+            ModelFileError: If the file does not exist, cannot be read, or is not text.
+        """
+        data = read_bytes(where)
+        return decode_source(data, where), _version(data)
 
     def save(self, path: str, text: str, version: str | None) -> ModelFile:
         """Writes a model file if it has not changed since the writer read it.
@@ -157,20 +170,20 @@ class ModelFolder:
         data = _encoded(text, *self._line_end_and_mark(where))
         if len(data) > LARGEST:
             raise FileError(f"the size of a model file: must be <= {LARGEST:,} bytes (got {len(data):,})")
-        now = self.version(where) if where.is_file() else None
-        if now != version:
-            reason = (
-                "there is no such file any more" if now is None else "there is such a file already" if version is None else "it has changed"
-            )
-            raise ConflictError(f"'{path}' was not saved: {reason}")
-        try:
-            if where.exists() and not is_writable(where):
-                raise FileError(f"cannot write '{path}': it is read-only")
-            where.parent.mkdir(parents=True, exist_ok=True)
-            replace_file(where.resolve(), data)  # a link inside the folder stays a link
-        except OSError as error:
-            raise FileError(f"cannot write '{path}': {error.strerror}") from None
-        return ModelFile(path=path, text=text, version=self.version(where))
+        with self._saving:  # of two who have read the same version, only one replaces it
+            now = self.version(where) if where.is_file() else None
+            if now != version:
+                gone, there = "there is no such file any more", "there is such a file already"
+                reason = gone if now is None else there if version is None else "it has changed"
+                raise ConflictError(f"'{path}' was not saved: {reason}")
+            try:
+                if where.exists() and not is_writable(where):
+                    raise FileError(f"cannot write '{path}': it is read-only")
+                where.parent.mkdir(parents=True, exist_ok=True)
+                replace_file(where.resolve(), data)  # a link inside the folder stays a link
+            except OSError as error:
+                raise FileError(f"cannot write '{path}': {error.strerror}") from None
+        return ModelFile(path=path, text=text, version=_version(data))
 
     def _line_end_and_mark(self, where: Path) -> tuple[str, bytes]:
         """Returns the line ending of a file and the byte order mark at its start, if any, so that a file keeps its own."""
@@ -225,6 +238,10 @@ class ModelFolder:
         if not where.is_file():
             raise NoSuchFileError(f"there is no '{path}'")
         return where
+
+
+def _version(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
 
 
 def file_stamp(*paths: Path) -> tuple[int, ...]:

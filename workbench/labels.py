@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import logging
 import secrets
 import time
-from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Generator, Iterable, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -15,6 +16,7 @@ from typing import Any
 import msgspec
 
 from actr3d.errors import Actr3dError
+from workbench.files import replace_file
 
 FILE = "labels.json"
 ASIDE = "labels-damaged-{}.json"
@@ -99,7 +101,7 @@ class Labels:
             LabelError: If a field that changes no longer has the value in `known`.
             OSError: If the file cannot be written.
         """
-        with self._lock:
+        with self._changing():
             labels = self._to_change()
             now = labels.get(recording, Label())
             for field, new in changes.items():
@@ -112,7 +114,7 @@ class Labels:
 
     def move(self, recording: str, to: str) -> None:
         """Moves a label with its renamed recording."""
-        with self._lock:
+        with self._changing():
             labels = self.all()
             if recording in labels:
                 labels[to] = labels.pop(recording)
@@ -120,11 +122,19 @@ class Labels:
 
     def forget(self, recordings: Iterable[str]) -> None:
         """Removes the labels of deleted recordings."""
-        with self._lock, suppress(OSError):
+        with suppress(OSError), self._changing():
             labels = self.all()
             gone = [labels.pop(recording) for recording in recordings if recording in labels]
             if gone:
                 self._write(labels)
+
+    @contextmanager
+    def _changing(self) -> Generator[None]:
+        """Locks the labels for a change, also against other servers on the same folder, unless the file system has no locks."""
+        with self._lock, self._file.with_name(f".{FILE}.lock").open("wb") as lock:
+            with suppress(OSError):
+                fcntl.flock(lock, fcntl.LOCK_EX)
+            yield
 
     def _to_change(self) -> dict[str, Label]:
         """Returns the labels; a file that cannot be read is kept aside first.
@@ -139,7 +149,5 @@ class Labels:
         return labels
 
     def _write(self, labels: dict[str, Label]) -> None:
-        part = self._file.with_name(f".{FILE}.part")
         kept = {name: msgspec.structs.asdict(label) for name, label in sorted(labels.items()) if label}
-        part.write_text(json.dumps(kept, indent=1), encoding="utf-8")
-        part.replace(self._file)
+        replace_file(self._file, json.dumps(kept, indent=1).encode())

@@ -66,7 +66,10 @@ class Recordings:
         return [path for path in files if _NAME.fullmatch(path.stem) and path.is_file() and not path.is_symlink()]
 
     def tidy(self, keeping: Keeping) -> None:
-        """Deletes the oldest recordings that no user has named or labelled, if the limits are exceeded; none while labels are missing."""
+        """Deletes the oldest recordings that no user has named or labelled, if the limits are exceeded; none while labels are missing.
+
+        A recording that another server may still write is kept.
+        """
         if self.labels.problem is not None:
             return
         erased = superfluous(self._files(), keeping, self.labels.all().keys())
@@ -80,11 +83,12 @@ class Recordings:
             erase(path)
 
     def rename(self, name: str, to: str) -> None:
-        """Renames a recording; a recording that a user has named is kept until a user deletes it.
+        """Renames a recording with its label; a recording that a user has named is kept until a user deletes it.
 
         Raises:
             NoSuchRecordingError: If there is no recording of that name.
-            RecordingError: If the new name is invalid or taken, or the recording is still being written.
+            RecordingError: If the new name is invalid or taken, or the recording is still being written; or if only the label could not
+                be moved.
         """
         path, target = self.path(name), self._folder / f"{to}.sqlite"
         if _NAME.fullmatch(to) is None:
@@ -93,15 +97,17 @@ class Recordings:
             raise RecordingError("the recording is still being written: stop or restart its run first")
         try:
             os.link(path, target, follow_symlinks=False)  # unlike rename, this never replaces an existing file
-            path.unlink()
-            self.labels.move(name, to)
+            path.unlink(missing_ok=True)
         except FileExistsError:
             raise RecordingError(f"there is a recording '{to}' already") from None
         except FileNotFoundError:
-            target.unlink(missing_ok=True)
             raise NoSuchRecordingError from None
         except OSError as error:
             raise RecordingError(f"the recording cannot be renamed: {error.strerror}") from None
+        try:
+            self.labels.move(name, to)
+        except OSError as error:
+            raise RecordingError(f"the recording is now '{to}', but its label cannot be moved from '{name}': {error.strerror}") from None
 
     def opened(self, name: str) -> FileIO:
         """Returns the file of a recording, opened for reading: it stays readable even if the recording is renamed or deleted.

@@ -36,7 +36,7 @@ class Keeping:
 
 
 def superfluous(files: Sequence[Path], keeping: Keeping, labelled: Collection[str] = ()) -> list[Path]:
-    """Returns the recordings that exceed the limits: the oldest of those that no user has named or labelled.
+    """Returns the recordings that exceed the limits: the oldest of those that no user has named or labelled, and no run is writing.
 
     Args:
         files: All recordings.
@@ -45,7 +45,7 @@ def superfluous(files: Sequence[Path], keeping: Keeping, labelled: Collection[st
     """
 
     def is_kept(path: Path) -> bool:
-        return not is_unnamed(path) or path.stem in labelled
+        return not is_unnamed(path) or path.stem in labelled or not stands_alone(path)
 
     newest = sorted(files, key=written, reverse=True)
     number = size = 0

@@ -48,7 +48,7 @@ def start_of(path: Path, options: RunOptions, **more: Any) -> Start:
     """
     repeated = options.repeated
     if repeated is None:
-        more |= {"source": read_source(path), "version": ModelFolder.version(path)}
+        more["source"], more["version"] = ModelFolder.text_and_version(path)
     else:
         path = Path(repeated.file)
         more |= {"source": repeated.source, "version": digest_of(repeated.source)}

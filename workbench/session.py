@@ -12,6 +12,7 @@ from typing import Any
 
 import msgspec
 
+from actr3d.errors import Actr3dError
 from workbench.client_feed import MAX_NOTICES, Broadcast, Feed, Raw
 from workbench.event_log import EventLog
 from workbench.overlays import ViewSettings
@@ -93,6 +94,7 @@ class Session(Broadcast, Receiver):
         """What lists show of the run on screen."""
         self._beginning = asyncio.Lock()
         """Held while a new run is being given a worker."""
+        self._closed = False
         self._given_up = 0
         """Attempts up to this number are cancelled if they have no worker yet."""
         self._tasks: set[asyncio.Task[Any]] = set()
@@ -126,8 +128,11 @@ class Session(Broadcast, Receiver):
         Raises:
             ModelFileError: If the file cannot be read.
             OSError: If no worker can be started.
+            Actr3dError: If the session is closed.
         """
         async with self._beginning:
+            if self._closed:
+                raise Actr3dError("this session is closed, and begins no more runs: open the model again")
             options = options or RunOptions()
             record = str(self._recordings.new(self.path.stem)) if options.record else None
             more: dict[str, Any] = {"record": record, "factor": self.speed, "real_time": self.real_time, "breakpoints": self.breakpoints}
@@ -333,7 +338,8 @@ class Session(Broadcast, Receiver):
                     await one.over.wait()
 
     async def close(self) -> None:
-        """Stops the workers, informs the watchers, and cancels all tasks."""
+        """Stops the workers, informs the watchers, and cancels all tasks; no run can be begun from now on."""
+        self._closed = True
         useless = self._useless_recording
         await self.stop()
         if useless is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import re
@@ -21,7 +22,7 @@ from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.sessions import Desk
 from tests.helpers.workbench_server import Served, served
 from workbench.design_files import Starting
-from workbench.experiment_command import ExperimentRunError
+from workbench.experiment_command import ExperimentCommand, ExperimentRunError
 from workbench.experiments import Experiments
 
 pytestmark = pytest.mark.long
@@ -219,6 +220,26 @@ def test_none_starts_while_the_workbench_closes(tmp_path: Path, desk: Desk) -> N
     desk.do(experiments.close())
     with pytest.raises(ExperimentRunError, match="the workbench is closing"):
         desk.do(experiments.start(Starting(design="fan_effect")))
+
+
+def test_of_two_who_continue_an_experiment_at_once_one_is_refused(tmp_path: Path, desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / ".workbench" / "experiments" / "mine"
+    folder.mkdir(parents=True)
+    (folder / "experiment.json").write_text("{}", "utf-8")
+    started: list[object] = []
+
+    async def slow(*arguments: object) -> ExperimentCommand:
+        started.append(arguments)
+        await asyncio.sleep(0.01)
+        raise OSError("no more processes")
+
+    async def both() -> list[BaseException | None]:
+        experiments = Experiments(desk.sessions(tmp_path))
+        return await asyncio.gather(*(experiments.resume("mine", None, trust=True) for _ in range(2)), return_exceptions=True)
+
+    monkeypatch.setattr(ExperimentCommand, "start", slow)
+    assert [str(problem) for problem in desk.do(both())] == ["no more processes", "this experiment is already running"]
+    assert len(started) == 1
 
 
 @pytest.mark.slow

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from time import sleep
 
 import pytest
 
 from actr3d.actr.loading.source_text import read_source
-from workbench import loader
+from workbench import files, loader
 from workbench.files import LARGEST, ConflictError, FileError, ModelFolder, NoSuchFileError
 from workbench.loader import Outline, outline_of
+from workbench.run_request import RunOptions, start_of
 from workbench.shipped import models_folder, shipped
 
 
@@ -105,6 +108,47 @@ def test_a_conflict_is_reported_and_nothing_is_overwritten(folder: ModelFolder) 
     (folder.root / "one.py").unlink()
     with pytest.raises(ConflictError, match="no such file any more"):
         folder.save("one.py", "mine = 1\n", file.version)
+
+
+def test_of_two_who_save_at_once_one_is_told_of_the_other(folder: ModelFolder, monkeypatch: pytest.MonkeyPatch) -> None:
+    replace = files.replace_file
+
+    def slow(target: Path, data: bytes) -> None:
+        sleep(0.05)
+        replace(target, data)
+
+    def save(text: str) -> str | None:
+        try:
+            return folder.save("one.py", text, version).text
+        except ConflictError:
+            return None
+
+    version = folder.read("one.py").version
+    monkeypatch.setattr(files, "replace_file", slow)
+    with ThreadPoolExecutor(2) as pool:
+        saved = list(pool.map(save, ("first = 1\n", "second = 2\n")))
+    assert saved.count(None) == 1
+    assert folder.read("one.py").text in saved
+
+
+@pytest.mark.parametrize("way", ["read", "start"])
+def test_a_text_has_the_version_of_its_own_bytes(way: str, folder: ModelFolder, monkeypatch: pytest.MonkeyPatch) -> None:
+    where = folder.root / "one.py"
+    version = folder.version(where)
+    read = Path.read_bytes
+
+    def changed_then(path: Path) -> bytes:
+        data = read(path)
+        path.write_bytes(b"other = 1\n")
+        return data
+
+    monkeypatch.setattr(Path, "read_bytes", changed_then)
+    if way == "read":
+        file = folder.read("one.py")
+        assert (file.text, file.version) == ("a = 1\n", version)
+    else:
+        start = start_of(where, RunOptions())
+        assert (start.source, start.version) == ("a = 1\n", version)
 
 
 def test_a_new_file_may_lie_in_a_new_folder(folder: ModelFolder) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sqlite3
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 
@@ -13,6 +15,7 @@ import pytest
 from actr3d.errors import RecordingError
 from tests.helpers.sessions import Desk
 from workbench.files import OWN
+from workbench.labels import Labels
 from workbench.recordings import NoSuchRecordingError, Recordings
 from workbench.retention import Keeping, is_unnamed
 
@@ -60,6 +63,35 @@ def test_what_a_user_has_named_stays(recordings: Recordings, tmp_path: Path) -> 
     recordings.rename(oldest.stem, "kept")
     recordings.tidy(Keeping(number=2, megabytes=0))
     assert models(tmp_path) == ["kept", "model9"]
+
+
+def test_what_another_server_writes_stays(recordings: Recordings, tmp_path: Path) -> None:
+    oldest = min((tmp_path / OWN / "recordings").glob("*.sqlite"), key=lambda path: path.stat().st_mtime)
+    oldest.with_name(f"{oldest.name}-wal").touch()
+    recordings.tidy(Keeping(number=2, megabytes=0))
+    assert models(tmp_path) == ["model0", "model9"]
+
+
+def test_a_recording_whose_label_cannot_be_moved_is_renamed_all_the_same(
+    recordings: Recordings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise FileNotFoundError(errno.ENOENT, "no such file")
+
+    monkeypatch.setattr(recordings.labels, "move", full)
+    one = recordings.all()[0].stem
+    with pytest.raises(RecordingError, match="the recording is now 'kept', but its label cannot be moved"):
+        recordings.rename(one, "kept")
+    assert recordings.path("kept").stat().st_size == 1000
+
+
+def test_labels_that_two_servers_change_at_once_are_all_kept(tmp_path: Path) -> None:
+    def change(number: int) -> None:
+        Labels(tmp_path).change(f"recording{number}", {"note": "x"})  # as each server has an object of its own
+
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(change, range(40)))
+    assert len(Labels(tmp_path).all()) == 40
 
 
 def test_names_are_names_and_nothing_is_replaced(recordings: Recordings, tmp_path: Path) -> None:

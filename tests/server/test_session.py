@@ -414,6 +414,23 @@ def test_two_sessions_at_once(desk: Desk, tmp_path: Path) -> None:
     other.until("paused", tick=5)
 
 
+def test_a_closed_session_begins_no_runs(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, COUNTING)
+
+    async def restarted_while_closing() -> list[Any]:
+        restarts = [asyncio.create_task(talk.session.restart({}, 1)) for _ in range(2)]
+        await asyncio.sleep(0)  # the first one waits for its worker, the second one for the first
+        await talk.sessions.close(talk.session.name)
+        return await asyncio.gather(*restarts, return_exceptions=True)
+
+    first, second = desk.do(restarted_while_closing())
+    assert (first, str(second)) == (None, "this session is closed, and begins no more runs: open the model again")
+    assert talk.session.is_over
+    with pytest.raises(RefusedError, match="this session is closed"):
+        talk.say("restart")
+    assert talk.session.is_over
+
+
 def test_there_is_a_bound_to_sessions(desk: Desk, tmp_path: Path) -> None:
     from workbench.sessions import MAX_SESSIONS, SessionError
 

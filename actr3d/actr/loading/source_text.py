@@ -24,8 +24,17 @@ def read_source(path: Path) -> str:
     Raises:
         ModelFileError: If the file does not exist or is not text.
     """
+    return decode_source(read_bytes(path), path)
+
+
+def read_bytes(path: Path) -> bytes:
+    """Reads the bytes of a model file.
+
+    Raises:
+        ModelFileError: If the file does not exist or cannot be read.
+    """
     try:
-        data = path.read_bytes()
+        return path.read_bytes()
     except FileNotFoundError:
         near = [p.name for p in path.parent.glob("*.py")] if path.parent.is_dir() else []
         raise ModelFileError(f"no model file '{path}'{did_you_mean(path.name, near)}") from None
@@ -33,6 +42,18 @@ def read_source(path: Path) -> str:
         raise ModelFileError(f"'{path}' is a folder; name a model file in it") from None
     except OSError as error:
         raise ModelFileError(f"cannot read the model file '{path}': {error.strerror}") from None
+
+
+def decode_source(data: bytes, path: Path) -> str:
+    """Returns the text of a model file, in the encoding that it declares.
+
+    Args:
+        data: The content of the file.
+        path: The file, for messages.
+
+    Raises:
+        ModelFileError: If it is not text.
+    """
     data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     try:
         encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
