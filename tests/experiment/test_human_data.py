@@ -163,4 +163,4 @@ def test_the_librarys_designs_name_data_that_follow_the_schema() -> None:
     factors = {name: [*levels] for name, levels in design.factors.items()}
     data = read_human_data(known["warren_whang_1987"], Schema(groups=[*design.groups], factors=factors, measures=["speed_m_s"]))
     assert [row["mean"] for row in data.rows] == [1.29, 1.61, 1.28, 1.77]
-    assert "not available in print" in data.notes[0]
+    assert "not found as numbers" in data.notes[0]

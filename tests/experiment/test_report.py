@@ -512,4 +512,4 @@ def test_starts_aside_and_aslant_have_a_figure_and_a_table(tmp_path: Path) -> No
     assert {row["right"] for row in rows if float(row["start_aside"]) > 0.2} == {""}, "it was not in the doorway"
     assert all(6.7 < float(row["right"]) < 7.1 for row in rows if float(row["start_aside"]) < 0.2)
     assert "Starts aside and aslant" in page(folder)
-    assert "Human mean angles for each aperture are not available in print" in page(folder)
+    assert "Human mean angles for each aperture were not found as numbers" in page(folder)

@@ -229,7 +229,7 @@ class Rotation:
         parts += [self._cells(), self._fit(), *self._equivalence(), *self._aic()]
         if not any(one.look == "human" and len(one.of("wall_angle_deg")) for one in self._others):
             parts.append(
-                "Human mean angles for each aperture are not available in print, so none are drawn; give data of your own with --human."
+                "Human mean angles for each aperture were not found as numbers, so none are drawn; give data of your own with --human."
             )
         return parts
 
