@@ -248,3 +248,24 @@ class Agent(ACTR):
     CHANGES[word]("memory", "a b").carry_out(Parts([agent]))  # pyright: ignore[reportCallIssue] # a dataclass
     agent.run(0.1)
     assert str(agent.goal.chunk) == "failed"
+
+
+@pytest.mark.parametrize("module", ["PMNew(alpha=0.5)", "PMPGC()"])
+def test_a_production_that_was_withdrawn_is_not_rewarded(module: str) -> None:
+    text = f"""
+from actr3d.actr import *
+class Agent(ACTR):
+    goal = Buffer()
+    learning = {module}
+    def init(): goal.set("begin")
+    def left(goal="begin", utility=1): goal.set("end")
+    def right(goal="begin"): goal.set("end")
+"""
+    agent = load_text(text, "choosing.py").Agent()
+    agent.run(0.01)
+    before = agent.get_activation("left")
+    CHANGES["forbid_once"]("top", "left").carry_out(Parts([agent]))  # pyright: ignore[reportCallIssue] # a dataclass
+    agent.run(0.06)
+    agent.reward(10)
+    assert str(agent.goal.chunk) == "end"
+    assert agent.get_activation("left") == before

@@ -18,6 +18,7 @@ from actr3d.actr.kernel.tree import lineage, path_of
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.matcher import Matcher
 from actr3d.actr.procedural.production import Production, defaults_of
+from actr3d.actr.procedural.utility import utility_modules
 from actr3d.actr.reasons import Explanation
 from actr3d.errors import ProductionException, did_you_mean
 from actr3d.trace import Trace
@@ -359,6 +360,8 @@ def _withdraw(system: ProductionSystem) -> None:
         return  # it is about to match anyway
     if rules.chosen is not None:
         withdrawn, rules.chosen = rules.chosen, None
+        for module in utility_modules(system):
+            module.withdrawn(withdrawn)
         if sch.trace is not None and sch.trace.production:
             sch.trace.emit(sch.now_us, path_of(system), "withdrawn", {"production": withdrawn.name})
     changes.waiting = [event for event in changes.waiting if event is not process]
