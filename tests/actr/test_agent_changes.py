@@ -269,3 +269,22 @@ class Agent(ACTR):
     agent.reward(10)
     assert str(agent.goal.chunk) == "end"
     assert agent.get_activation("left") == before
+
+
+def test_a_body_sees_a_changed_parameter_by_its_bare_name() -> None:
+    text = """
+from actr3d.actr import *
+class Agent(ACTR):
+    goal = Buffer()
+    speed = 1.2
+    seen = []
+    def init(): goal.set("go")
+    def go(goal="go"):
+        self.seen.append((speed, self.speed))
+        goal.set("go")
+"""
+    agent = load_text(text, "speeding.py").Agent()
+    agent.run(0.06)
+    CHANGES["parameter"]("speed", 2.0).carry_out(Parts([agent]))  # pyright: ignore[reportCallIssue] # a dataclass
+    agent.run(0.05)
+    assert agent.seen == [(1.2, 1.2), (2.0, 2.0)]

@@ -335,7 +335,7 @@ def test_a_file_that_has_changed_since_its_import_is_not_run_half_new(tmp_path: 
     file = tmp_path / "edited_since.py"
     body = "    def init(): goal.set('go')\n    def act(goal='go'): goal.set('end')\n"
     text = f"from actr3d.actr import *\nclass A(ACTR):\n    goal = Buffer()\n{body}"
-    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
     file.write_text(text, encoding="utf-8")
     module: Any = importlib.import_module("edited_since")
     module.A().run(0)

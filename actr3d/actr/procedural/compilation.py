@@ -77,6 +77,10 @@ class CompiledProduction(Production):
     def _post_body(self) -> Body:
         return self.post.body_of(self.post.node.body)
 
+    def forget_body(self) -> None:
+        self.__dict__.pop("_kept_body", None)
+        self.__dict__.pop("_post_body", None)
+
     def _run(self) -> None:
         """Runs the kept statements of the first production, then all of the second."""
         sch = self.system.sch

@@ -336,6 +336,15 @@ def trace_utility_parts(system: ProductionSystem, production: Production, trace:
             trace.emit(system.sch.now_us, path_of(system), "utility", data)
 
 
+def see_again(system: ProductionSystem, part: Model, name: str) -> None:
+    """Has the bodies of a system see the present value of a part's attribute, if they see that attribute by its bare name."""
+    rules = rules_of(system)
+    if name in rules.context and next(above for above in lineage(system) if name in above.__dict__) is part:
+        rules.context[name] = part.__dict__[name]
+        for production in (*rules.initializers, *rules.productions):
+            production.forget_body()
+
+
 def choose_next(system: ProductionSystem, production: Production) -> None:
     """Has a production be chosen at the next match if it matches then, in place of the one that is about to fire."""
     rules_of(system).wanted = production
