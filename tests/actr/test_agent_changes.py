@@ -248,3 +248,43 @@ class Agent(ACTR):
     CHANGES[word]("memory", "a b").carry_out(Parts([agent]))  # pyright: ignore[reportCallIssue] # a dataclass
     agent.run(0.1)
     assert str(agent.goal.chunk) == "failed"
+
+
+@pytest.mark.parametrize("module", ["PMNew(alpha=0.5)", "PMPGC()"])
+def test_a_production_that_was_withdrawn_is_not_rewarded(module: str) -> None:
+    text = f"""
+from actr3d.actr import *
+class Agent(ACTR):
+    goal = Buffer()
+    learning = {module}
+    def init(): goal.set("begin")
+    def left(goal="begin", utility=1): goal.set("end")
+    def right(goal="begin"): goal.set("end")
+"""
+    agent = load_text(text, "choosing.py").Agent()
+    agent.run(0.01)
+    before = agent.get_activation("left")
+    CHANGES["forbid_once"]("top", "left").carry_out(Parts([agent]))  # pyright: ignore[reportCallIssue] # a dataclass
+    agent.run(0.06)
+    agent.reward(10)
+    assert str(agent.goal.chunk) == "end"
+    assert agent.get_activation("left") == before
+
+
+def test_a_body_sees_a_changed_parameter_by_its_bare_name() -> None:
+    text = """
+from actr3d.actr import *
+class Agent(ACTR):
+    goal = Buffer()
+    speed = 1.2
+    seen = []
+    def init(): goal.set("go")
+    def go(goal="go"):
+        self.seen.append((speed, self.speed))
+        goal.set("go")
+"""
+    agent = load_text(text, "speeding.py").Agent()
+    agent.run(0.06)
+    CHANGES["parameter"]("speed", 2.0).carry_out(Parts([agent]))  # pyright: ignore[reportCallIssue] # a dataclass
+    agent.run(0.05)
+    assert agent.seen == [(1.2, 1.2), (2.0, 2.0)]

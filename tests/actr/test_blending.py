@@ -266,5 +266,5 @@ def test_values_of_any_kind_can_be_blended() -> None:
 
 def test_a_temperature_must_be_positive() -> None:
     agent = blending()
-    with pytest.raises(ParameterError, match=r"BlendingMemory\.temperature: must be > 0 \(got 0\)"):
-        agent.memory.temperature = 0
+    with pytest.raises(ParameterError, match=r"BlendingMemory\.temperature: must be > 0 \(got -0\.5\)"):
+        agent.memory.temperature = -0.5

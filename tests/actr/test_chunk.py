@@ -8,6 +8,7 @@ import pickle
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -160,3 +161,11 @@ def test_every_way_of_changing_a_chunk_in_memory_is_noticed() -> None:
         change(chunk)
         assert any(c is chunk for c in agent.memory.find_matching_chunks(finds))
         assert not any(c is chunk for c in agent.memory.find_matching_chunks(misses))
+
+
+def test_numbers_of_numpy_are_compared_as_pythons() -> None:
+    chunk = Chunk({"count": np.int64(3), "seen": np.bool_(True), "v": np.float32(0.5), "w": np.float64(1e6)})
+    for text in ("count:3", "seen:True", "v:0.5", "w:1e+06"):
+        slot, word = text.split(":")
+        assert as_text(chunk[slot]) == word
+    assert as_text(np.array([1])) == "array([1])"

@@ -104,3 +104,33 @@ class Agent(ACTR):
     agent.goal.set("ask 0")
     agent.run(0.05)
     assert agent.goal.chunk == library.Chunk("done 1")
+
+
+@pytest.mark.parametrize("value", ["ice cream", 1000000.0, "!a", "a:b"])
+def test_any_value_may_be_compiled(value: object) -> None:
+    agent: Any = load_text(
+        """
+from actr3d.actr import *
+class Agent(ACTR):
+    goal, retrieval = Buffer(), Buffer()
+    memory = Memory(retrieval)
+    compiling = PMCompile(keep=['goal'], request='memory.request', retrieve='retrieval')
+    def init(): memory.add('n 0')
+    def ask(goal='step:ask what:?what'):
+        memory.request('n ?')
+        goal.modify(step='use')
+    def use(goal='step:use what:?what', retrieval='n ?n'):
+        goal.modify(step='done')
+""",
+        "asking.py",
+    ).Agent()
+    agent.run(0)
+    agent.goal.set({"step": "ask", "what": value})
+    agent.run(0.5)
+    (made,) = agent.compiling.compiled.values()
+    made.base_utility = 2
+    for what in (value, "other"):
+        agent.run(1)
+        agent.goal.set({"step": "ask", "what": what})
+        agent.run(0.06)
+        assert agent.goal.chunk["step"] == ("done" if what is value else "use")

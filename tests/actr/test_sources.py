@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import linecache
 import subprocess
 import sys
 import traceback
@@ -328,3 +329,17 @@ def test_several_threads_can_parse_at_once() -> None:
     model = Path(__file__).parents[2] / "models" / "aperture_passage.py"
     done = subprocess.run([sys.executable, "-c", THREADS, str(model)], check=True, capture_output=True, text=True)
     assert done.stdout == "0\n"
+
+
+def test_a_file_that_has_changed_since_its_import_is_not_run_half_new(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "edited_since.py"
+    body = "    def init(): goal.set('go')\n    def act(goal='go'): goal.set('end')\n"
+    text = f"from actr3d.actr import *\nclass A(ACTR):\n    goal = Buffer()\n{body}"
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
+    file.write_text(text, encoding="utf-8")
+    module: Any = importlib.import_module("edited_since")
+    module.A().run(0)
+    linecache.clearcache()
+    file.write_text(text.replace("'go'", "'run'"), encoding="utf-8")
+    with pytest.raises(ProductionException, match=r"production 'init': its source is not available .* the file has changed since"):
+        module.A().run()

@@ -8,6 +8,7 @@ from actr3d.actr.changes.agent_change import AgentChange, Parts
 from actr3d.actr.chunks.chunk import LASTING_TYPES
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import check_parameter
+from actr3d.actr.procedural.production_system import ProductionSystem, see_again
 from actr3d.change import change
 from actr3d.errors import SimulationError, did_you_mean
 
@@ -35,3 +36,6 @@ class SetParameter(AgentChange):
             raise SimulationError(f"no parameter '{self.path}': '{place}' has no '{name}'{did_you_mean(name, known)}")
         check_parameter(part, name, self.value, f"parameter '{self.path}'")
         setattr(part, name, self.value)
+        for system in on:
+            if isinstance(system, ProductionSystem):
+                see_again(system, part, name)

@@ -57,11 +57,13 @@ class PlaceName(str):
 
 
 def as_text(value: object) -> str:
-    """Returns a slot's value as patterns compare it: text unchanged, floats as `%g`, anything else by `repr`."""
+    """Returns a slot's value as patterns compare it: text unchanged, floats as `%g`, numpy's numbers as Python's, others by `repr`."""
     if isinstance(value, str):
         return value
     if isinstance(value, float):
         return f"{value:g}"
+    if type(value) not in LASTING_TYPES and type(value).__module__ == "numpy" and getattr(value, "shape", None) == ():
+        return as_text(cast("Any", value).item())
     return repr(value)
 
 

@@ -38,7 +38,7 @@ class Profile:
     harvest: bool
     """Whether a chunk that leaves a buffer is added to declarative memory."""
     learn_compiled: bool
-    """Whether a compiled rule's utility moves towards its first parent's each time it is compiled again."""
+    """Whether a compiled rule's utility moves towards its first parent's, U += alpha (U_parent - U), each time it is compiled again."""
     total_utility: bool
     """Whether utility learning changes the whole utility, including the production's own base."""
     awaits_expiry: bool

@@ -9,6 +9,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import lru_cache
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from threading import Lock
 from types import CodeType
@@ -91,9 +92,26 @@ def _functions(text: str) -> dict[tuple[str, int], ast.FunctionDef]:
 
 
 def function_node(func: Callable[..., Any]) -> ast.FunctionDef | None:
-    """Returns the syntax tree of a function's definition, or None if its source is not available."""
-    code = func.__code__
-    return _functions(source_of(func)).get((code.co_name, code.co_firstlineno))
+    """Returns the syntax tree of a function's definition, or None if its source is not available, or is not that of its code."""
+    code, text = func.__code__, source_of(func)
+    # A loaded text is that of the code; a file may have changed since its import. Other loaders may change the code.
+    if SOURCE not in func.__globals__ and type(func.__globals__.get("__loader__")) is SourceFileLoader and code not in _codes(text):
+        return None
+    return _functions(text).get((code.co_name, code.co_firstlineno))
+
+
+@lru_cache(maxsize=64)
+def _codes(text: str) -> frozenset[CodeType]:
+    """Returns the code of every function of a file."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = [compile(text, "", "exec", dont_inherit=True)]
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return frozenset()
+    for code in found:
+        found += [value for value in code.co_consts if isinstance(value, CodeType)]
+    return frozenset(found)
 
 
 def source_of(func: Callable[..., Any]) -> str:

@@ -48,13 +48,15 @@ class CompiledProduction(Production):
         self._kept = kept
         self.bound: Bindings | None = None
         self.original_func = pre.original_func
-        patterns = {name: _fill(pattern, pre_bound) for name, pattern in pre.pattern_specs.items()}
-        for name, pattern in post.pattern_specs.items():
-            if name != retrieve and name not in patterns:
-                patterns[name] = _fill(pattern, post_bound)
-        self.pattern_specs = patterns
-        self.keys = list(patterns)
-        self.conditions = conditions(patterns)
+        more = {name: pattern for name, pattern in post.pattern_specs.items() if name != retrieve and name not in pre.pattern_specs}
+        self.pattern_specs = {
+            name: _filled(pattern, bound)
+            for patterns, bound in ((pre.pattern_specs, pre_bound), (more, post_bound))
+            for name, pattern in patterns.items()
+        }
+        self.keys = list(self.pattern_specs)
+        tests = [*conditions(pre.pattern_specs, pre_bound), *conditions(more, post_bound)]
+        self.conditions = tuple(sorted(tests, key=lambda test: test.op == "call"))
         self.context = pre.context
 
     @property
@@ -75,6 +77,10 @@ class CompiledProduction(Production):
     def _post_body(self) -> Body:
         return self.post.body_of(self.post.node.body)
 
+    def forget_body(self) -> None:
+        self.__dict__.pop("_kept_body", None)
+        self.__dict__.pop("_post_body", None)
+
     def _run(self) -> None:
         """Runs the kept statements of the first production, then all of the second."""
         sch = self.system.sch
@@ -86,15 +92,15 @@ class CompiledProduction(Production):
         self._post_body(bound)
 
 
-def _fill(pattern: Any, bound: Bindings) -> Any:
-    """Replaces the variables in a pattern's text by their values."""
+def _filled(pattern: Any, bound: Bindings) -> Any:
+    """Returns a pattern with the values of its variables in its text, to be read by people: a value need not be a word of a pattern."""
     if isinstance(pattern, str):
         # The longest name first: ?a must not match the beginning of ?ab.
         for name in sorted(bound, key=len, reverse=True):
             pattern = pattern.replace(f"?{name}", str(bound[name]))
         return pattern
     if isinstance(pattern, (list, tuple)):
-        return [_fill(part, bound) for part in cast("Sequence[Any]", pattern)]
+        return [_filled(part, bound) for part in cast("Sequence[Any]", pattern)]
     return pattern
 
 

@@ -143,6 +143,10 @@ class Production:
     def _body(self) -> Body:
         return self.body_of(self.node.body)
 
+    def forget_body(self) -> None:
+        """Discards the function made of the body; the next one sees what the names in `context` mean then."""
+        self.__dict__.pop("_body", None)
+
     def share_globals(self) -> None:
         """Moves names that the body declares global, and an initializer has assigned, to the globals of the modeller's file."""
         func = self.original_func

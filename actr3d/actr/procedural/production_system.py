@@ -18,6 +18,7 @@ from actr3d.actr.kernel.tree import lineage, path_of
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.matcher import Matcher
 from actr3d.actr.procedural.production import Production, defaults_of
+from actr3d.actr.procedural.utility import utility_modules
 from actr3d.actr.reasons import Explanation
 from actr3d.errors import ProductionException, did_you_mean
 from actr3d.trace import Trace
@@ -335,6 +336,15 @@ def trace_utility_parts(system: ProductionSystem, production: Production, trace:
             trace.emit(system.sch.now_us, path_of(system), "utility", data)
 
 
+def see_again(system: ProductionSystem, part: Model, name: str) -> None:
+    """Has the bodies of a system see the present value of a part's attribute, if they see that attribute by its bare name."""
+    rules = rules_of(system)
+    if name in rules.context and next(above for above in lineage(system) if name in above.__dict__) is part:
+        rules.context[name] = part.__dict__[name]
+        for production in (*rules.initializers, *rules.productions):
+            production.forget_body()
+
+
 def choose_next(system: ProductionSystem, production: Production) -> None:
     """Has a production be chosen at the next match if it matches then, in place of the one that is about to fire."""
     rules_of(system).wanted = production
@@ -359,6 +369,8 @@ def _withdraw(system: ProductionSystem) -> None:
         return  # it is about to match anyway
     if rules.chosen is not None:
         withdrawn, rules.chosen = rules.chosen, None
+        for module in utility_modules(system):
+            module.withdrawn(withdrawn)
         if sch.trace is not None and sch.trace.production:
             sch.trace.emit(sch.now_us, path_of(system), "withdrawn", {"production": withdrawn.name})
     changes.waiting = [event for event in changes.waiting if event is not process]

@@ -29,6 +29,9 @@ class ProceduralSubModule(WithParameters, Model):
     def selecting(self, prod: Any) -> None:
         """Is called when a production has been chosen."""
 
+    def withdrawn(self, prod: Any) -> None:
+        """Is called when a user withdraws the chosen production before it fires."""
+
     def firing(self, prod: Any) -> None:
         """Is called when a production fires."""
 
@@ -150,6 +153,11 @@ class PMPGC(ProceduralSubModule):
             self._rewarded = False
         self.history.append((prod, self.now()))
 
+    def withdrawn(self, prod: Any) -> None:
+        """Forgets the latest choice."""
+        if self.history and self.history[-1][0] is prod:
+            self.history.pop()
+
     def create(self, prod: Any, parents: list[Production] | None = None) -> None:
         prod.successes = 1
         prod.failures = 0
@@ -246,6 +254,11 @@ class PMNew(ProceduralSubModule):
             self.clearFlag = False
         self.history.append((prod, self.now()))
 
+    def withdrawn(self, prod: Any) -> None:
+        """Forgets the latest choice."""
+        if self.history and self.history[-1][0] is prod:
+            self.history.pop()
+
     def create(self, prod: Any, parents: list[Production] | None = None) -> None:
         prod.util = 0
 
@@ -264,7 +277,7 @@ class PMNew(ProceduralSubModule):
         return prod.util
 
     def recreated(self, prod: Any, first: Any) -> None:
-        """Moves a compiled rule's utility to its first parent's, U += alpha (U_parent - U) (ACT-R 7)."""
+        """Moves a compiled rule's utility to its first parent's, U += alpha (U_parent - U), with its present one (ACT-R 7)."""
         whole = prod.base_utility + prod.util
         prod.util += self.alpha * (first.base_utility + first.util - whole)
         self._learned(prod)
