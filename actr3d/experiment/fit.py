@@ -145,7 +145,7 @@ class Agreement:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Candidate:
+class TriedCandidate:
     """Values of the parameters that were tried."""
 
     values: Mapping[str, float]
@@ -192,7 +192,7 @@ class FitResult:
     fit: Agreement
     """The agreement with the target that the parameters were fitted to."""
     candidates: int
-    tried: tuple[Candidate, ...]
+    tried: tuple[TriedCandidate, ...]
     """All candidates, in order."""
     held_out: dict[str, Agreement] = field(default_factory=dict[str, Agreement])
     """The agreement with targets that the parameters were not fitted to, by design."""
@@ -316,7 +316,7 @@ class Fit:
             fit=_agreement_of(tried[best], self.target),
             candidates=candidates,
             tried=tuple(
-                Candidate(values=point, rmse=loss if math.isfinite(loss) else None, failed=one.failed, trials=one.trials)
+                TriedCandidate(values=point, rmse=loss if math.isfinite(loss) else None, failed=one.failed, trials=one.trials)
                 for point, loss, one in zip(self._points, losses, tried, strict=False)
             ),
             held_out={name: self._held_out(name, target, values) for name, target in (hold_out or {}).items()},

@@ -256,8 +256,9 @@ def _answer(asked: _Questions, answers: BinaryIO) -> None:
 def _row_of(experiment: Experiment, number: int, helpers: HelperTexts) -> tuple[Row, Row]:
     """Returns the columns of a trial that are known before it runs, and what `run_trial` does; also for a trial that cannot even begin,
     because `derive` fails for its values."""
-    columns = experiment.design.underived_trial(number).columns
+    columns: Row = {}
     try:
+        columns = experiment.design.underived_trial(number).columns
         experiment.load_again(helpers)
         trial = experiment.design.trial(number)
         return trial.columns, run_trial(experiment, trial, helpers)

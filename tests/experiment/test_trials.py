@@ -360,8 +360,8 @@ def test_a_misspelled_measure_is_refused_before_anything_is_written(
     write_experiment(tmp_path, model=COUNTER + model)
     path = tmp_path / "counts.py"
     path.write_text(design)
-    for more in (["--check"], []):
-        assert main(["experiment", str(path), "--out", str(tmp_path / "out"), *more]) == 2
+    for more in (["--check"], ["--out", str(tmp_path / "out")]):
+        assert main(["experiment", str(path), *more]) == 2
         assert f"counts.py:7: Design.measures: the trial has no measure {says}" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
