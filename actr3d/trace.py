@@ -26,7 +26,7 @@ from actr3d.values import Naming, plain, to_json
 
 Data = dict[str, Any] | Callable[[], dict[str, Any]]
 """The data of an event, or a function that creates the data from stored values when they are first read."""
-Record = tuple[int, str, str, Data]
+EventRecord = tuple[int, str, str, Data]
 
 
 class TraceEvent(NamedTuple):
@@ -104,7 +104,7 @@ class Trace:
     def __init__(self, level: str = "all", keep: bool = True) -> None:
         self.level = level
         self.keep = keep
-        self._records: list[Record] = []
+        self._records: list[EventRecord] = []
         self._listeners: tuple[tuple[Listener, int], ...] = ()
         self._runs: list[Run] = []
         self._failures: list[Exception] = []
@@ -305,7 +305,7 @@ def _rank(what: str, level: Any) -> int:
     return LEVELS.index(level)
 
 
-def _event(record: Record) -> TraceEvent:
+def _event(record: EventRecord) -> TraceEvent:
     if isinstance(record, TraceEvent):
         return record
     time_us, source, kind, data = record
