@@ -207,8 +207,7 @@ class Trace:
     def pass_on(self, event: TraceEvent, other: Trace) -> None:
         """Emits one of its events in another trace, too; what that one's listeners raise is raised where this one's failures are."""
         other.emit(*event)
-        self._failures += other._failures
-        other._failures.clear()
+        self._failures += other.take_failures()
 
     def feed(self, listener: Listener, level: str) -> None:
         """Calls a listener with every event up to a level, which may be above the trace's own, from now on, without the current state."""
@@ -237,6 +236,11 @@ class Trace:
         for run in self._runs:
             run.stop()
 
+    def take_failures(self) -> list[Exception]:
+        """Returns the errors of listeners since the last call, for the caller to raise."""
+        failures, self._failures = self._failures, []
+        return failures
+
     def raise_failures(self) -> None:
         """Raises the errors of listeners; called between events.
 
@@ -244,7 +248,7 @@ class Trace:
             Exception: The first error, with a note on each other one.
         """
         if self._failures:
-            (first, *others), self._failures = self._failures, []
+            first, *others = self.take_failures()
             for other in others:
                 first.add_note(f"another listener raised {type(other).__name__}")
             raise first
