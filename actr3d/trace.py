@@ -290,7 +290,7 @@ def with_number(event: TraceEvent, number: int) -> TraceEvent:
     """Returns an event as in a trace in which its run has another number: every part has its name there."""
     if event.run == number:
         return event
-    return event._replace(source=renumbered(event.source, number), data=_with_number(event.data, number))
+    return TraceEvent(event.time_us, renumbered(event.source, number), event.kind, _with_number(event.data, number))
 
 
 def _with_number(data: Any, number: int) -> Any:
