@@ -38,7 +38,7 @@ def seconds(time: int) -> float:
     return time / MICROSECONDS
 
 
-NO_PART = 1e-15
+NO_FRACTION = 1e-15
 """A smaller fraction of a duration's microseconds is a floating-point rounding error: 0.07 s are 70000.00000000001 us."""
 
 
@@ -70,7 +70,7 @@ class Ends:
             return now_us + self._length
         length = microseconds(duration, "the limit of a run")
         left = float(duration) * MICROSECONDS - length
-        if -NO_PART * length <= left <= NO_PART * length:
+        if -NO_FRACTION * length <= left <= NO_FRACTION * length:
             left = 0.0
             if length >= 0:
                 self._duration, self._length = duration, length

@@ -26,7 +26,7 @@ from actr3d.values import Naming, plain, to_json
 
 Data = dict[str, Any] | Callable[[], dict[str, Any]]
 """The data of an event, or a function that creates the data from stored values when they are first read."""
-Record = tuple[int, str, str, Data]
+EventRecord = tuple[int, str, str, Data]
 
 
 class TraceEvent(NamedTuple):
@@ -104,7 +104,7 @@ class Trace:
     def __init__(self, level: str = "all", keep: bool = True) -> None:
         self.level = level
         self.keep = keep
-        self._records: list[Record] = []
+        self._records: list[EventRecord] = []
         self._listeners: tuple[tuple[Listener, int], ...] = ()
         self._runs: list[Run] = []
         self._failures: list[Exception] = []
@@ -207,8 +207,7 @@ class Trace:
     def pass_on(self, event: TraceEvent, other: Trace) -> None:
         """Emits one of its events in another trace, too; what that one's listeners raise is raised where this one's failures are."""
         other.emit(*event)
-        self._failures += other._failures
-        other._failures.clear()
+        self._failures += other.take_failures()
 
     def feed(self, listener: Listener, level: str) -> None:
         """Calls a listener with every event up to a level, which may be above the trace's own, from now on, without the current state."""
@@ -237,6 +236,11 @@ class Trace:
         for run in self._runs:
             run.stop()
 
+    def take_failures(self) -> list[Exception]:
+        """Returns the errors of listeners since the last call, for the caller to raise."""
+        failures, self._failures = self._failures, []
+        return failures
+
     def raise_failures(self) -> None:
         """Raises the errors of listeners; called between events.
 
@@ -244,7 +248,7 @@ class Trace:
             Exception: The first error, with a note on each other one.
         """
         if self._failures:
-            (first, *others), self._failures = self._failures, []
+            first, *others = self.take_failures()
             for other in others:
                 first.add_note(f"another listener raised {type(other).__name__}")
             raise first
@@ -286,7 +290,7 @@ def with_number(event: TraceEvent, number: int) -> TraceEvent:
     """Returns an event as in a trace in which its run has another number: every part has its name there."""
     if event.run == number:
         return event
-    return event._replace(source=renumbered(event.source, number), data=_with_number(event.data, number))
+    return TraceEvent(event.time_us, renumbered(event.source, number), event.kind, _with_number(event.data, number))
 
 
 def _with_number(data: Any, number: int) -> Any:
@@ -305,7 +309,7 @@ def _rank(what: str, level: Any) -> int:
     return LEVELS.index(level)
 
 
-def _event(record: Record) -> TraceEvent:
+def _event(record: EventRecord) -> TraceEvent:
     if isinstance(record, TraceEvent):
         return record
     time_us, source, kind, data = record

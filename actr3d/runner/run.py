@@ -27,7 +27,7 @@ from actr3d.trace import Listener, Trace, TraceEvent
 
 if TYPE_CHECKING:
     from actr3d.simulation import Simulation
-    from actr3d.simulation.real_time import Ending
+    from actr3d.simulation.real_time import SimulationEnding
 
 
 class FactRecorder(Protocol):
@@ -154,7 +154,7 @@ def _run_built(
     return None  # every run ended at the program's limits
 
 
-def _run_to_end(simulation: Simulation) -> Ending:
+def _run_to_end(simulation: Simulation) -> SimulationEnding:
     """Runs a simulation until it ends by itself or at its limits; returns what ended it."""
     try:
         return simulation.run().ended_by

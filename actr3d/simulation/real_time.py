@@ -8,14 +8,14 @@ from typing import Literal
 
 from actr3d.clock import seconds
 
-Ending = Literal["seconds", "until", "stop", "done", "limits"]
+SimulationEnding = Literal["seconds", "until", "stop", "done", "limits"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class RunReport:
     """Summary of a call of `run`. Results never depend on it; its text holds only what is the same whenever the run is repeated."""
 
-    ended_by: Ending
+    ended_by: SimulationEnding
     """`seconds` have passed; `until` came true; an agent called `stop`; the run was `done`, with nothing left to do; the
     `limits` of the program (`--until`) left no time for another tick."""
     ticks: int
@@ -65,7 +65,7 @@ class RealTime:
             self.late_ticks += 1
             self.latest = max(self.latest, -early)
 
-    def report(self, ended_by: Ending) -> RunReport:
+    def report(self, ended_by: SimulationEnding) -> RunReport:
         """Returns the summary of the run."""
         return RunReport(
             ended_by=ended_by,

@@ -29,7 +29,7 @@ from actr3d.simulation.global_random import GlobalRandom
 from actr3d.simulation.lockstep import Lockstep
 from actr3d.simulation.measure import Measure
 from actr3d.simulation.observers import Glimpse, Observer, Observers
-from actr3d.simulation.real_time import Ending, RealTime, RunReport
+from actr3d.simulation.real_time import RealTime, RunReport, SimulationEnding
 from actr3d.simulation.surroundings import surroundings
 from actr3d.simulation.timeline import Timeline
 from actr3d.simulation.validation import check_names, count_of, factor_of, named_factories, seed_of, steps_of, whole_ticks, world_of
@@ -251,7 +251,7 @@ class Simulation:
         with self._call():
             return clock.report(self._run_until(clock, end, until, open_end=end is None and until is None))
 
-    def _run_until(self, clock: RealTime, end: int | None, until: Callable[[Glimpse], bool] | None, *, open_end: bool) -> Ending:
+    def _run_until(self, clock: RealTime, end: int | None, until: Callable[[Glimpse], bool] | None, *, open_end: bool) -> SimulationEnding:
         """Runs until something ends the run, and returns what."""
         lockstep = self.timeline.lockstep
         agents, begin = lockstep.agents, self.ticks

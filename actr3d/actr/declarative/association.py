@@ -91,8 +91,8 @@ class DMAssociate(MemorySubModule):
 class DMInhibition(MemorySubModule):
     """Inhibits recently used chunks: -ln(1 + t^-decayScale / timeScale), t since the latest use [s].
 
-    In Python ACT-R, the `time` of a chunk's first `memory.add` counts as the clock time of its use, not as so many seconds ago, and that
-    of later ones does not count.
+    In Python ACT-R, the `time` of a chunk's first `memory.add` counts as the clock time of its use, not as an age, and that of later
+    ones does not count.
 
     Args:
         memory: The memory.

@@ -21,7 +21,7 @@ from actr3d.clock import seconds
 from actr3d.trace import Trace, TraceEvent, renumbered
 
 
-class Record(NamedTuple):
+class RecordedValue(NamedTuple):
     """A value recorded by an event."""
 
     value: Any
@@ -35,8 +35,8 @@ class _Part:
     """What a trace contains about one part of the tree up to a time."""
 
     def __init__(self) -> None:
-        self.attributes: dict[str, Record] = {}
-        self.observations: dict[str, Record] = {}
+        self.attributes: dict[str, RecordedValue] = {}
+        self.observations: dict[str, RecordedValue] = {}
         self.parts: dict[str, dict[str, float | None]] = {}
         self.conflict: dict[str, Any] | None = None
         self.chosen: str | None = None
@@ -78,8 +78,8 @@ class _Part:
             event, _ = self.searches[data["bottom_up"]]
             self.searches[data["bottom_up"]] = (event, outcome_of(data))
 
-    def _note(self, records: dict[str, Record], number: int, event: TraceEvent) -> None:
-        records.update({key: Record(value, number, event.time_us) for key, value in event.data.items()})
+    def _note(self, records: dict[str, RecordedValue], number: int, event: TraceEvent) -> None:
+        records.update({key: RecordedValue(value, number, event.time_us) for key, value in event.data.items()})
 
 
 class Past:
@@ -143,9 +143,9 @@ class Past:
             return Fact(MISSING if record.value is None else record.value, _since(record))
         return Fact(as_text(recorded.value)) if recorded is not None and certain else NOT_KNOWN
 
-    def _observations(self, target: Any, key: Slot | None) -> list[tuple[Record, int]]:
+    def _observations(self, target: Any, key: Slot | None) -> list[tuple[RecordedValue, int]]:
         """Returns what production systems read of an object, under any name, and the event until which it was valid for each."""
-        found: list[tuple[Record, int]] = []
+        found: list[tuple[RecordedValue, int]] = []
         for system, name in self._named.get(id(target), ()):
             known = self._of(system)
             record = known.observations.get(f"{name}.{key}")
@@ -222,5 +222,5 @@ class Past:
         return [past_search(self.path(module), event, outcome) for _, (event, outcome) in known]
 
 
-def _since(record: Record) -> str:
+def _since(record: RecordedValue) -> str:
     return f"as seen since {seconds(record.time):.3f} s"

@@ -23,7 +23,7 @@ from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tracing import UNWATCHED
 from actr3d.actr.procedural.production import Production
 
-Reading = tuple[str, Any]
+MatchedPlace = tuple[str, Any]
 """What is read: the name of an object, and a slot; a slot of None asks whether the object is empty."""
 
 
@@ -54,12 +54,12 @@ class Matcher:
         wanted = {
             p: [((c.name or "self", c.key), c.value) for c in p.conditions if c.op == "is" and not _by_variable(c.key)] for p in productions
         }
-        spread: dict[Reading, set[str]] = {}
+        spread: dict[MatchedPlace, set[str]] = {}
         for of in wanted.values():
             for reading, value in of:
                 spread.setdefault(reading, set()).add(value)
         self._always = []
-        indexes: dict[Reading, dict[Any, list[Production]]] = {}
+        indexes: dict[MatchedPlace, dict[Any, list[Production]]] = {}
         for production, of in wanted.items():
             # A value that all these productions test for is useless as an index.
             best = max(of, key=lambda pair: len(spread[pair[0]]), default=None)
