@@ -8,6 +8,7 @@ from time import sleep
 from typing import Any
 
 import pytest
+from fastapi.routing import APIRoute
 
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import run_text
@@ -16,6 +17,7 @@ from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.trace import Trace
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.files import ModelFile, ModelFolder, NoSuchFileError
+from workbench.routes import router
 from workbench.session import Session
 from workbench.worker.messages import FromWorker
 from workbench.worker.workers import Worker
@@ -569,3 +571,9 @@ def test_a_file_that_is_deleted_while_its_session_begins_is_said_not_to_exist(
     (tmp_path / "m.py").write_text("print(1)\n", encoding="utf-8")
     with pytest.raises(NoSuchFileError, match=r"'m\.py'"):
         desk.do(desk.sessions(tmp_path).open("m.py", {}, seed=1, record=False, run=False))
+
+
+def test_sessions_are_described_in_the_thread_that_changes_them() -> None:
+    described = [route.endpoint for route in router.routes if isinstance(route, APIRoute) and route.name in ("sessions", "session")]
+    assert len(described) == 2
+    assert all(asyncio.iscoroutinefunction(endpoint) for endpoint in described)
