@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import inspect
 from pathlib import Path
 from time import sleep
 from typing import Any
@@ -536,6 +537,19 @@ def test_a_session_goes_on_with_a_file_that_is_renamed_or_gone(desk: Desk, tmp_p
     talk.until("ended")
 
 
+def test_a_session_whose_folder_cannot_be_read_is_described_all_the_same(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def unreadable(path: Path) -> bool:
+        raise PermissionError(path)
+
+    talk = desk.begin(tmp_path, COUNTING)
+    monkeypatch.setattr(Path, "is_file", unreadable)
+    assert talk.facts["gone"]
+    monkeypatch.undo()
+    assert not talk.facts["gone"]
+
+
 def test_what_a_program_printed_before_an_endless_loop_is_shown(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, COUNTING + "\nprint('done')\nwhile True:\n    pass\n", run=True, wait=None)
     talk.wait(lambda: talk.events and talk.events[-1][2] == "output" and talk.events[-1][3]["text"] == "done")
@@ -576,4 +590,4 @@ def test_a_file_that_is_deleted_while_its_session_begins_is_said_not_to_exist(
 def test_sessions_are_described_in_the_thread_that_changes_them() -> None:
     described = [route.endpoint for route in router.routes if isinstance(route, APIRoute) and route.name in ("sessions", "session")]
     assert len(described) == 2
-    assert all(asyncio.iscoroutinefunction(endpoint) for endpoint in described)
+    assert all(inspect.iscoroutinefunction(endpoint) for endpoint in described)
