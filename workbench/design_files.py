@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -79,11 +80,14 @@ def design_argument(folder: ModelFolder, design: str) -> str:
     return f"{where}:{name}"
 
 
-def stamp_of(folder: ModelFolder, design: str) -> Any:
-    """Returns a value that changes whenever the file of a design changes, or another file in its folder."""
-    file, colon, _ = design.rpartition(":")
-    beside = folder.locate(file).parent.glob("*.py") if colon else ()
-    return sorted((path.name, *file_stamp(path)) for path in beside if path.is_file())
+def stamp_of(folder: ModelFolder) -> Any:
+    """Returns a value that changes whenever a Python file of the models folder changes, whichever of them a design uses."""
+    found: list[tuple[str | int, ...]] = []
+    for where, folders, names in os.walk(folder.root):
+        folders[:] = [name for name in folders if name[0] != "."]
+        paths = [Path(where, name) for name in names if name.endswith(".py")]
+        found += [(str(path), *file_stamp(path)) for path in paths]
+    return sorted(found)
 
 
 def _in_file(path: Path, file: str | None) -> list[DesignOutline]:

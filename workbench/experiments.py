@@ -237,7 +237,7 @@ class Experiments:
         """
         argument = design_argument(self._models, wanted.design)
         arguments = ["experiment", argument, "--check", "--json", *wanted.options()]
-        key = json.dumps([arguments, wanted.trial, stamp_of(self._models, wanted.design)])
+        key = json.dumps([arguments, wanted.trial, await asyncio.to_thread(stamp_of, self._models)])
         if key not in self._checked:
             async with self._turns:
                 kind, patience = (TriedFacts, WORK_TIME) if wanted.trial else (ExperimentFacts, START_TIME)

@@ -169,7 +169,7 @@ def _file_and_listing(file: ModelFile) -> dict[str, Any]:
 
 
 @router.get("/sessions")
-def sessions(request: Request) -> dict[str, Any]:
+async def sessions(request: Request) -> dict[str, Any]:
     """Lists the sessions; `ready` says whether a run can start at once, or the workbench is still loading what models need."""
     known = sessions_of(request)
     return {"sessions": [session.summary() for session in known.all()], "ready": known.workers.ready}
@@ -184,7 +184,7 @@ async def open_session(request: Request, body: Open) -> dict[str, Any]:
 
 
 @router.get("/sessions/{session}")
-def session(request: Request, session: Id) -> Response:
+async def session(request: Request, session: Id) -> Response:
     """Returns the facts of a session and the newest state of its run."""
     found = sessions_of(request).get(session)
     found_json = {"session": msgspec.Raw(found.facts_json()), "state": msgspec.Raw(found.state_json())}

@@ -57,6 +57,14 @@ def start_of(path: Path, options: RunOptions, **more: Any) -> Start:
     return Start(path=str(path), folder=str(path.parent), settings=options.settings, seed=seed, run=options.run, **more)
 
 
+def is_there(path: Path) -> bool:
+    """Returns whether there is a file that can be looked at; False if its folder cannot be read, or its drive is gone."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
+
 def digest_of_file(path: Path) -> str | None:
     """Returns the digest of the text that a file has now; None if it cannot be read."""
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import secrets
 import threading
 from collections.abc import Callable
@@ -22,7 +23,7 @@ from workbench.overlays.frustum import Frustum
 from workbench.scene_framing import SceneFraming
 from workbench.viser_panel import Panel
 from workbench.viser_server import BRIDGE_HEADER, SHADOWS_HEADER, Moments, header_of, send_scene_data, start_viser
-from workbench.worker.messages import Facts, State
+from workbench.worker.messages import Facts, State, notice
 
 if TYPE_CHECKING:
     from workbench.page_commands.command import PageCommand
@@ -58,7 +59,7 @@ class SceneView:
         self._scene: _Drawn | None = None
         self._panel: Panel | None = None
         self._ready = asyncio.Event()
-        """Set while the scene is that of the newest run."""
+        """Set while the scene is that of the newest run, or cannot be drawn."""
         self.over = False
         session.watchers.append(self._watch)
         self._task = asyncio.create_task(self._draw_on())
@@ -81,25 +82,35 @@ class SceneView:
         self._changed.set()
 
     async def _draw_on(self) -> None:
-        """Draws the newest state whenever there is something new."""
+        """Draws the newest state whenever there is something new; what cannot be drawn is reported, and the next run is tried again."""
         while True:
             await self._changed.wait()
             self._changed.clear()
-            watched = self._server is not None and bool(self._server.get_clients())
-            if not (watched or self._asked):
-                self._session.draw(())
-                continue
-            facts, self._facts = self._facts, None
-            if facts is not None:
-                await asyncio.to_thread(self._build, facts)
-            self._session.draw(self._scene.asked(self._look) if watched and self._scene is not None else ())
-            state, self._state = self._state, None
-            if self._scene is None:
-                continue
-            await asyncio.to_thread(self._draw, self._scene, state)
-            if state is not None and self._facts is None:
-                self._asked = False
+            try:
+                await self._draw_newest()
+            except Exception as error:
+                logging.getLogger("workbench").exception("the 3D view cannot be drawn")
+                self._session.add_notice(notice("error", f"the 3D view of this run cannot be drawn: {type(error).__name__}: {error}"))
+                self._scene = None
                 self._ready.set()
+
+    async def _draw_newest(self) -> None:
+        """Draws the newest state, if a browser shows it; builds the scene before if the run is new."""
+        watched = self._server is not None and bool(self._server.get_clients())
+        if not (watched or self._asked):
+            self._session.draw(())
+            return
+        facts, self._facts = self._facts, None
+        if facts is not None:
+            await asyncio.to_thread(self._build, facts)
+        self._session.draw(self._scene.asked(self._look) if watched and self._scene is not None else ())
+        state, self._state = self._state, None
+        if self._scene is None:
+            return
+        await asyncio.to_thread(self._draw, self._scene, state)
+        if state is not None and self._facts is None:
+            self._asked = False
+            self._ready.set()
 
     # -- access for browsers
 
@@ -121,7 +132,7 @@ class SceneView:
         ready = asyncio.ensure_future(self._ready.wait())
         await asyncio.wait([ready, self._task], timeout=PATIENCE, return_when=asyncio.FIRST_COMPLETED)
         ready.cancel()
-        return self._ready.is_set() and not self.over
+        return self._ready.is_set() and self._scene is not None and not self.over
 
     def address(self, *, shadows: bool) -> tuple[int, dict[str, str]]:
         """Returns the port of viser's server, and the headers that admit the bridge and say whether shadows are wanted."""
@@ -139,6 +150,9 @@ class SceneView:
                 return
             if self._server is None:
                 self._server = start_viser(self._secret)
+                if self.over:  # the session was closed in the meantime
+                    self._server.stop()
+                    return
                 self._moments = Moments(self._server)
                 self._server.gui.configure_theme(show_logo=False, show_share_button=False)
                 self._server.on_client_connect(self._come)

@@ -19,7 +19,7 @@ from workbench.overlays import ViewSettings
 from workbench.pending_requests import PendingRequests
 from workbench.recording_index import begun
 from workbench.recordings import Recordings
-from workbench.run_request import LaunchedRun, RunOptions, digest_of_file, start_of
+from workbench.run_request import LaunchedRun, RunOptions, digest_of_file, is_there, start_of
 from workbench.worker.messages import ENDED, At, Branched, Cut, Draw, Facts, FromWorker, Loaded, News, Notice, Reply, Start, State
 from workbench.worker.workers import Worker, Workers
 from workbench.worker_monitor import LAST_WORDS, Receiver, WorkerMonitor
@@ -468,7 +468,7 @@ class Session(Broadcast, Receiver):
     @property
     def is_outdated(self) -> bool:
         """Whether the run on screen waits at its start and its file has another text by now: nothing is lost if it is made again."""
-        if self._shown is None or self.is_loading or not never_begun(self.state, self.log) or not self.path.is_file():
+        if self._shown is None or self.is_loading or not never_begun(self.state, self.log) or not is_there(self.path):
             return False
         return self._shown.is_stale(digest_of_file(self.path))
 
@@ -506,7 +506,7 @@ class Session(Broadcast, Receiver):
             "settings": start.settings if start is not None else {},
             "seed": None if facts is None else _exactly(facts.seed),
             "stale": self._shown is not None and self._shown.is_stale(digest),
-            "gone": not self.path.is_file(),
+            "gone": not is_there(self.path),
             "digest": digest,
             "attempt": self._attempt,
             "shown_attempt": start.attempt if start is not None else None,
@@ -532,7 +532,7 @@ class Session(Broadcast, Receiver):
             return None
         path = Path(written).with_name(f"{branched.recording}.sqlite")
         opened = start is not None and start.recorded is not None and Path(start.recorded) == path
-        there = {"opened": opened, "made": begun(path), "kept": path.is_file()}
+        there = {"opened": opened, "made": begun(path), "kept": is_there(path)}
         return {"recording": branched.recording, "at": branched.at, "until": branched.until, **there}
 
     @property

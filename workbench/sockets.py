@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import itertools
 import json
+import logging
 from typing import Any
 
 import msgspec
@@ -148,7 +149,13 @@ class _Page:
     async def _send(self, feed: Feed) -> None:
         with contextlib.suppress(WebSocketDisconnect, RuntimeError):
             while True:
-                await self._websocket.send_text((await feed.next()).decode())
+                try:
+                    message = await feed.next()
+                except Exception:  # the page, which would never get anything again, connects again
+                    logging.getLogger("workbench").exception("an update of a page cannot be made")
+                    await self._websocket.close(1011, "an error of the workbench itself")
+                    return
+                await self._websocket.send_text(message.decode())
 
     async def _carry_out(self, session: Any, feed: Feed, request: protocol.Request) -> None:
         reply = await request.command.submit(session, self._name)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any, cast
 
 from actr3d.errors import RecordingError
@@ -21,7 +20,7 @@ class _Kind:
 
 
 def _number(value: Any) -> bool:
-    return type(value) in (int, float) and isfinite(value) and 0 <= value < LARGEST
+    return type(value) in (int, float) and 0 <= value < LARGEST
 
 
 def _plain(*values: Any) -> bool:

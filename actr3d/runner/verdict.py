@@ -1,4 +1,7 @@
-"""Runs a recording again in a process of its own: nothing that the recorded program does to its process can look like a verdict."""
+"""Runs a recording again in a process of its own: what the recorded program prints, or how it ends, is not taken for a verdict.
+
+A program that is written to deceive can still find the file of the verdict: a verdict is only as trustworthy as the program.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +53,7 @@ def verdict_of(file: str, *, trust: bool, any_version: bool) -> Verdict:
     """Runs a recording again, in a process of its own; returns its verdict.
 
     The verdict comes in a file that only this process and that one know of, so nothing that the program prints, and no way in
-    which it ends, looks like one. Texts have the same order in sets as in `actr3d run`.
+    which it ends, is taken for one. Texts have the same order in sets as in `actr3d run`.
 
     Args:
         file: The recording.

@@ -172,6 +172,7 @@ FACTS = [
     ('INSERT INTO commands VALUES (0, 1, 0, \'{"command": 1, "data": {"values": 1, "named": 2, "body": 3}}\', x\'\')', "is not a command"),
     ("INSERT INTO states VALUES (0, 1, x'00', x'00', '[]', x'')", "is damaged: "),
     ("CREATE VIEW more AS SELECT 1", "it has other tables than a recording"),
+    (f"INSERT INTO facts VALUES ('reached', '1{'0' * 400}')", "the fact 'reached' of a recording must be"),
     ("DROP TABLE answers", "it has other tables than a recording"),
     ("UPDATE facts SET value = '\"actr3d recording 2\"' WHERE name = 'form'", "it has another format: it says 'actr3d recording 2'"),
 ]

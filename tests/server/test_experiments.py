@@ -21,8 +21,8 @@ import pytest
 from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.sessions import Desk
 from tests.helpers.workbench_server import Served, served
-from workbench.design_files import Starting
-from workbench.experiment_command import ExperimentCommand, ExperimentRunError
+from workbench.design_files import Checking, Starting
+from workbench.experiment_command import ExperimentCommand, ExperimentFacts, ExperimentRunError
 from workbench.experiments import Experiments
 
 pytestmark = pytest.mark.long
@@ -105,6 +105,32 @@ def test_a_design_is_checked_with_its_changes(workbench: Served) -> None:
     assert workbench.post("/api/experiments", {"design": COUNTING, "values": {"nn": 3}}).json() == wrong.json()
     empty = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"n": []}})
     assert (empty.status_code, empty.json()["error"]) == (422, "--set n: Design.factors['n']: must have at least one level (got [])")
+
+
+@pytest.mark.parametrize("changed", ["model.py", "_helper.py", "parts/legs.py"])
+def test_a_design_is_checked_again_after_a_change_of_whatever_file_it_may_use(
+    changed: str, tmp_path: Path, desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    checked: list[object] = []
+
+    async def first(*_: object) -> ExperimentFacts:
+        checked.append(_)
+        return ExperimentFacts(name="fan_effect", description="", trials=1, trials_a_cell=1, factors={}, groups={})
+
+    (tmp_path / "parts").mkdir()
+    for name in ("model.py", "_helper.py", "parts/legs.py"):
+        (tmp_path / name).write_text("A = 1\n", "utf-8")
+
+    async def twice() -> None:
+        experiments = Experiments(desk.sessions(tmp_path))
+        monkeypatch.setattr(experiments, "_first", first)
+        for expected in (1, 1, 2):
+            if expected == 2:
+                (tmp_path / changed).write_text("A = 23\n", "utf-8")
+            await experiments.check(Checking(design="fan_effect"))
+            assert len(checked) == expected
+
+    desk.do(twice())
 
 
 def test_values_reach_the_design_as_they_are(workbench: Served) -> None:

@@ -7,7 +7,7 @@ import errno
 import os
 import socket
 import subprocess
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 
 import pytest
@@ -19,7 +19,7 @@ from workbench.worker.workers import NO_MORE, Workers
 
 
 @asynccontextmanager
-async def pool() -> AsyncIterator[tuple[Workers, socket.socket]]:
+async def pool() -> AsyncGenerator[tuple[Workers, socket.socket]]:
     """Yields workers, and the other end of their connection to the process that forks them; the test answers in its place."""
     own_end, its_end = socket.socketpair()
     own_end.setblocking(False)

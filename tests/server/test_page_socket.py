@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from typing import Any
+from typing import Any, cast
 
 import pytest
 import websockets
@@ -14,7 +14,7 @@ from tests.helpers.workbench_server import Served
 from tests.server.test_live import attached, heard, opened
 from workbench.page_commands import COMMANDS
 from workbench.page_commands.session import Restart, Stop
-from workbench.sockets import LONGEST, MAX_PAGES
+from workbench.sockets import LONGEST, MAX_PAGES, _Page
 
 
 @pytest.fixture(scope="module")
@@ -155,3 +155,23 @@ def test_showing_one_session_after_the_other_leaves_nothing_behind(server: Serve
         await socket.close()
 
     asyncio.run(talk())
+
+
+def test_a_page_whose_updates_cannot_be_made_is_disconnected() -> None:
+    closed: list[int] = []
+
+    class Socket:
+        """Takes the place of the browser's websocket."""
+
+        async def close(self, code: int, _: str) -> None:
+            closed.append(code)
+
+    class Broken:
+        """Takes the place of a feed."""
+
+        async def next(self) -> bytes:
+            raise RuntimeError("dictionary changed size during iteration")
+
+    page: Any = _Page(cast("Any", Socket()), cast("Any", None))
+    asyncio.run(page._send(Broken()))
+    assert closed == [1011]

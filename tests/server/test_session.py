@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import inspect
 from pathlib import Path
 from time import sleep
 from typing import Any
 
 import pytest
+from fastapi.routing import APIRoute
 
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import run_text
@@ -16,6 +18,7 @@ from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.trace import Trace
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.files import ModelFile, ModelFolder, NoSuchFileError
+from workbench.routes import router
 from workbench.session import Session
 from workbench.worker.messages import FromWorker
 from workbench.worker.workers import Worker
@@ -546,6 +549,19 @@ def test_a_session_goes_on_with_a_file_that_is_renamed_or_gone(desk: Desk, tmp_p
     talk.until("ended")
 
 
+def test_a_session_whose_folder_cannot_be_read_is_described_all_the_same(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def unreadable(path: Path) -> bool:
+        raise PermissionError(path)
+
+    talk = desk.begin(tmp_path, COUNTING)
+    monkeypatch.setattr(Path, "is_file", unreadable)
+    assert talk.facts["gone"]
+    monkeypatch.undo()
+    assert not talk.facts["gone"]
+
+
 def test_what_a_program_printed_before_an_endless_loop_is_shown(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, COUNTING + "\nprint('done')\nwhile True:\n    pass\n", run=True, wait=None)
     talk.wait(lambda: talk.events and talk.events[-1][2] == "output" and talk.events[-1][3]["text"] == "done")
@@ -581,3 +597,9 @@ def test_a_file_that_is_deleted_while_its_session_begins_is_said_not_to_exist(
     (tmp_path / "m.py").write_text("print(1)\n", encoding="utf-8")
     with pytest.raises(NoSuchFileError, match=r"'m\.py'"):
         desk.do(desk.sessions(tmp_path).open("m.py", {}, seed=1, record=False, run=False))
+
+
+def test_sessions_are_described_in_the_thread_that_changes_them() -> None:
+    described = [route.endpoint for route in router.routes if isinstance(route, APIRoute) and route.name in ("sessions", "session")]
+    assert len(described) == 2
+    assert all(inspect.iscoroutinefunction(endpoint) for endpoint in described)

@@ -15,3 +15,10 @@ def test_a_slider_has_the_bounds_of_the_parameter_that_sets_doorways() -> None:
     assert widths(["door"], [other, open_ones]) == {"door": (1, 300)}
     assert widths(["one", "two"], [closed]) == {"one": (25, 119), "two": (25, 119)}
     assert widths(["door"], [other]) == {"door": (0, 300)}
+
+
+def test_a_slider_has_bounds_also_where_doorways_are_wider_or_leave_no_choice() -> None:
+    wide = Parameter(name="width", takes="number", least=3.5, live=OPENS)
+    narrow = Parameter(name="width", takes="number", least=0.501, most=0.509, live=OPENS)
+    assert widths(["door"], [wide]) == {"door": (350, 700)}
+    assert widths(["door"], [narrow]) == {"door": (51, 51)}

@@ -65,7 +65,7 @@ class Explain(Question):
         if own is None:
             if self.agent is None:
                 return None
-            raise ParameterError(f"explain(at): '{name}' did not exist at {self.at:g} s")
+            raise ParameterError(f"explain(at): '{name}' did not exist at {seconds(time):g} s")
         found = agent.explain(None if self.at is None else seconds(own))
 
         def of_run(own: float) -> float:

@@ -134,5 +134,6 @@ def widths(apertures: Iterable[str], parameters: Iterable[Parameter]) -> dict[st
     least += [math.floor(100 * one.above) + 1 for one in setting if one.above is not None]
     most = [math.floor(100 * one.most) for one in setting if one.most is not None]
     most += [math.ceil(100 * one.below) - 1 for one in setting if one.below is not None]
-    bounds = max(least, default=0), min(most, default=WIDEST)
-    return dict.fromkeys(apertures, bounds)
+    lowest = max(least, default=0)
+    highest = min(most, default=max(WIDEST, 2 * lowest))
+    return dict.fromkeys(apertures, (lowest, max(lowest, highest)))  # no whole number may lie between the bounds
