@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable, Mapping, Sequence
 from itertools import islice, zip_longest
 from typing import Any
@@ -44,7 +45,7 @@ class History:
         self._kept = 0
         self._spacing = SPACING
         self._states: dict[int, WorldState] = {0: start}
-        self._events: list[int] = []
+        self._events = array("q")
         """The number of traced events at the end of each tick that ran here."""
 
     def wants(self, tick: int) -> bool:

@@ -95,14 +95,15 @@ def function_node(func: Callable[..., Any]) -> ast.FunctionDef | None:
     """Returns the syntax tree of a function's definition, or None if its source is not available, or is not that of its code."""
     code, text = func.__code__, source_of(func)
     # A loaded text is that of the code; a file may have changed since its import. Other loaders may change the code.
-    if SOURCE not in func.__globals__ and type(func.__globals__.get("__loader__")) is SourceFileLoader and code not in _codes(text):
+    plain = SOURCE not in func.__globals__ and type(func.__globals__.get("__loader__")) is SourceFileLoader
+    if plain and _content(code) not in _contents(text):
         return None
     return _functions(text).get((code.co_name, code.co_firstlineno))
 
 
 @lru_cache(maxsize=64)
-def _codes(text: str) -> frozenset[CodeType]:
-    """Returns the code of every function of a file."""
+def _contents(text: str) -> frozenset[tuple[Any, ...]]:
+    """Returns what every function of a file does."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -111,7 +112,14 @@ def _codes(text: str) -> frozenset[CodeType]:
         return frozenset()
     for code in found:
         found += [value for value in code.co_consts if isinstance(value, CodeType)]
-    return frozenset(found)
+    return frozenset(map(_content, found))
+
+
+def _content(code: CodeType) -> tuple[Any, ...]:
+    """Returns what code does and where it begins; without its tables of lines, which releases of one version of Python make differently."""
+    constants: list[object] = [value for value in code.co_consts if not isinstance(value, CodeType)]
+    kinds = tuple(type(value) for value in constants)
+    return code.co_name, code.co_firstlineno, code.co_code, code.co_names, code.co_varnames, kinds, tuple(constants)
 
 
 def source_of(func: Callable[..., Any]) -> str:
