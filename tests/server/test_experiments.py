@@ -277,7 +277,7 @@ def test_experiments_end_with_the_workbench_and_go_on_with_the_next(tmp_path: Pa
         name = started(first)
         awaited(first, name, "running", done=5)
     lock = folder / ".workbench" / "experiments" / name / "lock"
-    pid = int(lock.read_text("utf-8"))
+    pid = int(lock.read_text("utf-8").split()[0])
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
     assert (lock.parent / "trials.csv").is_file()  # it has ended normally
@@ -292,7 +292,7 @@ def test_experiments_end_with_the_workbench_and_go_on_with_the_next(tmp_path: Pa
 def test_an_experiment_whose_process_is_killed_says_so_and_can_be_continued(workbench: Served) -> None:
     name = started(workbench, "slow/counting_design.py:counting")
     awaited(workbench, name, "running", done=1)
-    os.kill(int((workbench.folder / ".workbench/experiments" / name / "lock").read_text("utf-8")), signal.SIGKILL)
+    os.kill(int((workbench.folder / ".workbench/experiments" / name / "lock").read_text("utf-8").split()[0]), signal.SIGKILL)
     assert awaited(workbench, name, "failed")["problem"] == "its process was ended by the signal SIGKILL"
     assert workbench.post(f"/api/experiments/{name}/resume", {"workers": 1}).json()["problem"] is None
     workbench.post(f"/api/experiments/{name}/stop")

@@ -69,6 +69,25 @@ def test_a_worker_that_cannot_be_forked_is_reported_and_the_next_one_begins() ->
     asyncio.run(told())
 
 
+@pytest.mark.parametrize("late", [False, True])
+def test_every_worker_has_ended_when_all_are_ended_also_one_that_was_just_born(late: bool) -> None:
+    async def ended() -> None:
+        async with pool() as (there, its_end):
+            launch = asyncio.create_task(there.launch())
+            await asked(its_end)
+            its_end.sendall(ANSWER.pack(BORN, 2**30, 0))
+            if late:
+                while there._born.empty():
+                    await asyncio.sleep(0)
+                await there.close()
+            worker = await launch
+            await there.close()
+            assert await worker.exit == workers.LOST
+            worker.release()
+
+    asyncio.run(ended())
+
+
 @pytest.mark.parametrize("unread", [False, True])
 def test_where_no_process_can_fork_workers_any_more_launching_fails(unread: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     def spawn() -> Zygote:

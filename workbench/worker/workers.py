@@ -157,6 +157,8 @@ class Workers:
         self._alive[pid] = worker
         if pid in self._early:
             worker.exit.set_result(self._early.pop(pid))
+        if self._control is None:  # all were ended meanwhile
+            self._end_workers()
         return worker
 
     async def _birth(self, wire: socket.socket, output: int, memory: int) -> int:
@@ -222,12 +224,7 @@ class Workers:
             self._born.put_nowait(0)
         else:  # a process that failed to load would fail again
             self._report_end()
-        workers = list(self._alive.values())
-        self._alive.clear()
-        for worker in workers:
-            worker.kill()
-            if not worker.exit.done():
-                worker.exit.set_result(LOST)
+        self._end_workers()
         await asyncio.to_thread(zygote.end)
         if useful:
             self._zygote = None
@@ -236,6 +233,15 @@ class Workers:
             except OSError:
                 logging.getLogger("workbench").exception("no more workers can be started")
                 self._report_end()
+
+    def _end_workers(self) -> None:
+        """Kills all workers, whose end nobody reports any more."""
+        workers = list(self._alive.values())
+        self._alive.clear()
+        for worker in workers:
+            worker.kill()
+            if not worker.exit.done():
+                worker.exit.set_result(LOST)
 
     def _report_end(self) -> None:
         """Reports to all callers that wait for a worker that none can be started."""
@@ -248,9 +254,8 @@ class Workers:
         for task in (self._listening, self._going):
             if task is not None:
                 task.cancel()
-        for worker in list(self._alive.values()):
-            worker.kill()
         self._report_end()
+        self._end_workers()
         if self._zygote is not None:
             await asyncio.to_thread(self._zygote.end)
 
