@@ -46,7 +46,9 @@ class History:
         self._spacing = SPACING
         self._states: dict[int, WorldState] = {0: start}
         self._events = array("q")
-        """The number of traced events at the end of each tick that ran here."""
+        """The number of traced events at the end of each tick that ran here; -1 if it is not known."""
+        self._counted: tuple[str, bool] | None = None
+        """The level of the trace in which they were counted, and whether it keeps events; None for no trace."""
 
     def wants(self, tick: int) -> bool:
         """Returns whether to store the state at the end of a tick."""
@@ -59,10 +61,14 @@ class History:
             self._spacing *= 2
             self._states = {tick: kept for tick, kept in self._states.items() if tick % self._spacing == 0}
 
-    def add_tick(self, tick: int, answers: tuple[Any, ...], events: int) -> None:
-        """Adds a tick, with the answers of the bodies at its end, and the number of events up to there."""
+    def add_tick(self, tick: int, answers: tuple[Any, ...], trace: Trace | None) -> None:
+        """Adds a tick, with the answers of the bodies at its end, and the trace up to there."""
         self.simulated = tick
-        self._events.append(events)
+        counted = None if trace is None else (trace.level, trace.keep)
+        if counted != self._counted:
+            self._counted = counted
+            self._events = array("q", [-1]) * len(self._events)
+        self._events.append(-1 if trace is None else len(trace))
         self.ticks = max(self.ticks, tick)
         if self.answered == tick - 1 and self._kept + len(answers) <= MAX_ANSWERS:
             self.answered = tick
@@ -74,9 +80,10 @@ class History:
         """Returns the answers of the bodies at the end of a tick up to `answered`."""
         return self._answers.get(tick, ())
 
-    def events(self, tick: int) -> int:
-        """Returns the number of traced events up to the end of a tick that ran here, after the first."""
-        return self._events[tick - 1]
+    def events(self, tick: int, trace: Trace) -> int | None:
+        """Returns the number of events of a trace up to the end of a tick; None if they were not counted in a trace of its level."""
+        known = self._events[tick - 1] if 0 < tick <= self.simulated and (trace.level, trace.keep) == self._counted else -1
+        return None if known < 0 else known
 
     def before(self, tick: int) -> tuple[int, WorldState]:
         """Returns the last stored state up to a tick that a run can reach without its physics, and its tick."""
@@ -112,11 +119,6 @@ class Timeline:
         self._log = log
         self._history = History(world.state())
         self._lockstep: Lockstep | None = None
-
-    @property
-    def _events(self) -> int:
-        """Number of traced events up to the present."""
-        return 0 if self._log.trace is None else len(self._log.trace)
 
     @property
     def begun(self) -> bool:
@@ -175,7 +177,7 @@ class Timeline:
         answers = lockstep.tock()
         ticks = lockstep.ticks
         if ticks > history.simulated:
-            history.add_tick(ticks, answers, self._events)
+            history.add_tick(ticks, answers, self._log.trace)
             if history.wants(ticks):
                 history.keep(ticks, self._world.state())
         self._log.state(ticks)
@@ -228,7 +230,7 @@ class Timeline:
         Raises:
             SimulationError: If the agents act differently than the first time, as far as the trace shows it.
         """
-        present, before, simulated = self.lockstep, self._log.trace, self._history.simulated
+        present, before = self.lockstep, self._log.trace
         if present.broken or to <= present.ticks:
             self._lockstep = None
             self._world.restore(self._history.before(0)[1])
@@ -239,7 +241,7 @@ class Timeline:
             self._log.silent = False
         if before is not None and self._log.trace is not None and before is not self._log.trace:
             try:
-                _check_repeated(before, self._log.trace, self._history.events(to) if 0 < to <= simulated else None)
+                _check_repeated(before, self._log.trace, self._history.events(to, before))
             except SimulationError:
                 self.lockstep.fail()
                 raise

@@ -69,9 +69,9 @@ def test_a_first_visit_shows_what_the_model_says_of_itself_and_one_click_tries_i
     shows(page, "#status", "at its start")
     expect(page.get_by_label("Speed", exact=True)).to_have_value("4")  # 1 x
     hint = page.get_by_role("button", name="Real time: press + to go faster")
-    about.get_by_role("button", name="width = 0.6, speed = 2").click()
+    about.get_by_role("button", name="width = 0.5, speed = 2").click()
     shows(page, "#status", "running")
-    until(page, lambda: settings(workbench)["settings"] == {"width": 0.6, "speed": 2})
+    until(page, lambda: settings(workbench)["settings"] == {"width": 0.5, "speed": 2})
     expect(hint).to_be_visible()
     page.get_by_role("heading", name="ACT-R 3D").click()
     page.keyboard.press("+")
