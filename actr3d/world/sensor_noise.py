@@ -80,9 +80,9 @@ def _noisy(sensor: str, value: Any, sd: Any, random: Generator) -> Any:
         return value.with_noise(sd, random)
     if isinstance(value, tuple):
         items = cast("tuple[Any, ...]", value)
-        kind: Any = type(items)
-        if hasattr(kind, "_asdict"):  # a tuple with names
-            return kind(**_by_name(sensor, kind._asdict(items), sd, random))
+        names: tuple[str, ...] | None = getattr(items, "_fields", None)
+        if names is not None:  # a named tuple
+            return type(items)(**_by_name(sensor, dict(zip(names, items, strict=True)), sd, random))
         return tuple(_noisy(sensor, item, sd, random) for item in items)
     if isinstance(value, dict):
         by_key = cast("dict[Any, Any]", value)

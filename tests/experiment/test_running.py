@@ -183,12 +183,17 @@ def test_a_changed_file_of_the_library_is_another_version(tmp_path: Path) -> Non
     assert digest_of(library) != before
 
 
-def test_a_client_that_leaves_ends_no_process_of_another(tmp_path: Path) -> None:
-    begun, enough = tmp_path / "begun", tmp_path / "enough"
+def waiting_experiment(folder: Path, begun: Path, enough: Path) -> str:
+    """Returns, as JSON, an experiment whose trials write the numbers of their processes into a file, and then wait for another file."""
     lines = ["import os, time", f"with open({str(begun)!r}, 'a') as file:", "    print(os.getpid(), file=file)"]
     lines += [f"while not os.path.exists({str(enough)!r}):", "    time.sleep(0.02)"]
     waiting = COUNTER.replace("model.run()", "\n".join([*lines, "model.run()"]))
-    text = specify(str(write_experiment(tmp_path, model=waiting))).specification.to_json()
+    return specify(str(write_experiment(folder, model=waiting))).specification.to_json()
+
+
+def test_a_client_that_leaves_ends_no_process_of_another(tmp_path: Path) -> None:
+    begun, enough = tmp_path / "begun", tmp_path / "enough"
+    text = waiting_experiment(tmp_path, begun, enough)
     with ThreadPoolExecutor(1) as pool:
         batch = pool.submit(run_batch, text, [0], 60, cluster_versions(), "one")
         while not begun.exists() and not batch.done():
@@ -204,9 +209,7 @@ def test_a_client_that_leaves_ends_no_process_of_another(tmp_path: Path) -> None
 
 def test_a_trial_whose_client_leaves_does_not_begin_again(tmp_path: Path) -> None:
     begun = tmp_path / "begun"
-    lines = ["import os, time", f"with open({str(begun)!r}, 'a') as file:", "    print(os.getpid(), file=file)", "time.sleep(60)"]
-    waiting = COUNTER.replace("model.run()", "\n".join([*lines, "model.run()"]))
-    text = specify(str(write_experiment(tmp_path, model=waiting))).specification.to_json()
+    text = waiting_experiment(tmp_path, begun, tmp_path / "never")
     with ThreadPoolExecutor(1) as pool:
         batch = pool.submit(run_batch, text, [0], 60, cluster_versions(), "leaving")
         while not begun.exists() and not batch.done():

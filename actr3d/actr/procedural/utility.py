@@ -129,7 +129,19 @@ class PMNoise(ProceduralSubModule):
         return logistic_noise(self.random, s)
 
 
-class PMPGC(ProceduralSubModule):
+class RewardLearning(ProceduralSubModule):
+    """Learns utilities from rewards, each of which counts for the productions chosen since the last one."""
+
+    history: list[tuple[Any, float]]
+    """These productions, each with the time of its choice [s]."""
+
+    def withdrawn(self, prod: Any) -> None:
+        """Forgets the latest choice."""
+        if self.history and self.history[-1][0] is prod:
+            self.history.pop()
+
+
+class PMPGC(RewardLearning):
     """Utility as expected gain, U = P G - C, learned from successes, failures and the time that was spent.
 
     Args:
@@ -142,7 +154,7 @@ class PMPGC(ProceduralSubModule):
 
     @named_parameters
     def __init__(self, goal: float = 20) -> None:
-        self.history: list[tuple[Any, float]] = []
+        self.history = []
         self.goal = goal
         self._rewarded = False
 
@@ -152,11 +164,6 @@ class PMPGC(ProceduralSubModule):
             self.history.clear()
             self._rewarded = False
         self.history.append((prod, self.now()))
-
-    def withdrawn(self, prod: Any) -> None:
-        """Forgets the latest choice."""
-        if self.history and self.history[-1][0] is prod:
-            self.history.pop()
 
     def create(self, prod: Any, parents: list[Production] | None = None) -> None:
         prod.successes = 1
@@ -231,7 +238,7 @@ class PMPGCMixedWeighted(PMPGC):
         return prod.successes / (prod.successes + prod.failures) * self.goal - prod.time / prod.successes
 
 
-class PMNew(ProceduralSubModule):
+class PMNew(RewardLearning):
     """Utility learning U += alpha (R - dt - U), where dt is the time from the choice to the reward [s].
 
     Args:
@@ -242,7 +249,7 @@ class PMNew(ProceduralSubModule):
 
     @named_parameters
     def __init__(self, alpha: float = 0.2) -> None:
-        self.history: list[tuple[Any, float]] = []
+        self.history = []
         self.alpha = alpha
         self.clearFlag = False
         """Whether a reward has come since the latest choice; public, so that Python ACT-R's logs show it."""
@@ -253,11 +260,6 @@ class PMNew(ProceduralSubModule):
             self.history.clear()
             self.clearFlag = False
         self.history.append((prod, self.now()))
-
-    def withdrawn(self, prod: Any) -> None:
-        """Forgets the latest choice."""
-        if self.history and self.history[-1][0] is prod:
-            self.history.pop()
 
     def create(self, prod: Any, parents: list[Production] | None = None) -> None:
         prod.util = 0
