@@ -86,7 +86,7 @@ function OnePanel() {
   }, []);
   useEffect(() => void (document.title = `${title} · ${model}`), [title, model]);
   return html`<div class="workbench alone ${hurried.value ? "hurried" : ""}">
-    <header class="bar">${openTab.value !== alone && VIEWS[alone] ? html`<button onClick=${() => (openTab.value = alone)}><${Icon} name="back" />${VIEWS[alone].title}</button>` : null}<h1>${title}</h1><span class="mono quiet">${model}</span><span class="stretch"></span><${Clock} /></header>
+    <header class="bar">${openTab.value !== alone && VIEWS[alone] ? html`<button onClick=${() => (openTab.value = alone)}><span class="back"><${Icon} name="right" /></span>${VIEWS[alone].title}</button>` : null}<h1>${title}</h1><span class="mono quiet">${model}</span><span class="stretch"></span><${Clock} /></header>
     <main class="alone-view" aria-label=${title}><${View} /></main>
     <${StatusLine} />
   </div>`;
