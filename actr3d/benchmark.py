@@ -1,4 +1,4 @@
-"""Measured figures with the bars they must hold, and the registry of the benchmarks that measure them."""
+"""Measured figures with the limits that they must meet, and the registry of the benchmarks that measure them."""
 
 from __future__ import annotations
 
@@ -36,19 +36,19 @@ def benchmark(name: str) -> Callable[[B], B]:
 
 @dataclass(frozen=True, kw_only=True)
 class Figure:
-    """One measured figure, and the bar it must hold."""
+    """One measured figure, and the limit that it must meet."""
 
     name: str
     value: float
     sense: Literal["at least", "at most"]
-    bar: float
+    limit: float
     what: str
     """What is measured, with its unit."""
 
     @property
-    def holds(self) -> bool:
-        """Whether the figure holds the bar."""
-        return self.value >= self.bar if self.sense == "at least" else self.value <= self.bar
+    def is_met(self) -> bool:
+        """Whether the figure meets its limit."""
+        return self.value >= self.limit if self.sense == "at least" else self.value <= self.limit
 
 
 def seconds_of(work: Callable[[], object], clock: Callable[[], float] = time.perf_counter) -> float:
@@ -85,12 +85,12 @@ def ratio(slow: Callable[[], float], fast: Callable[[], float], rounds: int = 5)
 
 
 def report(figures: Sequence[Figure], *, json_output: bool) -> int:
-    """Prints the figures; returns 0 if all hold their bars, else 1."""
+    """Prints the figures; returns 0 if all meet their limits, else 1."""
     if json_output:
-        bars = {f.name: {"value": round(f.value, 4), "bar": f"{f.sense} {f.bar:g}", "holds": f.holds} for f in figures}
-        print(json.dumps(bars))
+        found = {f.name: {"value": round(f.value, 4), "limit": f"{f.sense} {f.limit:g}", "met": f.is_met} for f in figures}
+        print(json.dumps(found))
     else:
         width = max(len(f.name) for f in figures)
         for f in figures:
-            print(f"{'holds ' if f.holds else 'MISSED'}  {f.name:<{width}}  {f.value:10.2f}  ({f.sense} {f.bar:g})  {f.what}")
-    return 0 if all(f.holds for f in figures) else 1
+            print(f"{'met   ' if f.is_met else 'MISSED'}  {f.name:<{width}}  {f.value:10.2f}  ({f.sense} {f.limit:g})  {f.what}")
+    return 0 if all(f.is_met for f in figures) else 1

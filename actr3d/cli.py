@@ -231,8 +231,8 @@ def _add_replay(commands: Any) -> None:
     again = commands.add_parser(
         "replay",
         help="run a recording again",
-        description="Runs a recording again: does every byte agree? It runs the code that the recording holds, with modules that "
-        "are recorded or installed.",
+        description="Runs a recording again, and checks whether every byte agrees. It runs the code that the recording holds, "
+        "with modules that are recorded or installed.",
         epilog="Exit codes: 0 every byte agrees, as far as the recording goes; 1 it differs; 2 it cannot be compared: it is damaged, "
         "of another format, made with other versions, or made elsewhere and not trusted, or the recorded program ended the process that "
         "ran it; 130 it was interrupted.",
@@ -244,7 +244,7 @@ def _add_replay(commands: Any) -> None:
 
 
 def _add_bench(commands: Any) -> None:
-    bench = commands.add_parser("bench", help="measure speed", description="Measures speed, as ratios within one run.")
+    bench = commands.add_parser("bench", help="measure speed", description="Measures speed, mostly as ratios of two costs in one run.")
     bench.add_argument("name", metavar="NAME", nargs="?", help="what to measure (unless given, list all benchmarks)")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
@@ -297,10 +297,23 @@ def _add_fit(commands: Any) -> None:
         action="append",
         default=[],
         metavar="DESIGN[=FILE]",
-        help="compare another design with its data, or those of a file, not fitted to; of the options, --set holds for it",
+        help="compare the fitted model, in another design, with the data of that design or of FILE, which are not fitted; "
+        "of the options, only --set applies to that design",
     )
-    fit.add_argument("--ablate", action="append", default=[], metavar="NAME=VALUE", help="show the fit with this part changed")
-    fit.add_argument("--recover", type=_count, default=0, metavar="N", help="estimate the known parameters of N simulated data sets")
+    fit.add_argument(
+        "--ablate",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="show how well the model fits with this value changed (an ablation)",
+    )
+    fit.add_argument(
+        "--recover",
+        type=_count,
+        default=0,
+        metavar="N",
+        help="simulate N data sets with known parameters, and estimate these (parameter recovery)",
+    )
     _add_design_options(fit)
     fit.add_argument("--out", metavar="FOLDER", help="the folder for the candidates and the result")
     fit.add_argument("--json", action="store_true", help="print one JSON object a line")
@@ -323,7 +336,11 @@ def _add_report(commands: Any) -> None:
 
 
 def _add_soak(commands: Any) -> None:
-    soak = commands.add_parser("soak", help="run a million ticks", description="Runs a million ticks: no drift, no growth in memory?")
+    soak = commands.add_parser(
+        "soak",
+        help="run a million ticks",
+        description="Runs a million ticks, and checks for drift between the clocks and for growth in memory.",
+    )
     soak.add_argument("--json", action="store_true", help="print one JSON object")
     soak.set_defaults(function=_soak)
 
@@ -383,7 +400,7 @@ def _experiment(options: argparse.Namespace) -> int:
     numbers = _numbers(options)
     if options.check:
         if idle := [f"--{name.replace('_', '-')}" for name in BESIDE_CHECK if getattr(options, name)]:
-            raise SettingError(f"--check: runs two trials in this process and keeps nothing; leave out {' and '.join(idle)}")
+            raise SettingError(f"--check: runs two trials on this computer and stores nothing; leave out {' and '.join(idle)}")
         return command.check(options.name, out, **numbers)
     how = {name: getattr(options, name) for name in ("workers", "scheduler", "resume", "any_version")}
     if command.is_folder(options.name) and not any((*numbers.values(), *how.values(), options.out)):

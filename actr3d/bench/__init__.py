@@ -1,4 +1,7 @@
-"""Benchmarks: each prints its figures with their bars, as ratios of things measured in one run."""
+"""Benchmarks: each prints measured figures with the limits that they must meet.
+
+Most figures are ratios of two costs, measured in one run.
+"""
 
 from __future__ import annotations
 

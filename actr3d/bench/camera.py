@@ -113,13 +113,13 @@ def measure() -> list[Figure]:
     what, more = "single rays of mj_multiRay for a default view", "times a view of 10"
     with little_garbage():
         return [
-            Figure(name="aperture, 10 objects", value=_in_rays(few), sense="at most", bar=RAYS, what=what),
-            Figure(name="aperture, 100 objects", value=_in_rays(many), sense="at most", bar=RAYS, what=what),
-            Figure(name="crowd without walls, 100 objects", value=_in_rays(open_many), sense="at most", bar=RAYS, what=what),
-            Figure(name="body of 20 parts", value=_in_rays(body), sense="at most", bar=RAYS, what=what),
-            Figure(name="mesh, 10,000 triangles", value=_in_rays(mesh), sense="at most", bar=RAYS, what=what),
-            Figure(name="100 objects", value=_more(many, few), sense="at most", bar=3, what=more),
-            Figure(name="100 objects without walls", value=_more(open_many, open_few), sense="at most", bar=3, what=more),
+            Figure(name="aperture, 10 objects", value=_in_rays(few), sense="at most", limit=RAYS, what=what),
+            Figure(name="aperture, 100 objects", value=_in_rays(many), sense="at most", limit=RAYS, what=what),
+            Figure(name="crowd without walls, 100 objects", value=_in_rays(open_many), sense="at most", limit=RAYS, what=what),
+            Figure(name="body of 20 parts", value=_in_rays(body), sense="at most", limit=RAYS, what=what),
+            Figure(name="mesh, 10,000 triangles", value=_in_rays(mesh), sense="at most", limit=RAYS, what=what),
+            Figure(name="100 objects", value=_more(many, few), sense="at most", limit=3, what=more),
+            Figure(name="100 objects without walls", value=_more(open_many, open_few), sense="at most", limit=3, what=more),
         ]
 
 

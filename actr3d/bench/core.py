@@ -190,13 +190,13 @@ def measure() -> list[Figure]:
     small, large = _request_cost(1_000), _request_cost(100_000)
     speed = "times python_actr's speed"
     return [
-        Figure(name="three productions", value=three, sense="at least", bar=1.5, what="times python_actr's cycles a second"),
-        Figure(name="300 productions", value=hundreds, sense="at least", bar=10, what="times python_actr's cycles a second"),
-        Figure(name="counting, 2,000 chunks", value=counting, sense="at least", bar=100, what=f"{speed}, from learning them on"),
-        Figure(name="a count among 2,000 chunks", value=each_count, sense="at least", bar=40, what=f"{speed}, once they are learned"),
-        Figure(name="request, 100,000 chunks", value=ratio(large, small), sense="at most", bar=2, what="times one among 1,000"),
-        Figure(name="idle tick", value=_idle_tick(), sense="at most", bar=3, what="us more than an empty loop"),
-        Figure(name="full tracing", value=_traced_ratio(), sense="at most", bar=2, what="times the untraced counting model"),
+        Figure(name="three productions", value=three, sense="at least", limit=1.5, what="times python_actr's cycles a second"),
+        Figure(name="300 productions", value=hundreds, sense="at least", limit=10, what="times python_actr's cycles a second"),
+        Figure(name="counting, 2,000 chunks", value=counting, sense="at least", limit=100, what=f"{speed}, from learning them on"),
+        Figure(name="a count among 2,000 chunks", value=each_count, sense="at least", limit=40, what=f"{speed}, once they are learned"),
+        Figure(name="request, 100,000 chunks", value=ratio(large, small), sense="at most", limit=2, what="times one among 1,000"),
+        Figure(name="idle tick", value=_idle_tick(), sense="at most", limit=3, what="us more than an empty loop"),
+        Figure(name="full tracing", value=_traced_ratio(), sense="at most", limit=2, what="times the untraced counting model"),
     ]
 
 

@@ -185,14 +185,14 @@ def measure() -> list[Figure]:
     watching, looking = partial(trial, WATCHING), partial(trial, LOOKING)
     _cost(looking, 0, 20)  # compiles the detectors likewise
     return [
-        Figure(name="tick and tock, no vision", value=plain / bare, sense="at most", bar=3, what=times),
+        Figure(name="tick and tock, no vision", value=plain / bare, sense="at most", limit=3, what=times),
         Figure(
-            name="cognition and lockstep", value=(plain - bare) * 1e6, sense="at most", bar=40, what="us a tick beyond the bare physics"
+            name="cognition and lockstep", value=(plain - bare) * 1e6, sense="at most", limit=40, what="us a tick beyond the bare physics"
         ),
-        Figure(name="an aperture trial with vision", value=_seeing(trial), sense="at most", bar=10, what=times),
-        Figure(name="a trial that looks at every tick", value=_seeing(watching), sense="at most", bar=10, what=times),
-        Figure(name="a trial that looks for openings and obstacles", value=_seeing(looking), sense="at most", bar=10, what=times),
-        Figure(name="recording everything", value=recorded / plain, sense="at most", bar=1.5, what="times the unrecorded run"),
+        Figure(name="an aperture trial with vision", value=_seeing(trial), sense="at most", limit=10, what=times),
+        Figure(name="a trial that looks at every tick", value=_seeing(watching), sense="at most", limit=10, what=times),
+        Figure(name="a trial that looks for openings and obstacles", value=_seeing(looking), sense="at most", limit=10, what=times),
+        Figure(name="recording everything", value=recorded / plain, sense="at most", limit=1.5, what="times the unrecorded run"),
         *camera.measure(),
     ]
 

@@ -41,15 +41,15 @@ def measure(ticks: int = TICKS) -> list[Figure]:
     # The history kept for going back grows to its limits in the first part.
     begin = memory[1]
     return [
-        Figure(name="drift", value=drift, sense="at most", bar=0, what=f"us between the clocks after {ticks:,} ticks"),
+        Figure(name="drift", value=drift, sense="at most", limit=0, what=f"us between the clocks after {ticks:,} ticks"),
         Figure(
             name="growth",
             value=memory[-1] - begin,
             sense="at most",
-            bar=2,
+            limit=2,
             what=f"MB of memory ({begin:.0f} MB after two tenths, {memory[-1]:.0f} in the end)",
         ),
-        Figure(name="time", value=spent / ticks * 1e6, sense="at most", bar=1000, what=f"us a tick ({spent:.0f} s in all)"),
+        Figure(name="time", value=spent / ticks * 1e6, sense="at most", limit=1000, what=f"us a tick ({spent:.0f} s in all)"),
     ]
 
 

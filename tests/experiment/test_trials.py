@@ -861,4 +861,4 @@ def test_a_check_names_the_trial_that_fails_and_takes_no_options_of_a_run(tmp_pa
     assert main(["experiment", str(path), "--check"]) == 1
     assert "trial 0 failed: " in capsys.readouterr().out
     assert main(["experiment", str(path), "--check", "--out", "x", "--workers", "2"]) == 2
-    assert "--check: runs two trials in this process and keeps nothing; leave out --workers and --out" in capsys.readouterr().err
+    assert "--check: runs two trials on this computer and stores nothing; leave out --workers and --out" in capsys.readouterr().err

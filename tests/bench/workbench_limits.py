@@ -1,7 +1,7 @@
-"""What the workbench must hold, measured: `uv run python -m tests.bench.workbench_bars`.
+"""Measures whether the workbench meets its limits: `uv run python -m tests.bench.workbench_limits`.
 
-Each figure is measured in one run on one machine, with a page in headless Chromium attached where there is one; its exit code
-is 1 where a bar is missed. It takes as long as the eight clients are attached, and a minute more.
+Each figure is measured in one run on one machine, with a page in headless Chromium attached where there is one; the exit code
+is 1 if a limit is missed. It takes as long as the eight clients are attached, and a minute more.
 
 Python must be able to keep bytecode: with `PYTHONDONTWRITEBYTECODE` set, each start compiles all libraries again, and preloading takes
 more than twice as much processor time.
@@ -67,8 +67,8 @@ sys.stderr.write(str(sum(one for one, _ in rates[1:]) / sum(other for _, other i
 
 
 def main() -> int:
-    """Measures everything; returns 0 where all bars hold, else 1."""
-    parser = argparse.ArgumentParser(description="Measures what the workbench must hold.")
+    """Measures everything; returns 0 if all limits are met, else 1."""
+    parser = argparse.ArgumentParser(description="Measures whether the workbench meets its limits.")
     parser.add_argument("--minutes", type=float, default=10.0, help="for how long eight clients are attached (default 10)")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     options = parser.parse_args()
@@ -141,7 +141,7 @@ def _starts(folder: Path, browser: Any) -> Figure:
             taken += [ready] if number else []  # the first is not warm
             _say(f"start: address after {printed:.2f} s, ready to run after {ready:.2f} s")
     what = "[s] from the command to the model ready to run on the page, median of warm starts"
-    return Figure(name="start", value=median(taken), sense="at most", bar=3, what=what)
+    return Figure(name="start", value=median(taken), sense="at most", limit=3, what=what)
 
 
 async def _ready(server: Served) -> None:
@@ -165,9 +165,9 @@ async def _speed(server: Served, session: str, *, with_page: bool) -> Figure:
             rates.append(state["time"] / (time.perf_counter() - begin))
     headless = max(headless, _headless())
     _say(f"speed: headless {headless:.1f} times real time, attached {', '.join(f'{rate:.1f}' for rate in rates)}")
-    bar = 0.8 * min(headless, 20.0)
+    limit = 0.8 * min(headless, 20.0)
     what = f"times real time with everything shown, median; headless {headless:.1f}"
-    return Figure(name="speed", value=median(rates), sense="at least", bar=bar, what=what)
+    return Figure(name="speed", value=median(rates), sense="at least", limit=limit, what=what)
 
 
 def _headless() -> float:
@@ -184,14 +184,14 @@ def _loads(page: Any) -> Figure:
         _shows_the_start(page)
         taken.append(time.perf_counter() - begin)
     page.locator(".scene-cover").wait_for(state="detached", timeout=60_000)
-    return Figure(name="page", value=median(taken), sense="at most", bar=1.5, what="[s] to load the page with the model, median")
+    return Figure(name="page", value=median(taken), sense="at most", limit=1.5, what="[s] to load the page with the model, median")
 
 
 def _pans(page: Any) -> Figure:
     """Measures the script time of a picture of the timeline that is moved along."""
     taken = sorted(page.evaluate(PANS, [EVENTS, RUNS * 4]))
     what = f"[ms] of script for a picture of the timeline of an hour with {EVENTS:,} events, of ten nine"
-    return Figure(name="pan", value=taken[9 * len(taken) // 10], sense="at most", bar=16, what=what)
+    return Figure(name="pan", value=taken[9 * len(taken) // 10], sense="at most", limit=16, what=what)
 
 
 def _clicks(page: Any) -> Figure:
@@ -201,7 +201,9 @@ def _clicks(page: Any) -> Figure:
     page.wait_for_timeout(1000)
     taken = sorted(page.evaluate(CLICKS, CLICKED))
     _say(f"click: median {median(taken):.1f} ms, of ten nine within {taken[9 * len(taken) // 10]:.1f} ms, longest {taken[-1]:.1f} ms")
-    return Figure(name="click", value=median(taken), sense="at most", bar=50, what="[ms] from a click on step to the updated page, median")
+    return Figure(
+        name="click", value=median(taken), sense="at most", limit=50, what="[ms] from a click on step to the updated page, median"
+    )
 
 
 async def _steps(server: Served, session: str) -> Figure:
@@ -217,7 +219,7 @@ async def _steps(server: Served, session: str) -> Figure:
             taken.append(1000 * (time.perf_counter() - begin))
             await asyncio.sleep(0.06)
     return Figure(
-        name="step", value=median(taken), sense="at most", bar=50, what="[ms] from a step to its state, without a browser, median"
+        name="step", value=median(taken), sense="at most", limit=50, what="[ms] from a step to its state, without a browser, median"
     )
 
 
@@ -235,7 +237,9 @@ async def _edits(server: Served, session: str) -> Figure:
             await client.until(lambda state: state["tick"] > 0)
             taken.append(time.perf_counter() - begin)
     _say(f"edit: {', '.join(f'{one:.2f}' for one in taken)} s")
-    return Figure(name="edit", value=median(taken), sense="at most", bar=1, what="[s] from saving a changed file to its first tick, median")
+    return Figure(
+        name="edit", value=median(taken), sense="at most", limit=1, what="[s] from saving a changed file to its first tick, median"
+    )
 
 
 def _save(server: Served, text: str, version: str) -> None:
@@ -257,7 +261,7 @@ async def _stops(server: Served) -> Figure:
             taken.append(time.perf_counter() - begin)
             await client.restart(run=True)
     _say(f"stop: {', '.join(f'{one:.2f}' for one in taken)} s")
-    return Figure(name="stop", value=max(taken), sense="at most", bar=2, what="[s] until a model in an endless loop is gone, longest")
+    return Figure(name="stop", value=max(taken), sense="at most", limit=2, what="[s] until a model in an endless loop is gone, longest")
 
 
 async def _soak(server: Served, seconds: float) -> Figure:
@@ -285,7 +289,7 @@ async def _soak(server: Served, seconds: float) -> Figure:
         last = memory_of(server.process.pid)
     _say(f"memory: {first / 1e6:.1f} MB at first, {last / 1e6:.1f} MB after {runs} runs in {seconds / 60:g} minutes")
     what = f"[%] growth of the server's memory with {CLIENTS} clients in {seconds / 60:g} minutes"
-    return Figure(name="memory", value=100 * (last / first - 1), sense="at most", bar=5, what=what)
+    return Figure(name="memory", value=100 * (last / first - 1), sense="at most", limit=5, what=what)
 
 
 async def _one_run(user: Client) -> None:
