@@ -352,7 +352,7 @@ def _bench(options: argparse.Namespace) -> int:
     if options.name is None:
         for name, function in sorted(known.items()):
             about = inspect.getdoc(sys.modules[function.__module__]) or ""
-            print(f"{name:<10}{' '.join(about.partition(': ')[2].split('.')[0].split())}")
+            print(f"{name:<12}{' '.join(about.partition(': ')[2].split('.')[0].split())}")
         return 0
     if options.name not in known:
         print(f"actr3d bench: no benchmark '{options.name}'{alternatives(options.name, sorted(known))}", file=sys.stderr)

@@ -127,7 +127,7 @@ class ClearanceCurves(Source):
 
     def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
         """Returns the smallest distances to the left and right wall segment [m]; None if no part of the body is in the doorway."""
-        return self._clearance.rooms() or (None, None)
+        return self._clearance.clearances() or (None, None)
 
 
 class Force(Source):

@@ -125,7 +125,7 @@ def as_it_is(one: Passing) -> Passing:
 
 
 def test_a_walker_that_does_not_turn_has_no_margin() -> None:
-    """At wide apertures there is more room than anyone wants, which is no margin."""
+    """At wide apertures, the distances depend on the aperture only, so they are no margins."""
     found = findings(lambda one: with_margin(one, 0.07 if one.angle else 0.14))
     assert {margin(one) for one in found.passings if (one.group, one.condition, one.aperture) == ("large", "fast", 0.45)} == {(0.07, 0.07)}
     assert {margin(one) for one in found.passings if (one.group, one.condition, one.aperture) == ("small", "normal", 0.7)} == {None}

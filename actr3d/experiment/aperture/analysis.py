@@ -28,7 +28,7 @@ Parts = list[str | Table | Plot | Caution]
 ORIGINAL, GEOMETRY = "original ACT-R 3D", "geometry (baseline)"
 BASELINE = (
     "Baseline: one line of geometry, which any model must beat: the angle at which an ellipse, as wide as the shoulders S and 0.563 S "
-    "deep, leaves the room 0.30 S."
+    "deep, leaves 0.30 S free in total."
 )
 ANGLE = "shoulder angle at the wall [degrees]"
 OF_RATIO = "aperture / shoulder width (A/S)"
@@ -50,7 +50,7 @@ NEEDED = (
     "start_heading",
 )
 """The columns that a `Passing` is made of."""
-BEYOND = "beyond: the value is most likely beyond the ratios of the trials, and is only a bound; it is in no mean."
+BEYOND = "beyond: the value is most likely outside the ratios of the trials; it is then only a bound, and left out of all means."
 OF_WALKS = ("aperture", "shoulder_width", "wall_angle_deg", "clearance_left_m", "clearance_right_m", "contacts", "outcome")
 """The columns that every experiment with walks through apertures has."""
 SIDES_DIFFER = 0.001
@@ -119,11 +119,14 @@ def passing_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
         sections.append(Section(title="Critical ratio", parts=_critical_ratios(findings)))
         sections.append(Section(title="Margins, contacts and onset", parts=_margins(findings, frame)))
     if not all(one.straight for one in findings.passings):
-        sections.append(Section(title="Starts aside and aslant", parts=_starts(results)))
+        sections.append(Section(title="Starts beside the doorway or at an angle", parts=_starts(results)))
     if bars := findings.bar_angles():
         sections.append(Section(title="Bars in the hands", parts=_bars(bars)))
     if (left := len(findings.passings) - len(findings.plain)) and len(findings.levels) > 1:
-        text = f"{left:,} trials with a wide bar, or with a start beside the doorway or aslant, are in no figure of rotation and margins."
+        text = (
+            f"{left:,} trials with a wide bar, or with a start beside the doorway or at an angle, are left out of the figures of rotation "
+            "and margins."
+        )
         sections[1] = Section(title=sections[1].title, parts=[Caution(text), *sections[1].parts])
     return sections
 
@@ -157,8 +160,8 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
             name="boundaries",
             title="Boundary of each participant",
             frame=people,
-            note="Half of the judgements there are «can pass», by a logistic fit; low, high: 95 % interval of the profile likelihood, "
-            "infinite where it goes beyond the ratios of the trials. " + BEYOND,
+            note="boundary: the ratio at which half of the judgements are «can pass», by a logistic fit; low, high: 95 % interval of the "
+            "profile likelihood, infinite where it goes beyond the ratios of the trials. " + BEYOND,
             digits={"boundary": 3, "low": 3, "high": 3},
         ),
     ]
@@ -361,8 +364,10 @@ class Rotation:
 
 
 def with_greatest_angles(one: Beside, by: str) -> Beside:
-    """Returns means beside those of the model; the angles of another experiment are those of the model: of walkers that did not reach the
-    wall, the greatest ones."""
+    """Returns means to show beside those of the model, with angles of another experiment that are computed as the model's.
+
+    These are the angles at the wall; for a walker that did not reach the wall, its greatest angle. Means of people are returned unchanged.
+    """
     if one.results is None or not {by, *OF_WALKS} <= set(one.results.rows):
         return one
     findings = Findings(passings_of(one.results), by)
@@ -409,7 +414,7 @@ def _critical_ratios(findings: Findings) -> Parts:
     note = (
         f"Logistic: half of the trials are turned by more than {TURNED:g} degrees above the participant's baseline, its median angle above "
         f"{WIDE:g} A/S. low, high: 95 % interval of the profile likelihood, infinite where it goes beyond the ratios of the "
-        f"trials; an abrupt change is known to one step of apertures. {BEYOND} "
+        f"trials; if the change is abrupt, the interval is one step between two apertures. {BEYOND} "
         "Bend: piecewise-linear fit; it is too large for a rotation that falls more steeply near its end."
     )
     parts: Parts = []
@@ -420,7 +425,12 @@ def _critical_ratios(findings: Findings) -> Parts:
         figure = curves_figure(panes, "participant", "critical ratio A/S", ticks=ticks)
         title = "Critical ratio of each participant"
         parts.append(
-            Plot(name="critical_ratio", title=title, figure=figure, note="95 % intervals of the profile likelihood, unless they are open.")
+            Plot(
+                name="critical_ratio",
+                title=title,
+                figure=figure,
+                note="Bars: 95 % intervals of the profile likelihood; an interval without an end is not drawn.",
+            )
         )
     summary: list[dict[str, Any]] = []
     for (group, condition), of in frame.groupby(["group", "condition"], sort=False):
@@ -453,8 +463,8 @@ def _left_out(frame: Any, column: str) -> list[Caution]:
         return []
     known = int(frame[column].notna().sum())
     text = (
-        f"{len(beyond)} of {known} values are most likely beyond the ratios of the trials. They are in no mean of participants, so that "
-        "mean is not that of all: wider or narrower apertures would tell."
+        f"{len(beyond)} of {known} values are most likely beyond the ratios of the trials. They are left out of the means of participants, "
+        "which are therefore not the means of all participants; wider or narrower apertures would show these values."
     )
     return [Caution(text)]
 
@@ -517,7 +527,7 @@ def _margins(findings: Findings, frame: Any) -> Parts:
             panes.append(Pane(title=", ".join(filter(None, (group, condition))), curves=curves, level=band))
     figure = curves_figure(panes, x_label, "smallest distance to the wall [cm]", from_zero=True)
     note = "Means of participants with 95 % bootstrap intervals; the narrower side is that of each trial. "
-    note += "At wide apertures there is more room than anyone wants."
+    note += "At wide apertures, the distances depend on the aperture only."
     parts.append(Plot(name="margins", title="Margins on the left, on the right, and on the narrower side", figure=figure, note=note))
     there = frame[frame["left"].notna() & frame["right"].notna()]
     if len(there) and float((there["left"] - there["right"]).abs().max()) < 100 * SIDES_DIFFER:
@@ -580,7 +590,7 @@ def _onset(findings: Findings, frame: Any, x_label: str, scale: float) -> Parts:
 
 
 def _starts(results: Results) -> Parts:
-    """Returns the figure and the table of walks that begin beside the doorway or aslant."""
+    """Returns the figure and the table of walks that begin beside the doorway or at an angle."""
     rows = results.rows.copy()
     for name in ("start_aside", "start_heading"):
         rows[name] = rows[name].fillna(0.0) if name in rows else 0.0
@@ -609,9 +619,10 @@ def _starts(results: Results) -> Parts:
     note = (
         "untouched: passed without a contact; left, right: mean of the smallest distances to the wall, of those that were in the doorway."
     )
+    title = "Passing from starts beside the doorway or at an angle"
     return [
-        Plot(name="starts", title="Passing from starts aside and aslant", figure=figure, note="Means of participants with 95 % intervals."),
-        Table(name="starts", title="Passing from starts aside and aslant", frame=table, units=units, digits=digits, note=note),
+        Plot(name="starts", title=title, figure=figure, note="Means of participants with 95 % intervals."),
+        Table(name="starts", title=title, frame=table, units=units, digits=digits, note=note),
     ]
 
 
@@ -640,10 +651,10 @@ def _bars(bars: dict[float, dict[float, dict[str, float]]]) -> Parts:
             curves.append(Curve(label=label, source=ORIGINAL, look="other", x=[a for a, _ in there], y=[b for _, b in there]))
         of_baseline = [row["baseline"] for row in rows if row["ratio"] == ratio]
         curves.append(Curve(label=label, source=GEOMETRY, look="baseline", x=x, y=of_baseline))
-    figure = curves_figure([Pane(title="", curves=curves)], "bar [body widths; 1 is a bar that does not stand out]", ANGLE, from_zero=True)
+    figure = curves_figure([Pane(title="", curves=curves)], "bar [body widths; 1: not wider than the body]", ANGLE, from_zero=True)
     note = (
         "People turn less with a longer bar at the same ratio (Higuchi, Seya & Imanaka 2012); their mean angles are not at hand. Baseline: "
-        "body and a thin bar keep the room 0.30 S together."
+        "body and a thin bar turn together, and leave 0.30 S free in total."
     )
     frame = pandas().DataFrame(rows)
     parts: Parts = [Plot(name="bars", title="Rotation with a bar", figure=figure, note=note)]

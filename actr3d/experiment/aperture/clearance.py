@@ -36,8 +36,9 @@ class Clearance:
         self._axes = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
         self._middle = np.array([*gap.position, 0.0])
 
-    def before(self, held: Sequence[int] = ()) -> float:
-        """Returns the distance of the body from the space between the wall's faces [m]; 0 or less if a part of it is there.
+    def distance_to_wall(self, held: Sequence[int] = ()) -> float:
+        """Returns the distance of the body from the space between the planes of the wall's two faces [m]; 0 or less if a part of the body
+        is there, also in the doorway.
 
         Args:
             held: More geoms that count as the body's: held objects.
@@ -46,27 +47,29 @@ class Clearance:
         box = self._bounds.box(self._middle, self._axes, held)
         return max(box.lower[0] - half, -half - box.upper[0])
 
-    def rooms(self, held: Sequence[int] = ()) -> tuple[float, float] | None:
+    def clearances(self, held: Sequence[int] = ()) -> tuple[float, float] | None:
         """Returns the smallest distances to the left and right segment [m]; None if no part of the body is in the doorway."""
-        if self.before(held) > 0:
+        if self.distance_to_wall(held) > 0:
             return None
-        room = self.within(held)
-        return room if self.is_inside(room, held) else None
+        distances = self.to_segments(held)
+        return distances if self.is_inside(distances, held) else None
 
-    def within(self, held: Sequence[int] = ()) -> tuple[float, float]:
+    def to_segments(self, held: Sequence[int] = ()) -> tuple[float, float]:
         """Returns the smallest distances to the left and right segment [m]."""
         left, right = (self._nearest(self._all(held), segment) for segment in self._gap.segments)
         return left, right
 
-    def is_inside(self, room: tuple[float, float], held: Sequence[int] = ()) -> bool:
-        """Returns whether a body between the wall's faces is in the doorway, and not only pressed into a face by a contact: whether a part
-        of it is there farther than a segment pushes it back.
+    def is_inside(self, distances: tuple[float, float], held: Sequence[int] = ()) -> bool:
+        """Returns whether a body that is between the planes of the wall's faces is in the doorway.
+
+        A body that leans on the wall penetrates its face a little, because contacts are soft. It is in the doorway only if a part is
+        deeper between the planes than it penetrates a segment.
 
         Args:
-            room: The distances of `within`.
+            distances: The distances to both segments, from `to_segments`.
             held: More geoms that count as the body's: held objects.
         """
-        if min(room) > 0:
+        if min(distances) > 0:
             return True
         half, data = self._gap.thickness / 2, self._data
         for geom in self._all(held).tolist():

@@ -24,7 +24,8 @@ from actr3d.experiment.report.page import number
 from actr3d.experiment.report.statistics import FEWEST
 
 TURNED = 5.0
-"""A walker has turned if its angle is above this [degrees]: people sway by a few degrees (docs/human-data.md). No source: our choice."""
+"""A walker has turned if its angle is above this [degrees]: people sway by a few degrees (docs/human-data.md).
+Source: chosen for this library."""
 CRITICAL = (1.25, 1.35)
 """The bounds of the ratio of aperture to shoulders at which turning begins. Source: Warren & Whang (1987), 1.28 to 1.31; bounds of
 docs/human-data.md."""
@@ -34,11 +35,11 @@ MARGIN = (0.06, 0.08)
 """The margin on each side [m]. Source: Higuchi's review (docs/human-data.md)."""
 PASSABLE = (1.11, 1.21)
 """The bounds of the ratio from which people judge that they can pass without turning. Source: Warren & Whang (1987), about 1.16;
-the bounds are our choice."""
+the bounds are chosen for this library."""
 SAME = 5.0
-"""Angles that differ by less than this count as equal [degrees]. No source: our choice."""
+"""Angles that differ by less than this count as equal [degrees]. Source: chosen for this library."""
 STEADY = 1.0
-"""The maximum rise of an angle by chance from one aperture to a wider one [degrees]. No source: our choice."""
+"""The maximum rise of an angle by chance from one aperture to a wider one [degrees]. Source: chosen for this library."""
 WIDE = 1.35
 """Apertures from this ratio on are wide."""
 EQUAL = 0.63
@@ -75,8 +76,9 @@ class Constraint:
 
 
 def margin(passing: Passing) -> tuple[float, float] | None:
-    """Returns the margins on the left and right of a walker that had to turn and did [m], each at the moment when any part was nearest to
-    the wall. Returns None for all others: their margin depends on the aperture only, or they never were in it.
+    """Returns the smallest distances to the left and right segment of the wall [m], of a walker that turned at a ratio below 1.30.
+
+    Returns None for all other trials, whose distances depend on the aperture only, and for a walker that never was in the doorway.
     """
     if passing.left is None or passing.right is None or passing.angle is None:
         return None
@@ -196,7 +198,10 @@ class Findings:
         return Constraint(number=2, says=says, met=least > 0, found=f"smallest difference {least:.1f} degrees")
 
     def scores(self) -> tuple[list[float], list[float]] | None:
-        """Returns the mean angle on the ratio, from 1.0 to 1.4, of each participant of the large and of the small group [degrees]."""
+        """Returns the mean angle of each participant over ratios from 1.0 to 1.4 [degrees]: those of the large, and of the small group.
+
+        Angles between tested ratios are interpolated. Returns None if the groups cannot be compared.
+        """
         if self.pair is None:
             return None
         curves = {key: self.curve(*key) for key in sorted(self._people) if key[0] in self.pair}
@@ -317,7 +322,7 @@ class Findings:
 
     def bar_angles(self) -> dict[float, dict[float, dict[str, float]]]:
         """Returns the mean angle of each participant [degrees] by ratio of the aperture to the total width, length of the bar in shoulder
-        widths, and participant; no participant where none set out."""
+        widths, and name of the participant; without names where no walker set out."""
         held: defaultdict[float, defaultdict[float, defaultdict[str, list[float]]]]
         held = defaultdict(lambda: defaultdict(lambda: defaultdict(list)))
         for one in self.passings:
@@ -367,7 +372,8 @@ def _spans(ratios: Sequence[float], bounds: tuple[float, float]) -> bool:
 
 
 def _left_open(ratio: CriticalRatio | None) -> bool:
-    """Returns whether an interval without an end reaches the bounds: a few trials say neither that they are met nor that they are not."""
+    """Returns whether an interval without an end overlaps the bounds: the trials then show neither that the constraint is met nor that it
+    is not."""
     return ratio is not None and (
         (ratio.low == -math.inf and ratio.high >= CRITICAL[0]) or (ratio.high == math.inf and ratio.low <= CRITICAL[1])
     )
@@ -391,7 +397,13 @@ def _listed(values: Iterable[float]) -> str:
 
 
 def equivalence(one: Sequence[float], other: Sequence[float], bound: float) -> Equivalence:
-    """Returns how sure it is that two means differ by less than a bound: two one-sided Welch t tests (TOST)."""
+    """Tests whether two means differ by less than a bound: two one-sided Welch t tests (TOST).
+
+    Args:
+        one: One value for each participant of a group.
+        other: The values of the other group.
+        bound: The bound, in the unit of the values.
+    """
     with noting_warnings() as notes:
         found = pingouin().tost(one, other, bound=bound, correction=True).iloc[0]
     return Equivalence(difference=mean(one) - mean(other), df=float(found["dof"]), p=float(found["pval"]), notes=notes)

@@ -11,7 +11,7 @@ import numpy as np
 STEEPEST = 200.0
 """The greatest slope of the logistic curve per unit of the ratio: steeper ones cannot be distinguished."""
 SHALLOWEST = 0.02
-"""The least slope: on it, as good as the same part of the trials is turned at all ratios."""
+"""The least slope per unit of the ratio: with it, the probability of a turn is nearly the same at all ratios."""
 STEPS = 401
 """The number of ratios at which the likelihood is computed, between the smallest and the largest of the trials."""
 CHI_SQUARED = 3.841

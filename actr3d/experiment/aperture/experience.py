@@ -21,7 +21,8 @@ MASS: float = Mannequin.mass
 def passage_remembered(committed: Mapping[str, float] | None, result: PassageResult) -> dict[str, float]:
     """Returns the memory of a passage.
 
-    Its energy is that of all contacts (`PassageResult.impact_j`), and at most that of the walk.
+    By name: `seen` and `felt`, as given [m]; `energy`, that of all contacts (`PassageResult.impact_j`), but at most the kinetic energy of
+    the walking body [J]; `free`, 1 if it passed and touched nothing, otherwise 0; `passed`, 1 if it passed, otherwise 0.
 
     Args:
         committed: What the walker saw and felt: `seen`, the width of the doorway [m]; `felt`, its own in the posture that it is about to
@@ -44,9 +45,13 @@ def passage_remembered(committed: Mapping[str, float] | None, result: PassageRes
 
 @cache
 def experiences(*, walks: bool = True, hands: Literal["empty", "bar"] = "empty") -> tuple[dict[str, float], ...]:
-    """Returns the memories of simulated passages, of a body that walks or of one that glides, with empty hands or with a bar.
+    """Returns the memories of simulated passages.
 
-    By name: the width of the `shoulders` [m], their `turn` [degrees], the `speed` [m/s], and what `passage_remembered` returns.
+    Each has, by name, the width of the `shoulders` [m], their `turn` [degrees], the `speed` [m/s], and what `passage_remembered` returns.
+
+    Args:
+        walks: Whether the body walked with a gait; otherwise it glided.
+        hands: What it had in its hands.
 
     Source: the rows of the designs `doorway_practice` and `bar_practice`; see `experience.csv`.
     """

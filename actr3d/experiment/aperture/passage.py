@@ -34,7 +34,7 @@ class PassageResult:
     """The result of a walk to an aperture. Distances are those of the body's axis from the middle plane of the wall, positive in front."""
 
     outcome: Literal["passed", "declined", "stopped"]
-    """`passed`: all of the body did; `declined`: the run ended before the body set out; `stopped`: neither."""
+    """`passed`: the whole body is behind the wall; `declined`: the agents ended the run before the body set out; `stopped`: neither."""
     peak_angle_deg: float | None
     """The greatest angle between the shoulder line and the wall while walking [degrees], from 0 to 90; None if it did not set out."""
     wall_angle_deg: float | None
@@ -43,8 +43,8 @@ class PassageResult:
     """The sum of the joint angles of torso and clavicle when the axis reached the wall [degrees], logged by the original model
     (docs/human-data.md); plus that of the stance, if the body has one."""
     onset_distance_m: float | None
-    """Distance from the wall at which the shoulders began to turn to their greatest angle [m]; None if they did not. How they turn to and
-    fro with each step does not count."""
+    """Distance from the wall at which the shoulders began to turn to their greatest angle [m]; None if they did not. Turns to
+    and fro with each step do not count."""
     onset_time_s: float | None
     """The time at which the shoulders began to turn [s]; None if they did not."""
     contacts: int
@@ -73,7 +73,7 @@ class PassageResult:
             wall = "" if self.wall_angle_deg is None else f", {self.wall_angle_deg:.1f} at the wall"
             lines.append(f"  shoulders turned by {self.peak_angle_deg:.1f} degrees{wall}")
         if self.onset_distance_m is not None:
-            lines.append(f"  from {self.onset_distance_m:.2f} m before it on, at {self.onset_time_s:.2f} s")
+            lines.append(f"  the turn began {self.onset_distance_m:.2f} m before the wall, at {self.onset_time_s:.2f} s")
         if self.clearance_left_m is not None and self.clearance_right_m is not None:
             lines.append(f"  room on the left {100 * self.clearance_left_m:.1f} cm, on the right {100 * self.clearance_right_m:.1f} cm")
         if self.speed_m_s is not None:
@@ -101,7 +101,7 @@ class _Sample(NamedTuple):
     logged: float
     """Torso plus clavicle, and the stance [rad]."""
     turned: float
-    """The same without what gait adds to it [rad]."""
+    """The same without the part that gait adds [rad]."""
     room: tuple[float, float] | None
     """To the left and right segment [m], while a part of the body is between the faces of the wall."""
     entered: bool
@@ -203,10 +203,10 @@ class Passage:
         if left <= time < back:
             return None
         held = self._contacts.held()
-        before = self._clearance.before(held)
-        if before <= 0:
-            return self._clearance.within(held)
-        self._away = time, time + before / FASTEST
+        distance = self._clearance.distance_to_wall(held)
+        if distance <= 0:
+            return self._clearance.to_segments(held)
+        self._away = time, time + distance / FASTEST
         return None
 
     def result(self, *, over: bool) -> PassageResult:
@@ -239,7 +239,7 @@ class Passage:
 
 
 def _onset(samples: list[_Sample]) -> _Sample | None:
-    """Returns the sample from which on the shoulders are turned until they are turned most; None if they never are."""
+    """Returns the first sample of the turn that leads to the greatest angle; None if the shoulders never turn."""
     angles = [abs(sample.turned) for sample in samples]
     number = angles.index(max(angles)) if angles else -1
     if number < 0 or angles[number] < TURNED:
