@@ -65,9 +65,9 @@ class Output:
 
 
 def list_designs(out: Output) -> int:
-    """Prints the library's designs."""
+    """Prints the library's designs, the main one first."""
     out.line("Designs of the library; any file with a function marked by @design can be run, too:\n")
-    for name in sorted(library_designs()):
+    for name in library_designs():
         experiment = specify(name)
         out.event("design", {"name": name, "trials": len(experiment.design), "description": experiment.description})
         first = " ".join(experiment.description.partition("\n\n")[0].split())

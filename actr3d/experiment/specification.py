@@ -224,12 +224,12 @@ class Experiment:
 
 
 def library_designs() -> dict[str, Path]:
-    """Returns the files of the library's own designs by the designs' names."""
+    """Returns the files of the library's own designs by the designs' names: the main design, then the others by name."""
     found: dict[str, Path] = {}
     for info in pkgutil.iter_modules(designs.__path__):
         module = import_module(f"{designs.__name__}.{info.name}")
         found |= dict.fromkeys(designs_of(module), Path(str(module.__file__)))
-    return found
+    return {name: found[name] for name in sorted(found, key=lambda name: (name != designs.MAIN, name))}
 
 
 def library_models() -> Path:
@@ -305,7 +305,7 @@ def _file_of(name: str) -> tuple[Path, str]:
     if colon and file and chosen.isidentifier() and Path(file).exists():
         return Path(file), chosen
     if not Path(name).exists() and not name.endswith(".py"):
-        raise ExperimentError(f"no design or file '{name}'{alternatives(name, sorted(known), 'the library has:')}")
+        raise ExperimentError(f"no design or file '{name}'{alternatives(name, known, 'the library has:')}")
     return Path(name), ""
 
 

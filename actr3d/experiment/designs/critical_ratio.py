@@ -30,6 +30,6 @@ def critical_ratio() -> Design:
 
 
 def decision(simulation: Any) -> dict[str, Any]:
-    """Returns what the walker chose; None if it did not come to the doorway."""
+    """Returns the measure `turned`: 1 if the walker chose to turn, 0 if not, None if it did not come to the doorway."""
     chosen = simulation.agents["walker"].chosen
     return {"turned": None if chosen is None else float(chosen > 0)}

@@ -34,9 +34,9 @@ def doorway_practice() -> Design:
 
 @design
 def bar_practice() -> Design:
-    """The same with bars in the hands: what the `predictive` walker remembers of passages with a bar.
+    """Walking through doorways with a bar in the hands, with turns that are not chosen: what the `predictive` walker remembers of these.
 
-    Bars are as random as bodies; doorways are from 0.6 to 1.5 times as wide as the wider of the two.
+    The length of the bar is random, too (0.3 to 1.2 m); doorways are from 0.6 to 1.5 times as wide as the wider of body and bar.
     """
     drawn = {**BODIES, "bar": Uniform(low=0.3, high=1.2), "ratio": Uniform(low=0.6, high=1.5)}
     return replace(doorway_practice(), groups={"all": Group(participants=160, parameters=drawn)}, derive=aperture)

@@ -3,7 +3,7 @@
 from actr3d.experiment.design import Design, Group, Normal, design
 
 APERTURES = (0.35, 0.40, 0.45, 0.50, 0.55, 0.60, 0.65, 0.70)
-"""[m]. Source: Warren & Whang (1987)."""
+"""The widths of the doorways [m]. Source: Warren & Whang (1987)."""
 WIDTHS = {"small": (0.404, 0.020), "large": (0.484, 0.007)}
 """The mean and standard deviation of shoulder widths [m]. Source: Warren & Whang (1987)."""
 
