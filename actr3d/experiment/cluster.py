@@ -44,7 +44,8 @@ AHEAD = 2
 PATIENCE = 30.0
 """The maximum time to wait for a scheduler [s]. Workers may come, and go, at any time."""
 KILLS = 3
-"""How often Dask may give up a single trial, each time because several workers in a row ended while they had it, until it has failed."""
+"""The number of times that Dask gives up a single trial, each time after several workers ended while running it, until it counts as
+failed."""
 PACKAGES = ("dask", "distributed")
 """Packages whose versions the client and the workers must share; no row depends on them."""
 SETTINGS: dict[str, Any] = {
@@ -75,7 +76,7 @@ class Batch:
     """What a worker has done."""
 
     rows: list[tuple[int, Row, float]]
-    """The number of each trial, its row, and its duration [s]. Of a trial that did not answer, only what ended it is in the row."""
+    """The number of each trial, its row, and its duration [s]. The row of a trial that did not answer has only `end` and `error`."""
     worker: str
     about: dict[str, dict[str, str | None]] = field(default_factory=dict[str, dict[str, "str | None"]])
     """Units and meanings of columns."""
@@ -140,7 +141,7 @@ def run_experiment(
         client: The `distributed.Client` of the cluster.
         show: Called after each batch of trials, and when the number of workers changes.
         stop: Ends the run after the batches that have finished, when it is set by another thread.
-        sure: Whether the measures of the design are known to be those of some trials; else the run ends if the first trial lacks one.
+        sure: Whether the names of the measures were checked before; otherwise the run ends if the first trial lacks one.
 
     Raises:
         DesignError: If the first trial lacks a measure, or has one that cannot be a measure.
@@ -225,7 +226,7 @@ class _Run:
         future.add_done_callback(self._finished.put)
 
     def _take(self, future: Any, numbers: list[int]) -> None:
-        """Stores a batch that has finished, and submits what it left; all of it if its workers, or the scheduler, were ended meanwhile."""
+        """Stores the rows of a finished batch, and submits the trials that it did not run: all of them if a worker or scheduler ended."""
         try:
             batch = cast("Batch", future.result(timeout=PATIENCE))
         except KilledWorker:
@@ -244,7 +245,7 @@ class _Run:
         self._report()
 
     def _add(self, batch: Batch) -> None:
-        """Stores rows; with the columns that the worker had, if it answered."""
+        """Stores rows; to the row of a trial that did not answer, adds the columns that are known before it runs."""
         columns_of = self._experiment.design.columns_of
         rows = [
             Finished(row=row if "trial" in row else {**columns_of(number), **row}, wall_s=round(wall, 4), worker=batch.worker)
@@ -256,8 +257,10 @@ class _Run:
             self._seconds = sum(one.wall_s for one in rows) / len(rows)
 
     def _split(self, numbers: list[int]) -> None:
-        """Submits each trial alone of a batch whose workers ended again and again: one of them may end them. A single trial that still
-        does is stored as one that failed."""
+        """Submits the trials of a batch one by one after its workers ended repeatedly, because one of the trials may be the cause.
+
+        A single trial whose workers still end is stored as failed.
+        """
         if len(numbers) > 1:
             for number in numbers:
                 self._submit([number])
@@ -266,7 +269,7 @@ class _Run:
         if self._killed[numbers[0]] < KILLS:
             self._submit(numbers)
             return
-        row = {"end": "crash", "error": "the workers that ran the trial ended, again and again: has one enough memory for it?"}
+        row = {"end": "crash", "error": "the workers that ran this trial ended repeatedly; it may need more memory than a worker has"}
         self._add(Batch(rows=[(numbers[0], row, 0.0)], worker=""))
         self._report()
 
@@ -291,7 +294,7 @@ def cluster_versions() -> dict[str, str]:
 
 _PROCESSES: dict[tuple[str, int], TrialProcess] = {}
 """The process of each thread of a worker, by the address of the worker, "" for none, and the thread. Several workers may be in this
-process. One that is closed stays, so that a batch which is still on its way begins no other."""
+process. A closed process stays in the table, so that a batch that arrives late does not start another one."""
 _LOCK = threading.Lock()
 
 
@@ -330,7 +333,7 @@ def run_batch(specification: str, numbers: Sequence[int], limit: float, expected
 
 
 def end_processes(client: str) -> None:
-    """Ends those processes of this one that run the trials of a client, for which none begins any more."""
+    """Ends the child processes that run trials for a client, and starts no more trials for it."""
     LEFT.add(client)
     with _LOCK:
         for process in _PROCESSES.values():

@@ -337,7 +337,7 @@ def _opened(
     resume: bool,
     any_version: bool,
 ) -> tuple[Experiment, Store, bool]:
-    """Creates or opens the folder of an experiment, which `opened` closes; also returns whether its measures are known to be right."""
+    """Creates or opens the folder of an experiment, which the stack `opened` closes; also returns `sure` for `run_experiment`."""
     changed = bool(values) or participants is not None or trials is not None or folder is not None
     # The folder of an experiment has the name of its design, unless it was given another one.
     if is_folder(name) and not (changed and name in library_designs()):
@@ -422,7 +422,13 @@ def _stopping() -> Generator[threading.Event]:
 
 @contextmanager
 def _progress(out: Output, what: str, total: int) -> Generator[Callable[[State], None]]:
-    """Shows the progress of an experiment, and what it is for, inside the block: a bar in a terminal, else a line from time to time."""
+    """Prints a heading, and shows the progress of an experiment inside the block: a bar in a terminal, otherwise lines.
+
+    Args:
+        out: Where to print.
+        what: The heading; "" for none.
+        total: The number of trials.
+    """
     if what:
         out.line((what, "bold"))
     if out.json or not out.console.is_terminal:

@@ -444,7 +444,7 @@ class Design(Configuration):
         return {**of_groups, "--trials": self.trials, **self.factors, **self.settings, **own}
 
     def differences(self, other: Design) -> list[str]:
-        """Returns in words how this design ("there") and another one of the same text ("now") were changed differently; see `changed`."""
+        """Returns in words which of the values that `changed` can change differ between this design ("there") and another one ("now")."""
         this, that = self.changeable(), other.changeable()
         found: list[str] = []
         for name in {**this, **that}:
@@ -590,7 +590,7 @@ def _check_names(names: Iterable[Any], where: str) -> None:
 
 
 def _key(value: Any) -> Any:
-    """Returns what two values have in common that are the same: equal numbers are, 1 and True are not."""
+    """Returns a key by which values are compared: 1 and 1.0 have equal keys, 1 and True have not."""
     if isinstance(value, (list, tuple)):
         return tuple(map(_key, cast("Sequence[Any]", value)))
     if isinstance(value, Mapping):
@@ -599,7 +599,7 @@ def _key(value: Any) -> Any:
 
 
 def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False, several: bool = False) -> None:
-    """Checks that tables, JSON and the text of a model have a way to write a value, and each value in it.
+    """Checks that a value, and each value in it, can be written to tables, to JSON and into the text of a model.
 
     Args:
         value: The value.
@@ -609,7 +609,7 @@ def _check_plain(value: Any, where: str, name: str, *, drawn: bool = False, seve
         several: Whether it is a list of such values.
 
     Raises:
-        DesignError: If they have none.
+        DesignError: If one of them cannot be written.
     """
     if drawn and isinstance(value, Distribution) and not isinstance(value, type):
         return
@@ -661,5 +661,5 @@ def _random_order(seed: int, name: str, length: int) -> tuple[int, ...]:
 
 
 def _order(of: Design, name: str) -> Sequence[int]:
-    """Returns the numbers of a participant's trials in the order in which they are done; they number all cells once, then again."""
+    """Returns the indices of a participant's trials in the order in which they are done. Index n is cell n modulo the number of cells."""
     return range(of.trials_of_each) if of.order == "fixed" else _random_order(of.seed, name, of.trials_of_each)

@@ -1,11 +1,11 @@
 """Fits parameters of a model to data, and says how well they are determined.
 
-Candidates are proposed by Optuna's TPE sampler. Each candidate is an experiment of its own, with the same seeds as all others, so
-that the misfit is a function of the parameters alone. The candidates and their rows stay in the folder: a fit that was killed
-continues where it was, and gives the same result.
+The first ten candidates are a Latin hypercube. After these, the minimum of a quadratic surface (see below) and Optuna's TPE sampler give
+candidates in turn. Each candidate is an experiment of its own, with the same seeds as all others, so that the misfit is a function of the
+parameters alone. The candidates and their rows stay in the folder: a fit that was killed continues where it was, and gives the same result.
 
-Around the best candidate, the sum of squared differences is described by a quadratic surface. It gives every second candidate (its
-minimum), the intervals of the parameters and the estimates of parameter recovery. An interval has the values of a parameter at which the
+Around the best candidate, the sum of squared differences is described by a quadratic surface. It also gives the intervals of the
+parameters and the estimates of parameter recovery. An interval has the values of a parameter at which the
 least sum of squares over all other parameters, relative to that over all of them, is at most 1 + F / (n - p), with the 95 % quantile of
 the F distribution with 1 and n - p degrees of freedom: n means with normal errors of one unknown variance, and p parameters.
 Source: Bates and Watts (1988), Nonlinear Regression Analysis and Its Applications, section 6.1 (profile t); Raue et al. (2009),
@@ -54,9 +54,9 @@ STARTING = 10
 DRAWS = 20
 """The maximum number of values that are drawn for a simulated data set, until the model has all means."""
 STEPS = 200
-"""The number of steps of a range in which the minimum of the surface is tried."""
+"""The number of equal steps of each range to which the minimum of the surface is rounded before it is tried."""
 HALVINGS = 20
-"""How often a part of a range is halved that has a bound of an interval: to less than a millionth of the range."""
+"""The number of bisection steps that locate a bound of an interval, to less than a millionth of the range."""
 
 Cell = tuple[tuple[str, Any], ...]
 """The conditions of a mean: names of columns and their values."""
@@ -295,7 +295,7 @@ class Fit:
             self._other(name, lowest)
             cells_of_target(means)
         for change in ablate:
-            self._without(change, lowest)
+            self._ablated(change, lowest)
         for number in range(candidates):
             self._evaluate(number, f"candidate {number + 1} of {candidates}")
         tried = self._simulated[:candidates]
@@ -320,14 +320,14 @@ class Fit:
                 for point, loss, one in zip(self._points, losses, tried, strict=False)
             ),
             held_out={name: self._held_out(name, target, values) for name, target in (hold_out or {}).items()},
-            ablated={change: self._compared("ablated", f"changed: {change}", self._without(change, values)) for change in ablate},
+            ablated={change: self._compared("ablated", f"changed: {change}", self._ablated(change, values)) for change in ablate},
             recovered=tuple(self._recover(number, f"simulated data {number + 1} of {recover}") for number in range(recover)),
         )
 
     # -- candidates
 
     def _propose(self, number: int) -> dict[str, float]:
-        """Returns a candidate; it follows from those before alone."""
+        """Returns the next candidate, which depends only on the earlier candidates and the seed."""
         if number < STARTING:
             rng = random.Random(f"{self._seed} {number // STARTING}")
             columns: dict[str, float] = {}
@@ -375,7 +375,8 @@ class Fit:
         """Runs an experiment, or continues it.
 
         A cell in which a trial failed has no mean: what is left would be the mean of the easier trials.
-        Its folder is named by all that determines its rows: what has run before is used again, and nothing else.
+        The name of its folder has a hash of everything that determines its rows, so that earlier rows are used again only for the same
+        experiment.
 
         Args:
             kind: What it is for, as in the name of its folder.
@@ -458,8 +459,8 @@ class Fit:
         cells = cells_of_target(target)
         return self._compared("hold-out", f"held out: {name}", self._other(name, values), target[0].measure, cells)
 
-    def _without(self, change: str, values: Mapping[str, float]) -> Experiment:
-        """Returns the experiment of the fit with an ablated model.
+    def _ablated(self, change: str, values: Mapping[str, float]) -> Experiment:
+        """Returns the experiment of the fit with one value of the model changed.
 
         Raises:
             ExperimentError: If the change has another form than NAME=VALUE.
@@ -502,7 +503,7 @@ class QuadraticSurface:
     Args:
         points: The candidates, (n, p), each parameter from 0 to 1.
         squares: Their sums of squared differences from the data; infinite for candidates without a value.
-        data: The number of data.
+        data: The number of means in the data.
     """
 
     def __init__(self, points: NDArray[np.float64], squares: Sequence[float], data: int) -> None:
@@ -531,8 +532,8 @@ class QuadraticSurface:
     def interval(self, axis: int) -> tuple[float | None, float | None]:
         """Returns the bounds of the 95 % interval of a parameter; None where the range ends first.
 
-        With few more data than parameters, an interval is wide: the data say little of how much they vary. With no more data than
-        parameters they say nothing of it, and both bounds are None.
+        With few more means than parameters, an interval is wide, because the residual variance is uncertain. With no more means than
+        parameters, this variance cannot be estimated, and both bounds are None.
         """
         free = self._data - self._axes
         if free <= 0:

@@ -2,10 +2,10 @@
 
 Both are CSV files (UTF-8, a line of names, then one row a line). Lines that begin with `#` are notes, which the report shows. Factors,
 groups and measures have the names that they have in the design and in the table of trials; `columns.csv` in the folder of an experiment
-lists them with their units. What the values of a measure are numbered by, such as `block`, is one more factor; the measure has its own
-name there, `latency` for `latency_1`, `latency_2`, and so on. A level of a parameter of the model must be within its bounds. A factor
-whose name is that of another column here or in the tables of a report, such as `n`, has an underscore added: `n_`. Of a factor whose levels
-are not all numbers, they are texts: `True`, `none`, `fast`.
+lists them with their units. If the table of trials has numbered columns of a measure, such as `latency_1`, `latency_2`, the measure is one
+column here, `latency`, and what is numbered, such as `block`, is a factor with its own column. A level of a parameter of the model must be
+within its bounds. A factor whose name is that of another column here or in the tables of a report, such as `n`, has an underscore added:
+`n_`. If not all levels of a factor are numbers, all of them are texts: `True`, `none`, `fast`.
 An empty cell is a value that is missing. The table of trials of an experiment, `trials.csv`, can be read as trials of people.
 
 **Trials** have the columns
@@ -65,8 +65,10 @@ def plain_levels(levels: Sequence[Any]) -> list[float] | list[str]:
 
 
 def absent_levels(written: Sequence[Any], levels: Sequence[Any]) -> list[str]:
-    """Returns the levels of a factor in the file of a design that an experiment does not have; none of numbers, between which people may
-    be anyway."""
+    """Returns the levels of a factor that the file of a design has and an experiment has not.
+
+    Returns none for a factor whose levels are numbers: people may have any number there.
+    """
     if not isinstance(plain_levels([*written, *levels])[0], str):
         return []
     there = set(map(plain_text, levels))
@@ -215,8 +217,11 @@ class _Reader:
         return next((f"{name} '{row[name]}'" for name, levels in absent if row[name] in levels), "")
 
     def _check_rows(self, head: list[str], rows: Mapping[int, Mapping[str, Any]], published: bool) -> None:
-        """Checks what several rows must have in common: one mean for the same conditions; factors that are in all trials or in none; a
-        value."""
+        """Checks the rows together.
+
+        Published means must have one mean for the same conditions. In trials, a factor must be given in all rows or in none, and some row
+        must have a value of a measure.
+        """
         factors = list(self._schema.factors)
         if published:
             seen: dict[tuple[Any, ...], int] = {}

@@ -79,7 +79,7 @@ def check_row(row: Row, *, sure: bool = False) -> None:
 
     Args:
         row: The row of the trial.
-        sure: Whether other trials have measures that this one lacks.
+        sure: Whether the names of the measures were checked before: then a missing measure is a failure of this trial only, and no error.
 
     Raises:
         DesignError: If one is missing, or cannot be a measure.

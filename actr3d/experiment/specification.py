@@ -200,8 +200,10 @@ class Experiment:
         return self.written.changed(participants=specification.participants, trials=specification.trials, values=specification.values)
 
     def differences(self, there: Specification) -> list[str]:
-        """Returns the differences of an experiment that is there from this one in words, without those of versions. Designs are compared
-        as they result, however their numbers and values were given."""
+        """Returns in words how a stored experiment differs from this one, apart from versions.
+
+        If their texts are the same, the resulting designs are compared, however their numbers and values were given.
+        """
         return there.differences(self.specification) or self._changed_as(there).differences(self.design)
 
     @property

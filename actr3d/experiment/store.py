@@ -27,7 +27,8 @@ UNFINISHED = re.compile(rf"{re.escape(SPECIFICATION)}\.[0-9a-f]{{8}}")
 CHUNK = 5_000
 """Rows that are read at a time."""
 LATTICE = ("null", "boolean", "integer", "real", "text")
-"""The types of columns; one that holds values of several types has the last of these that fits them all."""
+"""The types of columns. A column with values of several types has the last of their types in this list, but `text` if some of the values
+are True or False and others are not."""
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS trial (number INTEGER PRIMARY KEY, data TEXT NOT NULL, versions TEXT NOT NULL, wall_s REAL, worker TEXT);
 CREATE TABLE IF NOT EXISTS column (name TEXT PRIMARY KEY, place INTEGER, type TEXT NOT NULL, unit TEXT, meaning TEXT);
@@ -77,7 +78,7 @@ LAST = (
 
 
 class Store:
-    """The folder of an experiment, opened to read.
+    """The folder of an experiment. Its table of trials is opened to read and write, or only to read if it cannot be written.
 
     Args:
         folder: The folder.

@@ -31,10 +31,10 @@ START = 600.0
 LOOK = 1.0
 """The interval at which the process is checked [s]."""
 ATTEMPTS = 3
-"""How often a trial is tried whose process ends without an answer: another program may have ended it."""
+"""The number of attempts at a trial whose process ends without an answer; another program may have ended it."""
 
 LEFT: set[str] = set()
-"""The clients that have left the cluster: none of their trials begins."""
+"""The clients that have left the cluster; no more of their trials are started."""
 
 TIME_LIMIT = "time limit"
 """What the column `end` says of a trial that was ended at its limit."""
@@ -60,7 +60,7 @@ class TrialProcess:
         """Units and meanings of columns of the loaded experiment, as far as they are known."""
 
     def run(self, specification: str, number: int, limit: float) -> Row:
-        """Runs a trial, and returns what `run_trial` does; a trial that has to be ended, or ends its own process, has no measures.
+        """Runs a trial and returns its row, as `run_trial` does; that of a trial that takes too long or ends its process has no measures.
 
         Args:
             specification: The experiment, as JSON.
@@ -94,7 +94,7 @@ class TrialProcess:
         return {"end": "crash", "error": f"the trial ended its own process {code}"}
 
     def end(self) -> None:
-        """Ends the process, from any thread; what it loads or runs begins again in another one."""
+        """Ends the process; may be called from any thread. A load or a trial that this interrupts is tried again in a new process."""
         process = self._process
         if process is not None:
             with suppress(ProcessLookupError):
@@ -106,7 +106,7 @@ class TrialProcess:
                 self._busy.release()
 
     def close(self) -> None:
-        """Ends the process for good, from any thread; a trial that runs there has no row."""
+        """Ends the process for good; may be called from any thread. A trial that this interrupts has no row."""
         self._closed = True
         self.end()
         with self._busy:

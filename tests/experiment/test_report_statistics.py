@@ -150,7 +150,7 @@ def test_two_groups_have_fewer_degrees_of_freedom_for_the_test_of_sphericity(tmp
 
 def test_with_few_participants_the_tests_of_the_mixed_model_say_that_their_p_is_too_small(tmp_path: Path) -> None:
     """They are asymptotic: with two groups of four, p = 0.05 of an F test with 1 and 6 degrees of freedom is 0.014 there."""
-    says = "of the mixed model are too small with fewer than 10 participants in a group"
+    says = "With fewer than 10 participants in a group, the p values of the mixed model's Wald tests are too small"
     assert [note for note in run_tests(grouped(tmp_path, effect=0.5), "rt").notes if says in note]
     enough = write_experiment(tmp_path, participants=10, factors='{"n": [1, 2, 5], "mode": ["count", "fail"]}')
     draw = random.Random(8)

@@ -237,7 +237,7 @@ def test_a_trial_that_ends_its_workers_again_and_again_is_a_failure_and_the_rest
     finally:
         del client.submit
     assert [row["end"] for row in rows] == ["end"] * 3 + ["crash"] + ["end"] * 2
-    assert "the workers that ran the trial ended, again and again" in rows[3]["error"]
+    assert "the workers that ran this trial ended repeatedly" in rows[3]["error"]
     assert tried.count([3]) == cluster.KILLS
     assert rows[3]["seed"] == "1 all 1 n=1 4"
 

@@ -91,7 +91,7 @@ def failures(results: Results) -> Table:
 def human_section(parts: Sequence[Results], data: HumanData | None, why: str, beside: Beside | None) -> Section:
     """Returns the section on human data: what there is, where it is from, and how well the model agrees with it."""
     if data is None or beside is None:
-        return Section(title="Human data", parts=[why, "No human mean is invented: figures without people show the model only."])
+        return Section(title="Human data", parts=[why, "Figures show the model only."])
     people = len({(row["group"], row["participant"]) for row in data.rows}) if not data.published else 0
     kind = "published means" if data.published else f"trials of {people} {'person' if people == 1 else 'people'}"
     found: list[str | Table | Plot | Caution] = [f"{data.name}: {len(data.rows):,} rows of {kind}.", *(f"{note}" for note in data.notes)]
@@ -234,7 +234,7 @@ def layout_of(results: Results) -> Layout | None:
 
 
 def figure_of(results: Results, measure: str, others: Sequence[Beside]) -> tuple[Any, str]:
-    """Returns the figure of a measure, and a note; None if there is only one cell."""
+    """Returns the figure of a measure, and a note; `(None, "")` if there is only one cell."""
     layout = layout_of(results)
     if layout is None:
         return None, ""

@@ -149,8 +149,8 @@ def run_tests(results: Results, measure: str) -> Tests:
         mixed = _mixed_model(means, factors, grouped, notes) if len(factors) + grouped > 1 else None
     if mixed is not None and sizes.min() < FEW:
         notes.append(
-            f"The p of the Wald tests of the mixed model are too small with fewer than {FEW} participants in a group, most of all those of "
-            "the group: prefer the analysis of variance where it has the effect."
+            f"With fewer than {FEW} participants in a group, the p values of the mixed model's Wald tests are too small, above all for the "
+            "effect of group. Where the analysis of variance tests the same effect, prefer it."
         )
     notes += [f"Note of a library: {text}" for text in warned if "etrying" not in text]
     return Tests(anova=pd.DataFrame(anova) if anova else None, mixed_model=mixed, assumptions=pd.DataFrame(checks), notes=notes)
@@ -306,7 +306,7 @@ def _mixed_model(means: Any, factors: Sequence[str], grouped: bool, notes: list[
     deviating = {"participants": float(np.asarray(fitted.cov_re).ravel()[0]), **variances, "residual": float(fitted.scale)}
     deviations = ", ".join(f"{name} {float(np.sqrt(max(0.0, variance))):.3g}" for name, variance in deviating.items())
     notes.append(
-        f"Mixed model: standard deviations of random effects: {deviations}. It takes effects to vary between participants by the same "
+        f"Mixed model: standard deviations of random effects: {deviations}. It assumes that effects vary between participants by the same "
         "amount at all levels of a factor (sphericity): where that does not hold, prefer the corrected p of the analysis of variance."
         + ("" if fitted.converged else " The fit did not converge, so read it with care.")
     )
