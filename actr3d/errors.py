@@ -16,7 +16,7 @@ class Actr3dError(Exception):
     """The root of every error that this library raises on purpose."""
 
     location: tuple[str, int] | None = None
-    """The file and line of the model that caused it, where another line is running when it is raised."""
+    """The file and line of the model that caused the error, if it is not the line that runs when the error is raised."""
 
     def at(self, file: str, line: int) -> Self:
         """Sets the location; returns the error."""

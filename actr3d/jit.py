@@ -70,7 +70,7 @@ def kept(function: Callable[P, R], *sources: Path) -> Callable[P, R]:
     """Returns the function compiled, and cached on disk for the next process if a cache folder is writable.
 
     Numba's cache checks only the file of the function itself, cannot even be read where a module of the old code is gone, and is
-    found by the function's name. So the name says of which sources it was compiled.
+    found by the function's name. So a digest of the sources is added to the name.
 
     Args:
         function: A function that may call compiled functions.

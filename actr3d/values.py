@@ -32,7 +32,7 @@ DEEPEST = 16
 MAX_REPEATED = 10_000
 """The maximum number of repeated lists in a record; beyond it, the value is a graph whose copy could grow without limit."""
 LONGEST = 14_000
-"""The maximum size of a whole number that is written in decimals [bits]; JSON readers accept no longer ones."""
+"""The maximum size of a whole number that is written in decimals [bits]; JSON readers do not accept longer ones."""
 NOT_TRACED: Mapping[str, bool] = MappingProxyType({"not_traced": True})
 """The metadata of a dataclass field that traces and recordings omit, because they have its value elsewhere."""
 

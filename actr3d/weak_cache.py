@@ -1,4 +1,4 @@
-"""A cache of results about classes and functions, which does not keep them alive: those of a model file are gone when the model is."""
+"""A cache of results about objects, such as classes, which does not keep them alive: those of a model file are deleted with the model."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ V = TypeVar("V")
 
 
 def weak_cache(function: Callable[[K], V]) -> Callable[[K], V]:
-    """Returns a function that stores each result for as long as there is what it is about.
+    """Returns a function that stores each result until its argument is deleted.
 
-    A result must not refer to what it is about.
+    A result must not refer to its argument, which it would keep alive.
     """
     found: WeakKeyDictionary[K, V] = WeakKeyDictionary()
 

@@ -115,8 +115,8 @@ def check_facts(facts: Mapping[str, Any]) -> None:
     Raises:
         RecordingError: If one is missing or has a wrong value.
     """
-    missing = [name for name in ("kind", "versions") if name not in facts]
+    missing = [f"the fact '{name}'" for name in ("kind", "versions") if name not in facts]
     if missing:
-        raise RecordingError(f"it does not say its {' and '.join(missing)}")
+        raise RecordingError(f"it lacks {' and '.join(missing)}")
     for name, value in facts.items():
         check_fact(name, value)

@@ -1,4 +1,4 @@
-"""The facts of a recorded run: those it is recorded with, and whether running it again gives the same."""
+"""The facts with which runs are recorded, and their comparison with those of a replay."""
 
 from __future__ import annotations
 
@@ -13,9 +13,8 @@ END = ("failed", "ended", "whole")
 CHECKED_BEFORE = frozenset({"form", "versions"})
 """Facts that are not compared here: a file of another format is not opened, and other versions are refused or allowed before the run."""
 UNCHECKED = frozenset({"branched", "origin", "ancestors"})
-"""Facts that running a recording again cannot show: when a user of the workbench made another way of a run (`branched`), which
-recording has the other one (`origin`, the name that it was given first), and from which that comes, with the time at which each left the
-next (`ancestors`)."""
+"""Facts that a replay cannot check. They describe a branch of the workbench: the time at which it branches (`branched`), the recording from
+which it branches (`origin`, by its first name), and the recordings from which that one branches, each with its time (`ancestors`)."""
 NAMED = "named"
 """The name that the workbench gave the file. Branches know the recording by it, so that the file can be renamed. It is not compared."""
 REACHED = "reached"
@@ -49,17 +48,17 @@ def built_facts(
     return {**facts, "program_seed": seed, "until": until, "helpers": helpers}
 
 
-def first_difference(then: Mapping[str, Any], now: Mapping[str, Any], apart: Collection[str]) -> str | None:
+def first_difference(recorded: Mapping[str, Any], repeated: Mapping[str, Any], ignored: Collection[str]) -> str | None:
     """Returns the first fact that differs; a missing fact is the same as null.
 
     Args:
-        then: The recorded facts.
-        now: Those of the repeated run.
-        apart: The names of facts that are not compared.
+        recorded: The recorded facts.
+        repeated: Those of the repeated run.
+        ignored: The names of facts that are not compared.
     """
-    names = sorted({*then, *now} - {*apart}, key=lambda name: (END.index(name) if name in END else len(END), name))
+    names = sorted({*recorded, *repeated} - {*ignored}, key=lambda name: (END.index(name) if name in END else len(END), name))
     for name in names:
-        was, is_now = json.dumps(then.get(name)), json.dumps(now.get(name))
+        was, is_now = json.dumps(recorded.get(name)), json.dumps(repeated.get(name))
         if json.loads(was) != json.loads(is_now):
             return f"the fact '{name}'; recorded: {_short(was)}; now: {_short(is_now)}"
     return None

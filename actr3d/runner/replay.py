@@ -1,4 +1,4 @@
-"""Runs again what a recording holds, and says whether every byte agrees."""
+"""Replays a recording: runs it again, and compares both runs byte by byte."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def replay(
     progress: Progress = lambda _: None,
     within: Path | None = None,
 ) -> Comparison:
-    """Runs again what a recording holds, and compares every event, and every state at the end of a tick.
+    """Runs a recording again, and compares its facts, events, states at the ends of ticks, contacts, answers and commands.
 
     What the model prints is not shown. Unless `make` is given, the code that the recording holds is run, as any program that
     you start: with your files and your rights. Of modules, it gets those that are recorded, the standard library and
@@ -224,8 +224,8 @@ def _compared(recorded: Recorded, comparator: Comparator, trouble: str) -> Compa
         more = ", ".join(f"{count:,} {kind}{'s' * (count > 1)}" for kind, count in left.items())
         difference = f"{trouble} after {comparator.events:,} events; the recording holds {more} more"
     end = _recorded_end(recorded)
-    apart, notes = _unchecked(recorded, comparator)
-    differs = first_difference(recorded.facts, comparator.facts, apart)
+    ignored, notes = _unchecked(recorded, comparator)
+    differs = first_difference(recorded.facts, comparator.facts, ignored)
     if difference is None:
         difference = differs
     elif difference.startswith("the physics") and recorded.facts.get("scene") != comparator.facts.get("scene"):
@@ -241,7 +241,7 @@ def _compared(recorded: Recorded, comparator: Comparator, trouble: str) -> Compa
 
 
 def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], list[str]]:
-    """Returns the facts that running a recording again cannot check, and says so of those that it has."""
+    """Returns the names of the facts that are not compared, and a note that lists those of the recording that cannot be checked."""
     then, now = recorded.facts, comparator.facts
     from_code = then["kind"] == "program" or bool(now.get("built"))
     named, silent = set(UNCHECKED), {*CHECKED_BEFORE, NAMED, REACHED}

@@ -1,4 +1,4 @@
-"""A run beside its recording: does every byte agree, and where does it first differ?"""
+"""Compares a replay with its recording, and finds the first difference."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Comparison:
     notes: tuple[str, ...] = ()
     """How the recorded run ended before its end, and what cannot be checked by running it again."""
     unfinished: int = 0
-    """How many events of a tick that never came to its end the recording holds; they were not compared."""
+    """The number of recorded events after the last complete tick; they were not compared."""
 
     def __str__(self) -> str:
         if self.difference is not None:
@@ -65,7 +65,7 @@ class Comparator:
         self.ticks = 0
         """How many ends of ticks were compared."""
         self.ended_first = False
-        """Whether the recording was at its end before the run was, and may be."""
+        """Whether the recording ended before the replay did, which is allowed for an interrupted run (`open_end`)."""
         self.difference: str | None = None
         self.facts: dict[str, Any] = {}
         """The facts of the new run; compared when it is over."""

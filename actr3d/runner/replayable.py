@@ -12,11 +12,11 @@ _NEEDED = {
     "simulation": ("seed", "period_us", "timestep_us", "scene"),
     "built": ("file", "sources", "parameters", "program_seed", "until"),
 }
-"""Facts without which a run cannot be run again; of simulations that a model file builds, those below «built», too."""
+"""Facts without which a run cannot be run again; a simulation that a model file builds needs those of `built`, too."""
 
 
 def check_replayable(recorded: Recorded, *, trust: bool, any_version: bool) -> None:
-    """Raises an error where a recording cannot be run again, or may not be; reads all of it for that.
+    """Checks that a recording can be run again, and that its code may be run; reads the whole file.
 
     Args:
         recorded: The recording.
@@ -37,8 +37,8 @@ def check_replayable(recorded: Recorded, *, trust: bool, any_version: bool) -> N
         )
     if not (trust or recorded.made_here):
         raise UntrustedError(
-            f"'{recorded.path}' was not made by this installation, and a replay runs the code that it holds: "
-            "replay(recorded, trust=True) runs it all the same"
+            f"'{recorded.path}' was not made by this installation, and a replay runs the code that it holds; "
+            "if you trust where it comes from, call replay(recorded, trust=True)"
         )
 
 
@@ -63,4 +63,4 @@ def _check_versions(then: dict[str, str]) -> None:
     now = versions()
     different = [f"{name} {then.get(name)} then, {now.get(name)} now" for name in sorted({*then, *now}) if then.get(name) != now.get(name)]
     if different:
-        raise RecordingError(f"the recording was made with other versions, and may not agree for that alone: {'; '.join(different)}")
+        raise RecordingError(f"the recording was made with other versions, which alone may cause differences: {'; '.join(different)}")

@@ -1,4 +1,4 @@
-"""Runs a recording again in a process of its own: what the recorded program prints, or how it ends, is not taken for a verdict.
+"""Replays a recording in a separate process: what the recorded program prints, or how it ends, cannot be mistaken for the verdict.
 
 A program that is written to deceive can still find the file of the verdict: a verdict is only as trustworthy as the program.
 """

@@ -18,7 +18,7 @@ Factory = Callable[[], Any]
 
 
 _LATER = frozenset({"changes", "log", "parent", "random", "sch"})
-"""Attributes that an environment has as soon as it runs."""
+"""Attributes that an environment gets when it starts to run; no agent can have one of these names."""
 
 
 class Environment(Model):

@@ -95,7 +95,7 @@ class EventLog:
         self._listeners.append(listener)
 
     def keep_states(self, keeper: StateKeeper) -> None:
-        """Passes each state to a keeper from now on, in place of the last one."""
+        """Passes each state to this keeper from now on; it replaces an earlier one."""
         self._keeper = keeper
         self._watch_contacts()
 
@@ -183,7 +183,7 @@ class EventLog:
 
     @contextmanager
     def holding(self) -> Generator[None]:
-        """Holds events back inside the block, in which it is decided whether they belong to the known run or to a new one."""
+        """Delays events until the end of the block, in which the known future may be cut: only then is it known which events are new."""
         held = self._held = []
         try:
             yield

@@ -54,7 +54,7 @@ class Simulation:
             when the run goes back to an earlier time. A body that is not named has no agent.
         bodiless: By name, the factory of an agent without a body.
         period: Length of a tick [s]; a whole multiple of the physics step. Source of 10 ms: the original ACT-R 3D.
-        seed: The seed of all random choices; None takes the program's, or draws one.
+        seed: The seed of all random choices; None for the next seed of the program that runs, or else a new random one.
         trace: The level of the trace; see `actr3d.trace.LEVELS`.
 
     Raises:
@@ -223,8 +223,8 @@ class Simulation:
     ) -> RunReport:
         """Runs until a time has passed, a condition is true, an agent calls `stop`, or nothing is left to do.
 
-        The last of these ends a run only if neither a time nor a condition is given: no agent has anything left to do, and no body
-        is on its way to a point, a heading or a posture. A movement that something blocks does not count. An agent that calls
+        Nothing is left to do when no agent has anything left to do, and no body is on its way to a point, a heading or a posture; a
+        movement that something blocks does not count. This ends a run only if neither `seconds` nor `until` is given. An agent that calls
         `stop` ends the run after the present tick and its tock. The limits of the program (`actr3d run --until`) cut a run after
         the last whole tick that they leave time for.
 

@@ -21,8 +21,8 @@ class TickContacts:
         self._bodies = [(name, body.contacts) for name, body in world.bodies.items()]
         self._found: dict[tuple[str, str, str], float] = {}
         self._untouched: tuple[bytes, list[list[int]]] = b"", []
-        """The pairs of geoms, and what bodies held, in the last physics step in which nothing touched them: a body that stands on a floor
-        has the same contacts for long."""
+        """The pairs of geoms, and the held objects, of the last physics step with contacts in which bodies touched nothing but floors.
+        Equal steps are skipped: a standing body has the same contacts for a long time."""
         world.watchers.append(self._look)
 
     def _look(self) -> None:

@@ -86,7 +86,10 @@ class History:
         return None if known < 0 else known
 
     def before(self, tick: int) -> tuple[int, WorldState]:
-        """Returns the last stored state up to a tick that a run can reach without its physics, and its tick."""
+        """Returns the tick of the last stored state that is at most at `tick` and at `answered`, and the state.
+
+        Up to `answered`, the agents can repeat the run without physics.
+        """
         last = max(known for known in self._states if known <= min(tick, self.answered))
         return last, self._states[last]
 

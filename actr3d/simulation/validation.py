@@ -118,7 +118,9 @@ def named_factories(given: Any, what: str) -> dict[str, Any]:
     if given is None:
         return {}
     if not isinstance(given, Mapping):
-        raise SimulationError(f"{what}: must name what makes each agent, as in {{'walker': Walker}} (got {given!r})")
+        raise SimulationError(
+            f"{what}: must be a dict with the class or function that makes each agent, such as {{'walker': Walker}} (got {given!r})"
+        )
     named = dict(cast("Mapping[Any, Any]", given))
     for name in named:
         if not isinstance(name, str) or not name.isprintable() or name[:1] in ("", "_"):

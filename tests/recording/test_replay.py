@@ -270,7 +270,7 @@ def test_a_recording_without_its_facts_is_reported(file: Path, capsys: pytest.Ca
     forge(path, "DELETE FROM facts WHERE name IN ('kind', 'versions')")
     capsys.readouterr()
     assert main(["replay", str(path)]) == 2
-    assert "is not a recording: it does not say its kind and versions" in capsys.readouterr().err
+    assert "is not a recording: it lacks the fact 'kind' and the fact 'versions'" in capsys.readouterr().err
 
 
 def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

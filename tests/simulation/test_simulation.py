@@ -411,7 +411,10 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     ),
     (lambda s: Simulation(Scene(), seed="\ud800"), r"Simulation\.seed: must be a whole number >= 0 or a text of printable characters"),
     (lambda s: Simulation(Scene(), seed=-1), r"Simulation\.seed: must be a whole number >= 0 or a text .*got -1"),
-    (lambda s: Simulation(Scene(), odd(["walker"])), r"Simulation\.agents: must name what makes each agent, as in"),
+    (
+        lambda s: Simulation(Scene(), odd(["walker"])),
+        r"Simulation\.agents: must be a dict with the class or function that makes each agent, such as",
+    ),
     (
         lambda s: Simulation(Scene(), bodiless={"": Driver}),
         r"Simulation\.bodiless: an agent's name must be a text that does",
