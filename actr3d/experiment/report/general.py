@@ -54,7 +54,7 @@ def cautions(results: Results) -> list[Caution]:
     if done < total:
         found.append(f"Only {done:,} of {total:,} trials have finished; all numbers are preliminary.")
     if len(results.failures):
-        found.append(f"{len(results.failures):,} of {done:,} trials failed. They are in no mean.")
+        found.append(f"{len(results.failures):,} of {done:,} trials failed. They are left out of all means.")
     if cut := sum(results.rows["end"] == "limits") if len(results.rows) else 0:
         found.append(
             f"{cut:,} of {done:,} trials were stopped at their limit of {results.design.until:g} simulated seconds, `until` in the design. "
