@@ -15,7 +15,7 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
-from actr3d.experiment.aperture.analysis import frame_of, passing_apertures, passings_of, with_greatest_angles
+from actr3d.experiment.aperture.analysis import OF_WALKS, frame_of, passing_apertures, passings_of, with_greatest_angles
 from actr3d.experiment.aperture.constraints import Findings
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.report.analyses import ANALYSES
@@ -52,6 +52,11 @@ def walk_through(trial: Any) -> dict[str, Any]:
     """Returns those of the measures of a walk from which reports have sections of their own, and one that has published means."""
     names = ("outcome", "wall_angle_deg", "onset_distance_m", "contacts", "clearance_left_m", "clearance_right_m", "speed_m_s")
     return {name: value for name, value in walk(trial).items() if name in names}
+
+
+def turn(trial: Any) -> dict[str, Any]:
+    """Returns the fewest measures of a walk that make it a passing: each further one would add a section."""
+    return {name: value for name, value in walk(trial).items() if name in OF_WALKS}
 
 
 def count(trial: Any) -> dict[str, Any]:
@@ -273,7 +278,7 @@ def test_critical_ratios_beyond_the_trials_are_in_no_mean(tmp_path: Path) -> Non
     def turning(trial: Any) -> dict[str, Any]:
         first = trial.participant.name == "small 1"
         upright = trial.values["aperture"] > (0.49 if first else 0.44) and (not first or trial.repetition <= 3)
-        return {**walk(trial), "wall_angle_deg": 0.0 if upright else 40.0}
+        return {**turn(trial), "wall_angle_deg": 0.0 if upright else 40.0}
 
     values = {"aperture": [0.35, 0.4, 0.45, 0.5], "condition": ["normal"]}
     folder = store_rows(tmp_path / "out", "warren_whang_1987", turning, trials=10, participants=3, values=values)
@@ -469,7 +474,7 @@ def test_an_experiment_that_was_run_has_a_report(tmp_path: Path, capsys: Any) ->
 
 
 def test_two_participants_are_described_and_not_tested(tmp_path: Path) -> None:
-    folder = store_rows(tmp_path / "walks", "warren_whang_1987", walk, trials=1, participants=2)
+    folder = store_rows(tmp_path / "walks", "warren_whang_1987", turn, trials=1, participants=2)
     write_report(folder)
     assert "nothing is tested, and intervals over two participants are no more than their range" in page(folder)
     found = {row["number"]: row["result"] for row in table(folder, "constraints")}
@@ -481,7 +486,7 @@ def test_each_critical_ratio_is_drawn_above_its_own_participant(tmp_path: Path) 
     """That of the first is not known, as it never turns; one of a single step of apertures is not known either."""
 
     def first_never(trial: Any) -> dict[str, Any]:
-        return {**walk(trial), "wall_angle_deg": 0.0} if trial.participant.name == "small 1" else walk(trial)
+        return {**turn(trial), "wall_angle_deg": 0.0} if trial.participant.name == "small 1" else turn(trial)
 
     folder = store_rows(tmp_path / "walks", "warren_whang_1987", first_never, trials=1, participants=3)
     write_report(folder)
@@ -489,7 +494,7 @@ def test_each_critical_ratio_is_drawn_above_its_own_participant(tmp_path: Path) 
     labels = [label for label in re.findall(r"<text [^>]*>([^<]+)</text>", picture) if label in ("1", "2", "3")]
     assert labels == ["1", "2", "3", "1", "2", "3"] * 2
     assert "2 of 12 curves have no critical ratio" in page(folder)
-    folder = store_rows(tmp_path / "two", "warren_whang_1987", walk, trials=1, participants=3, values={"aperture": [0.5, 0.7]})
+    folder = store_rows(tmp_path / "two", "warren_whang_1987", turn, trials=1, participants=3, values={"aperture": [0.5, 0.7]})
     write_report(folder)
     assert {row["critical_ratio"] for row in table(folder, "critical_ratios")} == {""}
     assert "12 of 12 curves have no critical ratio: all of their trials are turned, or none is, or there are too few" in page(folder)
