@@ -22,7 +22,7 @@ class Freedom:
     """The present knowledge of one degree of freedom. Radians, or metres for a slide."""
 
     name: str
-    """Of the joint: `torso_yaw`."""
+    """The name of the joint, such as `torso_yaw`."""
     axis: str
     """`yaw`, `pitch` or `roll` of a hinge, `x`, `y` or `z` of a slide."""
     lower: float | None
@@ -32,9 +32,9 @@ class Freedom:
     angle: float
     """Felt position [rad] or [m]."""
     least: float
-    """Least felt position up to now [rad] or [m]."""
+    """Minimum of the felt positions up to now [rad] or [m]."""
     most: float
-    """Greatest felt position up to now [rad] or [m]."""
+    """Maximum of the felt positions up to now [rad] or [m]."""
     driven: bool
     """Whether a command can move it."""
 
@@ -132,7 +132,7 @@ class Limbs:
         return made[self.plan.parts[0].name]
 
     def joint(self, name: str, axis: str | None) -> str:
-        """Returns the joint of that name, or of that part about that axis.
+        """Returns the name of a joint, given its name or the name of its part. A part with several joints also needs the axis.
 
         Raises:
             WorldError: If there is none, or there are several.
@@ -183,7 +183,7 @@ class Limbs:
             unit: The unit of speeds in the command.
 
         Raises:
-            WorldError: If it is faster, or slower than `SLOWEST` but not 0; with the possible range.
+            WorldError: If the speed is above the body's maximum, or below `SLOWEST` but not 0. The message contains the bound.
         """
         most = self.fastest[kind]
         if 0 < abs(speed) < SLOWEST:
@@ -209,7 +209,7 @@ FINEST = 1e-9
 """The finest grid [degrees] or [m]."""
 
 TINY = 1e-9
-"""Greatest error of conversion between degrees and radians [rad]."""
+"""Tolerance for rounding errors of conversions, in the unit of the compared values."""
 
 
 def on_grid(value: float, grid: float) -> float:
