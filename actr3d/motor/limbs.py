@@ -18,7 +18,7 @@ BASE_GROUP = "legs"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Freedom:
+class DegreeOfFreedom:
     """The present knowledge of one degree of freedom. Radians, or metres for a slide."""
 
     name: str
@@ -31,9 +31,9 @@ class Freedom:
     """Upper limit [rad] or [m]; None without limit."""
     angle: float
     """Felt position [rad] or [m]."""
-    least: float
+    minimum: float
     """Minimum of the felt positions up to now [rad] or [m]."""
-    most: float
+    maximum: float
     """Maximum of the felt positions up to now [rad] or [m]."""
     driven: bool
     """Whether a command can move it."""
@@ -45,7 +45,7 @@ class BodyPart:
 
     name: str
     """The name of the part: `torso`."""
-    joints: tuple[Freedom, ...]
+    joints: tuple[DegreeOfFreedom, ...]
     """The joints between it and the part that carries it."""
     parts: tuple[BodyPart, ...]
     """The parts that it carries."""
@@ -92,34 +92,34 @@ class Limbs:
         """Greatest speeds of walking [m/s], turning [rad/s] and joints [rad/s]."""
         self.felt: dict[str, float] = {}
         """By joint, its felt position [rad] or [m]."""
-        self.least: dict[str, float] = {}
-        self.most: dict[str, float] = {}
+        self.minimum: dict[str, float] = {}
+        self.maximum: dict[str, float] = {}
 
     def feel(self, positions: Mapping[str, float]) -> None:
         """Updates the felt positions of some joints [rad] or [m]."""
         self.felt.update(positions)
-        least, most = self.least, self.most
+        minimum, maximum = self.minimum, self.maximum
         for joint, position in positions.items():
-            if position < least.setdefault(joint, position):
-                least[joint] = position
-            if position > most.setdefault(joint, position):
-                most[joint] = position
+            if position < minimum.setdefault(joint, position):
+                minimum[joint] = position
+            if position > maximum.setdefault(joint, position):
+                maximum[joint] = position
 
-    def freedom(self, joint: str) -> Freedom:
+    def degree_of_freedom(self, joint: str) -> DegreeOfFreedom:
         """Returns the present knowledge of a joint.
 
         Raises:
             WorldError: If the body has no such joint.
         """
         plan = self.joints[known(joint, self.joints, self.plan.name, "joint")]
-        return Freedom(
+        return DegreeOfFreedom(
             name=joint,
             axis=plan.axis,
             lower=plan.lower,
             upper=plan.upper,
             angle=self.felt[joint],
-            least=self.least[joint],
-            most=self.most[joint],
+            minimum=self.minimum[joint],
+            maximum=self.maximum[joint],
             driven=plan.driven,
         )
 
@@ -128,7 +128,9 @@ class Limbs:
         made: dict[str, BodyPart] = {}
         for part in reversed(self.plan.parts):
             carried = tuple(made[other.name] for other in self.plan.parts if other.on == part.name)
-            made[part.name] = BodyPart(name=part.name, joints=tuple(self.freedom(joint.name) for joint in part.joints), parts=carried)
+            made[part.name] = BodyPart(
+                name=part.name, joints=tuple(self.degree_of_freedom(joint.name) for joint in part.joints), parts=carried
+            )
         return made[self.plan.parts[0].name]
 
     def joint(self, name: str, axis: str | None) -> str:

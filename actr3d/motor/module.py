@@ -16,7 +16,7 @@ from actr3d.actr.modules.port import CallSite, Port, Request, note_request
 from actr3d.clock import seconds
 from actr3d.errors import ParameterError, SimulationError, WorldError
 from actr3d.motor.checks import check_patterns
-from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, Freedom, Limbs
+from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, DegreeOfFreedom, Limbs
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Order, Step, Turn, Walk, gait
 from actr3d.motor.schema import BodySchema
 from actr3d.world.actuators.motion import MOST_TURNS
@@ -154,14 +154,14 @@ class Motor(WithParameters, Port):
         """
         return self._known().tree()
 
-    def joint(self, name: str) -> Freedom:
+    def joint(self, name: str) -> DegreeOfFreedom:
         """Returns the present knowledge of a joint: its position, limits and extremes. Radians.
 
         Raises:
             SimulationError: If the body is not known yet.
             WorldError: If it has no such joint.
         """
-        return self._known().freedom(name)
+        return self._known().degree_of_freedom(name)
 
     def _known(self) -> Limbs:
         if self._limbs is None or self._schema is None:

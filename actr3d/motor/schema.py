@@ -87,7 +87,7 @@ class BodySchema:
         at = self.at
         extreme = "none"
         if joint is not None:
-            ends = {"maximum": self.shown(joint, limbs.most[joint]), "minimum": self.shown(joint, limbs.least[joint])}
+            ends = {"maximum": self.shown(joint, limbs.maximum[joint]), "minimum": self.shown(joint, limbs.minimum[joint])}
             extreme = next((which for which, end_at in ends.items() if at[joint] == end_at != self._start[joint]), "none")
             self.note((joint,))
         angles = {of: value for of, value in at.items() if of in self._always or self._away(of)}
