@@ -83,7 +83,7 @@ def test_mismatches_are_reported() -> None:
         ({"row": 3}, "CameraParameters has no field 'row'; did you mean 'rows'"),
         ({"rows": 0}, r"CameraParameters\.rows: must be >= 1"),
         ({"background": ("flor",)}, "no geom 'flor'; did you mean 'floor'"),
-        ({"noise": 0.1}, "its fields have different units; name them"),
+        ({"noise": 0.1}, "its fields have different units; give them by name: {.d1.: 0.1}; fields: x1"),
         ({"noise": {"d3": 0.1}}, "no field 'd3'"),
         ({"noise": {1: 0.1}}, r"walker: noise of view: a field is named by text \(got 1\)"),
         ({"rows": "ten"}, r"CameraParameters\.rows: must be a whole number \(got 'ten'\)"),

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from actr3d.camera import glance
+from actr3d.camera import view_for_observer
 from actr3d.simulation import Simulation
 from actr3d.vision import sightings
 from actr3d.world import Aperture, Floor, Mannequin, Scene
@@ -122,7 +122,7 @@ def test_what_was_seen_stays_where_it_was_though_the_eye_has_gone_on_looking() -
     before = places()
     assert before[False][:2] == near((7.0, 0.45), abs=0.1)
     assert before[True][:2] == near((7.0, 0.45), abs=0.1)
-    glance(body)
+    view_for_observer(body)
     assert places() == before
     simulation.seek(0.5)
     simulation.run(0.5)

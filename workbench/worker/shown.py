@@ -9,7 +9,7 @@ from dataclasses import asdict
 from functools import cache, cached_property, partial
 from typing import Any
 
-from actr3d.camera import CameraParameters, Sight
+from actr3d.camera import CameraParameters, EyeSense
 from actr3d.clock import microseconds
 from actr3d.errors import Actr3dError
 from actr3d.parameter_schema import Parameter
@@ -124,7 +124,7 @@ class Shown:
         """Returns how an agent sees with its body's eye: as its vision module does, or else as in the body's first view."""
         agent, body = self.simulation.agents.get(name), self.simulation.world.bodies[name]
         own = None if agent is None else next((vision.eyesight for vision in visions(agent)), None)
-        return own or next((sense.parameters for sense in body.senses if isinstance(sense, Sight)), CameraParameters())
+        return own or next((sense.parameters for sense in body.senses if isinstance(sense, EyeSense)), CameraParameters())
 
 
 def widths(apertures: Iterable[str], parameters: Iterable[Parameter]) -> dict[str, tuple[int, int]]:
