@@ -28,7 +28,7 @@ class Sighting:
     time: float
     """Time of the view [s]."""
     chosen: bool
-    """Whether the search puts it into the buffer."""
+    """Whether the search chose it. It then enters the buffer, unless the search is bottom-up and the buffer is protected by `hold`."""
     feature: Feature
     """What it has noticed."""
     view: View

@@ -173,7 +173,7 @@ def test_the_time_to_contact_is_known_from_two_looks() -> None:
         ("vision.request('feature:opening', width='>wide')", "width is compared with a number in m"),
         ("vision.request('feature:opening', width='wide')", "width is compared with a number in m"),
         ("vision.request('feature:opening', width='')", "width has no value"),
-        ("vision.request('feature:opening', direction=5)", "direction is measured; say '>5' or '<5'"),
+        ("vision.request('feature:opening', direction=5)", "direction needs a comparison: write '>5' or '<5'"),
         ("vision.request('feature:opening', left='>2')", "left cannot be compared by size"),
         ("vision.request('feature:opening width:1', width=2)", "'width' is given twice"),
         ("vision.request('feature:obstacle', bearing='>20')", r"bearing takes one number \[degrees\]"),
@@ -201,7 +201,7 @@ def test_invalid_parameters_are_reported() -> None:
             Vision(None, **options)
     with pytest.raises(ParameterError):
         Vision()  # type: ignore[call-arg]
-    with pytest.raises(VisionError, match=r"must give a number >= 0 for a feature \(gave -1"):
+    with pytest.raises(VisionError, match=r"must return a number >= 0 \(got -1"):
         Mindful(room(), asking("vision.request('feature:opening')", ", salience=lambda feature: -1")).tick(11)
 
 

@@ -46,7 +46,7 @@ def test_the_sos_rule_does_not_return_what_no_longer_matches() -> None:
     assert (mind.visual.chunk, mind.vision.error) == (None, True)
     ((time, data),) = list(events(simulation.trace, "sight"))
     assert (time, data["failed"]) == (0.25, True)
-    assert "what was chosen had gone" in str(mind.explain())
+    assert "the chosen feature was no longer visible, or failed a test" in str(mind.explain())
     stale = seen_of(0.9, 0.3, "").agents["walker"]
     assert (stale.visual.chunk["width"], stale.vision.error) == (0.9, False)
 

@@ -271,9 +271,9 @@ def test_what_is_no_detector_is_refused() -> None:
     def by_place(view: Any, most: float = 1) -> tuple[()]:
         return ()
 
-    with pytest.raises(VisionError, match="the library finds 'opening' itself; give the class Opening another name"):
+    with pytest.raises(VisionError, match="the library already has a detector 'opening'; rename the class Opening"):
         detector(Opening)(fits)
-    with pytest.raises(VisionError, match="takes the class of what it finds"):
+    with pytest.raises(VisionError, match="must be given the class that it finds"):
         detector("odd")  # type: ignore[arg-type]
     for wrong in (nothing, needs_more, by_place):
         with pytest.raises(VisionError, match=r"must take a view, and after a \* parameters with defaults"):
