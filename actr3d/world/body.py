@@ -75,7 +75,7 @@ P = TypeVar("P")
 
 
 class Body:
-    """Senses and moves one body of a world. Most is found in the compiled model; the description names the rest.
+    """Senses and moves one body of a world. Its parts are found in the compiled model; the description gives the rest.
 
     Commands are given between physics steps only. A reading is of the present state; nothing in it changes later.
 
@@ -146,7 +146,7 @@ class Body:
             self._check_noise(known(name, self.sensors, self.name, "sensor"), sd)
 
     def _check_noise(self, sensor: str, sd: StandardDeviation) -> None:
-        """Adds noise to a reading, which is not used.
+        """Checks that noise can be added to the readings of a sensor.
 
         Raises:
             WorldError: If readings of the sensor take no such noise.
@@ -162,7 +162,7 @@ class Body:
     # -- commands and sensors
 
     def set(self, word: str, *values: Any, **named: Any) -> None:
-        """Gives a command, which holds at once and until another one replaces it.
+        """Gives a command. It takes effect immediately, and lasts until another command of its kind replaces it.
 
         Args:
             word: Its name, one of `actuators`; see the functions in `actr3d.world.actuators`.
@@ -179,10 +179,10 @@ class Body:
         ACTUATORS[known(word, self.actuators, self.name, "actuator")](self, *values, **named)
 
     def get(self, word: str, *values: Any, noise: StandardDeviation = None, **options: Any) -> Any:
-        """Reads a sensor: plain numbers, tuples, dictionaries and frozen dataclasses.
+        """Returns a reading of a sensor: plain numbers, tuples, dictionaries and frozen dataclasses.
 
-        What the agent senses later depends on it: noise is drawn, and senses with a state begin to work. For an observer of the
-        simulation, and a condition of `Simulation.run`, nothing changes.
+        A reading changes what the agent senses later: it draws noise, and it starts senses that have a state. A reading by an observer of
+        the simulation, or by a condition of `Simulation.run`, changes nothing.
 
         Args:
             word: Its name, one of `sensors`; see the functions in the `sensors` package.
@@ -213,7 +213,7 @@ class Body:
             self._restore_senses(senses)
 
     def moving(self) -> tuple[str, ...]:
-        """Returns the joints that a command still moves, or tries to."""
+        """Returns the joints whose commanded speed is not 0, whether they really move or not."""
         speeds = self.hold.commanded.tolist()
         return tuple([joint.name for joint, row in self._driven if (joint.control if row is None else speeds[row])])
 

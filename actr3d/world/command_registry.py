@@ -70,7 +70,7 @@ class BodyFunction(Generic[B]):
 
 
 class CommandRegistry(Registry[BodyFunction[B]], Generic[B]):
-    """All actuators, or all sensors, by name; a decorator that registers a function under its own name, which no other may have.
+    """All actuators, or all sensors, by name; a decorator that registers a function under its own name, which must be unique.
 
     Use it as `@sensor`, or as `@sensor.if_body(condition)` for a sensor that only some bodies have.
     """

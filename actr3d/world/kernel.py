@@ -82,8 +82,8 @@ def fastest() -> Callable[[Array, Array, Array, float], float]:
     """Returns the function that computes an upper bound of the speed of any point of some bodies [m/s].
 
     Its arguments are: by moving part and degree of freedom (n, nv) the greatest way of its farthest point per unit [m]; the speeds (nv,);
-    by degree of freedom (nv,), with how many that follow its speed adds as vectors do: 1 alone, 0 for those that follow; and the
-    reach of held objects [m].
+    by degree of freedom (nv,), how many consecutive ones, from it on, form one velocity vector: 1 for a single one, 0 for later members;
+    and the extent of held objects beyond the hands [m].
     """
     return kept(_fastest, Path(__file__))
 
@@ -217,11 +217,11 @@ def stride_changes() -> Callable[..., float]:
     """Returns the function that computes by how much gait moves its joints in a tick.
 
     Its arguments are: the pattern of a stride (phases, columns) [rad] [m] and its phase, from 0 to 1; how far the body is to the left [m];
-    the size of the movements, 0 to 1; by what angle the thighs turn to the side, and in which direction from there they swing [rad];
-    the share of the arms' swing; (n,) the joints' columns; the role of each column; (n,) the joints' rows; the places held in each row,
-    NaN where another command moves it; (n,) the greatest speed of each joint, and the duration of the tick [s]; (n,) what was added to
-    each joint's place before, which becomes 0 where another command moves it; and room for the changes (n,). It returns the greatest
-    wanted change.
+    the size of the movements, 0 to 1; the angle by which the thighs turn towards the walking direction, and the angle of their swing
+    relative to that [rad]; the factor of the arms' swing, 0 to 1; (n,) the joints' columns; the role of each column; (n,) the joints' rows;
+    the places held in each row, NaN where another command moves it; (n,) the greatest speed of each joint, and the duration of the tick
+    [s]; (n,) what was added to each joint's place before, which becomes 0 where another command moves it; and room for the changes (n,). It
+    returns the greatest wanted change.
     """
     return kept(_stride_changes, Path(__file__))
 
@@ -276,7 +276,7 @@ def _stride_changes(
 
 @cache
 def carry() -> Callable[..., bool]:
-    """Returns the function that moves held places, and commands the speeds for it; see `ActuatedDofs.carry`."""
+    """Returns the function that shifts held places, and commands the speeds that reach them; see `ActuatedDofs.carry`."""
     return kept(_carry, Path(__file__))
 
 

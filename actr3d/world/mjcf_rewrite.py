@@ -132,10 +132,10 @@ def _remove_world_elements(root: Element, document: Document) -> None:
     """Removes elements about the whole world; adds a remark if they would change how things move."""
     options = sorted({name for child in root.children if child.tag == "option" for one in child.walk() for name in one.attributes})
     if options:
-        document.remarks.append(f"its <option> is left out ({', '.join(options)}): those of the scene hold")
+        document.remarks.append(f"its <option> ({', '.join(options)}) is left out: the options of the scene apply")
     keys = [one.attributes.get("name", "without a name") for child in root.children if child.tag == "keyframe" for one in child.children]
     if keys:
-        document.remarks.append(f"its <keyframe> is left out ({', '.join(keys)}): it starts in the pose that its bodies describe")
+        document.remarks.append(f"its <keyframe> ({', '.join(keys)}) is left out: it starts in the pose that its bodies describe")
     root.children = [child for child in root.children if child.tag not in OF_THE_WORLD]
 
 
@@ -191,7 +191,7 @@ class _Assets:
         for element in self._root.walk():
             attributes = element.attributes
             if element.tag in _NOT_TAKEN and (element.tag == "attach" or "file" in attributes):
-                raise WorldError(f"{element.where}: {_NOT_TAKEN[element.tag]} are not taken; export the model as one file")
+                raise WorldError(f"{element.where}: {_NOT_TAKEN[element.tag]} are not supported; export the model as one file")
             if element.tag == "mesh" and ("file" in attributes or "filename" in attributes):
                 self._mesh(element, "filename" if self._document.urdf else "file")
             elif element.tag == "hfield" and "file" in attributes:

@@ -13,27 +13,27 @@ from actr3d.world.physics import Physics
 from actr3d.world.posture_hold import PostureHold
 
 THERE = 3e-4
-"""Distance from its target below which a joint or the base is put there exactly after a tick [m] or [rad]: more than the error that
-the pull of other limbs causes in that tick, and less than anyone sees."""
+"""Distance below which a joint or the base is moved exactly to its target after a tick [m] or [rad]: greater than the error that other
+limbs cause in a tick, and too small to be visible."""
 
 MOVES = 0.01
-"""Share of its commanded speed below which something blocks a movement. Source: chosen for this library."""
+"""Fraction of its commanded speed below which a movement counts as blocked. Source: chosen for this library."""
 
 ASTRAY = 0.1
 """Direction error above which a body that walks to a point stops and turns first [rad]. Source: chosen for this library."""
 
 HEADING = "heading"
-"""Key of the base's turn to a heading among targets."""
+"""Key in `targets` of a turn of the base to a heading."""
 
 TURN = "(turn)"
-"""Key of the base's turn by an angle among targets: to a heading too, but by the full angle, not the shorter way."""
+"""Key in `targets` of a turn of the base by an angle. Its target is a heading, too, but the whole angle is turned, not the shorter way."""
 
 
 class MotionCommands:
     """Holds the unfinished commands of one body: joints to positions, a walk to a point, a brake.
 
-    Once before each tick they set the speeds for all of it. The speed is constant, and in the last tick it is the rest of
-    the way over the tick, so that the end is reached exactly at a tick's end.
+    Before each tick they set the speeds for the whole tick. A movement has a constant speed; in its last tick the speed is the remaining
+    distance divided by the length of the tick, so that the target is reached exactly at the end of a tick.
 
     Args:
         physics: The compiled scene and its state.
@@ -76,7 +76,7 @@ class MotionCommands:
 
     @property
     def under_way(self) -> bool:
-        """Whether a movement that has an end is not there yet, and nothing blocks it."""
+        """Whether a movement with a target has not reached it yet, and still makes progress."""
         if not self.targets and self.waypoint is None:
             return False
         return self._before != self._movements() or self._base_moves() or any(self._joint_moves(name) for name in self.targets)
@@ -149,7 +149,7 @@ class MotionCommands:
         return rest > THERE and abs(joint.velocity) > MOVES * abs(speed)
 
     def _arrived(self, name: str) -> bool:
-        """Returns whether a joint or the heading is at its target; then moves it there exactly and stops it."""
+        """If a joint or the heading is at its target, moves it there exactly, stops it, and returns True."""
         base, hold = self._base, self._hold
         target, _ = self.targets[name]
         if name in (HEADING, TURN):
@@ -194,7 +194,7 @@ class MotionCommands:
         self._hold.drive_base((pace * math.cos(off), pace * math.sin(off), spin))
 
     def _brake(self, duration: float) -> None:
-        """Brakes with the force of the pressed pedal, and with no more than stops the car in this tick."""
+        """Brakes with the force of the pedal, at most with the force that stops the car within this tick."""
         assert self._steering is not None
         speed = self._base.speed[0]
         most = self.brake * self._steering.brake

@@ -16,12 +16,13 @@ from actr3d.world.command_registry import checked_angle, number
 from actr3d.world.physics import Physics
 
 PRESSED = 0.01
-"""Greatest depth of one object in another after it was moved by hand [m]: contacts as stiff as those of walls push that out
-at less than 3 m/s if it can give way, but fling away, or crush without bounds, what is deeper. Source: chosen for this library."""
+"""Greatest depth of two objects in each other that a move by a user may cause [m]. Up to this depth, contacts as stiff as those of walls
+push an object that can give way out at less than 3 m/s. From a greater depth they would throw it away, or press it with unlimited force.
+Source: chosen for this library."""
 
 SQUEEZED = 0.00075
-"""The same for an object that is pressed from two sides, so that it cannot give way [m]: with 2 mm at each
-side, contacts fling a person out of a gap at 7 m/s. Source: chosen for this library."""
+"""The same for an object that is pressed from two sides, so that it cannot give way [m]: with 2 mm at each side, contacts throw a person
+out of a gap at 7 m/s. Source: chosen for this library."""
 
 AGAINST = -0.5
 """The cosine of the angle between two pushes from which an object between them counts as squeezed. Source: chosen, 120 degrees."""
@@ -58,7 +59,7 @@ class Objects:
     Args:
         physics: The compiled scene and its state.
         bodies: The bodies of the world by name.
-        kept: The names of MuJoCo bodies that are moved in another way, such as the segments of apertures.
+        kept: The names of MuJoCo bodies that a user cannot move directly, such as the segments of apertures.
     """
 
     def __init__(self, physics: Physics, bodies: Mapping[str, Body], kept: frozenset[str]) -> None:
@@ -101,8 +102,8 @@ class Objects:
         """Puts an object at (x, y) [m], with a heading [rad] or its present one; a loose object comes to rest.
 
         Raises:
-            WorldError: If there is no such object, a value is wrong, a hand holds it, or it, or what it holds, would be inside another
-                one; it stays then.
+            WorldError: If there is no such object, a value is wrong, a hand of another body holds it, or it, or an object that it holds,
+                would be inside another object. Then nothing is moved.
         """
         number, physics = self._number(name, self.names, "move"), self._physics
         x, y, heading = place("move", x, y, heading)
@@ -139,7 +140,7 @@ class Objects:
         return {hand.held.object for hand in hands if hand.held is not None}
 
     def _check_free(self, name: str, moved: set[int]) -> None:
-        """Raises an error if a hand of another body holds something that moves with an object: its grip would fling it.
+        """Raises an error if a hand of another body holds an object, or something that moves with it: the grip would throw it away.
 
         Raises:
             WorldError: If one does.
@@ -160,7 +161,7 @@ class Objects:
         return self._number(name, (*self._bodies, *self._loose), "push")
 
     def strike(self, number: int) -> None:
-        """Notes that something pushes a MuJoCo body: the body to which it belongs holds its place with no more than its strength."""
+        """Records that a user pushes a MuJoCo body: its body then resists only with the force of its servos, as in contact."""
         for body in self._bodies.values():
             if body.root == number:
                 body.hold.strike()

@@ -137,7 +137,8 @@ class Aperture(Configuration):
     """The direction in which one walks through it [rad], 0 along x."""
 
     closing: Annotated[float, Ge(0)] = 0.0
-    """How fast it closes from the start on [m/s]. What only one segment touches is pushed aside; what both press holds it open."""
+    """How fast it closes from the start on [m/s]. An object that only one segment touches is pushed aside; an object between both segments
+    stops the closing."""
 
     segment: Length = 2.5
     """Length of each wall segment [m]. Segments keep their length and slide when the width changes."""
@@ -210,7 +211,7 @@ class Track(Configuration):
             if turn > SHARPEST:
                 most, got = math.degrees(SHARPEST), math.degrees(turn)
                 raise ConfigurationError(
-                    f"Track '{self.name}'.points: turns by <= {most:g} degrees at a point (got {got:.0f} at point {n})"
+                    f"Track '{self.name}'.points: must turn by <= {most:g} degrees at a point (got {got:.0f} at point {n})"
                 )
 
     def add_to(self, mj_spec: MjSpec) -> None:

@@ -108,7 +108,7 @@ def test_nothing_leaks_out_of_the_file_or_into_it() -> None:
         '<size nuserdata="7"/><statistic extent="55"/><visual><map znear="0.3"/></visual><default>',
         1,
     ).replace("</mujoco>", '<keyframe><key name="k" qpos="0.3"/></keyframe></mujoco>')
-    with pytest.warns(ModelWarning, match=r"contact, gravity, integrator, timestep\).*; its <keyframe> is left out \(k\): it starts"):
+    with pytest.warns(ModelWarning, match=r"contact, gravity, integrator, timestep\).*; its <keyframe> \(k\) is left out: it starts"):
         arm = Imported(name="a", text=loud)
     scene = (Floor(), Loose(name="box"))
     plain, inside = model(*scene), model(*scene, arm)
@@ -239,7 +239,7 @@ def test_gaps_are_filled_and_said(tmp_path: Path) -> None:
     turned.invert()
     file(tmp_path, turned.export(file_type="stl"), "meshes/one.stl")
     path = file(tmp_path, MESHES.format("one.stl", "one"))
-    message = r"Imported 'i': one\.stl: it was inside out; all its triangles are turned over; "
+    message = r"Imported 'i': one\.stl: all its triangles faced inwards and are reversed; "
     with pytest.warns(ModelWarning, match=message + r"there is no texture 'meshes/t\.png' \(robot\.xml, line 2\): plain grey") as said:
         part = Imported(name="i", path=path)
     assert [warning.filename for warning in said] == [__file__], "the warning names the modeller's line"
@@ -322,8 +322,8 @@ BROKEN: list[tuple[str, str]] = [
     ),
     (asset('<texture type="2d" file="large.png"/>'), r"'large\.png' is an image of 100000 x 100000; the limit is 8192 each way"),
     (asset('<texture type="2d" file="cut.stl"/>'), r"unsupported content type: 'model/stl'; Element name 'cut', id 0, i\.xml, line 3"),
-    (asset('<model name="m" file="i.xml"/>'), r"i\.xml, line 3: models inside models are not taken; export the model as one file"),
-    (asset('<skin name="s" file="s.skn"/>'), r"i\.xml, line 3: skins are not taken"),
+    (asset('<model name="m" file="i.xml"/>'), r"i\.xml, line 3: models inside models are not supported; export the model as one file"),
+    (asset('<skin name="s" file="s.skn"/>'), r"i\.xml, line 3: skins are not supported"),
     ('<mujoco>\n<include file="gone.xml"/>\n</mujoco>', r"i\.xml, line 2: no file 'gone\.xml' in the folder 'here'"),
     ("<mujoco>\n<include/>\n</mujoco>", r'i\.xml, line 2: <include> has no file="…"'),
     ('<mujoco>\n<include file="../outside.xml"/>\n</mujoco>', r"i\.xml, line 2: '\.\./outside\.xml' lies outside the folder 'here'"),

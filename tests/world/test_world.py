@@ -117,11 +117,11 @@ def test_track_lines_lie_half_a_width_beside_the_middle() -> None:
         (lambda: doorway().step(-1), r"World\.step: must be a whole number of steps, >= 0 \(got -1\)"),
         (lambda: doorway().set_aperture_width(1, 3), "no aperture '3' in this scene"),  # pyright: ignore[reportArgumentType]
         (lambda: Scene(parts=(Floor,)), r"Floor is a class; a part is made of it, as Floor\(…\)"),
-        (lambda: Scene(parts=(Wall(name="a\0", start=(0, 0), end=(1, 0)),)), r"'a\\x00' cannot be a name"),
-        (lambda: Scene(parts=(Mannequin(name="\ud800"),)), r"'\\ud800' cannot be a name"),
+        (lambda: Scene(parts=(Wall(name="a\0", start=(0, 0), end=(1, 0)),)), r"'a\\x00' is no valid name"),
+        (lambda: Scene(parts=(Mannequin(name="\ud800"),)), r"'\\ud800' is no valid name"),
         (
             lambda: Track(points=((0, 0), (5, 0), (1, 1))),
-            r"Track 'track'\.points: turns by <= 150 degrees at a point \(got 166 at point 1\)",
+            r"Track 'track'\.points: must turn by <= 150 degrees at a point \(got 166 at point 1\)",
         ),
         (lambda: Track(points=((0, 0), (1, 0), (1, 0))), r"Track 'track'\.points: the points 1 and 2 are the same, \(1\.0, 0\.0\)"),
         (lambda: World(Floor()), r"a world is made of a Scene \(got Floor"),  # pyright: ignore[reportArgumentType]

@@ -1,8 +1,8 @@
 """The commands that move bodies.
 
-A command holds until another one of its kind replaces it. Motion starts at once while the body touches nothing; otherwise
-its bounded forces start it. A stopped base or joint stops dead, and holds its place. Numbers may be given as text, because
-patterns bind text.
+A command holds until another one of its kind replaces it. Motion starts at once while the body touches nothing; otherwise its bounded
+forces start it. A base or joint that is stopped stops immediately, and holds its position. Numbers may be given as text, because patterns
+bind text.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from actr3d.world.motion_commands import HEADING, TURN
 from actr3d.world.objects import place
 
 MODERATE = 2.0
-"""Default speed of joints [rad/s]. Source: the order of the original ACT-R 3D's 120 degrees a second (docs/human-data.md)."""
+"""Default speed of joints [rad/s]. Source: about the 120 degrees/s of the original ACT-R 3D (docs/human-data.md)."""
 
 MOST_TURNS = 3
 """How far a turn goes at most, in full turns; `walk(0, turn=...)` turns without an end. Source: chosen for this library."""
@@ -93,7 +93,7 @@ def waypoint(body: Body, x: float, y: float, speed: float = 1.3, turn: float = M
 
 @_if_walking
 def stop(body: Body) -> None:
-    """Stops legs and all joints dead."""
+    """Stops the legs and all joints immediately."""
     body.motion.forget_course()
     body.motion.targets.clear()
     body.hold.drive_base((0.0, 0.0, 0.0))
@@ -193,13 +193,14 @@ def teleport(body: Body, x: float, y: float, heading: float | None = None) -> No
 
 @_if_eye_moves
 def gaze(body: Body, left: float, up: float = 0.0, speed: float | None = None) -> None:
-    """Turns the eye to a direction relative to the head [rad, to the left and up], or to its limits; at a speed [rad/s] or as people do."""
+    """Turns the eye to a direction relative to the head [rad, left and up], or to its limits; at a speed [rad/s] or with that of a
+    saccade."""
     _look(body, checked_angle(left, "gaze: left"), checked_angle(up, "gaze: up"), speed)
 
 
 @_if_eye_moves
 def saccade(body: Body, left: float, up: float = 0.0) -> None:
-    """Turns the eye by an angle from its present direction [rad to the left, rad up], or to its limits, as fast as people do."""
+    """Turns the eye by an angle from its present direction [rad, left and up], or to its limits, in the time of a human saccade."""
     yaw, pitch = body.joints["eye_yaw"].position, body.joints["eye_pitch"].position
     _look(body, yaw + checked_angle(left, "saccade: left"), checked_angle(up, "saccade: up") - pitch)
 
@@ -236,7 +237,8 @@ def release(body: Body, hand: str | None = None) -> None:
 
 @_if_foreign
 def control(body: Body, name: str, *values: float) -> None:
-    """Sets the control of an actuator that an imported description names, in that actuator's own unit: one number, or all of several.
+    """Sets the control of an actuator that an imported description names, in that actuator's own unit. It takes one number for each of its
+    controls.
 
     Raises:
         WorldError: If there is no such actuator, it does not take that many numbers, or one is too great for the physics.
@@ -281,7 +283,7 @@ def _within(joint: Joint, angle: float) -> float:
 
 
 def _look(body: Body, left: float, up: float, speed: float | None = None) -> None:
-    """Turns the eye to a direction relative to the head [rad], or to its limits; at a speed [rad/s] or as people do."""
+    """Turns the eye to a direction relative to the head [rad], or to its limits; at a speed [rad/s], or in the time of a saccade."""
     yaw, pitch = body.joints["eye_yaw"], body.joints["eye_pitch"]
     to_yaw, to_pitch = _within(yaw, left), _within(pitch, -up)
     turns = (abs(to_yaw - yaw.position), abs(to_pitch - pitch.position))

@@ -32,9 +32,9 @@ WAIST = 0.62
 class Car(Configuration):
     """A car that moves like a bicycle: its rear wheel rolls where it points, its front wheel where it is steered.
 
-    Both hold sideways with the grip of their tyres, so within it the rear axle's middle drives a circle of radius
-    wheelbase / tan(road wheel angle). Throttle and brake push along; the drag grows with the speed.
-    Its position and heading are those of the rear axle's middle.
+    The sideways force of both wheels is limited by the grip of their tyres; within it, the middle of the rear axle follows a circle of
+    radius wheelbase / tan(road wheel angle). Throttle and brake act along the heading; drag is proportional to speed. Its position and
+    heading are those of the rear axle's middle.
 
     Source of mass and axles: the vehicle of the driver model in docs/human-data.md (mass 1175, a 0.946, b 1.719).
     """

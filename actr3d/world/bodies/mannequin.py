@@ -82,10 +82,10 @@ Source: the names are those of the original ACT-R 3D; their definition for shoul
 class Mannequin(Configuration):
     """A person: legs, pelvis, torso, shoulders, arms, head and eye, joined by three hinges each (yaw, pitch, roll).
 
-    It moves over the floor at a set speed and stops dead; obstacles stop it. With a `gait` it steps and sways, otherwise its legs
-    glide. It stands facing its heading with hanging arms, or holding its load. Its parts are `legs`, `pelvis`, `torso`,
-    `left_shoulder`, `left_upper_arm` (with forearm and hand), the same on the right, `head`, `eye` and `load`; its joints
-    `torso_yaw`, `torso_pitch` and so on.
+    It moves over the floor at the commanded speed and stops immediately; obstacles stop it, too. With a `gait` it steps and sways,
+    otherwise its legs glide. It stands facing its heading with hanging arms, or holding its load. Its parts are `legs`, `pelvis`, `torso`,
+    `left_shoulder`, `left_upper_arm` (with forearm and hand), the same on the right, `head`, `eye` and `load`; its joints `torso_yaw`,
+    `torso_pitch` and so on.
 
     Source of proportions: Drillis & Contini (1966), as given by Winter (2009), in fractions of the height; of masses:
     Dempster (1955), as given there.
@@ -128,8 +128,8 @@ class Mannequin(Configuration):
     joint `stance_yaw` of the part `stance`. Otherwise the legs face the walking direction."""
 
     gait: Gait | None = None
-    """How it walks; None: its legs are stiff and glide. With a gait, the part `stance` carries all but the feet's place on the ground,
-    and the legs are `left_thigh`, `left_shank` and `left_foot`, the same on the right; no command moves these."""
+    """How it walks; None: its legs are stiff and glide. With a gait, the part `stance` carries the whole body above the base, and the legs
+    are `left_thigh`, `left_shank` and `left_foot`, the same on the right; no command moves these."""
 
     load: Load | None = None
     """The load in both hands in front of it; None for hanging arms."""
@@ -179,7 +179,7 @@ class Mannequin(Configuration):
 
     @property
     def grip_height(self) -> float:
-        """Height of the hands that hold a load, with square elbows [m]."""
+        """Height of the hands that hold a load, with the elbows bent by 90 degrees [m]."""
         return SHOULDER * self.height - self.arms * UPPER_ARM
 
     @property
@@ -250,7 +250,7 @@ class _Builder:
         if person.load is not None:
             self._load()
         for one, other in combinations(self.bodies, 2):
-            # Its limbs are not in each other's way, but the trunk stops what presses the load back.
+            # Parts of the body have no contacts with each other, except load and trunk: the trunk stops a load that is pushed back.
             if (one, other) not in (("pelvis", "load"), ("torso", "load")):
                 self.mj_spec.add_exclude(bodyname1=self.bodies[one][0].name, bodyname2=self.bodies[other][0].name)
         self._servos()
