@@ -61,7 +61,7 @@ class EyeSense:
         self._body = body
         self._camera = GeometricCamera(body.physics.mj_model, site=body.eye, parameters=parameters)
         self._unseen = self._camera.state()
-        self._moment = -1
+        self._state_number = -1
         self._view: View | None = None
         self._poses: WeakKeyDictionary[View, EyePose] = WeakKeyDictionary()
 
@@ -72,12 +72,12 @@ class EyeSense:
             CameraError: If the poses are not finite.
         """
         physics = self._body.physics
-        if self._view is None or self._moment != physics.moment:
+        if self._view is None or self._state_number != physics.state_number:
             physics.refresh()
             pose = eye_pose_of(self._body, physics.mj_data)
             self._view = self._camera.look(physics.mj_data, pose.heading)
             self._poses[self._view] = pose
-            self._moment = physics.moment
+            self._state_number = physics.state_number
         return self._view
 
     def pose_of(self, view: View) -> EyePose | None:

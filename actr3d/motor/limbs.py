@@ -10,7 +10,7 @@ from math import radians
 
 from actr3d.errors import WorldError
 from actr3d.world.anatomy import NamedMovement
-from actr3d.world.command_registry import known
+from actr3d.world.command_registry import checked_name
 from actr3d.world.sensors.anatomy import BodyPlan, JointPlan
 
 BASE_GROUP = "legs"
@@ -57,7 +57,7 @@ class BodyPart:
             WorldError: If there is none of that name.
         """
         all_parts = {part.name: part for part in self.subtree()}
-        return all_parts[known(name, all_parts, self.name, "part")]
+        return all_parts[checked_name(name, all_parts, self.name, "part")]
 
     def subtree(self) -> tuple[BodyPart, ...]:
         """Returns this part and all that it carries, each after the one that carries it."""
@@ -111,7 +111,7 @@ class Limbs:
         Raises:
             WorldError: If the body has no such joint.
         """
-        plan = self.joints[known(joint, self.joints, self.plan.name, "joint")]
+        plan = self.joints[checked_name(joint, self.joints, self.plan.name, "joint")]
         return DegreeOfFreedom(
             name=joint,
             axis=plan.axis,
@@ -141,7 +141,7 @@ class Limbs:
         """
         whose = self.plan.name
         if not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
-            known(name, self.joints, whose, "joint" if axis is None else "jointed part")
+            checked_name(name, self.joints, whose, "joint" if axis is None else "jointed part")
         if axis is None:
             if name in self.joints:
                 return name
@@ -149,7 +149,7 @@ class Limbs:
             if len(of) == 1:
                 return of[0]
             if not of:
-                known(name, self.joints, whose, "joint")
+                checked_name(name, self.joints, whose, "joint")
             axes = ", ".join(dict.fromkeys(self.joints[joint].axis for joint in of))
             raise WorldError(f"{whose}: '{name}' has several joints; give the axis: {axes}")
         by_axis: dict[str, list[str]] = {}
@@ -157,8 +157,8 @@ class Limbs:
             if part == name:
                 by_axis.setdefault(self.joints[joint].axis, []).append(joint)
         if not by_axis:
-            known(name, dict.fromkeys(self.group_of.values()), whose, "jointed part")
-        first, *others = by_axis[known(axis, by_axis, f"{whose}: {name}", "axis")]
+            checked_name(name, dict.fromkeys(self.group_of.values()), whose, "jointed part")
+        first, *others = by_axis[checked_name(axis, by_axis, f"{whose}: {name}", "axis")]
         if others:
             raise WorldError(f"{whose}: '{name}' has several joints about {axis}; name one of them: {', '.join([first, *others])}")
         return first
@@ -169,11 +169,11 @@ class Limbs:
         Raises:
             WorldError: If there is none of that name, or none on that side.
         """
-        known(name, dict.fromkeys(movement.name for movement in self.plan.movements), self.plan.name, "movement")
+        checked_name(name, dict.fromkeys(movement.name for movement in self.plan.movements), self.plan.name, "movement")
         sides = {movement.side: movement for movement in self.plan.movements if movement.name == name}
         if side is None and None in sides:
             return sides[None]
-        return sides[known(side, [str(of) for of in sides if of is not None], f"{self.plan.name}: {name}", "side")]
+        return sides[checked_name(side, [str(of) for of in sides if of is not None], f"{self.plan.name}: {name}", "side")]
 
     def check_speed(self, call: str, speed: float, kind: int, unit: float) -> None:
         """Checks that the body can reach a speed.

@@ -20,7 +20,7 @@ from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, DegreeOfFreedom, Li
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Order, Step, Turn, Walk, gait
 from actr3d.motor.schema import BodySchema
 from actr3d.world.actuators.motion import MOST_TURNS
-from actr3d.world.command_registry import known, number
+from actr3d.world.command_registry import checked_name, number
 from actr3d.world.sensors.anatomy import BodyPlan
 from actr3d.world.sensors.proprioception import Proprioception
 
@@ -233,7 +233,7 @@ class Motor(WithParameters, Port):
     def _stop(self, groups: Sequence[Any], site: CallSite | None) -> None:
         plan = self._known().plan
         for group in groups:
-            known(group, self._known().groups, plan.name, "muscle group")
+            checked_name(group, self._known().groups, plan.name, "muscle group")
         self._accept()
         self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], site)
         if not groups and "stop" in plan.actuators:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.base import Base
 from actr3d.world.joints import Joint
-from actr3d.world.kernel import carry, deviate, settle
+from actr3d.world.kernel import apply_corrections, compute_deviations, shift_held
 from actr3d.world.physics import Physics
 
 Row = NDArray[np.float64]
@@ -45,7 +45,7 @@ class ActuatedDofs:
     ) -> None:
         data = physics.mj_data
         model: Any = physics.mj_model
-        names, walks = anatomy.servos, anatomy.push or ()
+        names, walks = anatomy.servos, anatomy.walking_servos or ()
         acts = [int(model.actuator(name).id) for name in names]
         joints = [joint for joint in joints if joint.servo in acts]
         servos = [int(model.actuator(name).id) for name in walks] + [int(joint.servo or 0) for joint in joints]
@@ -96,7 +96,7 @@ class ActuatedDofs:
         """Sets the servos of some rows to keep other speeds."""
         self._ctrl[self.c[rows]] = speeds
 
-    def carry(self, rows: NDArray[np.intp], changes: Row | None, held: Row, commanded: Row, loose: Row, duration: float) -> bool:
+    def shift_held(self, rows: NDArray[np.intp], changes: Row | None, held: Row, commanded: Row, loose: Row, duration: float) -> bool:
         """Shifts the held places of some rows, and commands the speeds that reach them, both in place. A row that holds no place stays as
         it is.
 
@@ -113,7 +113,7 @@ class ActuatedDofs:
         """
         moves = changes is not None
         state = self.q, self.c, self._qpos, self._ctrl
-        return carry()(rows, changes if moves else self._still[: len(rows)], moves, *state, held, commanded, loose, duration)
+        return shift_held()(rows, changes if moves else self._still[: len(rows)], moves, *state, held, commanded, loose, duration)
 
     def rest(self, which: NDArray[np.bool_]) -> None:
         """Sets the speeds of some of them to 0 immediately."""
@@ -136,10 +136,10 @@ class ActuatedDofs:
         """
         results = np.empty((3, len(self.q)))
         state, bounds = (self._qpos, self._qvel, self._ctrl), (self.lower, self.upper, duration, slight_way, slight_speed)
-        needed = deviate()(self.q, self.v, self.c, *state, self.base, *self._direction(), held, commanded, *bounds, results)
+        needed = compute_deviations()(self.q, self.v, self.c, *state, self.base, *self._direction(), held, commanded, *bounds, results)
         return results if needed else None
 
-    def settle(self, ways: Row, wanted: Row, time: float, most: float, slight_speed: float, *, loops: bool) -> None:
+    def apply_corrections(self, ways: Row, wanted: Row, time: float, most: float, slight_speed: float, *, loops: bool) -> None:
         """Sets their speeds, at once, so that they return to the held places, and move as wanted where they are to move.
 
         Small differences are left to the servo, which needs a small lag to exert a force.
@@ -155,7 +155,7 @@ class ActuatedDofs:
         """
         servos_only = self._none if loops else self.looped
         corrections = ways, wanted, time, most, slight_speed, servos_only
-        settle()(self.v, self.c, self._qvel, self._ctrl, self.base, *self._direction(), *corrections)
+        apply_corrections()(self.v, self.c, self._qvel, self._ctrl, self.base, *self._direction(), *corrections)
 
     def _direction(self) -> tuple[float, float]:
         """Returns cosine and sine of the base's heading."""

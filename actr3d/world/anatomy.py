@@ -76,7 +76,7 @@ class Anatomy:
     fastest: tuple[float, float, float] | None = None
     """The greatest speeds that it can be commanded to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]; None without limits."""
 
-    push: tuple[str, str, str] | None = None
+    walking_servos: tuple[str, str, str] | None = None
     """The servos that walk forward, to the left and turn; None if it cannot walk."""
 
     movements: tuple[NamedMovement, ...] = ()

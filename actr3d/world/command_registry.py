@@ -96,7 +96,7 @@ class CommandRegistry(Registry[BodyFunction[B]], Generic[B]):
 # -- checks of values
 
 
-def known(name: Any, names: Collection[str], whose: str, kind: str) -> str:
+def checked_name(name: Any, names: Collection[str], whose: str, kind: str) -> str:
     """Returns a name if it is one of those that exist; the agent's code chooses it, so it may be anything.
 
     Args:

@@ -47,7 +47,7 @@ TEXTS = frozenset(
 MIN_MASS, MIN_INERTIA = 1e-3, 1e-6
 """Default mass and inertia of a moving URDF link [kg, kg m^2]: too little to change how a robot moves."""
 
-_NOT_TAKEN = {"skin": "skins", "model": "models inside models", "attach": "models inside models", "flexcomp": "flexcomp from a file"}
+_UNSUPPORTED = {"skin": "skins", "model": "models inside models", "attach": "models inside models", "flexcomp": "flexcomp from a file"}
 _TEXTURE_FILES = ("file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback")
 _MOVING = {"revolute", "continuous", "prismatic", "floating", "planar"}
 
@@ -95,7 +95,7 @@ def read_imported(folder: Folder, name: str) -> Document:
         _prepare_urdf(root, document)
     else:
         _remove_world_elements(root, document)
-    _Assets(root, folder, name, document).take()
+    _Assets(root, folder, name, document).load()
     document.text, document.origins = written(root)
     return document
 
@@ -187,11 +187,11 @@ class _Assets:
         if self._compiler.get("settotalmass", "-1") != "-1":
             document.remarks.append("its compiler's settotalmass is left out: masses are as given for each body")
 
-    def take(self) -> None:
+    def load(self) -> None:
         for element in self._root.walk():
             attributes = element.attributes
-            if element.tag in _NOT_TAKEN and (element.tag == "attach" or "file" in attributes):
-                raise WorldError(f"{element.where}: {_NOT_TAKEN[element.tag]} are not supported; export the model as one file")
+            if element.tag in _UNSUPPORTED and (element.tag == "attach" or "file" in attributes):
+                raise WorldError(f"{element.where}: {_UNSUPPORTED[element.tag]} are not supported; export the model as one file")
             if element.tag == "mesh" and ("file" in attributes or "filename" in attributes):
                 self._mesh(element, "filename" if self._document.urdf else "file")
             elif element.tag == "hfield" and "file" in attributes:

@@ -38,7 +38,7 @@ class Physics:
         """The same [us]."""
         self.steps = 0
         """Physics steps since the start."""
-        self.moment = 0
+        self.state_number = 0
         """Number of the current state, which grows with every change; a reading made at a smaller number is out of date."""
         self._refreshed = False
         self._solved = False
@@ -67,7 +67,7 @@ class Physics:
     def changed(self) -> None:
         """Marks derived quantities as out of date, after positions, speeds, commands or the compiled model have changed."""
         self._refreshed = self._solved = False
-        self.moment += 1
+        self.state_number += 1
 
     def refresh(self) -> None:
         """Updates positions, contacts and rays to the state, once per state.

@@ -61,7 +61,7 @@ class SteadyState:
         self.fastest = dofs.fastest(np.abs(commanded) + CLOSE)
         """Upper bound of the speed of any point of the body in this state [m/s]; infinite if not all of it is actuated."""
 
-    def met(self) -> bool:
+    def is_reached(self) -> bool:
         """Returns True if the state is near enough that nothing needs a correction; after False, something may."""
         state, numbers = self._state, self._numbers
         mujoco.mj_getState(self._model, self._data, state, _PARTS)
@@ -247,7 +247,7 @@ class PostureHold:
         Returns:
             An upper bound of the speed of any point of the body [m/s], where it is known quickly; else infinity.
         """
-        if self._steady is not None and self._steady.met():
+        if self._steady is not None and self._steady.is_reached():
             self._without_deviation()
             return self._steady.fastest
         if self._moves:
@@ -274,7 +274,7 @@ class PostureHold:
         stance, torso = (0.0 if row is None else dofs.place(row) for row in self._trunk)
         changes = gait.advance(forward, left, stance, torso, self.held, duration)
         held = self.held.copy()
-        if dofs.carry(gait.rows, changes, self.held, self.commanded, held, duration):
+        if dofs.shift_held(gait.rows, changes, self.held, self.commanded, held, duration):
             self._forget_steady()
             self._moves = bool(self.commanded[self._rows :].any())
         return held
@@ -303,7 +303,7 @@ class PostureHold:
         self._struck = False
         if self.calm:
             time, most = UNHINDERED
-            dofs.settle(ways, wanted, time, most, SLIGHT_SPEED, loops=not self._loop_moves())
+            dofs.apply_corrections(ways, wanted, time, most, SLIGHT_SPEED, loops=not self._loop_moves())
         else:
             self._yield(ways)
             self._push(ways, wanted)

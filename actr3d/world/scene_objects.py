@@ -16,6 +16,7 @@ from actr3d.world.frames import FULL_TURN
 
 Name = Annotated[str, MinLen(1)]
 Length = Annotated[float, Gt(0)]
+Positive = Annotated[float, Gt(0)]
 Heading = Annotated[float, Ge(-FULL_TURN), Le(FULL_TURN)]
 Colour = tuple[float, float, float, float]
 
@@ -265,7 +266,7 @@ class Loose(Configuration):
     heading: Heading = 0.0
     """Its rotation about the vertical at the start [rad]."""
 
-    mass: Length | None = 1.0
+    mass: Positive | None = 1.0
     """[kg]; None fixes it in its place."""
 
     colour: Colour = (0.55, 0.62, 0.72, 1.0)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from actr3d.clock import seconds
 from actr3d.errors import WorldError
 from actr3d.world.body import Body
-from actr3d.world.kernel import fastest, near
+from actr3d.world.kernel import any_within_distance, fastest
 from actr3d.world.objects import Pushes
 from actr3d.world.physics import Physics
 from actr3d.world.reach import radius
@@ -133,7 +133,7 @@ class Substepping:
         self._physics.refresh()
         boxes, data = self._physics.mj_model.geom_aabb, self._physics.mj_data
         for body, others, far in zip(self._bodies, self._others, self._radii, strict=True):
-            if near()(others, boxes, data.geom_xpos, data.geom_xmat, data.xpos[body.root], far + beyond):
+            if any_within_distance()(others, boxes, data.geom_xpos, data.geom_xmat, data.xpos[body.root], far + beyond):
                 return True
         return False
 

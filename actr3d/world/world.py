@@ -16,7 +16,7 @@ from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
 from actr3d.world.model_changes import Changes, ModelChanges
 from actr3d.world.motion_commands import MotionCommands
-from actr3d.world.objects import Objects, Pushes, deeper
+from actr3d.world.objects import Objects, Pushes, too_deep
 from actr3d.world.physics import Physics
 from actr3d.world.scene import Scene
 from actr3d.world.scene_objects import Aperture
@@ -84,7 +84,7 @@ class World:
         self.objects = Objects(self.physics, self.bodies, segments)
         """What can be moved by hand."""
         for name, body in self.bodies.items():
-            if inside := deeper({}, self.objects.depths({body.root}, others="fixed")):
+            if inside := too_deep({}, self.objects.depths({body.root}, others="fixed")):
                 raise WorldError(f"'{name}' is inside {', '.join(map(repr, inside))} at the start; leave room")
         self._pushes = Pushes(self.physics, self.objects)
         self._changes = ModelChanges(self.mj_model)
@@ -277,7 +277,7 @@ class World:
         before, depths = self.mj_data.mocap_pos[sides].copy(), self.objects.depths(roots, others="moving")
         self.mj_data.mocap_pos[sides] = list(self._aperture(name).segment_positions(width).values())
         self.changed()
-        inside = deeper(depths, self.objects.depths(roots, others="moving"))
+        inside = too_deep(depths, self.objects.depths(roots, others="moving"))
         if inside:
             self.mj_data.mocap_pos[sides] = before
             self.changed()

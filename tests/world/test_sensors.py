@@ -198,7 +198,7 @@ def test_the_laser_sweeps_from_left_to_right() -> None:
     world, body = walker_in(Aperture(position=(2.0, 0.0), width=0.8, thickness=0.1))
     world.refresh()
     ahead = 1.95 - world.mj_data.site("walker_eye").xpos[0]
-    scan = body.get("laser", rays=181, width=math.pi, reach=30.0)
+    scan = body.get("laser", rays=181, fov=math.pi, reach=30.0)
     assert len(scan) == 181
     assert scan[0] is None
     assert scan[90] is None
@@ -207,7 +207,7 @@ def test_the_laser_sweeps_from_left_to_right() -> None:
         across = ahead * math.tan(angle)
         if 0.4 < abs(across) < 2.8:
             assert distance == near(ahead / math.cos(angle), abs=1e-9)
-    one_sided = walker_in(Wall(name="left", start=(-5, 2), end=(5, 2)))[1].get("laser", rays=3, width=math.pi)
+    one_sided = walker_in(Wall(name="left", start=(-5, 2), end=(5, 2)))[1].get("laser", rays=3, fov=math.pi)
     assert one_sided[0] == near(1.95)
     assert one_sided[1:] == (None, None)
 

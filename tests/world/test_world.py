@@ -257,10 +257,10 @@ def test_no_step_changes_nothing_and_whole_numbers_of_numpy_are_whole() -> None:
     body.get("contacts")
     body.set("walk", 0.5)
     world.step(np.int64(5))  # pyright: ignore[reportArgumentType]
-    felt, moment = body.get("contacts"), world.physics.moment
+    felt, moment = body.get("contacts"), world.physics.state_number
     assert felt
     world.step(0)
-    assert (body.get("contacts"), world.physics.moment) == (felt, moment)
+    assert (body.get("contacts"), world.physics.state_number) == (felt, moment)
     for steps in (2.5, "5", None, -1, np.float64(5)):
         with pytest.raises(Actr3dError, match=r"World\.step: must be a whole number of steps, >= 0 \(got "):
             world.step(steps)  # pyright: ignore[reportArgumentType]

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from actr3d.errors import WorldError
 from actr3d.world.anatomy import Steering
 from actr3d.world.body import MAX_CONTROL, Body, actuator
-from actr3d.world.command_registry import checked_angle, known, number
+from actr3d.world.command_registry import checked_angle, checked_name, number
 from actr3d.world.frames import FULL_TURN
 from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import HEADING, TURN
@@ -28,7 +28,7 @@ MOST_TURNS = 3
 SACCADE, SACCADE_PER_RAD = 0.02, 0.002 * math.degrees(1)
 """Duration of a saccade: 20 ms, and 2 ms for each degree, [s] and [s/rad]. Source: EMMA (Salvucci 2001; docs/human-data.md)."""
 
-_if_walking = actuator.if_body(lambda body: body.anatomy.push is not None)
+_if_walking = actuator.if_body(lambda body: body.anatomy.walking_servos is not None)
 _if_jointed = actuator.if_body(lambda body: any(joint.driven for joint in body.joints.values()))
 _if_drivable = actuator.if_body(lambda body: body.anatomy.steering is not None)
 _if_movable = actuator.if_body(lambda body: body.base.planar or body.base.free)
@@ -47,7 +47,7 @@ def walk(body: Body, speed: float, turn: float = 0.0, direction: float = 0.0) ->
     fastest, spin, _ = body.fastest()
     speed, turn = number(speed, "walk: speed", -fastest, fastest), number(turn, "walk: turn", -spin, spin)
     direction = checked_angle(direction, "walk: direction")
-    body.motion.forget_course()
+    body.motion.cancel_base_movements()
     left = speed * math.sin(direction) if direction else 0.0
     body.hold.drive_base((speed * math.cos(direction), left, turn))
     body.physics.changed()
@@ -61,7 +61,7 @@ def heading(body: Body, angle: float, speed: float = MODERATE) -> None:
         WorldError: If a value is not a number, the angle is more than a full turn, or the speed is not > 0 or is too fast.
     """
     angle, speed = checked_angle(angle, "heading: angle"), number(speed, "heading: speed", 1e-6, body.fastest()[1])
-    body.motion.forget_course()
+    body.motion.cancel_base_movements()
     body.motion.targets[HEADING] = (angle, speed)
 
 
@@ -73,7 +73,7 @@ def turn(body: Body, angle: float, speed: float = MODERATE) -> None:
         WorldError: If a value is not a number, the angle is more than three full turns, or the speed is not > 0 or is too fast.
     """
     angle, speed = checked_angle(angle, "turn: angle", MOST_TURNS), number(speed, "turn: speed", 1e-6, body.fastest()[1])
-    body.motion.forget_course()
+    body.motion.cancel_base_movements()
     body.motion.targets[TURN] = (body.base.place[2] + angle, speed)
 
 
@@ -87,14 +87,14 @@ def waypoint(body: Body, x: float, y: float, speed: float = 1.3, turn: float = M
     x, y = number(x, "waypoint: x"), number(y, "waypoint: y")
     fastest, spin, _ = body.fastest()
     speed, turn = number(speed, "waypoint: speed", 1e-6, fastest), number(turn, "waypoint: turn", 1e-6, spin)
-    body.motion.forget_course()
+    body.motion.cancel_base_movements()
     body.motion.waypoint = (x, y, speed, turn)
 
 
 @_if_walking
 def stop(body: Body) -> None:
     """Stops the legs and all joints immediately."""
-    body.motion.forget_course()
+    body.motion.cancel_base_movements()
     body.motion.targets.clear()
     body.hold.drive_base((0.0, 0.0, 0.0))
     for joint in body.joints.values():
@@ -212,7 +212,7 @@ def grasp(body: Body, object: str, hand: str = "right") -> None:
     Raises:
         WorldError: If there is no such object or hand, or the object is fixed.
     """
-    holds = body.hands[known(hand, body.hands, body.name, "hand")]
+    holds = body.hands[checked_name(hand, body.hands, body.name, "hand")]
     number = body.physics.loose(object)
     body.physics.refresh()
     if holds.held is None and holds.reaches(number):
@@ -228,7 +228,7 @@ def release(body: Body, hand: str | None = None) -> None:
         WorldError: If there is no such hand.
     """
     if hand is not None:
-        known(hand, body.hands, body.name, "hand")
+        checked_name(hand, body.hands, body.name, "hand")
     for side, holds in body.hands.items():
         if hand in (None, side):
             holds.release()

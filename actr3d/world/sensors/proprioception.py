@@ -66,7 +66,7 @@ def bounding_box(body: Body, frame: str = "body") -> Size:
 def proprioception(body: Body) -> Proprioception:
     """Senses at once the positions of all joints, what still moves, and width, depth and height of the body in this posture."""
     positions: list[float] = body.physics.mj_data.qpos.tolist()
-    walks = body.anatomy.push is not None
+    walks = body.anatomy.walking_servos is not None
     box = body.bounding_box("body")
     depth, width, height = box.size
     return Proprioception(
