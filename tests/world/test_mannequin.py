@@ -240,7 +240,7 @@ def test_a_long_bar_does_not_get_through_while_it_stops_and_starts(thickness: fl
 
 
 def test_what_is_in_the_way_stops_it_and_it_pushes_no_harder_than_it_can() -> None:
-    world, body = living(Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0)), push=250)
+    world, body = living(Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0)), leg_force=250)
     body.set("walk", 2.0)
     ticks(world, 200)
     assert body.get("velocity").linear == near((0, 0, 0), abs=1e-3)

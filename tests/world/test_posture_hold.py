@@ -71,8 +71,8 @@ def test_a_joint_without_a_command_bears_a_load() -> None:
 
 
 def test_a_push_moves_a_standing_body_and_it_stays_there() -> None:
-    other = Mannequin(name="other", position=(0.7, 0.0), push=200)
-    world, body = living(other, push=400)
+    other = Mannequin(name="other", position=(0.7, 0.0), leg_force=200)
+    world, body = living(other, leg_force=400)
     body.set("walk", 0.5)
     world.step(1000)
     pushed = world.bodies["other"].get("pose").x
@@ -86,7 +86,7 @@ def test_a_push_moves_a_standing_body_and_it_stays_there() -> None:
 
 
 def test_who_is_stronger_is_not_pushed_away() -> None:
-    world, body = living(Mannequin(name="other", position=(0.7, 0.0), heading=math.pi), push=150)
+    world, body = living(Mannequin(name="other", position=(0.7, 0.0), heading=math.pi), leg_force=150)
     body.set("walk", 0.5)
     world.step(3000)
     assert world.bodies["other"].get("pose").x == near(0.7, abs=0.02)
