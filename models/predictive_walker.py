@@ -266,7 +266,7 @@ class Steering(ACTR):
         b_visual.clear()
         b_door.modify(width=wide, left=left, right=right)
         self.parent.looks_around = False
-        self.parent.sees(float(far), float(aside), float(deep))
+        self.parent.steer_towards(float(far), float(aside), float(deep))
 
     def look_around(b_course="steer:yes", vision="busy:False error:True", motor="width:?width", b_door="left:?left right:?right"):
         """Looks for any opening that is wide enough; without one, something hides the doorway."""
@@ -274,7 +274,7 @@ class Steering(ACTR):
         if self.parent.looks_around:
             vision.request(DOOR, width=f">{width}")
         else:
-            self.parent.sees(*self.parent.expected(), 0)
+            self.parent.steer_towards(*self.parent.expected(), 0)
             vision.request(DOOR, left="?left", right="?right")
 
 
@@ -361,7 +361,7 @@ class Person(ACTR):
     b_plan = Buffer()
     b_DM = Buffer()
     DM = Memory(b_DM, latency=0, threshold=None)
-    nearest = Similar(DM)
+    similar_posture = Similar(DM)
     b_experience = Buffer()
     experience = BlendingMemory(b_experience, latency=0, threshold=None, maximum_time=CYCLE)
     activation_noise = DMNoise(experience, noise=MEMORY_NOISE)
@@ -378,7 +378,7 @@ class Person(ACTR):
     planning = Planning()
 
     def init():
-        nearest.scales = {"torso_yaw": ANGLE}
+        similar_posture.scales = {"torso_yaw": ANGLE}
         alike.scales = {"room": ROOM if units == "metres" else ROOM / BODY, "speed": PACE}
         experience.temperature = TEMPERATURE
         activation_noise.noise = memory_noise
@@ -451,7 +451,7 @@ class Person(ACTR):
         """Judges «as it is» if a passage without contact is likely; otherwise imagines the greatest turn."""
         b_experience.clear()
         if float(free) > LIKELY:
-            self.tell("as it is")
+            self.report("as it is")
         else:
             DM.request(f"torso_yaw:{self.side * (1 - HIPS) * TURNS[-1]:.2f} width:?")
             b_goal.set(f"do:imagine door:{door}")
@@ -463,13 +463,13 @@ class Person(ACTR):
         b_goal.set("do:doubt")
 
     def say_whether_turned(b_goal="do:doubt", b_experience="passed:?passed"):
-        self.tell("turned" if float(passed) > LIKELY else "not at all")
+        self.report("turned" if float(passed) > LIKELY else "not at all")
 
     def know_nothing(b_goal="do:say", experience="error:True"):
         """Without experience it judges as it would walk: it turns only if the turn is given."""
-        self.tell("turned" if self.always else "as it is")
+        self.report("turned" if self.always else "as it is")
 
-    def tell(self, judged):
+    def report(self, judged):
         """Says whether and how it can pass."""
         self.judged = judged
         print(f"{self.now():.2f} s: {self.who}" + ("cannot pass" if judged == "not at all" else f"can pass {judged}"))
@@ -517,7 +517,7 @@ class Person(ACTR):
         self.through_at = self.now() + seconds
         self.way.go(seconds)
 
-    def sees(self, far, left, deep):
+    def steer_towards(self, far, left, deep):
         """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees], with free depth behind it [m].
 
         In the last step it keeps its course. Before, it waits for an object that approaches and is as near to the doorway as the walker; it
@@ -547,14 +547,14 @@ class Person(ACTR):
             return
         if far < self.step:
             self.b_course.set("steer:no")
-            self.head(0.0)
+            self.turn_course(0.0)
             return
         aside = atan2(far * sin(radians(left)) - self.middle, far * cos(radians(left)))
         pull = ATTRACTION * aside * (exp(-NEARNESS * far) + MIN_ATTRACTION)
         if obstructed:
             pull -= REPULSION * direction * exp(-NARROWNESS * abs(direction)) * exp(-REACH * distance)
         self.rate += (pull - DAMPING * self.rate) * elapsed + self.random.gauss(0, HEADING_NOISE * sqrt(elapsed))
-        self.head(self.rate)
+        self.turn_course(self.rate)
 
     def expected(self):
         """Returns where the doorway must be, by its own movement since it knew it last: distance [m] and direction [degrees]."""
@@ -564,7 +564,7 @@ class Person(ACTR):
         aside = far * sin(left)
         return hypot(ahead, aside), degrees(atan2(aside, ahead) - self.rate * elapsed)
 
-    def head(self, rate):
+    def turn_course(self, rate):
         """Turns the walking direction at a speed [rad/s]."""
         self.motor.turn(speed=degrees(rate) if abs(rate) > SLOWEST else 0)
 
@@ -577,7 +577,7 @@ class Person(ACTR):
         print(f"{self.now():.2f} s: {self.who}waits")
         motor.stop()
         self.rate = 0.0
-        self.head(0.0)
+        self.turn_course(0.0)
         b_goal.set("do:wait")
 
     def go_on(b_goal="do:wait", b_door="free:True"):
@@ -593,7 +593,7 @@ class Person(ACTR):
 
     def decline(b_goal="do:decline"):
         motor.stop()
-        self.tell("not at all")
+        self.report("not at all")
 
     def turn(b_goal="do:turn turn:?turn", b_door="far:?far"):
         print(f"{self.now():.2f} s: {self.who}turns by {turn} degrees")
