@@ -248,7 +248,7 @@ class Track(Configuration):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Loose(Configuration):
+class SimpleObject(Configuration):
     """An object of a simple shape that can be pushed and falls; or a fixed one."""
 
     name: Name
@@ -281,11 +281,11 @@ class Loose(Configuration):
         super().__post_init__()
         _, sizes, meaning = SHAPES[self.shape]
         if len(self.size) != sizes:
-            raise ConfigurationError(f"Loose '{self.name}'.size: a {self.shape} takes {meaning} (got {self.size!r})")
+            raise ConfigurationError(f"SimpleObject '{self.name}'.size: a {self.shape} takes {meaning} (got {self.size!r})")
         if min(self.size) < LEAST_SIZE:
-            raise ConfigurationError(f"Loose '{self.name}'.size: must be >= {LEAST_SIZE:g} m (got {self.size!r})")
+            raise ConfigurationError(f"SimpleObject '{self.name}'.size: must be >= {LEAST_SIZE:g} m (got {self.size!r})")
         if self.mass is not None and self.mass < LEAST_MASS:
-            raise ConfigurationError(f"Loose '{self.name}'.mass: must be >= {LEAST_MASS:g} kg (got {self.mass!r})")
+            raise ConfigurationError(f"SimpleObject '{self.name}'.mass: must be >= {LEAST_MASS:g} kg (got {self.mass!r})")
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds a body with one geom, and a free joint unless it is fixed: then only a user can move it."""

@@ -15,14 +15,21 @@ from actr3d.camera import CameraParameters, GeometricCamera, View
 from actr3d.errors import Actr3dError
 from actr3d.recording import Recorded
 from actr3d.simulation import Simulation
-from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, World
+from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, World
 from tests.helpers.small_agents import near
 from tests.helpers.walkers import digest
 
 
 def doorway() -> World:
     return World(
-        Scene(parts=(Floor(), Aperture(width=0.8, position=(5.0, 0.0)), Mannequin(name="walker"), Loose(name="box", position=(3, 1, 1))))
+        Scene(
+            parts=(
+                Floor(),
+                Aperture(width=0.8, position=(5.0, 0.0)),
+                Mannequin(name="walker"),
+                SimpleObject(name="box", position=(3, 1, 1)),
+            )
+        )
     )
 
 

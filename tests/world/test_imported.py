@@ -17,7 +17,7 @@ import trimesh
 from mujoco import MjModel, MjSpec
 
 from actr3d.errors import Actr3dError, ModelWarning, WorldError
-from actr3d.world import Body, Floor, Gait, Imported, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Body, Floor, Gait, Imported, Mannequin, Scene, SimpleObject, Wall, World
 from actr3d.world.imported import GEOM_FIELDS
 from actr3d.world.scene import Part
 from tests.helpers.small_agents import near
@@ -82,7 +82,7 @@ def ray(world: World, start: tuple[float, float, float], way: tuple[float, float
 
 def test_an_mjcf_file_comes_in_as_mujoco_reads_it_alone(tmp_path: Path) -> None:
     alone = MjSpec.from_string(ARM).compile()
-    inside = model(Floor(), Imported(name="a", path=file(tmp_path, ARM)), Loose(name="box"))
+    inside = model(Floor(), Imported(name="a", path=file(tmp_path, ARM)), SimpleObject(name="box"))
     assert names(inside, "body", inside.nbody) == ["world", "a_base", "a_arm", "box"]
     assert (names(inside, "joint", 1), names(inside, "actuator", 1), names(inside, "sensor", 1)) == (["a_elbow"], ["a_pull"], ["a_angle"])
     for value in ("body_mass", "body_inertia", "body_ipos", "body_pos", "body_quat"):
@@ -110,7 +110,7 @@ def test_nothing_leaks_out_of_the_file_or_into_it() -> None:
     ).replace("</mujoco>", '<keyframe><key name="k" qpos="0.3"/></keyframe></mujoco>')
     with pytest.warns(ModelWarning, match=r"contact, gravity, integrator, timestep\).*; its <keyframe> \(k\) is left out: it starts"):
         arm = Imported(name="a", text=loud)
-    scene = (Floor(), Loose(name="box"))
+    scene = (Floor(), SimpleObject(name="box"))
     plain, inside = model(*scene), model(*scene, arm)
     for value in ("timestep", "integrator", "cone", "disableflags"):
         assert getattr(inside.opt, value) == getattr(plain.opt, value), value
@@ -152,7 +152,9 @@ def test_shapes_of_hidden_groups_are_met_and_not_seen() -> None:
         '<mujoco><asset><material name="m" rgba="1 1 1 1"/></asset><worldbody><body name="b"><geom size="0.2" contype="0" conaffinity="0"/>'
     )
     text += '<geom type="box" size="0.5 0.5 0.5" group="3" material="m"/></body></worldbody></mujoco>'
-    world = World(Scene(parts=(Imported(name="i", text=text), Loose(name="ball", shape="sphere", size=(0.1,), position=(0, 0, 0.8)))))
+    world = World(
+        Scene(parts=(Imported(name="i", text=text), SimpleObject(name="ball", shape="sphere", size=(0.1,), position=(0, 0, 0.8))))
+    )
     assert ray(world, (-5, 0, 0), (1, 0, 0)) == (near(4.8), "i_b")
     world.step(500)
     world.refresh()
@@ -408,7 +410,7 @@ def test_wrong_descriptions_are_refused(options: dict[str, Any], message: str, t
 
 def test_names_that_clash_in_a_scene_are_refused() -> None:
     with pytest.raises(WorldError, match="repeated name 'a_base'"):
-        World(Scene(parts=(Imported(name="a", text=ARM), Loose(name="a_base"))))
+        World(Scene(parts=(Imported(name="a", text=ARM), SimpleObject(name="a_base"))))
 
 
 ROOM = """<mujoco><worldbody><geom type="box" size=".05 2 1" pos="0.6 0 1"/><geom name="geom_0" pos="9 9 9" size="1"/>

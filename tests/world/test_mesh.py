@@ -24,7 +24,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from actr3d.errors import Actr3dError, MeshError, ModelWarning
-from actr3d.world import Floor, Loose, Mesh, Scene, World
+from actr3d.world import Floor, Mesh, Scene, SimpleObject, World
 from actr3d.world.asset_folder import Folder, digest
 from actr3d.world.mesh_repair import surface
 from tests.helpers.small_agents import near
@@ -144,7 +144,7 @@ def rest(tmp_path: Path, collision: str) -> float:
     """Returns how high a ball lies that fell into a ring of 0.3 m inner radius and 0.4 m height [m]."""
     path = written(tmp_path, creation.annulus(0.3, 0.5, 0.4).apply_translation((0, 0, 0.2)), "stl")
     ring = Mesh.from_mapping({"name": "ring", "path": path, "collision": collision})
-    ball = Loose(name="ball", shape="sphere", size=(0.1,), position=(0.01, 0, 0.7))
+    ball = SimpleObject(name="ball", shape="sphere", size=(0.1,), position=(0.01, 0, 0.7))
     world = World(Scene(parts=(Floor(), ring, ball)))
     world.step(1500)
     world.refresh()
@@ -178,7 +178,7 @@ def test_parts_hold_a_ball_inside_a_bowl(tmp_path: Path) -> None:
     assert bowl.is_volume
     assert bowl.volume < outer.volume - 0.6 * inner.volume
     mesh = Mesh(name="bowl", path=written(tmp_path, bowl, "ply"), collision="parts", position=(0, 0, 1))
-    ball = Loose(name="ball", shape="sphere", size=(0.1,), position=(0.2, 0, 1.6))
+    ball = SimpleObject(name="ball", shape="sphere", size=(0.1,), position=(0.2, 0, 1.6))
     world = World(Scene(parts=(mesh, ball)))
     world.step(3000)
     world.refresh()

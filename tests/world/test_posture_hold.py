@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from actr3d.errors import WorldError
-from actr3d.world import Body, Floor, Load, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Body, Floor, Load, Mannequin, Scene, SimpleObject, Wall, World
 from tests.helpers.small_agents import near
 
 
@@ -59,7 +59,7 @@ def test_extreme_postures_do_not_move_it_nor_turn_it_from_its_way(sideways: bool
 
 def test_a_joint_without_a_command_bears_a_load() -> None:
     """Six kilograms lie on the box that it holds; the bound of the servos, 60 N m, is more."""
-    lies = Loose(name="weight", shape="box", size=(0.2, 0.2, 0.1), mass=6, position=(0.36, 0.0, 1.2))
+    lies = SimpleObject(name="weight", shape="box", size=(0.2, 0.2, 0.1), mass=6, position=(0.36, 0.0, 1.2))
     world, body = living(lies, load=Load(shape="box", size=(0.4, 0.5, 0.1), mass=2))
     world.step(1000)
     start = {name: joint.position for name, joint in body.joints.items()}
