@@ -22,7 +22,7 @@ ARM = """<mujoco>
 </mujoco>"""
 
 DERIVED = {
-    ("Physics", "moment"),  # counts states, so that readings of an earlier one are known to be stale
+    ("Physics", "state_number"),  # counts states, so that readings of an earlier one are known to be stale
     ("Physics", "_refreshed"),
     ("Physics", "_solved"),  # whether MuJoCo's derived numbers are up to date
     ("Physics", "_scratch"),

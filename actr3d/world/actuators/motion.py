@@ -193,8 +193,7 @@ def teleport(body: Body, x: float, y: float, heading: float | None = None) -> No
 
 @_if_eye_moves
 def gaze(body: Body, left: float, up: float = 0.0, speed: float | None = None) -> None:
-    """Turns the eye to a direction relative to the head [rad, left and up], or to its limits; at a speed [rad/s] or with that of a
-    saccade."""
+    """Turns the eye to a direction relative to the head [rad, left and up], or to its limits; without a speed [rad/s], as a saccade."""
     _look(body, checked_angle(left, "gaze: left"), checked_angle(up, "gaze: up"), speed)
 
 
