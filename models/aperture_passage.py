@@ -20,9 +20,9 @@ The three variants
 The `predictive` variant is described in predictive_walker.py: no margin, ratio or judgement is put into it.
 
 The `descriptive` variant (the default) looks before it turns. It turns only if the opening is narrower than 1.30 times its width. The turn
-starts 1.6 s before the wall; hips and legs turn with the shoulders, until there is as much room on the sides as a person has who need
-not turn: 0.30 of the shoulder width. The faster it walks, the faster it turns. The size of its body is proportional to its shoulder
-width.
+starts 1.6 s before the wall; hips and legs turn with the shoulders, until the room at the sides is 0.30 of the shoulder width, that
+of a person who just passes without turning. The faster it walks, the faster it turns. The size of its body is proportional to its
+shoulder width.
 
 The `replication` variant follows the original ACT-R 3D (facts about its code and its trials: docs/human-data.md). An object within 3 times its
 width starts a turn at 240 degrees/s, of which the torso alone contributes 120, whatever the size of the opening. The turn stops at
@@ -39,7 +39,8 @@ What to expect
 - An aperture of 0.6 m is passed without a turn, but with a turn by the `large` group.
 - An aperture of 0.25 m is declined.
 
-The run begins with some seconds of learning. At its end the tab *Buffers* shows the result, as measured in the world.
+The run begins with some seconds of learning. At its end the tab *Buffers* shows the measures of the passage, computed from the simulated
+world.
 
 What to try
 -----------
@@ -54,7 +55,7 @@ What to try
   `predictive` one can.
 - Or move the slider of the aperture while the walker is on its way.
 
-The `predictive` variant without one of its parts, or with another:
+Variations of the `predictive` variant:
 
 - `variant = "predictive", gait = False`: no steps and no sway, now and in its memories.
 - `variant = "predictive", perceptual_noise = 0.0`: exact eyes, and an exactly felt width.
@@ -92,7 +93,7 @@ NECK = 60
 BEARING = 19.6
 """Objects further from the walking direction are not obstacles [degrees]. Source: the original's 100 - acos(0.5 / 3) (docs/human-data.md)."""
 TIGHT = 1.03
-"""If the walker cannot turn further, it passes an opening this many times its width. Source: chosen for this model."""
+"""The least ratio of an opening to the felt width at which the walker passes when it cannot turn further. Source: chosen for this model."""
 BESIDE = 57.3
 """Objects further from the walking direction are beside the walker, not ahead [degrees]. Source: chosen for this model."""
 FIELD = 2.6
@@ -331,7 +332,7 @@ class Eyes(ACTR):
         self.stop()
 
 
-class EyesInPieces(Eyes):
+class EyesStepwise(Eyes):
     """Stops turning at each answer of vision, scans again, and continues to turn."""
 
     def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True"):
@@ -351,7 +352,7 @@ class EyesInPieces(Eyes):
         b_turn.modify(do="turn")
 
 
-class EyesAtOnce(Eyes):
+class EyesContinuous(Eyes):
     """Turns until an opening is found; near the wall, it stands still while it turns."""
 
     def not_found(b_turn="do:wait near:False way:unknown", vision="busy:False error:True", motor="stance_busy:False", near="state:!over"):
@@ -528,7 +529,7 @@ class Walker(SGOMS):
 class Replication(Walker):
     """The original ACT-R 3D's model. Source of all numbers: facts about its code (docs/human-data.md)."""
 
-    eyes = EyesInPieces()
+    eyes = EyesStepwise()
     shoulders = Shoulders()
     answer = "turn"
     passable = 1.139
@@ -548,7 +549,7 @@ class Descriptive(Walker):
     how fast it turns, and how far it continues to turn. Because of the last two it turns more when it walks faster.
     """
 
-    eyes = EyesAtOnce()
+    eyes = EyesContinuous()
     shoulders = WholeBody()
     answer = "ask"
     passable = 1.16
@@ -583,13 +584,14 @@ TURNING = 62.0
 """The turn of a person's shoulders for each metre that the legs walk [degrees/m]: 80 degrees/s at 1.29 m/s. Source: chosen for this
 model, fast enough to turn sideways within `REACTION`; also that it grows with the speed, because people turn more when they are fast."""
 ON = 0.055
-"""The fraction of the shoulder width by which the room still grows after it is seen to be enough, because a turning person does not
-stop at once. Source: chosen for this model."""
+"""How much the room still grows after vision has found it sufficient, because the turn does not stop immediately, as a fraction of the
+shoulder width. Source: chosen for this model."""
 ROOM = 0.9
-"""The least distance that a person keeps until there is a way through, in shoulder widths. Source: chosen for this model: half of the
-width is what turns, and the edges of a doorway are beside it."""
+"""The least distance from the doorway that a person keeps until it can be passed, in shoulder widths. Source: chosen for this model: a
+turning body needs half of its width, and the edges of the doorway must stay visible."""
 STOPPING = 0.25
-"""The time in which a person sees that there is no way through, and stops [s]. Source: chosen for this model: three answers of vision."""
+"""The time that a person needs to see that there is no way through, and to stop [s]. Source: chosen for this model: three answers of
+vision."""
 RADIUS = 3.0
 """The distance at which an obstacle alerts the replication, in shoulder widths. Source: docs/human-data.md."""
 HEIGHT = 1.714

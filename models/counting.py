@@ -5,9 +5,9 @@ or nothing, and a memory. Each method whose parameters all have patterns for def
 «if the goal buffer holds ... and the retrieval buffer holds ..., then ...». One production fires at a
 time, and takes 50 ms.
 
-Productions need no `self`: inside them, the agent's parts are known by name. `?now` in a pattern takes
-the value of that slot, for the whole production; `!?now` means «anything but this». Only slots that a
-pattern names are looked at.
+Productions need no `self`: inside them, the agent's parts are known by name. `?now` in a pattern binds the
+variable `now` to the value of that slot, for the whole production; `!?now` means «anything but this».
+Only slots that a pattern names are looked at.
 
 What to expect
 --------------

@@ -1,7 +1,7 @@
 """Walks through a doorway, and turns the shoulders if the doorway is too narrow.
 
 The agent walks its body towards a doorway 7 m away. Every 100 ms it looks: the view has the edges of what is visible, without
-names. This is the raw view, which steps outside what a vision module gives an agent; aperture_passage.py does without it.
+names. This raw view bypasses vision; aperture_passage.py uses a vision module instead.
 It finds the nearest edges to the left and to the right of the middle of the screen, and computes the width of the gap
 from their distances and angles. At 1.5 m it decides: a gap narrower than 1.3 times its shoulders is passed sideways (Warren
 and Whang, 1987: people turn their shoulders below that ratio). Behind the doorway it turns back and stops.

@@ -1,10 +1,10 @@
 """A person walks through a doorway, and decides from experience how far to turn the shoulders.
 
-No ratio, margin or judgement is put in. The walker has passed doorways before, with empty hands or with a bar as now. It remembers of
-150 passages how much wider than its body the doorway looked, how fast it walked, and what came of it: nothing, a brush, or a hit, and
-how hard. For each turn of its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by
-blending its memories what the passage will cost. It chooses the turn whose effort and expected impact are cheapest together. The effort
-is the work of turning, and of walking more slowly and then fast again.
+No ratio, margin or judgement is put in. The walker has passed doorways before, with empty hands or with a bar as now. It remembers of 150
+passages how much wider than its body the doorway looked, how fast it walked, and what came of it: nothing, a brush, or a hit, and how hard.
+For each turn of its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by blending its memories
+what the passage will cost. It chooses the turn with the smallest sum of effort and expected cost of contacts. The effort is the work of
+turning, and of walking more slowly and then fast again.
 
 The body walks with a gait (`actr3d.world.Gait`): it sways, and its steps vary. So it needs more room than its width, and the less room
 it has the more often it touches the wall. The eyes see the doorway with noise, less when it is near; and the felt width has noise.
@@ -12,10 +12,11 @@ it has the more often it touches the wall. The eyes see the doorway with noise, 
 Four parallel systems:
 
 - *Steering* (a production of 50 ms for each look and each turn) walks to the middle of the doorway by the law of Fajen & Warren (2003). A
-  doorway is the opening between two things, however wide it is. If it is hidden, the walker goes where it must be, by its own movement.
+  doorway is the opening between two things, however wide it is. If it is hidden, the walker goes to its expected position, computed
+  from its own movement.
 - *Avoiding* notices objects that are nearer than the doorway; the same law turns away from them. Near the doorway the walker waits if
-  something comes, before it or behind it, as near to it as the walker is: for as long as that comes nearer, and then until its patience
-  ends. Then it looks for a doorway again, and goes on; if there is none, it gives up.
+  an object approaches the doorway, on either side, and is as near to it as the walker. It waits as long as the object approaches, and
+  then until its patience ends. Then it looks for a doorway again, and goes on; if there is none, it gives up.
 - *Planning* imagines one turn after the other, and keeps the cheapest. It goes on until two steps before the doorway.
 - *Walking* turns the shoulders in one of these two steps, about half a step before the doorway, and turns them back behind it. With
   turned hips its steps are shorter, so it walks more slowly meanwhile.
@@ -71,8 +72,8 @@ NOTICE = 4.0
 """Objects count as obstacles up to this distance [m]. Source: chosen, about the protective zone of 3.8 m that Hackney et al. (2013)
 found (docs/human-data.md)."""
 BEFORE, LAG, FORGET = 0.15, 0.5, 0.5
-"""Obstacles are nearer than the doorway by more than the first number [m] and the way that it walks in the second [s], as it sees one
-after the other; and count this long after they were last noticed [s]. Source: chosen for this model."""
+"""An object counts as an obstacle if it is nearer than the doorway by more than the first number [m] plus the distance walked in the second
+[s] (it looks at one after the other), and for the third [s] after it was last noticed. Source: chosen for this model."""
 BETWEEN = 3.2
 """The distance between the middles of two doorways [m]. Source: chosen for this model."""
 HEADING_NOISE = 0.02
@@ -80,11 +81,11 @@ HEADING_NOISE = 0.02
 SLOWEST = 0.01
 """Turns slower than this are not made [rad/s]. Source: chosen for this model."""
 STEPS = 2.0
-"""How many steps before the doorway it decides. Source: chosen, because people look about two steps ahead (Patla & Vickers 2003); that
-they decide then is our assumption."""
+"""Distance from the doorway at which it decides [steps]. Source: chosen, because people look about two steps ahead (Patla & Vickers 2003);
+that they decide then is our assumption."""
 TURNING = 1.0
-"""In how many steps the shoulders turn. As seeing and deciding take time, they begin about one and a half steps before the doorway, and
-are turned about half a step before it. Source: chosen for this model."""
+"""Duration of a turn of the shoulders [steps]. As seeing and deciding take time, they begin about one and a half steps before the doorway,
+and are turned about half a step before it. Source: chosen for this model."""
 TURNS = tuple(range(0, 81, 10))
 """The turns that it imagines [degrees]. Source: chosen for this model."""
 HEAD = 0.75
@@ -99,9 +100,9 @@ ROOM, PACE, ANGLE, TEMPERATURE = 0.02, 0.3, 5.0, 1.0
 """Differences of room [m], speed [m/s] and angle [degrees] at which the similarity of two memories is -1; and the temperature of blending.
 The first one decides how much room it wants more than any other number (docs/results.md). Source: chosen for this model."""
 BODY = 0.4
-"""Of which shoulder width [m] rooms are as similar in shoulder widths as in metres. Source: chosen for this model."""
+"""The shoulder width [m] at which the similarity of two rooms is the same in both units. Source: chosen for this model."""
 LIKELY = 0.5
-"""What it expects with a greater probability, it counts on. Source: chosen, as anything else would be a bias."""
+"""Probability above which it treats an event as certain. Source: chosen, as anything else would be a bias."""
 DISTANCE_NOISE, EDGE_NOISE, WIDTH_NOISE = 0.02, 0.002, 0.005
 """Standard deviations, for `perceptual_noise = 1`: of seen distances, as a fraction; of seen directions of edges [rad]; of felt widths [m].
 Source: chosen for this model. They have no bias, as people's have none up to 15 m (Fukusima, Loomis & Da Silva 1997, J Exp Psychol Hum
@@ -109,14 +110,15 @@ Percept Perform 23); no Weber fraction of people for doorways at such distances 
 CYCLE = 0.05
 """Time of a production, and of a search of vision [s]. Source: productions of ACT-R; the search as in the original (docs/human-data.md)."""
 FEELING = 1.0
-"""In what time it turns out and back to feel its width, and back behind the doorway [s]. Source: chosen for this model."""
+"""Duration of a turn to feel its width, of the turn back, and of the turn back behind the doorway [s]. Source: chosen for this model."""
 GRAIN, FELT = 0.001, 4.0
-"""How finely it feels its width [m], and after what change of its angles it does again [degrees]. Source: chosen for this model."""
+"""Step to which the felt width is rounded [m], and the change of an angle after which the posture is stored again [degrees]. Source: chosen
+for this model."""
 LONGEST = 0.3
-"""The longest time that a look at the doorway counts for in steering [s]. Source: chosen for this model."""
+"""Upper limit of the time between two looks at the doorway that steering uses [s]. Source: chosen for this model."""
 YIELD = 3.0
-"""At how many steps before the doorway it waits if somebody else is nearer to it; nearer than that, it sets out only with a plan. Source:
-chosen for this model."""
+"""Distance from the doorway within which it waits if somebody else is nearer to it [steps]; if it stands within this distance, it sets out
+only with a plan. Source: chosen for this model."""
 PATIENCE = (0.5, 3.0)
 """The least and the greatest time that it waits while nobody comes nearer [s]. Source: chosen for this model."""
 PAUSE = 0.4
@@ -205,8 +207,8 @@ class Parameters(Configuration):
 def forward(speed, turn):
     """Returns the speed along the way [m/s] of somebody who walks at a speed [m/s] and has turned the shoulders by an angle [degrees].
 
-    Steps go as far along the way as the hips face it. That people slow down the more the more they turn is from Wilmut & Barnett (2010),
-    Hum Mov Sci 29; how much follows here from the share of the hips.
+    Steps go as far along the way as the hips face it. People slow down more if they turn more (Wilmut & Barnett 2010, Hum Mov Sci 29);
+    here, the amount follows from the share of the turn that the hips make.
     """
     return speed * cos(radians(HIPS * turn))
 
@@ -215,8 +217,8 @@ def work(turn, speed, seconds, inertia=INERTIA):
     """Returns the effort of turning the shoulders by an angle [degrees] at a walking speed [m/s]: the work of all movements [J].
 
     These are the turn, in a time [s], the turn back, slowing down, and walking at the speed again. Each starts and stops something: its
-    kinetic energy is put in once, and taken out once. What changes of speed cost people fits a model of their kinetic energy, among others
-    (Seethapathi & Srinivasan 2015, Biol Lett 11).
+    kinetic energy is put in once, and taken out once. The measured cost of speed changes in people agrees with a model of kinetic energy,
+    among others (Seethapathi & Srinivasan 2015, Biol Lett 11).
     """
     turning = inertia * sum((radians(turn) / time) ** 2 for time in (seconds, FEELING))
     return turning + Mannequin.mass * (speed**2 - forward(speed, turn) ** 2)
@@ -264,7 +266,7 @@ class Steering(ACTR):
         b_visual.clear()
         b_door.modify(width=wide, left=left, right=right)
         self.parent.looks_around = False
-        self.parent.sees(float(far), float(aside), float(deep))
+        self.parent.steer_towards(float(far), float(aside), float(deep))
 
     def look_around(b_course="steer:yes", vision="busy:False error:True", motor="width:?width", b_door="left:?left right:?right"):
         """Looks for any opening that is wide enough; without one, something hides the doorway."""
@@ -272,7 +274,7 @@ class Steering(ACTR):
         if self.parent.looks_around:
             vision.request(DOOR, width=f">{width}")
         else:
-            self.parent.sees(*self.parent.expected(), 0)
+            self.parent.steer_towards(*self.parent.expected(), 0)
             vision.request(DOOR, left="?left", right="?right")
 
 
@@ -338,7 +340,7 @@ class Planning(ACTR):
             self.decide(self.cheapest[1])
 
     def decide(self, plan):
-        """Keeps a plan, unless it has come too late: the walker steers so that the middle of its turned body will be in the middle."""
+        """Stores a plan, unless it is too late; the walker then steers so that the middle of its turned body passes through the middle."""
         if self.parent.b_goal["do"] == "walk":
             self.parent.b_plan.set(plan)
             self.parent.costs = self.costs
@@ -359,7 +361,7 @@ class Person(ACTR):
     b_plan = Buffer()
     b_DM = Buffer()
     DM = Memory(b_DM, latency=0, threshold=None)
-    nearest = Similar(DM)
+    similar_posture = Similar(DM)
     b_experience = Buffer()
     experience = BlendingMemory(b_experience, latency=0, threshold=None, maximum_time=CYCLE)
     activation_noise = DMNoise(experience, noise=MEMORY_NOISE)
@@ -376,7 +378,7 @@ class Person(ACTR):
     planning = Planning()
 
     def init():
-        nearest.scales = {"torso_yaw": ANGLE}
+        similar_posture.scales = {"torso_yaw": ANGLE}
         alike.scales = {"room": ROOM if units == "metres" else ROOM / BODY, "speed": PACE}
         experience.temperature = TEMPERATURE
         activation_noise.noise = memory_noise
@@ -440,34 +442,34 @@ class Person(ACTR):
         self.stop()
 
     def remember_passages(b_goal="do:judge", b_visual="feature:opening width:?wide", motor="width:?width"):
-        """Has it passed such a doorway without touching it, at whatever speed?"""
+        """Requests memories of passages through such a doorway without contact, at any speed."""
         b_visual.clear()
         experience.request(f"event:passage room:{self.room(wide, width, self.shoulders)} free:?")
         b_goal.set(f"do:say door:{wide}")
 
     def say(b_goal="do:say door:?door", b_experience="free:?free"):
-        """It has; or it imagines the greatest turn."""
+        """Judges «as it is» if a passage without contact is likely; otherwise imagines the greatest turn."""
         b_experience.clear()
         if float(free) > LIKELY:
-            self.tell("as it is")
+            self.report("as it is")
         else:
             DM.request(f"torso_yaw:{self.side * (1 - HIPS) * TURNS[-1]:.2f} width:?")
             b_goal.set(f"do:imagine door:{door}")
 
     def remember_turned_passages(b_goal="do:imagine door:?door", b_DM="width:?width"):
-        """Has it passed such a doorway at all, as narrow as it can be?"""
+        """Requests memories of passages with the room that the greatest turn leaves, with or without contact."""
         b_DM.clear()
         experience.request(f"event:passage room:{self.room(door, width, self.shoulders)} passed:?")
         b_goal.set("do:doubt")
 
     def say_whether_turned(b_goal="do:doubt", b_experience="passed:?passed"):
-        self.tell("turned" if float(passed) > LIKELY else "not at all")
+        self.report("turned" if float(passed) > LIKELY else "not at all")
 
     def know_nothing(b_goal="do:say", experience="error:True"):
         """Without experience it judges as it would walk: it turns only if the turn is given."""
-        self.tell("turned" if self.always else "as it is")
+        self.report("turned" if self.always else "as it is")
 
-    def tell(self, judged):
+    def report(self, judged):
         """Says whether and how it can pass."""
         self.judged = judged
         print(f"{self.now():.2f} s: {self.who}" + ("cannot pass" if judged == "not at all" else f"can pass {judged}"))
@@ -515,11 +517,12 @@ class Person(ACTR):
         self.through_at = self.now() + seconds
         self.way.go(seconds)
 
-    def sees(self, far, left, deep):
+    def steer_towards(self, far, left, deep):
         """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees], with free depth behind it [m].
 
-        It keeps its course in the last step. Before that, it waits for what comes as near to the doorway as the walker is, not for what
-        does not move. Something before the doorway, not its sides, has a depth below 0. Each step that it comes nearer renews the patience.
+        In the last step it keeps its course. Before, it waits for an object that approaches and is as near to the doorway as the walker; it
+        does not wait for objects that do not move. An object in front of the doorway has a negative depth. Each time the object has come
+        nearer, the patience starts again.
         """
         now, waits = self.now(), self.b_goal["do"] == "wait"
         obstructed = False
@@ -544,14 +547,14 @@ class Person(ACTR):
             return
         if far < self.step:
             self.b_course.set("steer:no")
-            self.head(0.0)
+            self.turn_course(0.0)
             return
         aside = atan2(far * sin(radians(left)) - self.middle, far * cos(radians(left)))
         pull = ATTRACTION * aside * (exp(-NEARNESS * far) + MIN_ATTRACTION)
         if obstructed:
             pull -= REPULSION * direction * exp(-NARROWNESS * abs(direction)) * exp(-REACH * distance)
         self.rate += (pull - DAMPING * self.rate) * elapsed + self.random.gauss(0, HEADING_NOISE * sqrt(elapsed))
-        self.head(self.rate)
+        self.turn_course(self.rate)
 
     def expected(self):
         """Returns where the doorway must be, by its own movement since it knew it last: distance [m] and direction [degrees]."""
@@ -561,7 +564,7 @@ class Person(ACTR):
         aside = far * sin(left)
         return hypot(ahead, aside), degrees(atan2(aside, ahead) - self.rate * elapsed)
 
-    def head(self, rate):
+    def turn_course(self, rate):
         """Turns the walking direction at a speed [rad/s]."""
         self.motor.turn(speed=degrees(rate) if abs(rate) > SLOWEST else 0)
 
@@ -574,7 +577,7 @@ class Person(ACTR):
         print(f"{self.now():.2f} s: {self.who}waits")
         motor.stop()
         self.rate = 0.0
-        self.head(0.0)
+        self.turn_course(0.0)
         b_goal.set("do:wait")
 
     def go_on(b_goal="do:wait", b_door="free:True"):
@@ -590,7 +593,7 @@ class Person(ACTR):
 
     def decline(b_goal="do:decline"):
         motor.stop()
-        self.tell("not at all")
+        self.report("not at all")
 
     def turn(b_goal="do:turn turn:?turn", b_door="far:?far"):
         print(f"{self.now():.2f} s: {self.who}turns by {turn} degrees")
@@ -631,7 +634,7 @@ def person(parameters: Parameters, name: str = "walker") -> Person:
 
 
 def build(parameters: Parameters) -> Simulation:
-    """Puts a walker before a doorway, or before two; with a pillar between; or another walker on the other side."""
+    """Builds a walker in front of one doorway or two; optionally with a pillar on the way, or with another walker on the other side."""
     p = parameters
     width = p.shoulder_width
     walker = Mannequin(

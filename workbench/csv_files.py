@@ -15,7 +15,7 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.values import to_json
-from actr3d.world.compiled import from_text, loaded
+from actr3d.world.compiled import from_bytes, from_text
 from workbench.recorded_simulations import facts_of_simulation
 
 _FREE, _BALL, _SLIDE = (int(kind) for kind in (mjtJoint.mjJNT_FREE, mjtJoint.mjJNT_BALL, mjtJoint.mjJNT_SLIDE))
@@ -59,7 +59,7 @@ def _state_rows(recorded: Recorded) -> Iterator[tuple[Any, ...]]:
         numbers = array("d", state)
         if tick == 0:
             facts = facts_of_simulation(recorded, run)
-            names = [] if facts is None else state_columns(loaded(from_text(facts["compiled"])))
+            names = [] if facts is None else state_columns(from_bytes(from_text(facts["compiled"])))
             known = names if len(names) == len(numbers) else [f"state_{number}" for number in range(len(numbers))]
             yield *time_columns, *known, "contacts"
         listed = to_json([(*contact, force) for contact, force in contacts.items()]) if contacts else ""

@@ -11,7 +11,7 @@ from mujoco import MjModel
 from actr3d.recording import Recorded
 from actr3d.recording.schema import SIMULATION
 from actr3d.recording.writer import State
-from actr3d.world.compiled import from_text, loaded
+from actr3d.world.compiled import from_bytes, from_text
 from workbench.program_time import timed
 from workbench.worker.state_history import MAX_SIMULATIONS, Past
 
@@ -37,7 +37,7 @@ class RecordedSimulation:
     @cached_property
     def mj_model(self) -> MjModel:
         """The compiled scene at its start."""
-        return loaded(from_text(self.facts["compiled"]))
+        return from_bytes(from_text(self.facts["compiled"]))
 
 
 def simulations_of(recorded: Recorded) -> list[RecordedSimulation]:

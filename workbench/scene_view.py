@@ -14,7 +14,7 @@ import mujoco
 import numpy as np
 from mujoco import MjData, MjModel
 
-from actr3d.world.compiled import loaded
+from actr3d.world.compiled import from_bytes
 from workbench.backdrop import Outlines, Shades, lay_grounds, light
 from workbench.curves import INTEGRATION
 from workbench.geom_colours import dress
@@ -220,12 +220,12 @@ class _Drawn:
         from mjviser import ViserMujocoScene
 
         assert facts.mj_model is not None
-        self._model: MjModel = loaded(facts.mj_model)
+        self._model: MjModel = from_bytes(facts.mj_model)
         self.data = MjData(self._model)
         mujoco.mj_forward(self._model, self.data)
         world: dict[str, Any] = msgspec.json.decode(facts.world)
         # The scene scales the model's visual settings, so it gets a copy of its own.
-        copy = loaded(facts.mj_model)
+        copy = from_bytes(facts.mj_model)
         dress(copy, [body["root"] for name, body in world["bodies"].items() if name in world["agents"]])
         self._scene: Any = ViserMujocoScene(server, copy, 1)
         self._scene.camera_tracking_enabled = False  # it would shift the world

@@ -19,7 +19,7 @@ from actr3d.actr.loading import load_text
 from actr3d.bench import camera
 from actr3d.benchmark import Figure, benchmark, processor_time_of, report
 from actr3d.simulation import Simulation
-from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, WorldState
+from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, WorldState
 
 WARM = 200
 """The number of ticks before a measurement."""
@@ -122,7 +122,7 @@ TRIAL = 600
 
 def trial(agent: str = SEEING) -> Simulation:
     """Returns a walker with vision, 7 m in front of a doorway in a furnished room."""
-    things = [Loose(name=f"thing{n}", position=(2.0 + n, 2.0 - 4.0 * (n % 2), 0.4), size=(0.4, 0.4, 0.8)) for n in range(4)]
+    things = [SimpleObject(name=f"thing{n}", position=(2.0 + n, 2.0 - 4.0 * (n % 2), 0.4), size=(0.4, 0.4, 0.8)) for n in range(4)]
     scene = Scene(parts=(Floor(), Aperture(width=0.9), *things, Mannequin(name="walker")))
     return Simulation(scene, {"walker": load_text(agent, "seeing.py").Agent}, seed=1)
 

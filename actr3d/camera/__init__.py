@@ -4,17 +4,17 @@ from actr3d.camera.geometric import GeometricCamera
 from actr3d.camera.kernel.dtypes import EXTENT_FIELDS, ExtentField
 from actr3d.camera.parameters import CameraParameters
 from actr3d.camera.view import View
-from actr3d.camera.view_sensor import Sight, Stand, glance, glance_with_geoms, stand_of
+from actr3d.camera.view_sensor import EyePose, EyeSense, eye_pose_of, view_and_geoms_for_observer, view_for_observer
 
 __all__ = [
     "EXTENT_FIELDS",
     "CameraParameters",
     "ExtentField",
+    "EyePose",
+    "EyeSense",
     "GeometricCamera",
-    "Sight",
-    "Stand",
     "View",
-    "glance",
-    "glance_with_geoms",
-    "stand_of",
+    "eye_pose_of",
+    "view_and_geoms_for_observer",
+    "view_for_observer",
 ]

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from actr3d.camera.eye import Eye, Kind, names_of
 from actr3d.camera.kernel.dtypes import EXTENT
-from actr3d.camera.kernel.lower_envelope import room_for
 from actr3d.camera.kernel.scan import MAX_PIECES_OF_A_PATCH, scan
 from actr3d.camera.kernel.scene import room_for_scene
+from actr3d.camera.kernel.upper_envelope import room_for
 from actr3d.camera.parameters import CameraParameters, optics_of
 from actr3d.camera.topology import geoms_of, objects_of, topology_of
 from actr3d.camera.view import View
@@ -26,11 +26,11 @@ from actr3d.world.frames import upright_axes
 class GeometricCamera:
     """Computes the visible edges from one viewpoint in a MuJoCo model: exactly, and without pixels, names or meanings.
 
-    Visibility follows MuJoCo's ray casts: fully transparent geoms are not seen, planes are seen from their front only, and from
-    inside a geom its inner sides are seen. Signed distance fields are an exception: they are seen as the meshes that MuJoCo draws
-    for them, which differ slightly from what its rays hit. Flexes and skins are not seen, and a warning names them. Changes in
-    `mj_model` (sizes, colours, heights, poses) take effect at the next look; only the list of geoms and their types is read once.
-    The sensor `view` looks again after a step, or after `World.changed`.
+    Visibility follows MuJoCo's ray casts: fully transparent geoms are not seen, planes are seen from their front only, and from inside a
+    geom its inner sides are seen. Signed distance fields are an exception: they are seen as the meshes that MuJoCo draws for them; these
+    differ slightly from the surfaces that its rays hit. Flexes and skins are not seen, and a warning names them. Changes in `mj_model`
+    (sizes, colours, heights, poses) take effect at the next look; only the list of geoms and their types is read once. The sensor `view`
+    looks again after a step, or after `World.changed`.
 
     A camera is not thread-safe.
     """
@@ -82,7 +82,8 @@ class GeometricCamera:
 
         Args:
             mj_data: The poses.
-            heading: The direction that the agent calls ahead [rad, in the world frame]; None for the viewing direction. See `View.axes`.
+            heading: The direction that counts as straight ahead, usually the heading of the body [rad, in the world frame]; None for the
+                viewing direction. See `View.axes`.
 
         Raises:
             CameraError: If the poses were not computed, are not finite, or belong to another model.
@@ -134,7 +135,8 @@ class GeometricCamera:
             CameraError: If the state comes from a camera with other objects.
         """
         if len(state) != len(self._labels):
-            raise CameraError(f"GeometricCamera.restore: a state of {len(state) - 1} objects for a camera that has {len(self._labels) - 1}")
+            own = len(self._labels) - 1
+            raise CameraError(f"GeometricCamera.restore: the state is of a camera with {len(state) - 1} objects, not {own}")
         self._labels[:] = state
 
     def _scan(self, axes: NDArray[np.float64], mj_data: MjData) -> int:
@@ -160,7 +162,7 @@ def _warn_of_unseen(mj_model: MjModel) -> None:
     kinds = (("flex", mj_model.nflex, mujoco.mjtObj.mjOBJ_FLEX), ("skin", mj_model.nskin, mujoco.mjtObj.mjOBJ_SKIN))
     names = [f"{kind} '{mujoco.mj_id2name(mj_model, which, n) or n}'" for kind, count, which in kinds for n in range(int(count))]
     if names:
-        warn_modeller(f"the Geometric Camera does not see {', '.join(names)}: give what should be seen a geom")
+        warn_modeller(f"the Geometric Camera does not see {', '.join(names)}: add a geom to each object that should be seen")
 
 
 def _the_eye(mj_model: MjModel, **given: str | None) -> Eye:

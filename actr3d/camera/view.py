@@ -86,7 +86,8 @@ class View:
             CameraError: If they are not given by field, or there is no such field.
         """
         if not isinstance(sd, Mapping):
-            raise CameraError(f"noise of view: its fields have different units; name them: {{'d1': {sd}}}, of {', '.join(NOISY)}")
+            fields = ", ".join(NOISY)
+            raise CameraError(f"noise of view: its fields have different units; give them by name: {{'d1': {sd}}}; fields: {fields}")
         extents = self.extents.copy()
         for field, of in cast("Mapping[str, float]", sd).items():
             if field not in NOISY:

@@ -1,4 +1,4 @@
-"""The sensor `view`: returns what a body's eye sees; and what observers get of it, who do not change the labels that the agent knows."""
+"""The sensor `view`: returns what a body's eye sees; and views for observers, which leave the labels that the agent knows unchanged."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ USUAL = CameraParameters()
 """The parameters that are used if no options are given."""
 
 
-class Stand(NamedTuple):
+class EyePose(NamedTuple):
     """The position of an eye and the heading of its body, in the world frame; for observers, agents never receive it."""
 
     x: float
@@ -35,7 +35,7 @@ class Stand(NamedTuple):
     """[rad]"""
 
 
-def stand_of(body: Body, data: Any) -> Stand:
+def eye_pose_of(body: Body, data: Any) -> EyePose:
     """Returns the pose of a body's eye in simulation data whose geometry is up to date.
 
     Args:
@@ -44,10 +44,10 @@ def stand_of(body: Body, data: Any) -> Stand:
     """
     site = mj_name2id(body.physics.mj_model, mjtObj.mjOBJ_SITE, body.eye or "")
     x, y, z = data.site_xpos[site].tolist()
-    return Stand(x, y, z, heading_of(data.xmat[body.root]))
+    return EyePose(x, y, z, heading_of(data.xmat[body.root]))
 
 
-class Sight:
+class EyeSense:
     """A body's eye with one set of parameters; computes at most one view for each state of the world.
 
     Args:
@@ -61,9 +61,9 @@ class Sight:
         self._body = body
         self._camera = GeometricCamera(body.physics.mj_model, site=body.eye, parameters=parameters)
         self._unseen = self._camera.state()
-        self._moment = -1
+        self._state_number = -1
         self._view: View | None = None
-        self._stands: WeakKeyDictionary[View, Stand] = WeakKeyDictionary()
+        self._poses: WeakKeyDictionary[View, EyePose] = WeakKeyDictionary()
 
     def look(self) -> View:
         """Returns what is visible now.
@@ -72,17 +72,17 @@ class Sight:
             CameraError: If the poses are not finite.
         """
         physics = self._body.physics
-        if self._view is None or self._moment != physics.moment:
+        if self._view is None or self._state_number != physics.state_number:
             physics.refresh()
-            stand = stand_of(self._body, physics.mj_data)
-            self._view = self._camera.look(physics.mj_data, stand.heading)
-            self._stands[self._view] = stand
-            self._moment = physics.moment
+            pose = eye_pose_of(self._body, physics.mj_data)
+            self._view = self._camera.look(physics.mj_data, pose.heading)
+            self._poses[self._view] = pose
+            self._state_number = physics.state_number
         return self._view
 
-    def stood(self, view: View) -> Stand | None:
+    def pose_of(self, view: View) -> EyePose | None:
         """Returns the pose of the eye when it saw a view, for observers; None if this eye did not compute the view."""
-        return self._stands.get(view)
+        return self._poses.get(view)
 
     def geoms_by_label(self) -> dict[int, tuple[int, ...]]:
         """Returns the geoms of all objects that have a label, by label; for observers."""
@@ -104,16 +104,16 @@ def view(body: Body, **options: Any) -> View:
 
     Args:
         body: The body whose eye is used.
-        options: The fields of `CameraParameters`; looks with the same options share their labels. Numbers may be given as text.
+        options: The fields of `CameraParameters`; readings with the same options use the same labels. Numbers may be given as text.
 
     Raises:
         ConfigurationError: If an option is not a field, or its value is invalid.
         CameraError: If an object named as background does not exist.
     """
     if not options:
-        return body.sense(Sight, USUAL).look()
+        return body.sense(EyeSense, USUAL).look()
     named = {name: _meant(value) for name, value in options.items()}
-    return body.sense(Sight, CameraParameters.from_mapping(named)).look()
+    return body.sense(EyeSense, CameraParameters.from_mapping(named)).look()
 
 
 def _meant(value: Any) -> Any:
@@ -124,7 +124,7 @@ def _meant(value: Any) -> Any:
     return value
 
 
-def glance(body: Body, parameters: CameraParameters | None = None) -> View:
+def view_for_observer(body: Body, parameters: CameraParameters | None = None) -> View:
     """Returns what is visible now, with the labels that the agent knows. Objects not seen before may get other labels later.
 
     Args:
@@ -134,15 +134,15 @@ def glance(body: Body, parameters: CameraParameters | None = None) -> View:
     Raises:
         CameraError: If the body has no eye, or the poses are not finite.
     """
-    return _observed(body, parameters, Sight.look)
+    return _observed(body, parameters, EyeSense.look)
 
 
-def glance_with_geoms(body: Body, parameters: CameraParameters | None = None) -> tuple[View, dict[int, tuple[int, ...]]]:
-    """Returns what is visible now, as `glance` does, and the geoms of all objects that have a label, by label.
+def view_and_geoms_for_observer(body: Body, parameters: CameraParameters | None = None) -> tuple[View, dict[int, tuple[int, ...]]]:
+    """Returns what is visible now, as `view_for_observer` does, and the geoms of all objects that have a label, by label.
 
     Args:
         body: The body whose eye is used.
-        parameters: How it sees, as in `glance`.
+        parameters: How it sees, as in `view_for_observer`.
 
     Raises:
         CameraError: If the body has no eye, or the poses are not finite.
@@ -150,13 +150,13 @@ def glance_with_geoms(body: Body, parameters: CameraParameters | None = None) ->
     return _observed(body, parameters, lambda eye: (eye.look(), eye.geoms_by_label()))
 
 
-def _observed(body: Body, parameters: CameraParameters | None, read: Callable[[Sight], T]) -> T:
+def _observed(body: Body, parameters: CameraParameters | None, read: Callable[[EyeSense], T]) -> T:
     """Returns what an observer reads from a body's eye, which keeps the labels that the agent knows."""
     if body.eye is None:
         raise CameraError(f"body '{body.name}' has no eye")
     if parameters is None:
-        parameters = next((sense.parameters for sense in body.senses if isinstance(sense, Sight)), CameraParameters())
-    eye = body.unused_sense(Sight, parameters)
+        parameters = next((sense.parameters for sense in body.senses if isinstance(sense, EyeSense)), CameraParameters())
+    eye = body.unused_sense(EyeSense, parameters)
     labels = eye.state()
     try:
         return read(eye)

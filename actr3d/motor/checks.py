@@ -1,4 +1,4 @@
-"""Warns of productions that match attributes which a motor module does not have, once it knows its body."""
+"""Warns about productions that match attributes that a motor module does not have. Runs when the module knows its body."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from math import radians
 
 from actr3d.errors import WorldError
 from actr3d.world.anatomy import NamedMovement
-from actr3d.world.command_registry import known
+from actr3d.world.command_registry import checked_name
 from actr3d.world.sensors.anatomy import BodyPlan, JointPlan
 
 BASE_GROUP = "legs"
@@ -18,11 +18,11 @@ BASE_GROUP = "legs"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Freedom:
+class DegreeOfFreedom:
     """The present knowledge of one degree of freedom. Radians, or metres for a slide."""
 
     name: str
-    """Of the joint: `torso_yaw`."""
+    """The name of the joint, such as `torso_yaw`."""
     axis: str
     """`yaw`, `pitch` or `roll` of a hinge, `x`, `y` or `z` of a slide."""
     lower: float | None
@@ -31,10 +31,10 @@ class Freedom:
     """Upper limit [rad] or [m]; None without limit."""
     angle: float
     """Felt position [rad] or [m]."""
-    least: float
-    """Least felt position up to now [rad] or [m]."""
-    most: float
-    """Greatest felt position up to now [rad] or [m]."""
+    minimum: float
+    """Minimum of the felt positions up to now [rad] or [m]."""
+    maximum: float
+    """Maximum of the felt positions up to now [rad] or [m]."""
     driven: bool
     """Whether a command can move it."""
 
@@ -45,7 +45,7 @@ class BodyPart:
 
     name: str
     """The name of the part: `torso`."""
-    joints: tuple[Freedom, ...]
+    joints: tuple[DegreeOfFreedom, ...]
     """The joints between it and the part that carries it."""
     parts: tuple[BodyPart, ...]
     """The parts that it carries."""
@@ -57,7 +57,7 @@ class BodyPart:
             WorldError: If there is none of that name.
         """
         all_parts = {part.name: part for part in self.subtree()}
-        return all_parts[known(name, all_parts, self.name, "part")]
+        return all_parts[checked_name(name, all_parts, self.name, "part")]
 
     def subtree(self) -> tuple[BodyPart, ...]:
         """Returns this part and all that it carries, each after the one that carries it."""
@@ -92,34 +92,34 @@ class Limbs:
         """Greatest speeds of walking [m/s], turning [rad/s] and joints [rad/s]."""
         self.felt: dict[str, float] = {}
         """By joint, its felt position [rad] or [m]."""
-        self.least: dict[str, float] = {}
-        self.most: dict[str, float] = {}
+        self.minimum: dict[str, float] = {}
+        self.maximum: dict[str, float] = {}
 
     def feel(self, positions: Mapping[str, float]) -> None:
         """Updates the felt positions of some joints [rad] or [m]."""
         self.felt.update(positions)
-        least, most = self.least, self.most
+        minimum, maximum = self.minimum, self.maximum
         for joint, position in positions.items():
-            if position < least.setdefault(joint, position):
-                least[joint] = position
-            if position > most.setdefault(joint, position):
-                most[joint] = position
+            if position < minimum.setdefault(joint, position):
+                minimum[joint] = position
+            if position > maximum.setdefault(joint, position):
+                maximum[joint] = position
 
-    def freedom(self, joint: str) -> Freedom:
+    def degree_of_freedom(self, joint: str) -> DegreeOfFreedom:
         """Returns the present knowledge of a joint.
 
         Raises:
             WorldError: If the body has no such joint.
         """
-        plan = self.joints[known(joint, self.joints, self.plan.name, "joint")]
-        return Freedom(
+        plan = self.joints[checked_name(joint, self.joints, self.plan.name, "joint")]
+        return DegreeOfFreedom(
             name=joint,
             axis=plan.axis,
             lower=plan.lower,
             upper=plan.upper,
             angle=self.felt[joint],
-            least=self.least[joint],
-            most=self.most[joint],
+            minimum=self.minimum[joint],
+            maximum=self.maximum[joint],
             driven=plan.driven,
         )
 
@@ -128,18 +128,20 @@ class Limbs:
         made: dict[str, BodyPart] = {}
         for part in reversed(self.plan.parts):
             carried = tuple(made[other.name] for other in self.plan.parts if other.on == part.name)
-            made[part.name] = BodyPart(name=part.name, joints=tuple(self.freedom(joint.name) for joint in part.joints), parts=carried)
+            made[part.name] = BodyPart(
+                name=part.name, joints=tuple(self.degree_of_freedom(joint.name) for joint in part.joints), parts=carried
+            )
         return made[self.plan.parts[0].name]
 
     def joint(self, name: str, axis: str | None) -> str:
-        """Returns the joint of that name, or of that part about that axis.
+        """Returns the name of a joint, given its name or the name of its part. A part with several joints also needs the axis.
 
         Raises:
             WorldError: If there is none, or there are several.
         """
         whose = self.plan.name
         if not isinstance(name, str):  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
-            known(name, self.joints, whose, "joint" if axis is None else "jointed part")
+            checked_name(name, self.joints, whose, "joint" if axis is None else "jointed part")
         if axis is None:
             if name in self.joints:
                 return name
@@ -147,7 +149,7 @@ class Limbs:
             if len(of) == 1:
                 return of[0]
             if not of:
-                known(name, self.joints, whose, "joint")
+                checked_name(name, self.joints, whose, "joint")
             axes = ", ".join(dict.fromkeys(self.joints[joint].axis for joint in of))
             raise WorldError(f"{whose}: '{name}' has several joints; give the axis: {axes}")
         by_axis: dict[str, list[str]] = {}
@@ -155,8 +157,8 @@ class Limbs:
             if part == name:
                 by_axis.setdefault(self.joints[joint].axis, []).append(joint)
         if not by_axis:
-            known(name, dict.fromkeys(self.group_of.values()), whose, "jointed part")
-        first, *others = by_axis[known(axis, by_axis, f"{whose}: {name}", "axis")]
+            checked_name(name, dict.fromkeys(self.group_of.values()), whose, "jointed part")
+        first, *others = by_axis[checked_name(axis, by_axis, f"{whose}: {name}", "axis")]
         if others:
             raise WorldError(f"{whose}: '{name}' has several joints about {axis}; name one of them: {', '.join([first, *others])}")
         return first
@@ -167,11 +169,11 @@ class Limbs:
         Raises:
             WorldError: If there is none of that name, or none on that side.
         """
-        known(name, dict.fromkeys(movement.name for movement in self.plan.movements), self.plan.name, "movement")
+        checked_name(name, dict.fromkeys(movement.name for movement in self.plan.movements), self.plan.name, "movement")
         sides = {movement.side: movement for movement in self.plan.movements if movement.name == name}
         if side is None and None in sides:
             return sides[None]
-        return sides[known(side, [str(of) for of in sides if of is not None], f"{self.plan.name}: {name}", "side")]
+        return sides[checked_name(side, [str(of) for of in sides if of is not None], f"{self.plan.name}: {name}", "side")]
 
     def check_speed(self, call: str, speed: float, kind: int, unit: float) -> None:
         """Checks that the body can reach a speed.
@@ -183,7 +185,7 @@ class Limbs:
             unit: The unit of speeds in the command.
 
         Raises:
-            WorldError: If it is faster, or slower than `SLOWEST` but not 0; with the possible range.
+            WorldError: If the speed is above the body's maximum, or below `SLOWEST` but not 0. The message contains the bound.
         """
         most = self.fastest[kind]
         if 0 < abs(speed) < SLOWEST:
@@ -209,7 +211,7 @@ FINEST = 1e-9
 """The finest grid [degrees] or [m]."""
 
 TINY = 1e-9
-"""Greatest error of conversion between degrees and radians [rad]."""
+"""Tolerance for rounding errors of conversions, in the unit of the compared values."""
 
 
 def on_grid(value: float, grid: float) -> float:

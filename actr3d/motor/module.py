@@ -16,11 +16,11 @@ from actr3d.actr.modules.port import CallSite, Port, Request, note_request
 from actr3d.clock import seconds
 from actr3d.errors import ParameterError, SimulationError, WorldError
 from actr3d.motor.checks import check_patterns
-from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, Freedom, Limbs
+from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, DegreeOfFreedom, Limbs
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Order, Step, Turn, Walk, gait
 from actr3d.motor.schema import BodySchema
 from actr3d.world.actuators.motion import MOST_TURNS
-from actr3d.world.command_registry import known, number
+from actr3d.world.command_registry import checked_name, number
 from actr3d.world.sensors.anatomy import BodyPlan
 from actr3d.world.sensors.proprioception import Proprioception
 
@@ -28,13 +28,13 @@ HUGE = 1e9
 """Upper bound of every parameter."""
 
 SIZES = ("width", "depth", "height", "middle")
-"""What is felt of the size of the body."""
+"""The felt sizes of the body."""
 
 _NOTHING = object()
 
 
 class Motor(WithParameters, Port):
-    """Moves the body of its agent, and learns what the body is like in each posture.
+    """Moves the agent's body, and learns the size of the body in each posture.
 
     It is for agents with a body in a physical world. `from actr3d.motor import Motor` after `from actr3d.actr import *` replaces the
     `Motor` of Python ACT-R, which presses keys.
@@ -56,15 +56,15 @@ class Motor(WithParameters, Port):
 
     Args:
         buffer: Receives each stored posture; None for none.
-        memory: The declarative memory that stores postures; None for none. (By the rules of ACT-R 7 a memory collects the chunks
-            that leave buffers; there a buffer alone is enough.)
+        memory: The declarative memory that stores postures; None for none. (In the ACT-R 7 profile a memory also collects the chunks that
+            leave buffers; there, `buffer` without `memory` is enough.)
         speed: Default speed of joints and of turns of the whole body [degrees/s].
             Source: the original ACT-R 3D's torso and clavicle (docs/human-data.md).
         angle_grid: Step to which felt angles are rounded [degrees]; this and the next three apply once the body is known.
         size_grid: Step to which felt lengths are rounded [m]. Source: chosen, fine enough to judge a doorway to a hundredth of the
             shoulder width.
-        extreme_step: Distance beyond its former extreme at which a moving joint's posture is stored [degrees]; None
-            for never. Source: chosen; about the ten samples to each side that the original took.
+        extreme_step: Distance beyond its former extreme at which a moving joint's posture is stored [degrees]; None for never. Source:
+            chosen; it gives about ten postures to each side, as in the original.
         extreme_slide: The same for a joint that slides [m]. Source: chosen.
         angle_noise: The standard deviation of felt angles [degrees].
         size_noise: The standard deviation of felt width, depth, height and middle, and of the positions of slides [m].
@@ -154,14 +154,14 @@ class Motor(WithParameters, Port):
         """
         return self._known().tree()
 
-    def joint(self, name: str) -> Freedom:
+    def joint(self, name: str) -> DegreeOfFreedom:
         """Returns the present knowledge of a joint: its position, limits and extremes. Radians.
 
         Raises:
             SimulationError: If the body is not known yet.
             WorldError: If it has no such joint.
         """
-        return self._known().freedom(name)
+        return self._known().degree_of_freedom(name)
 
     def _known(self) -> Limbs:
         if self._limbs is None or self._schema is None:
@@ -223,7 +223,7 @@ class Motor(WithParameters, Port):
         self._begin_or_change("turn", Turn(angle, rate, site), change=endless)
 
     def _begin_or_change(self, key: str, movement: Movement, *, change: bool) -> None:
-        """Begins a movement of the legs, or replaces the one in progress; one that is still prepared begins before that."""
+        """Begins a movement of the legs, or replaces the one in progress. If that one is still being prepared, it begins first."""
         if change:
             self._accept()
             self._after_preparation(self._change, key, movement)
@@ -233,7 +233,7 @@ class Motor(WithParameters, Port):
     def _stop(self, groups: Sequence[Any], site: CallSite | None) -> None:
         plan = self._known().plan
         for group in groups:
-            known(group, self._known().groups, plan.name, "muscle group")
+            checked_name(group, self._known().groups, plan.name, "muscle group")
         self._accept()
         self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], site)
         if not groups and "stop" in plan.actuators:
@@ -366,7 +366,7 @@ class Motor(WithParameters, Port):
             pace: The speed of each joint, in its unit in commands.
             usual: Whether that is the default speed, which slides do not have.
             to_limit: Whether the targets are limits.
-            site: Where the modeller gives the command.
+            site: The line of the modeller's code that gives the command.
         """
         limbs = self._known()
         by_group: dict[str, dict[str, float]] = {}
@@ -482,7 +482,7 @@ class Motor(WithParameters, Port):
         self._ask()
 
     def _accept(self) -> None:
-        """Resets what an earlier command was refused for."""
+        """Clears `error` and `refusal` of an earlier command."""
         self._become("error", False)
         self._become("refusal", None)
 
@@ -523,7 +523,7 @@ class Motor(WithParameters, Port):
     # -- feeling
 
     def _ask(self, *, by_itself: bool = False) -> None:
-        """Requests a reading of the posture at the end of this tick, once; `by_itself` if no line of the modeller's is running."""
+        """Requests one reading of the posture at the end of this tick; `by_itself` if no code of the modeller makes the request."""
         if not self._asked:
             self._asked = True
             self._inquire("proprioception", by_itself=by_itself)
@@ -584,7 +584,7 @@ class Motor(WithParameters, Port):
         if self._ended:
             ended, self._ended = [*self._ended, *ended], []
         moving = next((joint for joint in self._further if limbs.group_of[joint] in self._under_way), None)
-        if moving is not None:  # others have just ended, or were pushed
+        if moving is not None:  # it moves by a command; the other joints have stopped, or were pushed
             self._store(self._under_way[limbs.group_of[moving]].name, "passing", moving)
         for movement, end in ended:
             if isinstance(movement, JointMovement):

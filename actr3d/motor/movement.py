@@ -12,9 +12,9 @@ from actr3d.world.sensors.motion import AT_LIMIT
 from actr3d.world.sensors.proprioception import Proprioception
 
 HELD = 0.25
-"""A movement that covers less than this fraction of the distance at its speed, and no more than in the period before, makes no
-progress: pressed joints yield by about a tenth, and legs in contact with something need some 0.2 s to start. Source: chosen for this
-library."""
+"""A movement makes no progress if, during `patience`, it covers less than this fraction of the distance at its commanded speed, and not
+clearly more than in the period before. Joints that press against something yield by about a tenth; legs in contact with something need
+about 0.2 s to start. Source: chosen for this library."""
 
 FASTER = 1.2
 """Factor above which progress counts as more than before. Source: chosen for this library."""
@@ -42,7 +42,7 @@ class Movement:
     Args:
         name: Its name in the command, with the side if there is one.
         group: The muscle group.
-        site: Where the modeller gives the command.
+        site: The line of the modeller's code that gives the command.
     """
 
     base = False
@@ -92,7 +92,7 @@ class Movement:
         raise NotImplementedError
 
     def _remaining(self, step: Step) -> float:
-        """Returns the time that the remaining distance takes at its speed [s]; a blocked movement within one tick counts as done."""
+        """Returns the time that the remaining distance takes at its speed [s]; a blocked movement counts as done within one step."""
         return INFINITE
 
 
@@ -103,7 +103,7 @@ class JointMovement(Movement):
         name: Its name in the command.
         group: The muscle group.
         paces: By joint, its speed [rad/s] or [m/s].
-        site: Where the modeller gives the command.
+        site: The line of the modeller's code that gives the command.
         targets: By joint, its target [rad] or [m]; infinite without an end.
         order: The joints of the body in its order.
         to_limit: Whether the target is its limit.
@@ -128,7 +128,7 @@ class JointMovement(Movement):
         self._left = set(targets)
 
     def begin(self) -> Iterable[Order]:
-        """Yields the commands that begin it. A limit on its way is its target, so that it is reached exactly."""
+        """Yields the commands that begin it. A movement towards a limit has the limit as its target, and reaches it exactly."""
         for joint, target in self.targets.items():
             if abs(target) < INFINITE:
                 yield "position", (joint, target, self.paces[joint]), {}

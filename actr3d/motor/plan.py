@@ -1,4 +1,4 @@
-"""What an agent plans to do with its body, for those who watch."""
+"""The posture that an agent plans, for observers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """A posture that an agent plans, and what it expects of it.
+    """A posture that an agent plans, and a text about the expected result.
 
     An agent that has a method `planned`, which returns its plan or None, shows it in the workbench's 3D view: the posture as a
     translucent copy of the body, the text as a label above it. The method changes nothing, and draws no random numbers.

@@ -9,8 +9,8 @@ from typing import Any
 from actr3d.motor.limbs import Limbs, on_grid
 
 AWAY, AWAY_SLIDE = 5.0, 0.01
-"""Distance from its start from which a posture includes a joint that it does not always include [degrees], and a slide [m]. Source:
-chosen; limbs that hold still while others swing yield by about a degree."""
+"""Displacement from the first felt position above which a posture also includes a joint that it does not always include: of a hinge
+[degrees], of a slide [m]. Source: chosen; limbs that hold still while others swing yield by about a degree."""
 
 
 class BodySchema:
@@ -49,7 +49,7 @@ class BodySchema:
         A position between two felt ones with the same grid value has that value too, and is no new extreme.
 
         Returns:
-            The joints with positions outside such a range.
+            The joints whose position is outside the range of felt positions with the same grid value.
         """
         least, most = self._from, self._to
         new = {joint: at for joint, at in positions.items() if not least[joint] <= at <= most[joint]}
@@ -87,7 +87,7 @@ class BodySchema:
         at = self.at
         extreme = "none"
         if joint is not None:
-            ends = {"maximum": self.shown(joint, limbs.most[joint]), "minimum": self.shown(joint, limbs.least[joint])}
+            ends = {"maximum": self.shown(joint, limbs.maximum[joint]), "minimum": self.shown(joint, limbs.minimum[joint])}
             extreme = next((which for which, end_at in ends.items() if at[joint] == end_at != self._start[joint]), "none")
             self.note((joint,))
         angles = {of: value for of, value in at.items() if of in self._always or self._away(of)}
@@ -99,7 +99,7 @@ class BodySchema:
         return abs(limbs.felt[joint] - self._first[joint]) > away
 
     def extremes(self, joints: Iterable[str]) -> tuple[str, ...]:
-        """Returns those of some joints that are a step beyond their extremes in all earlier postures."""
+        """Returns the joints that are at least one step beyond their extremes in all earlier postures."""
         limbs = self._limbs
         further: list[str] = []
         for joint in joints:

@@ -13,7 +13,7 @@ from actr3d.simulation.surroundings import surroundings
 from actr3d.trace import Run, Trace, TraceEvent, with_number
 from actr3d.trace_kinds import KINDS, LEVELS
 from actr3d.world import World
-from actr3d.world.compiled import saved, to_text
+from actr3d.world.compiled import to_bytes, to_text
 
 
 class ProgramRun:
@@ -53,7 +53,7 @@ class ProgramRun:
         """
         if self._recorder is not None:
             if tick == 0:
-                scene = {"compiled": to_text(saved(world.mj_model)), "world": surroundings(world)}
+                scene = {"compiled": to_text(to_bytes(world.mj_model)), "world": surroundings(world)}
                 self._recorder.fact(SIMULATION.format(self.number), {"period_us": self._period, **scene})
             self._recorder.state(self.number, tick, world.state_bytes(), contacts)
 

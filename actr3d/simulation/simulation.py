@@ -35,7 +35,7 @@ from actr3d.simulation.timeline import Timeline
 from actr3d.simulation.validation import check_names, count_of, factor_of, named_factories, seed_of, steps_of, whole_ticks, world_of
 from actr3d.trace import Trace, TraceEvent
 from actr3d.world import Scene, World
-from actr3d.world.compiled import saved, to_text
+from actr3d.world.compiled import to_bytes, to_text
 
 
 class Simulation:
@@ -489,7 +489,7 @@ class Simulation:
         """
         world = self.world
         own = {"seed": self.seed, "period_us": self._period, "timestep_us": world.scene.timestep_us, "scene": world.fingerprint}
-        own |= {"compiled": to_text(saved(world.mj_model)), "world": surroundings(world)}
+        own |= {"compiled": to_text(to_bytes(world.mj_model)), "world": surroundings(world)}
         return _facts_of(own, given, [*self._embodied.values(), *self._bodiless.values()])
 
     def _end_recording(self) -> None:

@@ -12,9 +12,9 @@ from actr3d.configuration import Configuration
 from actr3d.world.actuators.motion import SACCADE, SACCADE_PER_RAD
 
 PREPARATION = 0.135
-"""From a shift of attention until an eye movement can no longer be called off [s]. Source: EMMA (Salvucci 2001)."""
+"""Duration of the labile stage of an eye movement: until then it can still be cancelled [s]. Source: EMMA (Salvucci 2001)."""
 PROGRAMMING = 0.05
-"""From then until the eye begins to move [s]. Source: the same."""
+"""Duration of the non-labile stage, from the end of `PREPARATION` to the start of the eye movement [s]. Source: the same."""
 
 LONGEST = 1e6
 """Upper bound of encoding [s]: for large angles the equation gives years, and then overflows."""
@@ -41,7 +41,8 @@ class Emma(Configuration):
     """k [1/degree]. Source: docs/human-data.md."""
 
     frequency: Annotated[float, Gt(0), Lt(1)] = 0.5
-    """f, frequency of such objects. Source: chosen, the value of ACT-R's EMMA for objects of unknown frequency."""
+    """f, the frequency of the encoded objects, between 0 and 1. Source: chosen, the value of ACT-R's EMMA for objects of unknown
+    frequency."""
 
     def encoding(self, eccentricity: float) -> float:
         """Returns the time of encoding at an angle off the line of sight [rad], in seconds."""
@@ -51,8 +52,8 @@ class Emma(Configuration):
     def course(self, eccentricity: float) -> tuple[float, float | None]:
         """Returns the end of encoding, and the start of the eye movement or None [s from the shift of attention].
 
-        Encoding and the preparation of an eye movement begin together. If encoding ends before the preparation, the eye does not move.
-        If the eye arrives first, the rest of the encoding continues at the speed of the line of sight.
+        Encoding and the preparation of an eye movement begin together. If encoding ends before the preparation, the eye does not move. If
+        the eye arrives first, the rest of the encoding continues at the rate for an eccentricity of 0.
         """
         alone = self.encoding(eccentricity)
         if alone <= PREPARATION:

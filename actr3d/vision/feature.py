@@ -24,8 +24,8 @@ class Feature:
     name, in lower case, is its name in requests. A field that is None, or a label of 0, is left out of the chunk.
     """
 
-    bare: ClassVar[Mapping[str, str]] = {"distance": "<="}
-    """The comparison of a bare number in a request, by slot: `distance=2` is `distance='<=2'`. Other slots need a sign."""
+    default_comparisons: ClassVar[Mapping[str, str]] = {"distance": "<="}
+    """The comparison of a number without a sign in a request, by slot: `distance=2` is `distance='<=2'`. Other slots need a sign."""
     aliases: ClassVar[Mapping[str, str]] = {}
     """Other names of slots in requests."""
 
@@ -33,11 +33,11 @@ class Feature:
     """Its default salience; see `actr3d.vision.salience`."""
 
     distance: Metres
-    """Distance on the ground: heights do not count."""
+    """Horizontal distance from the eye; differences of height are ignored."""
     direction: Radians
     """Direction from straight ahead of the body's base, to the left."""
     motion: MetresPerSecond | None = None
-    """Speed of its place relative to the body since the last view; None if it was not visible then."""
+    """Mean speed of its position relative to the eye since the last view, in the body's frame; None if it was not visible then."""
 
     @classmethod
     def called(cls) -> str:

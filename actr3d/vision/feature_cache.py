@@ -44,7 +44,7 @@ class FeatureCache:
         self._now: CachedView | None = None
         self._before: CachedView | None = None
 
-    def take(self, view: View, time: int) -> None:
+    def add(self, view: View, time: int) -> None:
         """Adds a view of a time [us]; it replaces one of the same time."""
         if self._now is None or self._now.time < time:
             self._before = self._now
@@ -53,7 +53,7 @@ class FeatureCache:
     def features(self, query: Query) -> Found:
         """Returns the features that a request's detector finds now, with their changes since the view before.
 
-        Each view has its own noise, and the changes are also of that.
+        Each view has its own noise; the changes therefore contain noise, too.
         """
         assert self._now is not None
         found, before = self._now.features(query), self._before

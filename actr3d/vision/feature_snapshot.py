@@ -9,7 +9,7 @@ from typing import Any
 
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import path_of, subtree
-from actr3d.camera import CameraParameters, Sight, Stand, View
+from actr3d.camera import CameraParameters, EyePose, EyeSense, View
 from actr3d.vision.feature import Feature
 from actr3d.vision.module import Vision
 from actr3d.world.body import Body
@@ -28,12 +28,12 @@ class Sighting:
     time: float
     """Time of the view [s]."""
     chosen: bool
-    """Whether the search puts it into the buffer."""
+    """Whether the search chose it. It then enters the buffer, unless the search is bottom-up and the buffer is protected by `hold`."""
     feature: Feature
     """What it has noticed."""
     view: View
     """The view in which it was found, with noise."""
-    stood: Stand
+    eye_pose: EyePose
     """The pose of the eye then."""
 
     @property
@@ -52,7 +52,7 @@ class Sighting:
         lower left [m, in the world's frame]. A feature with a height but no vertical position is centred at eye level; a size that
         is missing or infinite is 0.
         """
-        feature, (x, y, z, heading) = self.feature, self.stood
+        feature, (x, y, z, heading) = self.feature, self.eye_pose
         way = heading + feature.direction
         width, half = _finite(getattr(feature, "width", 0.0)), _finite(getattr(feature, "height", 0.0)) / 2
         top, bottom = _finite(getattr(feature, "top", half)), _finite(getattr(feature, "bottom", -half))
@@ -74,17 +74,17 @@ def sightings(agent: Model, body: Body) -> list[Sighting]:
         agent: The agent of the body, or an agent in it.
         body: Its body.
     """
-    eyes = [sense for sense in body.senses if isinstance(sense, Sight)]
+    eyes = [sense for sense in body.senses if isinstance(sense, EyeSense)]
     return [sighting for module in visions(agent) for sighting in _of(module, eyes)]
 
 
-def _of(module: Vision, eyes: list[Sight]) -> Iterator[Sighting]:
+def _of(module: Vision, eyes: list[EyeSense]) -> Iterator[Sighting]:
     for search in module.searches:
         view, perceived = search.view, search.perceived
         if view is None or perceived is None:
             continue  # it has begun again, and has no view yet
-        stood = next((pose for eye in eyes if (pose := eye.stood(view)) is not None), None)
-        if stood is None:
+        eye_pose = next((pose for eye in eyes if (pose := eye.pose_of(view)) is not None), None)
+        if eye_pose is None:
             continue  # the view of another body
         for number, feature in enumerate(search.noticed):
             yield Sighting(
@@ -94,7 +94,7 @@ def _of(module: Vision, eyes: list[Sight]) -> Iterator[Sighting]:
                 chosen=number == search.chosen,
                 feature=feature,
                 view=perceived,
-                stood=stood,
+                eye_pose=eye_pose,
             )
 
 

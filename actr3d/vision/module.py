@@ -33,10 +33,10 @@ class Vision(WithParameters, Searching):
     It is for agents with a body in a physical world. `from actr3d.vision import Vision` after `from actr3d.actr import *` replaces the
     `Vision` of Python ACT-R, which sees the objects of an environment that have `x` and `y`.
 
-    The view is private to this module: an agent receives features only, with opaque labels and no names. A request is answered from
-    the view at the end of the tick in which it is made; the chunk arrives `delay` after the request, or at the end of that tick, if
-    later, and describes that view, even if the scene has changed since. If nothing is found, the buffer is cleared and `error` is
-    set. A further request before that replaces this one.
+    The view is private to this module: an agent receives features only, with opaque labels and no names. A request is answered from the
+    view at the end of the tick in which it is made; the chunk arrives `delay` after the request, or at the end of that tick, if later, and
+    describes that view, even if the scene has changed since. If nothing is found, the buffer is cleared and `error` is set. Another
+    top-down request before the chunk arrives replaces this one.
 
     Bottom-up requests (`bottom_up=True`) wait until a top-down one is done. A top-down one never waits: a bottom-up search in
     progress is cancelled, and begins again with a new view when the top-down one is done. Bottom-up searches that find nothing leave
@@ -46,8 +46,8 @@ class Vision(WithParameters, Searching):
     Args:
         buffer: Receives the chunks.
         delay: Time from a request to its chunk [s].
-        delay_sd: The standard deviation of that, also of bottom-up requests [s]; None for no noise.
-        bottom_up_delay: The same for a bottom-up request [s].
+        delay_sd: The standard deviation of `delay` and of `bottom_up_delay` [s]; None for no noise.
+        bottom_up_delay: Time from a bottom-up request to its chunk [s].
         hold: Time for which the chunk of a top-down request is protected from bottom-up ones, while it stays in the buffer [s].
         salience: Measure of salience: `size`, `nearness`, `motion`, `equal`, a function of a feature, or one of these by
             the feature's name; None: openings by size, obstacles by nearness.
@@ -56,8 +56,9 @@ class Vision(WithParameters, Searching):
             and passes all tests; otherwise nothing is found. Top-down requests while it is busy do nothing.
         error_rate: The probability that a search notices nothing.
         edge_noise: The standard deviation of the directions of edges [rad].
-        distance_noise: That of all distances of one view together, as a fraction. Each search has its own noise, so that with noise
-            also what does not move seems to: `motion` and `time_to_contact` are the change since the view before.
+        distance_noise: The standard deviation of one common factor for all distances of a view, as a fraction. Each search has its own
+            noise. With noise, a feature that does not move also seems to move, because `motion` and `time_to_contact` are changes since the
+            previous view.
         encoding: Additional time to encode the feature of a top-down request: a time [s], such as 0.085 for a shift of
             attention; or `emma`, or an `Emma`, whose time grows with the angle from the line of sight.
         saccades: Whether the eye turns to the feature of a top-down request, within its limits; the chunk then waits until it is there,
@@ -72,8 +73,8 @@ class Vision(WithParameters, Searching):
         VisionError: If a salience is invalid.
 
     Source: 50 ms for a request and 20 ms for a search for obstacles, the original ACT-R 3D (docs/human-data.md); the `sos` rule, SOS Vision
-    (West & Emond 2002). The `hold` of 0.1 s was chosen: the longest time until a production of 50 ms in progress has
-    fired, and then one that reads the chunk.
+    (West & Emond 2002). The `hold` of 0.1 s was chosen: the time of two productions of 50 ms, the one in progress and the one that reads
+    the chunk.
     """
 
     @named_parameters
@@ -154,8 +155,8 @@ class Vision(WithParameters, Searching):
     def request(self, pattern: str, *, bottom_up: bool = False, **slots: Any) -> Search | None:
         """Searches for a feature: `request('feature:opening', width='>?w', height='>1.5')`.
 
-        A slot takes comparisons (`'>0.5'`, `'<2'`, `'>=?w <3'`), labels take `'?l'` or `'!?l'`. A bare number is the least of a
-        size, and the most of a distance or time. Angles are in degrees. A feature must pass all tests.
+        A slot takes comparisons (`'>0.5'`, `'<2'`, `'>=?w <3'`), labels take `'?l'` or `'!?l'`. A number without a sign is the minimum of a
+        size, and the maximum of a distance or a time. Angles are in degrees. A feature must pass all tests.
 
         Args:
             pattern: The feature, and optionally slots: `'feature:opening height:1.5'`.
@@ -196,7 +197,7 @@ class Vision(WithParameters, Searching):
         return search
 
     def gaze(self, left: float, up: float = 0.0) -> None:
-        """Turns the eye to a direction relative to the head, or to its limits, as fast as people do.
+        """Turns the eye to a direction relative to the head, or to its limits, in the time of a human saccade.
 
         Args:
             left: To the left of straight ahead [degrees].
@@ -265,14 +266,14 @@ class Vision(WithParameters, Searching):
         if trace is not None and trace.all:
             trace.emit(sch.now_us, self._path, "answer", {"word": request.word, "value": plain_answer(answer)})
         perceived = self._perceived(search, answer)
-        self._cache.take(perceived, sch.now_us)
+        self._cache.add(perceived, sch.now_us)
         if search.again:
             self._look_again(search)
             return
         if self.error_rate > 0 and self.random.random() < self.error_rate:
-            search.why = "nothing was noticed, by error"
+            search.why = "nothing was noticed (error_rate)"
         else:
-            search.sift(self._cache.features(search.query), self._saliences[search.query.detector.name])
+            search.divide(self._cache.features(search.query), self._saliences[search.query.detector.name])
             search.choose(self.rule, self.random)
         search.seen, search.view, search.perceived = sch.now_us, answer, perceived
         self._last[search.bottom_up] = search
@@ -298,7 +299,7 @@ class Vision(WithParameters, Searching):
     def _look_again(self, search: Search) -> None:
         """Checks whether the chosen feature is still there and passes all tests."""
         search.again = False
-        search.check(self._cache.features(search.query))
+        search.update_chosen(self._cache.features(search.query))
         trace = self.sch.trace
         if trace is not None and trace.all:
             trace.emit(self.sch.now_us, self._path, "search", search.to_data())
@@ -335,7 +336,10 @@ class Vision(WithParameters, Searching):
         search.due = begin + round(time * MICROSECONDS)
 
     def _program_eye(self, search: Search, begun: int, start: int, landing: int, left: float, up: float) -> None:
-        """Makes sure that the eye turns to the feature of a search at a time [us], unless another search has replaced it by now."""
+        """Schedules the eye movement to the feature of a search; does nothing if another search has replaced this one.
+
+        `start` and `landing` are times [us], `left` and `up` angles [rad].
+        """
         if search is self._top_down and search.begun == begun and search.feature is not None:
             self._aim = (landing, search.feature.direction, search.feature.elevation)
             self.sch.call_at(start, self._send_command, ("saccade", left, up))

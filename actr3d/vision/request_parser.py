@@ -147,9 +147,10 @@ class _RequestReader:
             number = _number(part)
             if number is None or math.isnan(number):
                 raise VisionError(f"{self._what}: {word} is compared with a number in {unit.name or 'its unit'} (got {value!r})")
-            sign = sign or self._kind.bare.get(slot, "")
+            sign = sign or self._kind.default_comparisons.get(slot, "")
             if sign in ("", "!"):
-                raise VisionError(f"{self._what}: {word} is measured; say '>{as_text(part)}' or '<{as_text(part)}' (got {value!r})")
+                choice = f"'>{as_text(part)}' or '<{as_text(part)}'"
+                raise VisionError(f"{self._what}: {word} needs a comparison: write {choice} (got {value!r})")
             tests.append(Test(slot, sign, number))
         return tests
 

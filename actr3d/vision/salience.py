@@ -55,7 +55,7 @@ def weigh(features: Sequence[Feature], function: Function, what: str) -> list[fl
     for feature in features:
         value: Any = function(feature)
         if not isinstance(value, Real) or not is_finite(value) or float(value) < 0:
-            raise VisionError(f"{what}: must give a number >= 0 for a feature (gave {value!r} for {feature})")
+            raise VisionError(f"{what}: must return a number >= 0 (got {value!r} for {feature})")
         weights.append(float(value))
     return weights
 

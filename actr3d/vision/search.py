@@ -43,7 +43,7 @@ class Search(Reading):
     chosen: int | None
     """The index of the chosen feature in `noticed`."""
     why: str | None
-    """Why none is chosen, although some are noticed."""
+    """Why no feature is chosen: nothing was noticed by error, none was drawn (rule `sos`), or the chosen one was lost; None otherwise."""
     outcome: str
     """The result, in a word."""
     again: bool
@@ -75,7 +75,7 @@ class Search(Reading):
         self.noticed, self.weights, self.refused, self.chosen, self.why, self.outcome = (), (), [], None, None, "pending"
         self.again, self.noise, self.view, self.perceived = False, None, None, None
 
-    def sift(self, features: Sequence[Feature], salience: Function) -> None:
+    def divide(self, features: Sequence[Feature], salience: Function) -> None:
         """Divides features into those that pass all tests, with their salience, and the others.
 
         Raises:
@@ -102,9 +102,9 @@ class Search(Reading):
         if left:
             self.chosen = random.choice(left)
         else:
-            self.why = "none survived"
+            self.why = "no feature was drawn"
 
-    def check(self, features: Sequence[Feature]) -> None:
+    def update_chosen(self, features: Sequence[Feature]) -> None:
         """Updates the chosen feature from a second view; drops it if it is gone or fails a test now."""
         chosen = self.feature
         if chosen is None or self.chosen is None:
@@ -114,7 +114,7 @@ class Search(Reading):
             now = min(same, key=lambda one: abs(one.direction - chosen.direction))
             self.noticed = [*self.noticed[: self.chosen], now, *self.noticed[self.chosen + 1 :]]
         else:
-            self.chosen, self.why = None, "what was chosen had gone"
+            self.chosen, self.why = None, "the chosen feature was no longer visible, or failed a test"
 
     @property
     def feature(self) -> Feature | None:

@@ -19,7 +19,7 @@ class Unit:
 
     Args:
         name: Its name in messages.
-        factor: Value in a chunk of an internal 1.
+        factor: Factor from internal values to values in chunks.
         digits: Number of decimals in a chunk.
     """
 

@@ -9,7 +9,7 @@ from actr3d.world.gait import Gait
 from actr3d.world.imported import Imported
 from actr3d.world.mesh import Mesh
 from actr3d.world.scene import Scene
-from actr3d.world.scene_objects import Aperture, Floor, Loose, Track, Wall
+from actr3d.world.scene_objects import Aperture, Floor, SimpleObject, Track, Wall
 from actr3d.world.world import World, WorldState
 
 __all__ = [
@@ -23,11 +23,11 @@ __all__ = [
     "Imported",
     "ImportedBody",
     "Load",
-    "Loose",
     "Mannequin",
     "Mesh",
     "NamedMovement",
     "Scene",
+    "SimpleObject",
     "Track",
     "Wall",
     "World",

@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.base import Base
 from actr3d.world.joints import Joint
-from actr3d.world.kernel import carry, deviate, settle
+from actr3d.world.kernel import apply_corrections, compute_deviations, shift_held
 from actr3d.world.physics import Physics
 
 Row = NDArray[np.float64]
 
 
 class ActuatedDofs:
-    """The base and the joints of one body that have a velocity servo, as rows of arrays (n,).
+    """The base and the joints of one body that have a velocity servo; each is one row of the arrays (n,).
 
     The first three rows of a body that walks are its base: places x, y and heading, speeds forward, left and turn. Then follow
     its joints. Callers may change the returned arrays.
@@ -31,7 +31,7 @@ class ActuatedDofs:
         base: The base of the body.
         joints: The joints of the body.
         members: (nbody,) by MuJoCo body: whether it is part of the body.
-        farthest: (nv,) By degree of freedom: the greatest way of any point of the body per unit of it [m].
+        farthest: (nv,) For each degree of freedom: the greatest displacement of any point of the body per unit of it [m].
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class ActuatedDofs:
     ) -> None:
         data = physics.mj_data
         model: Any = physics.mj_model
-        names, walks = anatomy.servos, anatomy.push or ()
+        names, walks = anatomy.servos, anatomy.walking_servos or ()
         acts = [int(model.actuator(name).id) for name in names]
         joints = [joint for joint in joints if joint.servo in acts]
         servos = [int(model.actuator(name).id) for name in walks] + [int(joint.servo or 0) for joint in joints]
@@ -89,15 +89,16 @@ class ActuatedDofs:
 
     @property
     def controls(self) -> Row:
-        """The speeds that their servos are set to keep."""
+        """The target speeds of their servos [m/s] [rad/s]."""
         return self._ctrl[self.c]
 
     def set_controls(self, speeds: Row | float | tuple[float, ...], rows: slice | NDArray[np.intp] = slice(None)) -> None:
         """Sets the servos of some rows to keep other speeds."""
         self._ctrl[self.c[rows]] = speeds
 
-    def carry(self, rows: NDArray[np.intp], changes: Row | None, held: Row, commanded: Row, loose: Row, duration: float) -> bool:
-        """Moves the places that some rows hold, and commands the speeds for it, in place; what does not hold a place keeps its command.
+    def shift_held(self, rows: NDArray[np.intp], changes: Row | None, held: Row, commanded: Row, loose: Row, duration: float) -> bool:
+        """Shifts the held places of some rows, and commands the speeds that reach them, both in place. A row that holds no place stays as
+        it is.
 
         Args:
             rows: The rows (k,).
@@ -112,10 +113,10 @@ class ActuatedDofs:
         """
         moves = changes is not None
         state = self.q, self.c, self._qpos, self._ctrl
-        return carry()(rows, changes if moves else self._still[: len(rows)], moves, *state, held, commanded, loose, duration)
+        return shift_held()(rows, changes if moves else self._still[: len(rows)], moves, *state, held, commanded, loose, duration)
 
     def rest(self, which: NDArray[np.bool_]) -> None:
-        """Stops some of them at once."""
+        """Sets the speeds of some of them to 0 immediately."""
         self._ctrl[self.c[which]] = 0
         self._qvel[self.v[which]] = 0
 
@@ -135,13 +136,13 @@ class ActuatedDofs:
         """
         results = np.empty((3, len(self.q)))
         state, bounds = (self._qpos, self._qvel, self._ctrl), (self.lower, self.upper, duration, slight_way, slight_speed)
-        needed = deviate()(self.q, self.v, self.c, *state, self.base, *self._direction(), held, commanded, *bounds, results)
+        needed = compute_deviations()(self.q, self.v, self.c, *state, self.base, *self._direction(), held, commanded, *bounds, results)
         return results if needed else None
 
-    def settle(self, ways: Row, wanted: Row, time: float, most: float, slight_speed: float, *, loops: bool) -> None:
+    def apply_corrections(self, ways: Row, wanted: Row, time: float, most: float, slight_speed: float, *, loops: bool) -> None:
         """Sets their speeds, at once, so that they return to the held places, and move as wanted where they are to move.
 
-        Small differences are left to the servo: a small lag is how it carries what turns.
+        Small differences are left to the servo, which needs a small lag to exert a force.
 
         Args:
             ways: Their ways back; NaN where they are to move [m] [rad]. It is overwritten.
@@ -149,12 +150,12 @@ class ActuatedDofs:
             time: Time constant of the return [s].
             most: Its greatest speed [m/s] [rad/s].
             slight_speed: Difference of a speed that is left to the servo [m/s] [rad/s].
-            loops: Whether joints in a closed loop may be set at once, too. Speeds that do not agree with its closing would throw the
-                base about; servos find some that do.
+            loops: Whether joints in a closed loop may be set at once, too. If not, only their servos change their speeds: speeds that
+                violate the closed loop would push the base around.
         """
         servos_only = self._none if loops else self.looped
         corrections = ways, wanted, time, most, slight_speed, servos_only
-        settle()(self.v, self.c, self._qvel, self._ctrl, self.base, *self._direction(), *corrections)
+        apply_corrections()(self.v, self.c, self._qvel, self._ctrl, self.base, *self._direction(), *corrections)
 
     def _direction(self) -> tuple[float, float]:
         """Returns cosine and sine of the base's heading."""
@@ -170,7 +171,8 @@ class ActuatedDofs:
         return values
 
     def fastest(self, speeds: Row) -> float:
-        """Returns an upper bound of the speed of any point of the body [m/s]; infinite if not all that moves it is actuated."""
+        """Returns an upper bound of the speed of any point of the body [m/s]; infinite if a degree of freedom that moves it has no
+        servo."""
         others = np.delete(self._farthest, self.v)
         return float(speeds @ self._farthest[self.v]) if not others.any() else math.inf
 

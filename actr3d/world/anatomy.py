@@ -65,7 +65,7 @@ class Anatomy:
     """The site of its eye, which a camera of the same name shares; None for no eye."""
 
     skin: tuple[str, ...] | None = None
-    """The geoms that feel; None for all that can touch something."""
+    """The geoms that report touches; None for all geoms with contacts."""
 
     servos: tuple[str, ...] = ()
     """Velocity servos; their gains are fitted to the inertia they move."""
@@ -76,7 +76,7 @@ class Anatomy:
     fastest: tuple[float, float, float] | None = None
     """The greatest speeds that it can be commanded to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]; None without limits."""
 
-    push: tuple[str, str, str] | None = None
+    walking_servos: tuple[str, str, str] | None = None
     """The servos that walk forward, to the left and turn; None if it cannot walk."""
 
     movements: tuple[NamedMovement, ...] = ()
@@ -92,7 +92,7 @@ class Anatomy:
     """Width across its shoulders [m]; None for a body without shoulders."""
 
     gait: tuple[Gait, LegPlan] | None = None
-    """How it walks, and the sizes of its legs; None for one that glides."""
+    """Its gait, and the sizes of its legs; None if it glides."""
 
 
 @runtime_checkable

@@ -13,7 +13,7 @@ from actr3d.world.scene_objects import yaw_quaternion
 
 
 class Base:
-    """Carries a body: slides along the world's x and y and turns about the vertical (planar), flies free, or is fixed.
+    """Carries a body: slides along the world's x and y and turns about the vertical (planar), has a free joint (free), or is fixed.
 
     Args:
         physics: The compiled scene and its state.
@@ -82,7 +82,7 @@ class Base:
 
 
 def turn_to(quaternion: NDArray[np.float64], heading: float) -> None:
-    """Turns an orientation (4,) about the vertical to a heading [rad], in place; what lies or leans keeps lying or leaning."""
+    """Turns an orientation (4,) about the vertical to a heading [rad], in place; the inclination stays the same."""
     by = np.array(yaw_quaternion(heading - heading_in(quaternion.tolist())))
     mujoco.mju_mulQuat(quaternion, by, quaternion.copy())
 

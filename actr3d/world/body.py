@@ -18,7 +18,7 @@ from actr3d.world.actuated_dofs import ActuatedDofs
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.base import Base
 from actr3d.world.bounding_box import BoundingBox, Bounds
-from actr3d.world.command_registry import CommandRegistry, known, number
+from actr3d.world.command_registry import CommandRegistry, checked_name, number
 from actr3d.world.contacts import BodyContacts, Touch
 from actr3d.world.frames import WORLD_FRAME, Frame, upright_frame
 from actr3d.world.gait import OWN, GaitCycle
@@ -75,7 +75,7 @@ P = TypeVar("P")
 
 
 class Body:
-    """Senses and moves one body of a world. Most is found in the compiled model; the description names the rest.
+    """Senses and moves one body of a world. Its parts are found in the compiled model; the description gives the rest.
 
     Commands are given between physics steps only. A reading is of the present state; nothing in it changes later.
 
@@ -109,7 +109,7 @@ class Body:
         """By name, the joints that the agent can feel and move: those that only gait moves are left out."""
         for movement in self.anatomy.movements:
             for joint, _ in movement.joints:
-                known(joint, self.joints, f"{self.name}: movement '{movement.name}'", "joint")
+                checked_name(joint, self.joints, f"{self.name}: movement '{movement.name}'", "joint")
         self.controls: dict[str, slice] = self._controls()
         self.eye = self.anatomy.eye
         self.touch_geoms: NDArray[np.intp] = self._touch_geoms()
@@ -143,10 +143,10 @@ class Body:
             name: dict(sd) if isinstance(sd, tuple) else number(sd, f"{self.name}: noise of {name}", 0) for name, sd in self.anatomy.noise
         }
         for name, sd in self._noise.items():
-            self._check_noise(known(name, self.sensors, self.name, "sensor"), sd)
+            self._check_noise(checked_name(name, self.sensors, self.name, "sensor"), sd)
 
     def _check_noise(self, sensor: str, sd: StandardDeviation) -> None:
-        """Adds noise to a reading, which is not used.
+        """Checks that noise can be added to the readings of a sensor.
 
         Raises:
             WorldError: If readings of the sensor take no such noise.
@@ -162,7 +162,7 @@ class Body:
     # -- commands and sensors
 
     def set(self, word: str, *values: Any, **named: Any) -> None:
-        """Gives a command, which holds at once and until another one replaces it.
+        """Gives a command. It takes effect immediately, and lasts until another command of its kind replaces it.
 
         Args:
             word: Its name, one of `actuators`; see the functions in `actr3d.world.actuators`.
@@ -176,13 +176,13 @@ class Body:
             raise WorldError(f"{self.name}: an observer cannot give commands (given '{word}'); call simulation.command after the run")
         if isinstance(word, str) and word in ACTUATORS and word not in self.actuators:  # pyright: ignore[reportUnnecessaryIsInstance]
             self.actuators = ACTUATORS.of(self)  # the module that registers it may have been imported since
-        ACTUATORS[known(word, self.actuators, self.name, "actuator")](self, *values, **named)
+        ACTUATORS[checked_name(word, self.actuators, self.name, "actuator")](self, *values, **named)
 
     def get(self, word: str, *values: Any, noise: StandardDeviation = None, **options: Any) -> Any:
-        """Reads a sensor: plain numbers, tuples, dictionaries and frozen dataclasses.
+        """Returns a reading of a sensor: plain numbers, tuples, dictionaries and frozen dataclasses.
 
-        What the agent senses later depends on it: noise is drawn, and senses with a state begin to work. For an observer of the
-        simulation, and a condition of `Simulation.run`, nothing changes.
+        A reading changes what the agent senses later: it draws noise, and it starts senses that have a state. A reading by an observer of
+        the simulation, or by a condition of `Simulation.run`, changes nothing.
 
         Args:
             word: Its name, one of `sensors`; see the functions in the `sensors` package.
@@ -197,7 +197,7 @@ class Body:
         if isinstance(word, str) and word in SENSORS and word not in self.sensors:  # pyright: ignore[reportUnnecessaryIsInstance]
             self.sensors = SENSORS.of(self)
         with self._unchanged() if self.physics.observed else nullcontext():
-            reading = SENSORS[known(word, self.sensors, self.name, "sensor")](self, *values, **options)
+            reading = SENSORS[checked_name(word, self.sensors, self.name, "sensor")](self, *values, **options)
             sd = self._noise.get(word) if noise is None else noise
             return reading if sd is None else self.noise.added(word, reading, sd)
 
@@ -213,7 +213,7 @@ class Body:
             self._restore_senses(senses)
 
     def moving(self) -> tuple[str, ...]:
-        """Returns the joints that a command still moves, or tries to."""
+        """Returns the joints whose commanded speed is not 0, whether they really move or not."""
         speeds = self.hold.commanded.tolist()
         return tuple([joint.name for joint, row in self._driven if (joint.control if row is None else speeds[row])])
 
@@ -292,7 +292,7 @@ class Body:
         Raises:
             WorldError: If it has no such joint.
         """
-        return self.joints[known(name, self.joints, self.name, "joint")]
+        return self.joints[checked_name(name, self.joints, self.name, "joint")]
 
     def control(self, name: str) -> slice:
         """Returns where the controls of one of its actuators are in MuJoCo's `ctrl`; most have one.
@@ -300,7 +300,7 @@ class Body:
         Raises:
             WorldError: If it has no such actuator.
         """
-        return self.controls[known(name, self.controls, self.name, "control")]
+        return self.controls[checked_name(name, self.controls, self.name, "control")]
 
     def part_name(self, body: int) -> str:
         """Returns the name of one of its MuJoCo bodies."""
@@ -314,7 +314,7 @@ class Body:
         """
         if part is None or part == self.anatomy.base:
             return self.root
-        return int(np.flatnonzero(self.members)[self.parts.index(known(part, self.parts, self.name, "part"))])
+        return int(np.flatnonzero(self.members)[self.parts.index(checked_name(part, self.parts, self.name, "part"))])
 
     def geom_name(self, geom: int) -> str:
         """Returns the name of one of its geoms: its own name, else that of its part."""

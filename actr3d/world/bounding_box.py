@@ -11,7 +11,7 @@ from mujoco import MjData, MjModel, mjtGeom
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError
-from actr3d.world.kernel import widen
+from actr3d.world.kernel import extend_box
 
 Point = tuple[float, float, float]
 
@@ -102,7 +102,7 @@ class Bounds:
         origin: NDArray[np.float64],
         axes: NDArray[np.float64],
     ) -> None:
-        widen()(plain, self._types, self._sizes, self._positions, self._rotations, origin, axes, box)
+        extend_box()(plain, self._types, self._sizes, self._positions, self._rotations, origin, axes, box)
         for geom, vertices in clouds:
             rotation = self._rotations[geom].reshape(3, 3)
             points = vertices @ (rotation.T @ axes) + (self._positions[geom] - origin) @ axes

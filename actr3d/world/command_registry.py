@@ -70,7 +70,7 @@ class BodyFunction(Generic[B]):
 
 
 class CommandRegistry(Registry[BodyFunction[B]], Generic[B]):
-    """All actuators, or all sensors, by name; a decorator that registers a function under its own name, which no other may have.
+    """All actuators, or all sensors, by name; a decorator that registers a function under its own name, which must be unique.
 
     Use it as `@sensor`, or as `@sensor.if_body(condition)` for a sensor that only some bodies have.
     """
@@ -96,7 +96,7 @@ class CommandRegistry(Registry[BodyFunction[B]], Generic[B]):
 # -- checks of values
 
 
-def known(name: Any, names: Collection[str], whose: str, kind: str) -> str:
+def checked_name(name: Any, names: Collection[str], whose: str, kind: str) -> str:
     """Returns a name if it is one of those that exist; the agent's code chooses it, so it may be anything.
 
     Args:

@@ -11,14 +11,14 @@ import numpy as np
 from mujoco import MjModel
 
 
-def saved(model: MjModel) -> bytes:
+def to_bytes(model: MjModel) -> bytes:
     """Returns a compiled scene in MuJoCo's binary format (MJB)."""
     image = np.empty(mujoco.mj_sizeModel(model), np.uint8)
     mujoco.mj_saveModel(model, None, image)
     return image.tobytes()
 
 
-def loaded(image: bytes) -> MjModel:
+def from_bytes(image: bytes) -> MjModel:
     """Loads a compiled scene from MuJoCo's binary format."""
     kind: Any = MjModel
     return kind.from_binary_path("scene.mjb", {"scene.mjb": image})

@@ -1,4 +1,4 @@
-"""The contacts of one body: which geoms are its own, and what touches its skin how hard."""
+"""The contacts of one body: which geoms are its own, what touches its skin, and with which force."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Touch:
     other: str
     """The name in the scene of the object that touches it."""
     force: float
-    """Force [N] square to the surface, summed over all contacts of the two."""
+    """Normal force [N], summed over all contacts of the two."""
 
 
 class BodyContacts:
@@ -62,7 +62,7 @@ class BodyContacts:
         return not np.any(sides[:, 0] != sides[:, 1])
 
     def any_in_step(self, apart_from: NDArray[np.bool_] | None = None) -> bool:
-        """Returns whether anything touched the body in the last physics step, which had contacts.
+        """Returns whether anything touched the body in the last physics step.
 
         Args:
             apart_from: By geom, whether its contacts do not count, `(ngeom + 1,)`; the last entry is for soft objects. None: all count.
@@ -85,7 +85,7 @@ class BodyContacts:
         own = self._members[model.geom_bodyid]
         sides = self._sides(own)
         held = set(self.held())
-        if held:  # a held object feels for the body, but not the hand that holds it
+        if held:  # contacts of a held object count as the body's, except those with the hand that holds it
             sides = np.where(sides.any(axis=1, keepdims=True), sides, self._sides(self.own_geoms() & ~own))
         forces: defaultdict[tuple[str, str], float] = defaultdict(float)
         wrench: NDArray[np.float64] = np.zeros(6)

@@ -12,7 +12,7 @@ Frame = tuple[NDArray[np.float64], NDArray[np.float64]]
 """The origin (3,) [m] and the axes as columns (3, 3), both in the world's frame: a vector v of the world is `v @ axes` in this frame."""
 
 FULL_TURN = 6.2832
-"""A full turn [rad], rounded up: the greatest angle where a greater one is most often meant in degrees."""
+"""A full turn [rad], rounded up. Where angles are limited to it, a greater one is most likely meant in degrees."""
 
 WORLD_FRAME: Frame = (np.zeros(3), np.eye(3))
 

@@ -33,10 +33,10 @@ American Academy of Orthopaedic Surgeons; beyond it, the leg swings sideways."""
 OWN = (SWAY, BOB, *(f"{side}_{joint}" for side in SIDES for joint in LEG))
 """The joints that only gait moves."""
 SHARED = ("pelvis_yaw", "torso_yaw", "head_yaw", "left_upper_arm_pitch", "right_upper_arm_pitch")
-"""The joints that the agent moves too: gait moves them about the place where they were commanded to stand."""
+"""The joints that the agent moves, too: gait moves them around the positions at which they were commanded to stop."""
 
 TINY = 1e-12
-"""Less than any joint that gait moves differs from its place [rad] [m]. Source: chosen; it is numerical."""
+"""Deviation below which a joint counts as being at its position [rad] [m]. Source: chosen; it is numerical."""
 STILL = 0.05
 """Speed below which a body does not step [m/s]. Source: chosen for this library."""
 PHASES = 100
@@ -49,13 +49,13 @@ FASTEST_HINGE = 12.0
 """Greatest speed of gait's hinges [rad/s], reached only when a joint returns to gait after another command. Source: chosen, faster than any
 gait."""
 HALT = 0.5
-"""In what time the movements end after the base has stopped [s]. Source: chosen for this library, about one step."""
+"""Time from the stop of the base to the end of the movements [s]. Source: chosen for this library, about one step."""
 
 HIP = (19, 18, 16, 14, 10, 7, 3, -1, -5, -8, -10, -10, -6, 1, 9, 15, 19, 22, 22, 20)
 KNEE = (4, 10, 16, 18, 17, 13, 10, 7, 6, 8, 13, 23, 38, 53, 61, 62, 54, 39, 20, 6)
 ANKLE = (0, -4, -3, 1, 4, 6, 7, 8, 9, 9, 8, 2, -9, -18, -15, -8, -3, 0, 1, 1)
-"""Flexion of a leg's joints in normal walking, at twenty phases of its stride from heel strike on [degrees]. Source: the curves of natural
-cadence in Winter (2009), read to a few degrees from memory of the figure."""
+"""Flexion of a leg's joints in normal walking, at twenty phases of its stride from heel strike on [degrees]. Source: approximates the
+curves of natural cadence in Winter (2009) to a few degrees; recalled, not measured in the figure."""
 NORMAL_STEP = 0.41
 """Step length of those curves as a fraction of the height. Source: chosen; about 0.72 m at 1.75 m, normal walking of adults. For other
 step lengths all angles are scaled."""
@@ -84,9 +84,9 @@ class Gait(Configuration):
     Source: Orendurff et al. (2004), J Rehabil Res Dev 41, of the centre of mass; that shoulders move as it does was assumed."""
 
     wander: Annotated[float, Ge(0), Le(0.1)] = 0.011
-    """The standard deviation of the body's lateral position from step to step [m]. Source: steps vary in width by 2.2 cm (1.5 % of the
-    length at a given speed, times the root of 4.3; Collins & Kuo 2013, PLoS ONE 8), so a foot by 1.5 cm, and the middle between two
-    feet by 1.1 cm."""
+    """The standard deviation of the body's lateral position from step to step [m]. Source: steps vary in width by 2.2 cm (at a given speed,
+    the step length varies by 1.5 %, and the variance of the width is 4.3 times that of the length; Collins & Kuo 2013, PLoS ONE 8), so a
+    foot by 1.5 cm, and the middle between two feet by 1.1 cm."""
 
     timing: Annotated[float, Ge(0), Le(0.2)] = 0.015
     """The standard deviation of the duration of a step, as a fraction of it. Source: that of the step length at a given speed (Collins &
@@ -131,7 +131,7 @@ class LegPlan:
 
 
 class GaitCycle:
-    """The gait of one body at run time: which stride it is in, and what that adds to the places of joints.
+    """The gait of one body at run time: the phase of its stride, and what this adds to the positions of joints.
 
     Args:
         gait: How it walks.
@@ -191,7 +191,8 @@ class GaitCycle:
         return self._changes
 
     def _stride(self, speed: float, duration: float) -> float:
-        """Advances the stride; returns how far the body is to the left of its usual way because its steps vary [m]."""
+        """Advances the stride; returns the lateral deviation of the body that comes from the variability of its steps [m, left is
+        positive]."""
         gait = self._gait
         if speed >= STILL:
             if self._size == 0:
@@ -221,8 +222,8 @@ class GaitCycle:
     def _start(self) -> None:
         """Begins to walk at a random phase of the stride.
 
-        The steps of one person differ in length from those of another, so that some metres farther everybody is in another phase. All
-        bodies here have the same walk ratio; with a fixed phase at the start, all walks would reach a place in the same phase.
+        People differ in step length, so after some metres they are in different phases of the stride. All bodies here have the same walk
+        ratio; with a fixed phase at the start, all walks would reach a place in the same phase.
         """
         self._steps += self._steps % 2
         self._phase = NormalDist().cdf(self._random(self._steps)[2])

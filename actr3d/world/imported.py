@@ -48,7 +48,7 @@ class Imported(Configuration):
     """Its name in the scene; its bodies, joints, sites and so on are `<name>_<their name>`."""
 
     path: str | Path | None = None
-    """The file; a relative path is as seen from the working directory."""
+    """The file; a relative path starts at the working directory."""
 
     text: Annotated[str, MinLen(1)] | None = None
     """MJCF or URDF itself, instead of a path."""
@@ -200,7 +200,8 @@ def _name_unnamed(mj_spec: MjSpec) -> None:
 
 
 def _embody(mj_spec: MjSpec) -> None:
-    """Moves each geom directly in the world into a fixed body, unless it is ground: the feet of walkers do not touch the world itself.
+    """Moves each geom of the world body, except planes and height fields, into a fixed body: the legs of walkers do not touch the world
+    body.
 
     Where the file excludes contacts with the world, they stay in it.
     """

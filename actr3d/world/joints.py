@@ -10,8 +10,8 @@ from mujoco import MjModel, mjtJoint, mjtTrn
 from actr3d.world.physics import Physics
 
 AT_LIMIT = 2e-3
-"""Distance from its limit at which a joint counts as having reached it [rad]: about a tenth of a degree, which a limit yields under
-pressure. Source: chosen for this library."""
+"""Greatest distance from its limit at which a joint counts as at its limit [rad], or [m] for a slide: about 0.1 degrees, because limits
+yield a little under load. Source: chosen for this library."""
 
 
 class Joint:
@@ -66,7 +66,7 @@ class Joint:
 
     @property
     def control(self) -> float:
-        """The speed that its servo is set to keep [rad/s]; 0 if it is not actuated."""
+        """The target speed of its servo [rad/s] or [m/s]; 0 if it is not actuated."""
         return 0.0 if self.servo is None else float(self._ctrl[self._control]) / self._gear
 
     @control.setter

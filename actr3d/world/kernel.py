@@ -20,16 +20,18 @@ CYLINDER = int(mjtGeom.mjGEOM_CYLINDER)
 
 
 @cache
-def widen() -> Callable[[Array, Array, Array, Array, Array, Array, Array, Array], None]:
+def extend_box() -> Callable[[Array, Array, Array, Array, Array, Array, Array, Array], None]:
     """Returns the function that widens a box until it encloses some geoms.
 
     Its arguments are: the geoms (n,), the types (ngeom,), sizes, positions and rotations of all geoms as in MuJoCo, the frame's origin
     (3,) and axes (3, 3) as columns, and the box (2, 3), least and greatest coordinates in that frame [m].
     """
-    return kept(_widen, Path(__file__))
+    return kept(_extend_box, Path(__file__))
 
 
-def _widen(geoms: Array, types: Array, sizes: Array, positions: Array, rotations: Array, origin: Array, axes: Array, box: Array) -> None:
+def _extend_box(
+    geoms: Array, types: Array, sizes: Array, positions: Array, rotations: Array, origin: Array, axes: Array, box: Array
+) -> None:
     for geom in geoms:
         kind, x, y, z = types[geom], sizes[geom, 0], sizes[geom, 1], sizes[geom, 2]
         for axis in range(3):
@@ -54,16 +56,16 @@ def _widen(geoms: Array, types: Array, sizes: Array, positions: Array, rotations
 
 
 @cache
-def near() -> Callable[[Array, Array, Array, Array, Array, float], bool]:
+def any_within_distance() -> Callable[[Array, Array, Array, Array, Array, float], bool]:
     """Returns the function that checks whether the box of any of some geoms is within a distance of a point.
 
     Its arguments are: the geoms (n,), the boxes of all geoms as in MuJoCo (`geom_aabb`), their positions and rotations, the point (3,),
     and the distance [m].
     """
-    return kept(_near, Path(__file__))
+    return kept(_any_within_distance, Path(__file__))
 
 
-def _near(geoms: Array, boxes: Array, positions: Array, rotations: Array, point: Array, distance: float) -> bool:
+def _any_within_distance(geoms: Array, boxes: Array, positions: Array, rotations: Array, point: Array, distance: float) -> bool:
     for geom in geoms:
         x, y, z = point[0] - positions[geom, 0], point[1] - positions[geom, 1], point[2] - positions[geom, 2]
         gap = 0.0
@@ -82,8 +84,8 @@ def fastest() -> Callable[[Array, Array, Array, float], float]:
     """Returns the function that computes an upper bound of the speed of any point of some bodies [m/s].
 
     Its arguments are: by moving part and degree of freedom (n, nv) the greatest way of its farthest point per unit [m]; the speeds (nv,);
-    by degree of freedom (nv,), with how many that follow its speed adds as vectors do: 1 alone, 0 for those that follow; and the
-    reach of held objects [m].
+    by degree of freedom (nv,), how many consecutive ones, from it on, form one velocity vector: 1 for a single one, 0 for later members;
+    and the extent of held objects beyond the hands [m].
     """
     return kept(_fastest, Path(__file__))
 
@@ -106,17 +108,17 @@ def _fastest(reaches: Array, speeds: Array, together: Array, held: float) -> flo
 
 
 @cache
-def deviate() -> Callable[..., bool]:
+def compute_deviations() -> Callable[..., bool]:
     """Returns the function that compares degrees of freedom (n,) with what is commanded, and returns whether any needs a correction.
 
     Its arguments are: their indices in `qpos`, `qvel` and `ctrl`; these three; the number of rows of the base, and cosine and sine of
     its heading; the places to hold, NaN for what moves; the commanded speeds; the lower and upper limits; the duration of a tick, or 0 if
     no joint moves [s]; the slight deviations of place and speed; and an array (3, n) for the results, see `ActuatedDofs.deviations`.
     """
-    return kept(_deviate, Path(__file__))
+    return kept(_compute_deviations, Path(__file__))
 
 
-def _deviate(
+def _compute_deviations(
     q: Array,
     v: Array,
     c: Array,
@@ -154,17 +156,17 @@ def _deviate(
 
 
 @cache
-def settle() -> Callable[..., None]:
+def apply_corrections() -> Callable[..., None]:
     """Returns the function that sets speeds and controls of degrees of freedom (n,) so that they return to what is commanded.
 
     Its arguments are: their indices in `qvel` and `ctrl`; these two; the number of rows of the base, and cosine and sine of its heading;
     the ways back, along the world's axes, NaN for what moves; the speeds to keep of what moves; the time constant [s] and the greatest
     speed of corrections; the difference from which a speed is set at once; and those which only their servos change.
     """
-    return kept(_settle, Path(__file__))
+    return kept(_apply_corrections, Path(__file__))
 
 
-def _settle(
+def _apply_corrections(
     v: Array,
     c: Array,
     qvel: Array,
@@ -217,11 +219,11 @@ def stride_changes() -> Callable[..., float]:
     """Returns the function that computes by how much gait moves its joints in a tick.
 
     Its arguments are: the pattern of a stride (phases, columns) [rad] [m] and its phase, from 0 to 1; how far the body is to the left [m];
-    the size of the movements, 0 to 1; by what angle the thighs turn to the side, and in which direction from there they swing [rad];
-    the share of the arms' swing; (n,) the joints' columns; the role of each column; (n,) the joints' rows; the places held in each row,
-    NaN where another command moves it; (n,) the greatest speed of each joint, and the duration of the tick [s]; (n,) what was added to
-    each joint's place before, which becomes 0 where another command moves it; and room for the changes (n,). It returns the greatest
-    wanted change.
+    the size of the movements, 0 to 1; the angle by which the thighs turn towards the walking direction, and the angle of their swing
+    relative to that [rad]; the factor of the arms' swing, 0 to 1; (n,) the joints' columns; the role of each column; (n,) the joints' rows;
+    the places held in each row, NaN where another command moves it; (n,) the greatest speed of each joint, and the duration of the tick
+    [s]; (n,) what was added to each joint's place before, which becomes 0 where another command moves it; and room for the changes (n,). It
+    returns the greatest wanted change.
     """
     return kept(_stride_changes, Path(__file__))
 
@@ -275,12 +277,12 @@ def _stride_changes(
 
 
 @cache
-def carry() -> Callable[..., bool]:
-    """Returns the function that moves held places, and commands the speeds for it; see `ActuatedDofs.carry`."""
-    return kept(_carry, Path(__file__))
+def shift_held() -> Callable[..., bool]:
+    """Returns the function that shifts held places, and commands the speeds that reach them; see `ActuatedDofs.shift_held`."""
+    return kept(_shift_held, Path(__file__))
 
 
-def _carry(
+def _shift_held(
     rows: Array,
     changes: Array,
     moves: bool,

@@ -20,7 +20,7 @@ from actr3d.world.asset_folder import Files, Folder, digest
 from actr3d.world.convex_decomposition import convex_parts
 from actr3d.world.mesh_loading import Triangles, read_triangles
 from actr3d.world.mesh_repair import Surface, check_extent, surface
-from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Name, yaw_quaternion
+from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Name, Positive, yaw_quaternion
 
 Quaternion = tuple[float, float, float, float]
 
@@ -63,7 +63,7 @@ class Mesh(Configuration):
     files: Annotated[Files, MinLen(1)] | None = field(default=None, repr=False)
     """Names and contents of the file and of those that it mentions; `None` reads them now. If given, nothing is read from the disk."""
 
-    scale: Length | tuple[Length, Length, Length] = 1.0
+    scale: Positive | tuple[Positive, Positive, Positive] = 1.0
     """Metres per unit of the file, for all axes or for each (x, y, z): 0.001 for a file in millimetres."""
 
     up: Literal["y", "z"] | None = None
@@ -78,7 +78,7 @@ class Mesh(Configuration):
     quaternion: Quaternion | None = None
     """Its orientation at the start, (w, x, y, z), instead of a heading."""
 
-    mass: Length | None = None
+    mass: Positive | None = None
     """[kg], spread evenly over its volume (over its convex hull if it is not closed); `None` fixes it in its place."""
 
     collision: Literal["hull", "parts", "none"] = "hull"

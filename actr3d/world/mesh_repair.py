@@ -73,7 +73,7 @@ def check_extent(vertices: Vertices, faces: Faces, name: str) -> None:
     if extent and not MIN_EXTENT <= extent <= MAX_EXTENT:
         large = extent > MAX_EXTENT
         raise MeshError(
-            f"'{name}' is {extent:.3g} m long; the {'most' if large else 'least'} is {MAX_EXTENT if large else MIN_EXTENT:g} m. "
+            f"'{name}' is {extent:.3g} m long; the {'maximum' if large else 'minimum'} is {MAX_EXTENT if large else MIN_EXTENT:g} m. "
             f"Is its unit the metre? Give scale=…, {'0.001 for millimetres' if large else '1000 for kilometres'}"
         )
 
@@ -103,7 +103,7 @@ def surface(vertices: Vertices, faces: Faces, name: str) -> Surface:
         faces = _without_slivers(vertices, faces, name, repairs)
     elif _volume(vertices, faces) < 0:
         faces = np.ascontiguousarray(faces[:, ::-1])
-        repairs.append("it was inside out; all its triangles are turned over")
+        repairs.append("all its triangles faced inwards and are reversed")
     flat = _is_flat(vertices, name)
     found = Surface(
         vertices=vertices,
@@ -145,7 +145,7 @@ def _without_repeats(faces: Faces, repairs: list[str]) -> Faces:
         return faces
     _, first = np.unique(corners, axis=0, return_index=True)
     if len(first) < len(faces):
-        repairs.append(f"{_count(len(faces) - len(first))} that were there twice left out")
+        repairs.append(f"{_count(len(faces) - len(first))} removed as duplicates")
         faces = faces[np.sort(first)]
     return faces
 
@@ -155,9 +155,9 @@ def _count(number: int) -> str:
 
 
 def _turned(faces: Faces, repairs: list[str]) -> Faces:
-    """Turns triangles over so that neighbours agree; in each connected piece it turns the smaller part.
+    """Reverses triangles so that neighbours agree; in each connected piece it reverses the smaller part.
 
-    Each triangle is two nodes, unchanged and turned over; an edge of two triangles connects the nodes that agree. A connected
+    Each triangle is two nodes, unchanged and reversed; an edge of two triangles connects the nodes that agree. A connected
     component is then one consistent choice. A piece whose two choices are connected (a Moebius strip) has none.
     """
     from scipy.sparse import coo_array  # slow to load, and only for meshes
@@ -182,7 +182,7 @@ def _turned(faces: Faces, repairs: list[str]) -> Faces:
     if turn.any():
         faces = faces.copy()
         faces[turn] = faces[turn][:, ::-1]
-        repairs.append(f"{_count(int(turn.sum()))} that faced against their neighbours turned over")
+        repairs.append(f"{_count(int(turn.sum()))} that faced opposite to their neighbours reversed")
     return faces
 
 

@@ -47,7 +47,7 @@ TEXTS = frozenset(
 MIN_MASS, MIN_INERTIA = 1e-3, 1e-6
 """Default mass and inertia of a moving URDF link [kg, kg m^2]: too little to change how a robot moves."""
 
-_NOT_TAKEN = {"skin": "skins", "model": "models inside models", "attach": "models inside models", "flexcomp": "flexcomp from a file"}
+_UNSUPPORTED = {"skin": "skins", "model": "models inside models", "attach": "models inside models", "flexcomp": "flexcomp from a file"}
 _TEXTURE_FILES = ("file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback")
 _MOVING = {"revolute", "continuous", "prismatic", "floating", "planar"}
 
@@ -95,7 +95,7 @@ def read_imported(folder: Folder, name: str) -> Document:
         _prepare_urdf(root, document)
     else:
         _remove_world_elements(root, document)
-    _Assets(root, folder, name, document).take()
+    _Assets(root, folder, name, document).load()
     document.text, document.origins = written(root)
     return document
 
@@ -132,10 +132,10 @@ def _remove_world_elements(root: Element, document: Document) -> None:
     """Removes elements about the whole world; adds a remark if they would change how things move."""
     options = sorted({name for child in root.children if child.tag == "option" for one in child.walk() for name in one.attributes})
     if options:
-        document.remarks.append(f"its <option> is left out ({', '.join(options)}): those of the scene hold")
+        document.remarks.append(f"its <option> ({', '.join(options)}) is left out: the options of the scene apply")
     keys = [one.attributes.get("name", "without a name") for child in root.children if child.tag == "keyframe" for one in child.children]
     if keys:
-        document.remarks.append(f"its <keyframe> is left out ({', '.join(keys)}): it starts in the pose that its bodies describe")
+        document.remarks.append(f"its <keyframe> ({', '.join(keys)}) is left out: it starts in the pose that its bodies describe")
     root.children = [child for child in root.children if child.tag not in OF_THE_WORLD]
 
 
@@ -187,11 +187,11 @@ class _Assets:
         if self._compiler.get("settotalmass", "-1") != "-1":
             document.remarks.append("its compiler's settotalmass is left out: masses are as given for each body")
 
-    def take(self) -> None:
+    def load(self) -> None:
         for element in self._root.walk():
             attributes = element.attributes
-            if element.tag in _NOT_TAKEN and (element.tag == "attach" or "file" in attributes):
-                raise WorldError(f"{element.where}: {_NOT_TAKEN[element.tag]} are not taken; export the model as one file")
+            if element.tag in _UNSUPPORTED and (element.tag == "attach" or "file" in attributes):
+                raise WorldError(f"{element.where}: {_UNSUPPORTED[element.tag]} are not supported; export the model as one file")
             if element.tag == "mesh" and ("file" in attributes or "filename" in attributes):
                 self._mesh(element, "filename" if self._document.urdf else "file")
             elif element.tag == "hfield" and "file" in attributes:

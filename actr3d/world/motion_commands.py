@@ -12,28 +12,28 @@ from actr3d.world.joints import Joint
 from actr3d.world.physics import Physics
 from actr3d.world.posture_hold import PostureHold
 
-THERE = 3e-4
-"""Distance from its target below which a joint or the base is put there exactly after a tick [m] or [rad]: more than the error that
-the pull of other limbs causes in that tick, and less than anyone sees."""
+ARRIVAL_TOLERANCE = 3e-4
+"""Distance below which a joint or the base is moved exactly to its target after a tick [m] or [rad]: greater than the error that other
+limbs cause in a tick, and too small to be visible."""
 
-MOVES = 0.01
-"""Share of its commanded speed below which something blocks a movement. Source: chosen for this library."""
+MIN_PROGRESS = 0.01
+"""Fraction of its commanded speed below which a movement counts as blocked. Source: chosen for this library."""
 
-ASTRAY = 0.1
+MAX_DIRECTION_ERROR = 0.1
 """Direction error above which a body that walks to a point stops and turns first [rad]. Source: chosen for this library."""
 
 HEADING = "heading"
-"""Key of the base's turn to a heading among targets."""
+"""Key in `targets` of a turn of the base to a heading."""
 
 TURN = "(turn)"
-"""Key of the base's turn by an angle among targets: to a heading too, but by the full angle, not the shorter way."""
+"""Key in `targets` of a turn of the base by an angle. Its target is a heading, too, but the whole angle is turned, not the shorter way."""
 
 
 class MotionCommands:
     """Holds the unfinished commands of one body: joints to positions, a walk to a point, a brake.
 
-    Once before each tick they set the speeds for all of it. The speed is constant, and in the last tick it is the rest of
-    the way over the tick, so that the end is reached exactly at a tick's end.
+    Before each tick they set the speeds for the whole tick. A movement has a constant speed; in its last tick the speed is the remaining
+    distance divided by the length of the tick, so that the target is reached exactly at the end of a tick.
 
     Args:
         physics: The compiled scene and its state.
@@ -76,7 +76,7 @@ class MotionCommands:
 
     @property
     def under_way(self) -> bool:
-        """Whether a movement that has an end is not there yet, and nothing blocks it."""
+        """Whether a movement with a target has not reached it yet, and still makes progress."""
         if not self.targets and self.waypoint is None:
             return False
         return self._before != self._movements() or self._base_moves() or any(self._joint_moves(name) for name in self.targets)
@@ -100,17 +100,17 @@ class MotionCommands:
         A joint at its target keeps the target until all are at theirs: those that still move would push it away.
         """
         base = self._base
-        there = [name for name in self.targets if self._arrived(name)]
+        there = [name for name in self.targets if self._finish_if_arrived(name)]
         if len(there) == len(self.targets):
             self.targets.clear()
-        if self.waypoint is not None and math.dist(self.waypoint[:2], base.place[:2]) <= THERE:
+        if self.waypoint is not None and math.dist(self.waypoint[:2], base.place[:2]) <= ARRIVAL_TOLERANCE:
             x, y, _, _ = self.waypoint
             self.waypoint = None
             base.place = (x, y, base.place[2])
             self._hold.stand()
             self._hold.drive_base((0.0, 0.0, 0.0))
 
-    def forget_course(self) -> None:
+    def cancel_base_movements(self) -> None:
         """Ends the walk to a point and the turns of the base, because another command moves it now."""
         self.waypoint = None
         self.targets.pop(HEADING, None)
@@ -119,7 +119,7 @@ class MotionCommands:
     def turning(self) -> float:
         """Returns the rest of a turn by an angle [rad]; 0 if there is none."""
         rest = self._rest(TURN) if TURN in self.targets else 0.0
-        return rest if abs(rest) > THERE else 0.0
+        return rest if abs(rest) > ARRIVAL_TOLERANCE else 0.0
 
     def state(self) -> tuple[Any, ...]:
         """Returns all commands as plain values."""
@@ -138,7 +138,7 @@ class MotionCommands:
         """Returns whether the base is on its way to a point or a heading."""
         if self.waypoint is None and not {HEADING, TURN} & self.targets.keys():
             return False
-        return math.hypot(*self._base.speed) > MOVES * math.hypot(*self._hold.base_command)
+        return math.hypot(*self._base.speed) > MIN_PROGRESS * math.hypot(*self._hold.base_command)
 
     def _joint_moves(self, name: str) -> bool:
         """Returns whether a joint is on its way to its target."""
@@ -146,21 +146,21 @@ class MotionCommands:
             return False
         joint = self._joints[name]
         rest, speed = abs(self.targets[name][0] - joint.position), self._hold.joint_speed(joint)
-        return rest > THERE and abs(joint.velocity) > MOVES * abs(speed)
+        return rest > ARRIVAL_TOLERANCE and abs(joint.velocity) > MIN_PROGRESS * abs(speed)
 
-    def _arrived(self, name: str) -> bool:
-        """Returns whether a joint or the heading is at its target; then moves it there exactly and stops it."""
+    def _finish_if_arrived(self, name: str) -> bool:
+        """If a joint or the heading is at its target, moves it there exactly, stops it, and returns True."""
         base, hold = self._base, self._hold
         target, _ = self.targets[name]
         if name in (HEADING, TURN):
             x, y, heading = base.place
             rest = self._rest(name)
-            if abs(rest) <= THERE:
+            if abs(rest) <= ARRIVAL_TOLERANCE:
                 base.place = (x, y, heading + rest)
                 hold.stand()
                 hold.drive_base((*hold.base_command[:2], 0.0))
                 return True
-        elif abs(target - self._joints[name].position) <= THERE:
+        elif abs(target - self._joints[name].position) <= ARRIVAL_TOLERANCE:
             self._joints[name].put(target)
             hold.stand(name)
             hold.drive_joint(self._joints[name], 0.0)
@@ -190,11 +190,11 @@ class MotionCommands:
         off = _wrapped(math.atan2(y - at_y, x - at_x) - heading)
         # Near the point its direction means little, and turning to it would only swing the body.
         spin = _bounded(off / duration, turn) if way > speed * duration else 0.0
-        pace = min(speed, way / duration) if spin == 0 or abs(off) < ASTRAY else 0.0
+        pace = min(speed, way / duration) if spin == 0 or abs(off) < MAX_DIRECTION_ERROR else 0.0
         self._hold.drive_base((pace * math.cos(off), pace * math.sin(off), spin))
 
     def _brake(self, duration: float) -> None:
-        """Brakes with the force of the pressed pedal, and with no more than stops the car in this tick."""
+        """Brakes with the force of the pedal, at most with the force that stops the car within this tick."""
         assert self._steering is not None
         speed = self._base.speed[0]
         most = self.brake * self._steering.brake

@@ -15,13 +15,14 @@ from actr3d.world.body import Body
 from actr3d.world.command_registry import checked_angle, number
 from actr3d.world.physics import Physics
 
-PRESSED = 0.01
-"""Greatest depth of one object in another after it was moved by hand [m]: contacts as stiff as those of walls push that out
-at less than 3 m/s if it can give way, but fling away, or crush without bounds, what is deeper. Source: chosen for this library."""
+MAX_PENETRATION = 0.01
+"""Greatest depth of two objects in each other that a move by a user may cause [m]. Up to this depth, contacts as stiff as those of walls
+push an object that can give way out at less than 3 m/s. From a greater depth they would throw it away, or press it with unlimited force.
+Source: chosen for this library."""
 
-SQUEEZED = 0.00075
-"""The same for an object that is pressed from two sides, so that it cannot give way [m]: with 2 mm at each
-side, contacts fling a person out of a gap at 7 m/s. Source: chosen for this library."""
+MAX_PENETRATION_BETWEEN_TWO = 0.00075
+"""The same for an object that is pressed from two sides, so that it cannot give way [m]: with 2 mm at each side, contacts throw a person
+out of a gap at 7 m/s. Source: chosen for this library."""
 
 AGAINST = -0.5
 """The cosine of the angle between two pushes from which an object between them counts as squeezed. Source: chosen, 120 degrees."""
@@ -39,7 +40,7 @@ Placement = tuple[float, float, float]
 """Place and heading of an object: x [m], y [m], heading [rad]."""
 
 
-class Depth(NamedTuple):
+class Penetration(NamedTuple):
     """How deep objects are in another one [m]."""
 
     depth: float
@@ -48,7 +49,7 @@ class Depth(NamedTuple):
     """The greatest depth after something was moved by hand."""
 
 
-NONE = Depth(0.0, PRESSED)
+NONE = Penetration(0.0, MAX_PENETRATION)
 """That of objects that do not touch."""
 
 
@@ -58,17 +59,17 @@ class Objects:
     Args:
         physics: The compiled scene and its state.
         bodies: The bodies of the world by name.
-        kept: The names of MuJoCo bodies that are moved in another way, such as the segments of apertures.
+        excluded: The names of MuJoCo bodies that a user cannot move directly, such as the segments of apertures.
     """
 
-    def __init__(self, physics: Physics, bodies: Mapping[str, Body], kept: frozenset[str]) -> None:
+    def __init__(self, physics: Physics, bodies: Mapping[str, Body], excluded: frozenset[str]) -> None:
         model = physics.mj_model
         self._physics = physics
         self._all_bodies = bodies
         self._bodies = {name: body for name, body in bodies.items() if body.base.planar or body.base.free}
         names = {int(number): str(model.body(int(number)).name) for number in np.flatnonzero(model.body_parentid == 0)[1:]}
         own = {body.root for body in bodies.values()}
-        self._obstacles = {name: number for number, name in names.items() if model.body_mocapid[number] >= 0 and name not in kept}
+        self._obstacles = {name: number for number, name in names.items() if model.body_mocapid[number] >= 0 and name not in excluded}
         self._loose = {name: number for number, name in names.items() if number not in own and self._is_free(number)}
 
     def _is_free(self, body: int) -> bool:
@@ -101,8 +102,8 @@ class Objects:
         """Puts an object at (x, y) [m], with a heading [rad] or its present one; a loose object comes to rest.
 
         Raises:
-            WorldError: If there is no such object, a value is wrong, a hand holds it, or it, or what it holds, would be inside another
-                one; it stays then.
+            WorldError: If there is no such object, a value is wrong, a hand of another body holds it, or it, or an object that it holds,
+                would be inside another object. Then nothing is moved.
         """
         number, physics = self._number(name, self.names, "move"), self._physics
         x, y, heading = place("move", x, y, heading)
@@ -125,7 +126,7 @@ class Objects:
             if heading is not None:
                 turn_to(physics.mj_data.qpos[q + 3 : q + 7], heading)
         physics.changed()
-        others = deeper(depths, self.depths(moved))
+        others = too_deep(depths, self.depths(moved))
         if others:
             physics.restore(before)
             if held is not None:
@@ -139,7 +140,7 @@ class Objects:
         return {hand.held.object for hand in hands if hand.held is not None}
 
     def _check_free(self, name: str, moved: set[int]) -> None:
-        """Raises an error if a hand of another body holds something that moves with an object: its grip would fling it.
+        """Raises an error if a hand of another body holds an object, or something that moves with it: the grip would throw it away.
 
         Raises:
             WorldError: If one does.
@@ -160,7 +161,7 @@ class Objects:
         return self._number(name, (*self._bodies, *self._loose), "push")
 
     def strike(self, number: int) -> None:
-        """Notes that something pushes a MuJoCo body: the body to which it belongs holds its place with no more than its strength."""
+        """Records that a user pushes a MuJoCo body: its body then resists only with the force of its servos, as in contact."""
         for body in self._bodies.values():
             if body.root == number:
                 body.hold.strike()
@@ -172,7 +173,7 @@ class Objects:
             raise WorldError(f"no object '{name}' to {what}{alternatives(name, names)}")
         return self._bodies[name].root if name in self._bodies else self._obstacles[name] if name in self._obstacles else self._loose[name]
 
-    def depths(self, roots: Collection[int], *, others: Literal["all", "fixed", "moving"] = "all") -> dict[str, Depth]:
+    def depths(self, roots: Collection[int], *, others: Literal["all", "fixed", "moving"] = "all") -> dict[str, Penetration]:
         """Returns by name the depth of some objects in each other object.
 
         Args:
@@ -182,7 +183,7 @@ class Objects:
         """
         physics = self._physics
         physics.refresh()
-        contacts, depths = physics.mj_data.contact, dict[str, Depth]()
+        contacts, depths = physics.mj_data.contact, dict[str, Penetration]()
         pairs: list[list[int]] = contacts.geom.tolist()
         kinds = [[self._kind(geom) for geom in pair] for pair in pairs]
         ends = [[self._root(geom) for geom in pair] for pair in pairs]
@@ -193,9 +194,9 @@ class Objects:
             if mine[0] != mine[1] and pairs[n][side] >= 0 and others in ("all", kinds[n][side]):
                 other = physics.owners[pairs[n][side]]
                 known, permitted = depths.get(other, NONE)
-                if -distance > SQUEEZED and any(self._against(ends, n, push) for push in pushes):
-                    permitted = SQUEEZED
-                depths[other] = Depth(max(known, -distance), permitted)
+                if -distance > MAX_PENETRATION_BETWEEN_TWO and any(self._against(ends, n, push) for push in pushes):
+                    permitted = MAX_PENETRATION_BETWEEN_TWO
+                depths[other] = Penetration(max(known, -distance), permitted)
         return depths
 
     def _against(self, ends: list[list[int]], one: int, other: int) -> bool:
@@ -306,6 +307,6 @@ def place(what: str, x: float, y: float, heading: float | None) -> tuple[float, 
     return x, y, None if heading is None else checked_angle(heading, f"{what}: heading")
 
 
-def deeper(before: Mapping[str, Depth], after: Mapping[str, Depth]) -> list[str]:
+def too_deep(before: Mapping[str, Penetration], after: Mapping[str, Penetration]) -> list[str]:
     """Returns the objects in which something is now too deep, given the depths in them before and after it was moved."""
     return [name for name, (depth, permitted) in after.items() if depth > max(permitted, before.get(name, NONE).depth)]

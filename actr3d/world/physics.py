@@ -13,7 +13,7 @@ from actr3d.errors import WorldError, did_you_mean
 from actr3d.world.scene import Scene
 
 INTEGRATION = mjtState.mjSTATE_INTEGRATION
-"""The part of MuJoCo's data from which a run continues exactly; less than that drifts (platform-facts)."""
+"""The part of MuJoCo's data from which a run continues exactly; from smaller parts, it continues differently."""
 
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 """MuJoCo's warnings of NaN or huge positions, velocities, accelerations: it resets the state then."""
@@ -38,8 +38,8 @@ class Physics:
         """The same [us]."""
         self.steps = 0
         """Physics steps since the start."""
-        self.moment = 0
-        """Number of the current state; a reading made at an earlier number is out of date."""
+        self.state_number = 0
+        """Number of the current state, which grows with every change; a reading made at a smaller number is out of date."""
         self._refreshed = False
         self._solved = False
         self._scratch: MjData | None = None
@@ -67,7 +67,7 @@ class Physics:
     def changed(self) -> None:
         """Marks derived quantities as out of date, after positions, speeds, commands or the compiled model have changed."""
         self._refreshed = self._solved = False
-        self.moment += 1
+        self.state_number += 1
 
     def refresh(self) -> None:
         """Updates positions, contacts and rays to the state, once per state.
@@ -90,7 +90,7 @@ class Physics:
     def accelerations(self) -> NDArray[np.float64]:
         """Returns the accelerations (nv,) with which the coming physics step changes the speeds [m/s^2, rad/s^2].
 
-        MuJoCo's `qacc` leaves out that the integrator is implicit: with stiff servos it is not what happens.
+        MuJoCo's `qacc` does not include the effect of the implicit integrator; with stiff servos it differs from the real acceleration.
         """
         if self._scratch is None:
             self._scratch = MjData(self.mj_model)

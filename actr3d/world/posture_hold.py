@@ -1,4 +1,4 @@
-"""Holds what a body is commanded to keep: speeds while it moves, its place and joint angles while it stands."""
+"""Keeps a body at its commands: speeds while it moves, the positions of base and joints while it stands."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ UNHINDERED, HINDERED = (0.02, 2.0), (0.1, 0.5)
 a fast correction against a wall would bounce off it. Source: chosen for this library."""
 
 CLOSE = 1e-6
-"""Greatest distance of all numbers together from the steady state [m] [rad] [m/s] [rad/s]: less than anything is corrected.
+"""Greatest Euclidean distance of all numbers from the steady state [m] [rad] [m/s] [rad/s], below every deviation that is corrected.
 Source: chosen for this library."""
 
 _PARTS = int(mjtState.mjSTATE_QPOS | mjtState.mjSTATE_QVEL | mjtState.mjSTATE_CTRL)
 
 
 class SteadyState:
-    """The numbers of a body without any deviation: held places, and commanded speeds and controls. Comparing with them is fast.
+    """The state of a body without any deviation: held positions, commanded speeds and controls. The comparison with it is fast.
 
     Args:
         physics: The compiled scene and its state.
@@ -61,7 +61,7 @@ class SteadyState:
         self.fastest = dofs.fastest(np.abs(commanded) + CLOSE)
         """Upper bound of the speed of any point of the body in this state [m/s]; infinite if not all of it is actuated."""
 
-    def met(self) -> bool:
+    def is_reached(self) -> bool:
         """Returns True if the state is near enough that nothing needs a correction; after False, something may."""
         state, numbers = self._state, self._numbers
         mujoco.mj_getState(self._model, self._data, state, _PARTS)
@@ -75,9 +75,9 @@ class SteadyState:
 class PostureHold:
     """Keeps one body's base and joints at their commands, once before each tick.
 
-    It corrects the effects of the body's own limbs: while nothing touches the body, speeds are as commanded, and joints that are
-    commanded to stand return to where they stood. Against contacts there are only the servos, whose force is bounded: what is
-    pushed harder yields. Limbs return when they can; the base stays where it was pushed.
+    It corrects the effects of the body's own limbs: while nothing touches the body, speeds are as commanded, and joints that are commanded
+    to stand return to where they stood. In contact, only the servos act. Their force is limited, so a stronger push moves the body;
+    afterwards limbs return when they can, and the base stays where it was pushed.
 
     Args:
         physics: The compiled scene and its state.
@@ -127,11 +127,11 @@ class PostureHold:
         return self._dofs.joints.get(joint)
 
     def gait_moves(self, joint: str) -> bool:
-        """Returns whether gait moves a joint about the place where it was commanded to stand."""
+        """Returns whether gait moves a joint around the position at which it was commanded to stop."""
         return self._gait is not None and self._gait.moves(self._dofs.joints.get(joint))
 
     def added_by_gait(self, joint: str) -> float:
-        """Returns how far gait has moved a joint from the place where it was commanded to stand [rad] or [m].
+        """Returns how far gait has moved a joint from the position at which it was commanded to stop [rad] or [m].
 
         Args:
             joint: A joint for which `gait_moves` is True.
@@ -180,8 +180,8 @@ class PostureHold:
     def drive_base(self, speed: tuple[float, float, float]) -> None:
         """Commands the base to keep a speed (forward, left, turn), with the rules of `drive_joint`.
 
-        When it stops, the joints that are commanded to stand stop with it: a contact may just have turned them as fast as the base
-        moved, and a limb that moves on would strike it.
+        When it stops, the joints that are commanded to stand stop with it: a contact may have turned them at the speed of the base, and a
+        limb that continued to move would hit the obstacle.
         """
         if speed == self.base_command:
             return
@@ -225,7 +225,8 @@ class PostureHold:
     def _halt(self, dofs: list[int]) -> None:
         """Stops degrees of freedom at once.
 
-        While others move, that alone could speed up limbs that they carry; then all slow down, so that none of it adds energy.
+        If other joints move, this can increase the kinetic energy of the body; then all its speeds are reduced, so that the energy stays
+        the same.
         """
         model, data = self._physics.mj_model, self._physics.mj_data
         product = np.zeros(model.nv)
@@ -246,7 +247,7 @@ class PostureHold:
         Returns:
             An upper bound of the speed of any point of the body [m/s], where it is known quickly; else infinity.
         """
-        if self._steady is not None and self._steady.met():
+        if self._steady is not None and self._steady.is_reached():
             self._without_deviation()
             return self._steady.fastest
         if self._moves:
@@ -273,7 +274,7 @@ class PostureHold:
         stance, torso = (0.0 if row is None else dofs.place(row) for row in self._trunk)
         changes = gait.advance(forward, left, stance, torso, self.held, duration)
         held = self.held.copy()
-        if dofs.carry(gait.rows, changes, self.held, self.commanded, held, duration):
+        if dofs.shift_held(gait.rows, changes, self.held, self.commanded, held, duration):
             self._forget_steady()
             self._moves = bool(self.commanded[self._rows :].any())
         return held
@@ -284,7 +285,7 @@ class PostureHold:
             self._struck = self._contacts.any_in_step()
 
     def strike(self) -> None:
-        """Notes that a user pushes the body: like a contact, this is met with no more than the strength of the servos."""
+        """Records that a user pushes the body: as in contact, only the servos resist, with their limited force."""
         self._struck = True
 
     def _without_deviation(self) -> None:
@@ -302,13 +303,14 @@ class PostureHold:
         self._struck = False
         if self.calm:
             time, most = UNHINDERED
-            dofs.settle(ways, wanted, time, most, SLIGHT_SPEED, loops=not self._loop_moves())
+            dofs.apply_corrections(ways, wanted, time, most, SLIGHT_SPEED, loops=not self._loop_moves())
         else:
             self._yield(ways)
             self._push(ways, wanted)
 
     def _push(self, ways: Row, wanted: Row) -> None:
-        """Sets the servos to push towards the needed speeds: adds what the load has taken off a speed, up to the servos' limits."""
+        """Sets the servos so that they push towards the needed speeds: adds the speed that the load has taken away, up to the servos'
+        limits."""
         dofs, (time, most) = self._dofs, HINDERED
         back = dofs.along_base(np.clip(ways / time, -most, most))
         speeds, band = dofs.speeds, dofs.band

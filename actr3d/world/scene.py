@@ -37,13 +37,13 @@ class Scene(Configuration):
     """
 
     parts: tuple[Any, ...] = ()
-    """What there is, in any order: see `scene_objects.py` and `bodies/`; anything that is a `Part`."""
+    """The parts of the scene, in any order: each a `Part`, such as those in `scene_objects.py` and `bodies/`."""
 
     timestep: Annotated[float, Gt(0), Le(0.01)] = 0.002
     """Length of one physics step [s]; a whole number of microseconds. 2 ms keeps a limb at 3 m/s within 6 mm of contact."""
 
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)
-    """[m/s^2]; the default is the standard acceleration of free fall, to two digits."""
+    """[m/s^2]; the default is the standard acceleration of free fall, rounded to two decimals."""
 
     def __post_init__(self) -> None:
         """Checks fields, parts and names.
@@ -59,7 +59,7 @@ class Scene(Configuration):
             if not isinstance(part, Part):
                 raise WorldError(f"Scene.parts: {part!r} is not a part: it has no name or no add_to(mj_spec)")
             if "\0" in part.name or part.name != part.name.encode(errors="replace").decode():
-                raise WorldError(f"Scene.parts: {part.name!r} cannot be a name: a character of it cannot be written")
+                raise WorldError(f"Scene.parts: {part.name!r} is no valid name: a character of it is NUL, or cannot be encoded in UTF-8")
         twice = [name for name, count in Counter(part.name for part in self.parts).items() if count > 1]
         if twice:
             raise WorldError(f"Scene.parts: two parts are named '{twice[0]}'; names must differ")

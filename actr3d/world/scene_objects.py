@@ -16,6 +16,7 @@ from actr3d.world.frames import FULL_TURN
 
 Name = Annotated[str, MinLen(1)]
 Length = Annotated[float, Gt(0)]
+Positive = Annotated[float, Gt(0)]
 Heading = Annotated[float, Ge(-FULL_TURN), Le(FULL_TURN)]
 Colour = tuple[float, float, float, float]
 
@@ -137,7 +138,8 @@ class Aperture(Configuration):
     """The direction in which one walks through it [rad], 0 along x."""
 
     closing: Annotated[float, Ge(0)] = 0.0
-    """How fast it closes from the start on [m/s]. What only one segment touches is pushed aside; what both press holds it open."""
+    """How fast it closes from the start on [m/s]. An object that only one segment touches is pushed aside; an object between both segments
+    stops the closing."""
 
     segment: Length = 2.5
     """Length of each wall segment [m]. Segments keep their length and slide when the width changes."""
@@ -210,7 +212,7 @@ class Track(Configuration):
             if turn > SHARPEST:
                 most, got = math.degrees(SHARPEST), math.degrees(turn)
                 raise ConfigurationError(
-                    f"Track '{self.name}'.points: turns by <= {most:g} degrees at a point (got {got:.0f} at point {n})"
+                    f"Track '{self.name}'.points: must turn by <= {most:g} degrees at a point (got {got:.0f} at point {n})"
                 )
 
     def add_to(self, mj_spec: MjSpec) -> None:
@@ -246,7 +248,7 @@ class Track(Configuration):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Loose(Configuration):
+class SimpleObject(Configuration):
     """An object of a simple shape that can be pushed and falls; or a fixed one."""
 
     name: Name
@@ -264,7 +266,7 @@ class Loose(Configuration):
     heading: Heading = 0.0
     """Its rotation about the vertical at the start [rad]."""
 
-    mass: Length | None = 1.0
+    mass: Positive | None = 1.0
     """[kg]; None fixes it in its place."""
 
     colour: Colour = (0.55, 0.62, 0.72, 1.0)
@@ -279,11 +281,11 @@ class Loose(Configuration):
         super().__post_init__()
         _, sizes, meaning = SHAPES[self.shape]
         if len(self.size) != sizes:
-            raise ConfigurationError(f"Loose '{self.name}'.size: a {self.shape} takes {meaning} (got {self.size!r})")
+            raise ConfigurationError(f"SimpleObject '{self.name}'.size: a {self.shape} takes {meaning} (got {self.size!r})")
         if min(self.size) < LEAST_SIZE:
-            raise ConfigurationError(f"Loose '{self.name}'.size: must be >= {LEAST_SIZE:g} m (got {self.size!r})")
+            raise ConfigurationError(f"SimpleObject '{self.name}'.size: must be >= {LEAST_SIZE:g} m (got {self.size!r})")
         if self.mass is not None and self.mass < LEAST_MASS:
-            raise ConfigurationError(f"Loose '{self.name}'.mass: must be >= {LEAST_MASS:g} kg (got {self.mass!r})")
+            raise ConfigurationError(f"SimpleObject '{self.name}'.mass: must be >= {LEAST_MASS:g} kg (got {self.mass!r})")
 
     def add_to(self, mj_spec: MjSpec) -> None:
         """Adds a body with one geom, and a free joint unless it is fixed: then only a user can move it."""

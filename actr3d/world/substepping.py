@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from actr3d.clock import seconds
 from actr3d.errors import WorldError
 from actr3d.world.body import Body
-from actr3d.world.kernel import fastest, near
+from actr3d.world.kernel import any_within_distance, fastest
 from actr3d.world.objects import Pushes
 from actr3d.world.physics import Physics
 from actr3d.world.reach import radius
@@ -52,7 +52,8 @@ class Substepping:
         self._reaches = np.vstack([np.zeros((1, model.nv)), *(body.reaches for body in bodies)])
         """By moving part and degree of freedom: the greatest way of its farthest point per unit of the degree of freedom [m]."""
         self._together = np.ones(model.nv, dtype=np.intp)
-        """By degree of freedom: with how many that follow its speed adds as vectors do; 1 alone, 0 for those that follow."""
+        """By degree of freedom: how many consecutive ones, from it on, form one velocity vector; 1 for a single one, 0 for later members of
+        a vector."""
         for body in bodies:
             v = body.base.v
             for first, count in [(v, 2)] if body.base.planar else [(v, 3), (v + 3, 3)] if body.base.free else []:
@@ -96,8 +97,8 @@ class Substepping:
             self._physics.changed()
 
     def _prepare(self, count: int) -> bool:
-        """Corrects the bodies for some steps; returns whether these need parts: a body may move farther than its stride in one of
-        them, and something is near enough for a collision in any of them."""
+        """Corrects the bodies before some steps. Returns whether these steps must be divided: a point of a body may move more than `STRIDE`
+        in one of them, and an object is near enough for a collision."""
         duration, speed = count * self._whole, 0.0
         for hold in self._holds:
             speed = max(speed, hold.before_step(duration))
@@ -132,13 +133,13 @@ class Substepping:
         self._physics.refresh()
         boxes, data = self._physics.mj_model.geom_aabb, self._physics.mj_data
         for body, others, far in zip(self._bodies, self._others, self._radii, strict=True):
-            if near()(others, boxes, data.geom_xpos, data.geom_xmat, data.xpos[body.root], far + beyond):
+            if any_within_distance()(others, boxes, data.geom_xpos, data.geom_xmat, data.xpos[body.root], far + beyond):
                 return True
         return False
 
 
 def _others(body: Body) -> NDArray[np.intp]:
-    """Returns the geoms that a body could pass through: planes have no other side."""
+    """Returns the geoms with contacts that a body could pass through: those of other objects, without planes."""
     model = body.physics.mj_model
     solid = (model.geom_contype | model.geom_conaffinity) != 0
     solid &= (model.geom_type != int(mjtGeom.mjGEOM_PLANE)) & ~body.members[model.geom_bodyid]

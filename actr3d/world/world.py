@@ -16,7 +16,7 @@ from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
 from actr3d.world.model_changes import Changes, ModelChanges
 from actr3d.world.motion_commands import MotionCommands
-from actr3d.world.objects import Objects, Pushes, deeper
+from actr3d.world.objects import Objects, Pushes, too_deep
 from actr3d.world.physics import Physics
 from actr3d.world.scene import Scene
 from actr3d.world.scene_objects import Aperture
@@ -36,7 +36,7 @@ class WorldState:
     """The fingerprint of the compiled scene."""
 
     mj_state: NDArray[np.float64]
-    """`mjSTATE_INTEGRATION` of the data; less than that drifts (platform-facts)."""
+    """`mjSTATE_INTEGRATION` of the data, see `INTEGRATION`."""
 
     bodies: tuple[tuple[str, BodyState], ...] = ()
     """Of each body, what is not in the physics state: unfinished commands, noise, held objects."""
@@ -84,7 +84,7 @@ class World:
         self.objects = Objects(self.physics, self.bodies, segments)
         """What can be moved by hand."""
         for name, body in self.bodies.items():
-            if inside := deeper({}, self.objects.depths({body.root}, others="fixed")):
+            if inside := too_deep({}, self.objects.depths({body.root}, others="fixed")):
                 raise WorldError(f"'{name}' is inside {', '.join(map(repr, inside))} at the start; leave room")
         self._pushes = Pushes(self.physics, self.objects)
         self._changes = ModelChanges(self.mj_model)
@@ -140,7 +140,7 @@ class World:
     def _in_stretches(self, steps: int, commands: list[MotionCommands]) -> Iterator[None]:
         """Makes steps, and between them, every 10 ms, closes apertures and corrects the speeds of unfinished commands.
 
-        A brake must not drive backwards.
+        A brake is corrected so often because with a constant force it would drive the car backwards.
         """
         for count in self._substepping.stretches(steps):
             for aperture in self._closing:
@@ -229,8 +229,8 @@ class World:
         """Puts a body, a wall or another object at (x, y) [m], with a heading [rad] or its present one, at once.
 
         Raises:
-            WorldError: If there is no such object, a value is wrong, a hand holds it, or it, or what it holds, would be inside
-                another one; it stays then.
+            WorldError: If there is no such object, a value is wrong, a hand of another body holds it, or it, or an object that it holds,
+                would be inside another object. Then nothing is moved.
         """
         self._check_unobserved("move")
         self.objects.move(name, x, y, heading)
@@ -238,7 +238,7 @@ class World:
     def push(self, name: str, x: float, y: float = 0.0, time: float = 0.1) -> None:
         """Pushes a body or a loose object with a force (x, y) [N] for a time [s], from the next physics step on.
 
-        The force acts at the centre of the object, or of the base of a body; a body holds its place with the strength that it has.
+        The force acts at the centre of the object, or of the base of a body; a body resists with the limited force of its servos.
 
         Raises:
             WorldError: If there is no such object, it cannot be pushed, or a value is wrong.
@@ -258,10 +258,10 @@ class World:
         return aperture.width_of(tuple(self.mj_data.mocap_pos[self._mocap(f"{name}_left")]))
 
     def set_aperture_width(self, width: float, name: str = "aperture") -> None:
-        """Sets the free width of an aperture [m], at once; it cannot close further than objects in it permit, see `SQUEEZED`.
+        """Sets the free width of an aperture [m] immediately, unless an object would be inside its walls.
 
         Raises:
-            WorldError: If there is no such aperture, or something that can move is in the way of its segments; they stay then.
+            WorldError: If there is no such aperture, or an object that can move would be inside its walls. Then nothing is moved.
             ConfigurationError: If the width is not a number of at least 0.
         """
         self._check_unobserved("set_aperture_width")
@@ -277,7 +277,7 @@ class World:
         before, depths = self.mj_data.mocap_pos[sides].copy(), self.objects.depths(roots, others="moving")
         self.mj_data.mocap_pos[sides] = list(self._aperture(name).segment_positions(width).values())
         self.changed()
-        inside = deeper(depths, self.objects.depths(roots, others="moving"))
+        inside = too_deep(depths, self.objects.depths(roots, others="moving"))
         if inside:
             self.mj_data.mocap_pos[sides] = before
             self.changed()

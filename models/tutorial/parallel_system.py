@@ -1,11 +1,11 @@
-"""A parallel production system: a quick eye beside a slow mind.
+"""A parallel production system: a fast eye beside slow central cognition.
 
 A cook stirs a soup, and watches the stove. Stirring is central cognition, step by step. Watching runs beside it all
 the time and is faster, but it can only raise an alarm.
 
 A `ProductionSystem` inside an agent has productions and a cycle time of its own, and sees the agent's buffers by
-name. The two run at the same time, and meet in a buffer. (Python ACT-R's way of putting simple, automatic processes
-beside the central one: Stewart & West 2007, Cognitive Systems Research 8.)
+name. The two run at the same time, and meet in a buffer. (This is how Python ACT-R models simple, automatic
+processes in parallel to central cognition: Stewart & West 2007, Cognitive Systems Research 8.)
 
 What to expect
 --------------

@@ -8,9 +8,9 @@ True, which a production can match like anything else (`memory="error:True"`).
 
 What to expect
 --------------
-Each link takes 0.15 s: two productions of 0.05 s, and a retrieval of `F exp(-A)` = 0.05 s. Yes is said after
-0.05 + 0.15 n s for n links: by the same amount later for each level, as Collins & Quillian (1969, Journal of Verbal
-Learning and Verbal Behavior 8) found. No is said where the network ends and a retrieval fails, which takes
+Each link takes 0.15 s: two productions of 0.05 s, and a retrieval of `F exp(-A)` = 0.05 s. The answer yes
+comes after 0.05 + 0.15 n s for n links: each level adds the same time, as Collins & Quillian (1969, Journal of Verbal
+Learning and Verbal Behavior 8) found. The answer no comes when the network ends and a retrieval fails, which takes
 `F exp(-threshold)`, with the threshold of 0 also 0.05 s: no heron is a fish after 0.15 * 3 + 0.15 = 0.600 s.
 
 What to try

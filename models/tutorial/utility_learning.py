@@ -1,6 +1,6 @@
 """Utility learning: how rewards of actions form a habit.
 
-Every morning somebody goes to work, by bus or on foot. Both bring the same reward, but walking takes longer. Which
+Every morning somebody goes to work, by bus or on foot. Both have the same reward, but walking takes longer. Which
 is better is learned by trying.
 
 Of the productions that match, the one with the highest utility fires. `PMNew` learns utilities from rewards,
@@ -36,7 +36,7 @@ from actr3d.actr import *
 
 
 class Journey(Model):
-    """The way to work; it lies outside the mind, and takes time."""
+    """The journey to work: it is not part of cognition, and takes time."""
 
     def go(self, time):
         yield time

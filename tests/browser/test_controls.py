@@ -169,7 +169,7 @@ def test_the_eye_is_shown_small_and_large(pages: Callable[..., Page]) -> None:
     expect(page.locator(".eye tbody tr")).to_have_count(len(view["extents"]))
     head = page.get_by_role("table", name="Edges").get_by_role("columnheader")
     expect(head).to_have_text([f"{field['name']}{' [' + field['unit'] + ']' if field['unit'] else ''}" for field in view["fields"]])
-    expect(head.nth(10)).to_have_attribute("title", "nearest distance: how far that nearest point is from the eye [m]")
+    expect(head.nth(10)).to_have_attribute("title", "nearest distance: the distance from the eye to that nearest point [m]")
     page.get_by_text("What the columns mean").click()
     expect(page.locator(".legend dl")).to_contain_text("a1 [°]left angle: the angle between the line of sight")
     box = page.locator(".eye canvas").bounding_box()

@@ -70,7 +70,7 @@ def test_labels_can_be_taken_up_again() -> None:
     later.restore(before)
     assert labels(later.look(mj_data)) == labels(camera.look(mj_data))
     assert labels(GeometricCamera(mj_model, site="eye").look(mj_data)) != labels(camera.look(mj_data))
-    with pytest.raises(CameraError, match=r"restore: a state of 2 objects for a camera that has 5"):
+    with pytest.raises(CameraError, match=r"restore: the state is of a camera with 2 objects, not 5"):
         camera.restore((1, 1, 0))
 
 
@@ -339,7 +339,7 @@ def test_a_skin_is_named_and_its_body_seen() -> None:
     mj_model = mujoco.MjModel.from_xml_string(text)
     mj_data = mujoco.MjData(mj_model)
     mujoco.mj_forward(mj_model, mj_data)
-    with pytest.warns(ModelWarning, match="the Geometric Camera does not see skin 'cloak': give what should be seen a geom"):
+    with pytest.warns(ModelWarning, match="the Geometric Camera does not see skin 'cloak': add a geom to each object that should be seen"):
         camera = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(rows=3))
     assert {label for row in camera.look(mj_data).as_dict().values() for label in row} == {1}
 
@@ -349,5 +349,5 @@ def test_what_it_cannot_see_is_named() -> None:
       <flexcomp name="sheet" type="grid" count="3 3 1" spacing="1 1 1" dim="2" mass="1" radius="0.01">
       <edge equality="true"/></flexcomp></body>
       </worldbody></mujoco>"""
-    with pytest.warns(ModelWarning, match="the Geometric Camera does not see flex 'sheet': give what should be seen a geom"):
+    with pytest.warns(ModelWarning, match="the Geometric Camera does not see flex 'sheet': add a geom to each object that should be seen"):
         GeometricCamera(mujoco.MjModel.from_xml_string(text), site="eye")

@@ -15,14 +15,21 @@ from actr3d.camera import CameraParameters, GeometricCamera, View
 from actr3d.errors import Actr3dError
 from actr3d.recording import Recorded
 from actr3d.simulation import Simulation
-from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, World
+from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, World
 from tests.helpers.small_agents import near
 from tests.helpers.walkers import digest
 
 
 def doorway() -> World:
     return World(
-        Scene(parts=(Floor(), Aperture(width=0.8, position=(5.0, 0.0)), Mannequin(name="walker"), Loose(name="box", position=(3, 1, 1))))
+        Scene(
+            parts=(
+                Floor(),
+                Aperture(width=0.8, position=(5.0, 0.0)),
+                Mannequin(name="walker"),
+                SimpleObject(name="box", position=(3, 1, 1)),
+            )
+        )
     )
 
 
@@ -83,7 +90,7 @@ def test_mismatches_are_reported() -> None:
         ({"row": 3}, "CameraParameters has no field 'row'; did you mean 'rows'"),
         ({"rows": 0}, r"CameraParameters\.rows: must be >= 1"),
         ({"background": ("flor",)}, "no geom 'flor'; did you mean 'floor'"),
-        ({"noise": 0.1}, "its fields have different units; name them"),
+        ({"noise": 0.1}, "its fields have different units; give them by name: {.d1.: 0.1}; fields: x1"),
         ({"noise": {"d3": 0.1}}, "no field 'd3'"),
         ({"noise": {1: 0.1}}, r"walker: noise of view: a field is named by text \(got 1\)"),
         ({"rows": "ten"}, r"CameraParameters\.rows: must be a whole number \(got 'ten'\)"),

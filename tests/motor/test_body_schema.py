@@ -25,7 +25,7 @@ def test_felt_positions_and_extremes_are_those_of_each_single_reading(step: floa
         for number, joint in enumerate(limbs.order):
             grid = 1.0 if limbs.joints[joint].kind == "hinge" else 0.001
             assert schema.at[joint] == on_grid(now[number] / limbs.unit[joint], grid)
-            assert (limbs.felt[joint], limbs.least[joint], limbs.most[joint]) == (now[number], least[number], most[number])
+            assert (limbs.felt[joint], limbs.minimum[joint], limbs.maximum[joint]) == (now[number], least[number], most[number])
         further = schema.extremes(limbs.order)
         assert set(further) <= set(new)
         schema.note(further)

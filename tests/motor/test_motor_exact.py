@@ -168,7 +168,7 @@ def test_whatever_is_commanded_limits_hold_and_what_is_known_is_so(seed: int) ->
     simulation.step(2)
     for name in body.joints:
         known = motor.joint(name)
-        assert (known.least, known.most) == near(tuple(seen[name]), abs=1e-4)
+        assert (known.minimum, known.maximum) == near(tuple(seen[name]), abs=1e-4)
         assert known.angle == near(body.joints[name].position, abs=1e-4)
 
 

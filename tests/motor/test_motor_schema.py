@@ -69,7 +69,7 @@ def test_least_and_most_are_those_of_the_true_angles_to_the_last_tick() -> None:
         joint = motor.joint(name)
         # What is not moved gives way a little and comes back, also where nothing is felt.
         exact = 1e-8 if name in ("torso_yaw", "head_yaw") else 1e-4
-        assert (joint.least, joint.most, joint.angle) == near((min(angles), max(angles), angles[-1]), abs=exact, rel=0)
+        assert (joint.minimum, joint.maximum, joint.angle) == near((min(angles), max(angles), angles[-1]), abs=exact, rel=0)
 
 
 def test_the_felt_size_is_that_of_the_body_in_its_posture() -> None:

@@ -25,7 +25,7 @@ BEGIN = (
     DRIVER
     + """
 from actr3d.simulation import Simulation
-from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene
+from actr3d.world import Aperture, Floor, SimpleObject, Mannequin, Scene
 
 def simulation(*more):
     scene = Scene(parts=(Floor(), Aperture(position=(3.0, 0.0)), Mannequin(name="walker"), *more))
@@ -35,7 +35,7 @@ def simulation(*more):
 )
 PROGRAM = (
     BEGIN
-    + """one, two = simulation(), simulation(Loose(name="box", position=(0.0, 2.0, 1.0)))
+    + """one, two = simulation(), simulation(SimpleObject(name="box", position=(0.0, 2.0, 1.0)))
 one.run(0.3)
 for tick in range(20):
     two.step()

@@ -195,8 +195,8 @@ FALLING = """
 import os, signal
 from actr3d.actr import *
 from actr3d.simulation import Simulation
-from actr3d.world import Floor, Loose, Scene
-simulation = Simulation(Scene(parts=(Floor(), Loose(name="box", position=(0, 0, 1)))))
+from actr3d.world import Floor, SimpleObject, Scene
+simulation = Simulation(Scene(parts=(Floor(), SimpleObject(name="box", position=(0, 0, 1)))))
 simulation.observe(lambda seen: simulation.ticks == 4_050 and os.kill(os.getpid(), signal.SIGKILL))
 simulation.run(60)
 """

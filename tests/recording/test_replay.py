@@ -30,7 +30,7 @@ BUILT = """
 from dataclasses import dataclass
 from actr3d.actr import *
 from actr3d.simulation import Simulation
-from actr3d.world import Aperture, Floor, Loose, Scene
+from actr3d.world import Aperture, Floor, SimpleObject, Scene
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
@@ -55,7 +55,7 @@ class Watcher(ACTR):
             self.stop()
 
 def build(parameters: Parameters) -> Simulation:
-    scene = Scene(parts=(Floor(), Aperture(), Loose(name="box", position=(0, 0, parameters.height), heading=0.3)))
+    scene = Scene(parts=(Floor(), Aperture(), SimpleObject(name="box", position=(0, 0, parameters.height), heading=0.3)))
     def watcher():
         agent = Watcher()
         agent.most = parameters.times

@@ -172,7 +172,7 @@ def test_an_error_that_a_production_raises_names_the_production() -> None:
 
 
 def test_a_wrong_part_of_a_scene_is_reported_at_the_line_that_makes_it() -> None:
-    text = 'from actr3d.world import Loose\n\nbox = Loose(\n    name="box", position=(3, 0)\n)\n'
+    text = 'from actr3d.world import SimpleObject\n\nbox = SimpleObject(\n    name="box", position=(3, 0)\n)\n'
     report = reported(text)
     assert (report.file, report.line) == ("mine.py", 3)
     assert "<string>" not in report.text

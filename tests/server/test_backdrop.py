@@ -13,7 +13,7 @@ from mujoco import MjData
 
 from actr3d.actr import ACTR
 from actr3d.simulation import Simulation
-from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Wall
+from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, Wall
 from actr3d.world.world import World
 from workbench.backdrop import Outlines, Shades
 from workbench.scene_framing import SceneFraming
@@ -46,7 +46,7 @@ def test_shade_lies_under_the_feet_and_along_a_wall_as_it_stands() -> None:
 
 
 def test_what_is_high_above_the_ground_or_below_it_casts_none() -> None:
-    low, high = ((Loose(name="box", position=(0, 0, z), mass=None),) for z in (0.15, 6.0))
+    low, high = ((SimpleObject(name="box", position=(0, 0, z), mass=None),) for z in (0.15, 6.0))
     assert len(Shades(*_model_and_ground(*low)).quads(scene(*low)[1])) == 1
     assert Shades(*_model_and_ground(*high)).quads(scene(*high)[1]) == []
     bare = World(Scene(parts=(Floor(),))).mj_model
@@ -58,7 +58,7 @@ def _model_and_ground(*parts: Any) -> tuple[Any, float]:
 
 
 def test_outlines_are_those_of_walls_and_go_with_them() -> None:
-    model, data = scene(Mannequin(name="walker"), Aperture(width=0.6), Loose(name="box"))
+    model, data = scene(Mannequin(name="walker"), Aperture(width=0.6), SimpleObject(name="box"))
     lines: list[Any] = []
     outlines = Outlines(SimpleNamespace(), model)
     outlines._lines = SimpleNamespace(set=lines.append)  # pyright: ignore[reportAttributeAccessIssue]
@@ -77,7 +77,7 @@ def test_the_stage_is_sent_with_the_middle_and_size_of_the_body() -> None:
     assert told["height"] == pytest.approx(1.75, abs=0.1)
     assert np.add(told["start"], told["middle"]) == pytest.approx([0, 0, 0.87], abs=0.1)
     assert told["ahead"] == pytest.approx([1, 0, 0], abs=0.01)
-    crowd = [Loose(name=f"box {n}", position=(n % 10 - 5, n // 10 - 5, 0.2)) for n in range(100)]
+    crowd = [SimpleObject(name=f"box {n}", position=(n % 10 - 5, n // 10 - 5, 0.2)) for n in range(100)]
     assert len(SceneFraming(scene(Mannequin(name="walker"), *crowd)[0]).data([])["corners"]) == 8
     still = SceneFraming(scene(Wall(name="wall", start=(3, -2), end=(3, 2)))[0]).data(
         []
@@ -89,7 +89,7 @@ def test_the_stage_is_sent_with_the_middle_and_size_of_the_body() -> None:
 
 
 def test_the_stage_is_that_of_the_agent_s_body_whatever_else_moves() -> None:
-    parts = (Floor(), Loose(name="box", position=(-3, 0, 0.2)), Mannequin(name="other", position=(-2, 0)), Mannequin(name="walker"))
+    parts = (Floor(), SimpleObject(name="box", position=(-3, 0, 0.2)), Mannequin(name="other", position=(-2, 0)), Mannequin(name="walker"))
     world = Shown(Simulation(Scene(parts=parts), {"walker": Nothing})).world()
     model: Any = World(Scene(parts=parts)).mj_model
     told = SceneFraming(model, [world["bodies"][name]["root"] for name in world["agents"]]).data([])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from actr3d.world import Car, Floor, Load, Mannequin, Scene, Wall
-from actr3d.world.compiled import loaded, saved
+from actr3d.world.compiled import from_bytes, to_bytes
 from actr3d.world.world import World
 from workbench.geom_colours import colour_of_object, dress
 from workbench.palette import channels, palette
@@ -22,7 +22,7 @@ def test_each_agent_after_the_first_has_its_own_colour_in_shades_and_the_rest_st
     people[3] = replace(people[3], colour=chosen)
     world = World(Scene(parts=(Floor(), *people, Car(name="car", position=(6.0, 0.0)))))
     before: Any = world.mj_model
-    drawn: Any = loaded(saved(before))
+    drawn: Any = from_bytes(to_bytes(before))
     dress(drawn, [world.bodies[name].root for name in ("first", "second", "third", "chosen", "car")])
 
     def shirt(model: Any, name: str) -> Any:

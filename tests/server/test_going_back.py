@@ -36,7 +36,7 @@ KINDS = tuple(OVERLAYS)
 
 LOOKING = """from actr3d.actr import *
 from actr3d.simulation import BodyPort, Simulation
-from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene
+from actr3d.world import Aperture, Floor, SimpleObject, Mannequin, Scene
 
 class Walker(ACTR):
     goal = Buffer()
@@ -68,7 +68,7 @@ class Walker(ACTR):
         goal.set("go %d" % (int(n) + 1))
 
 def build() -> Simulation:
-    cup = Loose(name="cup", size=(0.05, 0.05, 0.2), position=(0.05, -0.24, 0.66), mass=0.5)
+    cup = SimpleObject(name="cup", size=(0.05, 0.05, 0.2), position=(0.05, -0.24, 0.66), mass=0.5)
     parts = (Floor(), Mannequin(name="walker", noise=(("pose", 0.01),)), cup, Aperture(width=1.2, position=(1.5, 0.2)))
     return Simulation(Scene(parts=parts), {"walker": Walker})
 """

@@ -17,7 +17,7 @@ from actr3d.actr import ACTR, Buffer
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.simulation import Simulation
-from actr3d.world import Floor, Loose, Mannequin, Scene
+from actr3d.world import Floor, Mannequin, Scene, SimpleObject
 from tests.helpers.sessions import Desk
 from tests.server.test_overlays import LOOKING
 from tests.server.test_recorded_runs import recording
@@ -97,7 +97,7 @@ def followed(folder: Path, parts: Sequence[Any], *agents: str) -> Any:
 
 
 def test_the_view_follows_the_agent_s_body_whatever_else_moves(tmp_path: Path) -> None:
-    parts = Loose(name="box", position=(-3, 0, 0.2)), Mannequin(name="walker")
+    parts = SimpleObject(name="box", position=(-3, 0, 0.2)), Mannequin(name="walker")
     assert followed(tmp_path, parts, "walker") == pytest.approx([0, 0], abs=0.05)
 
 

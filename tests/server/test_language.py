@@ -144,7 +144,10 @@ class Pole(Feature):
             ["distance", "direction", "motion", "girth"],
         ),
         ("import beside\nbeside.|", ["helps"]),
-        (DOORWAY.replace("parts=(", "parts=(|"), ["Aperture", "Car", "Floor", "Imported", "ImportedBody", "Loose", "Mannequin", "Mesh"]),
+        (
+            DOORWAY.replace("parts=(", "parts=(|"),
+            ["Aperture", "Car", "Floor", "Imported", "ImportedBody", "Mannequin", "Mesh", "SimpleObject"],
+        ),
         ("x = 'not a chunk |'", []),
     ],
 )

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from actr3d.camera import Stand
+from actr3d.camera import EyePose
 from actr3d.vision import Feature, Sighting
 from actr3d.vision.units import Metres
 from workbench.overlays.contours import Places
@@ -39,8 +39,8 @@ class Line(Feature):
 def outline(feature: Feature) -> Places:
     """How it is drawn where an eye stands in the world's origin; of what it was found in nothing is asked."""
     view: Any = None
-    stood = Stand(0.0, 0.0, 0.0, 0.0)
-    sighting = Sighting(module="vision", bottom_up=False, time=0.0, chosen=True, feature=feature, view=view, stood=stood)
+    eye_pose = EyePose(0.0, 0.0, 0.0, 0.0)
+    sighting = Sighting(module="vision", bottom_up=False, time=0.0, chosen=True, feature=feature, view=view, eye_pose=eye_pose)
     return _outline(sighting, np.empty((0, 2, 3)))
 
 

@@ -15,7 +15,7 @@ from actr3d.actr.explain.memory_table import memory_rows
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits
 from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.loading import run_text
-from actr3d.camera import CameraParameters, glance
+from actr3d.camera import CameraParameters, view_for_observer
 from actr3d.configuration import Live
 from actr3d.errors import CameraError, ParameterError, SimulationError, WorldError
 from actr3d.runner.model_factory import build
@@ -178,10 +178,10 @@ def test_a_glance_changes_no_labels() -> None:
             simulation.step(5)
             if looks:
                 body = simulation.world.bodies["walker"]
-                view = glance(body)
+                view = view_for_observer(body)
                 assert view.rows == 100
                 assert len(view.extents) > 0
-                glance(body, CameraParameters(rows=7))
+                view_for_observer(body, CameraParameters(rows=7))
     assert digest(seen) == digest(unseen)
 
 
@@ -189,13 +189,13 @@ def test_a_glance_is_what_the_agent_sees() -> None:
     simulation = doorway()
     simulation.step(10)
     body = simulation.world.bodies["walker"]
-    assert (glance(body).as_array() == body.get("view").as_array()).all()
+    assert (view_for_observer(body).as_array() == body.get("view").as_array()).all()
 
 
 def test_a_body_without_an_eye_cannot_glance() -> None:
     blind = ImportedBody(name="blind", text="<mujoco><worldbody><body name='b'><freejoint/><geom size='.1'/></body></worldbody></mujoco>")
     with pytest.raises(CameraError, match="'blind' has no eye"):
-        glance(World(Scene(parts=(blind,))).bodies["blind"])
+        view_for_observer(World(Scene(parts=(blind,))).bodies["blind"])
 
 
 def test_a_program_is_notified_when_its_time_advances() -> None:

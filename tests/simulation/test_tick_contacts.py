@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from actr3d.simulation.tick_contacts import TickContacts
-from actr3d.world import Floor, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Floor, Mannequin, Scene, SimpleObject, Wall, World
 
 
 def test_what_stands_on_something_counts_while_a_body_holds_it() -> None:
     table = Wall(name="table", start=(0.05, -0.5), end=(0.05, -0.22), thickness=0.1, height=0.56)
-    cup = Loose(name="cup", size=(0.05, 0.05, 0.2), position=(0.05, -0.24, 0.66), mass=0.5)
+    cup = SimpleObject(name="cup", size=(0.05, 0.05, 0.2), position=(0.05, -0.24, 0.66), mass=0.5)
     world = World(Scene(parts=(Floor(), table, cup, Mannequin(name="walker"))))
     body, contacts = world.bodies["walker"], TickContacts(world)
     found: list[set[tuple[str, str, str]]] = []

@@ -18,7 +18,7 @@ from actr3d.runner.model_factory import build
 from actr3d.runner.replay import replay
 from actr3d.simulation import Simulation
 from actr3d.trace import TraceEvent
-from actr3d.world import Floor, Loose, Scene
+from actr3d.world import Floor, Scene, SimpleObject
 
 TALKER = """
 import sys
@@ -65,7 +65,7 @@ Talker: Any = load_text(TALKER, "talker.py").Talker
 
 
 def talking(trace: str = "all", seed: int = 1) -> Simulation:
-    return Simulation(Scene(parts=(Floor(), Loose(name="box"))), bodiless={"talker": Talker}, seed=seed, trace=trace)
+    return Simulation(Scene(parts=(Floor(), SimpleObject(name="box"))), bodiless={"talker": Talker}, seed=seed, trace=trace)
 
 
 def said(events: Any) -> list[tuple[float, str]]:

@@ -11,7 +11,7 @@ from actr3d.errors import Actr3dError, ParameterError, SimulationError, VisionEr
 from actr3d.simulation import Simulation
 from actr3d.trace import Trace
 from actr3d.vision import Vision
-from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, Wall, World
 from tests.helpers.small_agents import near
 from tests.helpers.vision_scenes import Mindful, agent, events
 from tests.helpers.walkers import digest
@@ -120,7 +120,7 @@ def test_a_doorway_whose_top_is_out_of_sight_may_be_high_enough() -> None:
 
 
 def test_obstacles_within_a_radius_and_a_bearing() -> None:
-    world = room(Loose(name="box", position=(1.5, -0.2, 0.9), size=(0.3, 0.3, 1.8)))
+    world = room(SimpleObject(name="box", position=(1.5, -0.2, 0.9), size=(0.3, 0.3, 1.8)))
     near_by = Mindful(world, asking("vision.request('feature:obstacle', radius=2, bearing=30)")).tick(11).mind.visual.chunk
     assert near_by["feature"] == "obstacle"
     assert near_by["distance"] == near(1.25, abs=0.01)
@@ -173,7 +173,7 @@ def test_the_time_to_contact_is_known_from_two_looks() -> None:
         ("vision.request('feature:opening', width='>wide')", "width is compared with a number in m"),
         ("vision.request('feature:opening', width='wide')", "width is compared with a number in m"),
         ("vision.request('feature:opening', width='')", "width has no value"),
-        ("vision.request('feature:opening', direction=5)", "direction is measured; say '>5' or '<5'"),
+        ("vision.request('feature:opening', direction=5)", "direction needs a comparison: write '>5' or '<5'"),
         ("vision.request('feature:opening', left='>2')", "left cannot be compared by size"),
         ("vision.request('feature:opening width:1', width=2)", "'width' is given twice"),
         ("vision.request('feature:obstacle', bearing='>20')", r"bearing takes one number \[degrees\]"),
@@ -201,7 +201,7 @@ def test_invalid_parameters_are_reported() -> None:
             Vision(None, **options)
     with pytest.raises(ParameterError):
         Vision()  # type: ignore[call-arg]
-    with pytest.raises(VisionError, match=r"must give a number >= 0 for a feature \(gave -1"):
+    with pytest.raises(VisionError, match=r"must return a number >= 0 \(got -1"):
         Mindful(room(), asking("vision.request('feature:opening')", ", salience=lambda feature: -1")).tick(11)
 
 
@@ -440,7 +440,7 @@ class Agent(ACTR):
 
 def living(prefix: str = "", seed: int = 3) -> Simulation:
     kind = agent(LIVING)
-    boxes = [Loose(name=f"{prefix}{n}", position=(2.0 + n, 1.2 - 2.4 * (n % 2), 0.5), size=(0.4, 0.4, 1.0)) for n in (3, 1, 2)]
+    boxes = [SimpleObject(name=f"{prefix}{n}", position=(2.0 + n, 1.2 - 2.4 * (n % 2), 0.5), size=(0.4, 0.4, 1.0)) for n in (3, 1, 2)]
     scene = Scene(parts=(Floor(name=f"{prefix}floor"), Aperture(name=f"{prefix}gap", width=0.9), *boxes, Mannequin(name="walker")))
     return Simulation(scene, {"walker": kind}, seed=seed, trace="all")
 

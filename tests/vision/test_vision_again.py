@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from actr3d.camera import glance
+from actr3d.camera import view_for_observer
 from actr3d.simulation import Simulation
 from actr3d.vision import sightings
 from actr3d.world import Aperture, Floor, Mannequin, Scene
@@ -46,7 +46,7 @@ def test_the_sos_rule_does_not_return_what_no_longer_matches() -> None:
     assert (mind.visual.chunk, mind.vision.error) == (None, True)
     ((time, data),) = list(events(simulation.trace, "sight"))
     assert (time, data["failed"]) == (0.25, True)
-    assert "what was chosen had gone" in str(mind.explain())
+    assert "the chosen feature was no longer visible, or failed a test" in str(mind.explain())
     stale = seen_of(0.9, 0.3, "").agents["walker"]
     assert (stale.visual.chunk["width"], stale.vision.error) == (0.9, False)
 
@@ -122,7 +122,7 @@ def test_what_was_seen_stays_where_it_was_though_the_eye_has_gone_on_looking() -
     before = places()
     assert before[False][:2] == near((7.0, 0.45), abs=0.1)
     assert before[True][:2] == near((7.0, 0.45), abs=0.1)
-    glance(body)
+    view_for_observer(body)
     assert places() == before
     simulation.seek(0.5)
     simulation.run(0.5)

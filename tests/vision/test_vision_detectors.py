@@ -15,7 +15,7 @@ from actr3d.errors import VisionError
 from actr3d.vision import DETECTORS, Detector, Feature, Obstacle, detector
 from actr3d.vision.detectors.obstacle import obstacle
 from actr3d.vision.request_parser import read_request
-from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, World
+from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, World
 from tests.helpers.camera_scenes import compiled, seen
 from tests.helpers.small_agents import near
 from tests.helpers.vision_scenes import Mindful, agent, doorway, found, pole, wall
@@ -225,7 +225,7 @@ def registry() -> Iterator[None]:
 
 @pytest.mark.usefixtures("registry")
 def test_a_model_can_define_a_detector() -> None:
-    stick = Loose(name="stick", shape="cylinder", size=(0.015, 1.9), position=(3.0, 0.0, 0.95), mass=None)
+    stick = SimpleObject(name="stick", shape="cylinder", size=(0.015, 1.9), position=(3.0, 0.0, 0.95), mass=None)
     world = World(Scene(parts=(Floor(), Aperture(), stick, Mannequin(name="walker"))))
     kind = agent(OWN)
     seeing = Mindful(world, kind).tick(12).mind
@@ -271,9 +271,9 @@ def test_what_is_no_detector_is_refused() -> None:
     def by_place(view: Any, most: float = 1) -> tuple[()]:
         return ()
 
-    with pytest.raises(VisionError, match="the library finds 'opening' itself; give the class Opening another name"):
+    with pytest.raises(VisionError, match="the library already has a detector 'opening'; rename the class Opening"):
         detector(Opening)(fits)
-    with pytest.raises(VisionError, match="takes the class of what it finds"):
+    with pytest.raises(VisionError, match="must be given the class that it finds"):
         detector("odd")  # type: ignore[arg-type]
     for wrong in (nothing, needs_more, by_place):
         with pytest.raises(VisionError, match=r"must take a view, and after a \* parameters with defaults"):

@@ -155,7 +155,7 @@ def test_saliences_of_numpy_and_huge_ones_are_weighed() -> None:
     feature: Any = object()
     half: Any = np.float32(0.5)
     assert weigh([feature], lambda _: half, "it") == [0.5]
-    with pytest.raises(VisionError, match="must give a number >= 0"):
+    with pytest.raises(VisionError, match="must return a number >= 0"):
         weigh([feature], lambda _: 10**400, "it")
     random = Random(1)
     drawn = [share([1e308] * 4 + [0.0], random) for _ in range(2000)]

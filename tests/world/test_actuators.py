@@ -11,7 +11,7 @@ import pytest
 from mujoco import MjSpec
 
 from actr3d.errors import Actr3dError
-from actr3d.world import Body, Floor, Imported, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Body, Floor, Imported, Mannequin, Scene, SimpleObject, Wall, World
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.sensors.touch import present
 from tests.helpers.small_agents import near
@@ -156,7 +156,7 @@ def test_teleport_keeps_posture_and_goes_on_walking_the_new_way() -> None:
     assert (pose.x, pose.y) == near((5.0, -1.9), abs=1e-6)
 
 
-CUP = Loose(name="cup", size=(0.05, 0.05, 0.2), position=(0.0, -0.24, 0.66), mass=0.5)
+CUP = SimpleObject(name="cup", size=(0.05, 0.05, 0.2), position=(0.0, -0.24, 0.66), mass=0.5)
 """Beside the right hand of a mannequin of the usual size."""
 
 
@@ -188,7 +188,7 @@ def test_what_is_grasped_comes_along_until_released() -> None:
 
 
 def test_the_name_of_an_object_may_look_like_a_number() -> None:
-    _, body = living(Loose(name="5", size=CUP.size, position=CUP.position, mass=CUP.mass))
+    _, body = living(SimpleObject(name="5", size=CUP.size, position=CUP.position, mass=CUP.mass))
     body.set("grasp", 5)
     assert body.get("grasp")["right"] == "5"
 
@@ -207,7 +207,7 @@ def test_a_hand_carries_the_weight_of_all_parts_of_what_it_holds() -> None:
 
 
 def test_what_is_held_feels_what_it_touches() -> None:
-    stick = Loose(name="stick", size=(0.6, 0.05, 0.05), position=(0.1, -0.24, 0.66), mass=0.5)
+    stick = SimpleObject(name="stick", size=(0.6, 0.05, 0.05), position=(0.1, -0.24, 0.66), mass=0.5)
     world, body = living(Wall(name="wall", start=(0.6, -3.0), end=(0.6, 3.0)), stick)
     body.set("grasp", "stick")
     body.set("walk", 0.3)
@@ -218,7 +218,7 @@ def test_what_is_held_feels_what_it_touches() -> None:
 
 
 def test_what_both_hands_hold_is_carried_until_both_let_go() -> None:
-    world, body = living(Loose(name="tray", size=(0.1, 0.5, 0.05), position=(0.132, 0.0, 0.66), mass=1.0))
+    world, body = living(SimpleObject(name="tray", size=(0.1, 0.5, 0.05), position=(0.132, 0.0, 0.66), mass=1.0))
     body.set("grasp", "tray", "left")
     body.set("grasp", "tray", "right")
     assert body.get("grasp") == {"left": "tray", "right": "tray"}
@@ -233,14 +233,14 @@ def test_what_both_hands_hold_is_carried_until_both_let_go() -> None:
 
 
 def test_nothing_out_of_reach_is_grasped() -> None:
-    _, body = living(Loose(name="far", position=(2.0, 0, 0.15)), CUP)
+    _, body = living(SimpleObject(name="far", position=(2.0, 0, 0.15)), CUP)
     body.set("grasp", "far")
     body.set("grasp", "cup", hand="left")
     assert body.get("grasp") == {"left": None, "right": None}
 
 
 def test_a_grasp_is_part_of_the_state() -> None:
-    world, body = living(CUP, Loose(name="other", size=(0.05, 0.05, 0.2), position=(0.0, 0.24, 0.66), mass=0.3))
+    world, body = living(CUP, SimpleObject(name="other", size=(0.05, 0.05, 0.2), position=(0.0, 0.24, 0.66), mass=0.3))
     body.set("grasp", "cup")
     body.set("position", "right_upper_arm_pitch", -1.0)
     ticks(world, 10)

@@ -13,7 +13,7 @@ from mujoco import MjSpec, mjtGeom
 from numpy.typing import NDArray
 
 from actr3d.errors import Actr3dError
-from actr3d.world import Body, BoundingBox, Floor, Load, Loose, Mannequin, Scene, World
+from actr3d.world import Body, BoundingBox, Floor, Load, Mannequin, Scene, SimpleObject, World
 from actr3d.world.anatomy import Anatomy
 from tests.helpers.small_agents import near
 
@@ -139,7 +139,7 @@ def test_a_mannequin_and_its_load_are_held_tightly_in_any_posture_and_frame(seed
 
 
 def test_what_a_hand_holds_is_in_the_box() -> None:
-    cup = Loose(name="cup", size=(0.06, 0.06, 0.3), position=(0.0, -0.26, 0.7), mass=0.2)
+    cup = SimpleObject(name="cup", size=(0.06, 0.06, 0.3), position=(0.0, -0.26, 0.7), mass=0.2)
     world = World(Scene(parts=(Mannequin(name="walker"), cup)))
     body = world.bodies["walker"]
     body.set("grasp", "cup")

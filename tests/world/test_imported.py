@@ -17,7 +17,7 @@ import trimesh
 from mujoco import MjModel, MjSpec
 
 from actr3d.errors import Actr3dError, ModelWarning, WorldError
-from actr3d.world import Body, Floor, Gait, Imported, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Body, Floor, Gait, Imported, Mannequin, Scene, SimpleObject, Wall, World
 from actr3d.world.imported import GEOM_FIELDS
 from actr3d.world.scene import Part
 from tests.helpers.small_agents import near
@@ -82,7 +82,7 @@ def ray(world: World, start: tuple[float, float, float], way: tuple[float, float
 
 def test_an_mjcf_file_comes_in_as_mujoco_reads_it_alone(tmp_path: Path) -> None:
     alone = MjSpec.from_string(ARM).compile()
-    inside = model(Floor(), Imported(name="a", path=file(tmp_path, ARM)), Loose(name="box"))
+    inside = model(Floor(), Imported(name="a", path=file(tmp_path, ARM)), SimpleObject(name="box"))
     assert names(inside, "body", inside.nbody) == ["world", "a_base", "a_arm", "box"]
     assert (names(inside, "joint", 1), names(inside, "actuator", 1), names(inside, "sensor", 1)) == (["a_elbow"], ["a_pull"], ["a_angle"])
     for value in ("body_mass", "body_inertia", "body_ipos", "body_pos", "body_quat"):
@@ -108,9 +108,9 @@ def test_nothing_leaks_out_of_the_file_or_into_it() -> None:
         '<size nuserdata="7"/><statistic extent="55"/><visual><map znear="0.3"/></visual><default>',
         1,
     ).replace("</mujoco>", '<keyframe><key name="k" qpos="0.3"/></keyframe></mujoco>')
-    with pytest.warns(ModelWarning, match=r"contact, gravity, integrator, timestep\).*; its <keyframe> is left out \(k\): it starts"):
+    with pytest.warns(ModelWarning, match=r"contact, gravity, integrator, timestep\).*; its <keyframe> \(k\) is left out: it starts"):
         arm = Imported(name="a", text=loud)
-    scene = (Floor(), Loose(name="box"))
+    scene = (Floor(), SimpleObject(name="box"))
     plain, inside = model(*scene), model(*scene, arm)
     for value in ("timestep", "integrator", "cone", "disableflags"):
         assert getattr(inside.opt, value) == getattr(plain.opt, value), value
@@ -152,7 +152,9 @@ def test_shapes_of_hidden_groups_are_met_and_not_seen() -> None:
         '<mujoco><asset><material name="m" rgba="1 1 1 1"/></asset><worldbody><body name="b"><geom size="0.2" contype="0" conaffinity="0"/>'
     )
     text += '<geom type="box" size="0.5 0.5 0.5" group="3" material="m"/></body></worldbody></mujoco>'
-    world = World(Scene(parts=(Imported(name="i", text=text), Loose(name="ball", shape="sphere", size=(0.1,), position=(0, 0, 0.8)))))
+    world = World(
+        Scene(parts=(Imported(name="i", text=text), SimpleObject(name="ball", shape="sphere", size=(0.1,), position=(0, 0, 0.8))))
+    )
     assert ray(world, (-5, 0, 0), (1, 0, 0)) == (near(4.8), "i_b")
     world.step(500)
     world.refresh()
@@ -239,7 +241,7 @@ def test_gaps_are_filled_and_said(tmp_path: Path) -> None:
     turned.invert()
     file(tmp_path, turned.export(file_type="stl"), "meshes/one.stl")
     path = file(tmp_path, MESHES.format("one.stl", "one"))
-    message = r"Imported 'i': one\.stl: it was inside out; all its triangles are turned over; "
+    message = r"Imported 'i': one\.stl: all its triangles faced inwards and are reversed; "
     with pytest.warns(ModelWarning, match=message + r"there is no texture 'meshes/t\.png' \(robot\.xml, line 2\): plain grey") as said:
         part = Imported(name="i", path=path)
     assert [warning.filename for warning in said] == [__file__], "the warning names the modeller's line"
@@ -322,8 +324,8 @@ BROKEN: list[tuple[str, str]] = [
     ),
     (asset('<texture type="2d" file="large.png"/>'), r"'large\.png' is an image of 100000 x 100000; the limit is 8192 each way"),
     (asset('<texture type="2d" file="cut.stl"/>'), r"unsupported content type: 'model/stl'; Element name 'cut', id 0, i\.xml, line 3"),
-    (asset('<model name="m" file="i.xml"/>'), r"i\.xml, line 3: models inside models are not taken; export the model as one file"),
-    (asset('<skin name="s" file="s.skn"/>'), r"i\.xml, line 3: skins are not taken"),
+    (asset('<model name="m" file="i.xml"/>'), r"i\.xml, line 3: models inside models are not supported; export the model as one file"),
+    (asset('<skin name="s" file="s.skn"/>'), r"i\.xml, line 3: skins are not supported"),
     ('<mujoco>\n<include file="gone.xml"/>\n</mujoco>', r"i\.xml, line 2: no file 'gone\.xml' in the folder 'here'"),
     ("<mujoco>\n<include/>\n</mujoco>", r'i\.xml, line 2: <include> has no file="…"'),
     ('<mujoco>\n<include file="../outside.xml"/>\n</mujoco>', r"i\.xml, line 2: '\.\./outside\.xml' lies outside the folder 'here'"),
@@ -408,7 +410,7 @@ def test_wrong_descriptions_are_refused(options: dict[str, Any], message: str, t
 
 def test_names_that_clash_in_a_scene_are_refused() -> None:
     with pytest.raises(WorldError, match="repeated name 'a_base'"):
-        World(Scene(parts=(Imported(name="a", text=ARM), Loose(name="a_base"))))
+        World(Scene(parts=(Imported(name="a", text=ARM), SimpleObject(name="a_base"))))
 
 
 ROOM = """<mujoco><worldbody><geom type="box" size=".05 2 1" pos="0.6 0 1"/><geom name="geom_0" pos="9 9 9" size="1"/>

@@ -9,7 +9,7 @@ import pytest
 
 from actr3d.errors import WorldError
 from actr3d.simulation import Simulation
-from actr3d.world import Body, Floor, ImportedBody, Loose, Scene, World
+from actr3d.world import Body, Floor, ImportedBody, Scene, SimpleObject, World
 from actr3d.world.anatomy import NamedMovement
 from tests.helpers.small_agents import near
 
@@ -30,7 +30,7 @@ def arm(heading: float = 0.0) -> ImportedBody:
 
 
 def test_what_the_file_has_is_found() -> None:
-    world = World(Scene(parts=(Floor(), arm(), Loose(name="ball", shape="sphere", size=(0.2,)))))
+    world = World(Scene(parts=(Floor(), arm(), SimpleObject(name="ball", shape="sphere", size=(0.2,)))))
     body = world.bodies["arm"]
     assert body.parts == ("base", "arm")
     assert list(body.joints) == ["elbow"]
@@ -42,7 +42,7 @@ def test_what_the_file_has_is_found() -> None:
 
 
 def test_it_sees_along_its_eye() -> None:
-    scene = Scene(parts=(Floor(), arm(heading=1.0), Loose(name="ball", shape="sphere", size=(0.2,), position=(0, 3, 1), mass=None)))
+    scene = Scene(parts=(Floor(), arm(heading=1.0), SimpleObject(name="ball", shape="sphere", size=(0.2,), position=(0, 3, 1), mass=None)))
     body = World(scene).bodies["arm"]
     view = body.get("view", rows=1)
     assert [len(extents) for extents in view.as_dict()[0.5].values()] == [1]
@@ -160,7 +160,7 @@ UNNAMED = """<mujoco><worldbody><body name="r"><joint axis="0 0 1"/><geom size="
 
 def test_what_has_no_name_is_called_the_same_wherever_the_body_is_in_a_scene() -> None:
     robot = ImportedBody(name="r", text=UNNAMED)
-    for parts in ((robot,), (Loose(name="one"), robot, Loose(name="other"))):
+    for parts in ((robot,), (SimpleObject(name="one"), robot, SimpleObject(name="other"))):
         world = World(Scene(parts=parts))
         body = world.bodies["r"]
         assert list(body.joints) == ["joint_1", "joint_2", "joint_0"]
@@ -171,8 +171,8 @@ def test_what_has_no_name_is_called_the_same_wherever_the_body_is_in_a_scene() -
 
 
 def test_parts_without_a_name_are_frames() -> None:
-    other = Loose(name="part_2", position=(7, 7, 7))
-    body = World(Scene(parts=(Loose(name="one"), ImportedBody(name="r", text=UNNAMED), other))).bodies["r"]
+    other = SimpleObject(name="part_2", position=(7, 7, 7))
+    body = World(Scene(parts=(SimpleObject(name="one"), ImportedBody(name="r", text=UNNAMED), other))).bodies["r"]
     assert body.parts == ("base", "part_1", "part_2")
     for part in body.parts[1:]:
         pose = body.get("pose", part)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from actr3d.errors import Actr3dError
-from actr3d.world import Body, Floor, Gait, Load, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Body, Floor, Gait, Load, Mannequin, Scene, SimpleObject, Wall, World
 from tests.helpers.small_agents import near
 
 SEGMENTS = (
@@ -240,7 +240,7 @@ def test_a_long_bar_does_not_get_through_while_it_stops_and_starts(thickness: fl
 
 
 def test_what_is_in_the_way_stops_it_and_it_pushes_no_harder_than_it_can() -> None:
-    world, body = living(Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0)), push=250)
+    world, body = living(Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0)), leg_force=250)
     body.set("walk", 2.0)
     ticks(world, 200)
     assert body.get("velocity").linear == near((0, 0, 0), abs=1e-3)
@@ -262,7 +262,7 @@ def test_what_is_in_the_way_stops_a_joint() -> None:
 
 
 def test_a_light_object_is_pushed_away_and_felt() -> None:
-    world, body = living(Loose(name="ball", shape="sphere", size=(0.4,), mass=2, position=(0.6, 0, 0.4)))
+    world, body = living(SimpleObject(name="ball", shape="sphere", size=(0.4,), mass=2, position=(0.6, 0, 0.4)))
     body.set("walk", 1.0)
     assert body.get("contacts") == ()
     forces: list[float] = []

@@ -24,7 +24,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from actr3d.errors import Actr3dError, MeshError, ModelWarning
-from actr3d.world import Floor, Loose, Mesh, Scene, World
+from actr3d.world import Floor, Mesh, Scene, SimpleObject, World
 from actr3d.world.asset_folder import Folder, digest
 from actr3d.world.mesh_repair import surface
 from tests.helpers.small_agents import near
@@ -144,7 +144,7 @@ def rest(tmp_path: Path, collision: str) -> float:
     """Returns how high a ball lies that fell into a ring of 0.3 m inner radius and 0.4 m height [m]."""
     path = written(tmp_path, creation.annulus(0.3, 0.5, 0.4).apply_translation((0, 0, 0.2)), "stl")
     ring = Mesh.from_mapping({"name": "ring", "path": path, "collision": collision})
-    ball = Loose(name="ball", shape="sphere", size=(0.1,), position=(0.01, 0, 0.7))
+    ball = SimpleObject(name="ball", shape="sphere", size=(0.1,), position=(0.01, 0, 0.7))
     world = World(Scene(parts=(Floor(), ring, ball)))
     world.step(1500)
     world.refresh()
@@ -178,7 +178,7 @@ def test_parts_hold_a_ball_inside_a_bowl(tmp_path: Path) -> None:
     assert bowl.is_volume
     assert bowl.volume < outer.volume - 0.6 * inner.volume
     mesh = Mesh(name="bowl", path=written(tmp_path, bowl, "ply"), collision="parts", position=(0, 0, 1))
-    ball = Loose(name="ball", shape="sphere", size=(0.1,), position=(0.2, 0, 1.6))
+    ball = SimpleObject(name="ball", shape="sphere", size=(0.1,), position=(0.2, 0, 1.6))
     world = World(Scene(parts=(mesh, ball)))
     world.step(3000)
     world.refresh()
@@ -276,9 +276,9 @@ BROKEN: list[tuple[str, Callable[[], str | bytes], str]] = [
     ("mesh.obj", lambda: "v 0 0 0\nv 1 1 1\nv 3 3 3\nf 1 2 3\n", r"'mesh\.obj': none of its triangles has an area"),
     ("mesh.obj", lambda: "v 0 0 0\nv 1 0 0\nf 1 2 1\nf 2 2 1\n", r"'mesh\.obj': none of its triangles has an area"),
     ("mesh.obj", lambda: TETRAHEDRON.replace("v 0 0 1", "v 0 0 0"), r"is flat: it has no volume; leave it fixed, with collision='none'"),
-    ("mesh.obj", lambda: TETRAHEDRON.replace("v 0 0 1", "v 0 0 70000"), r"is 7e\+04 m long; the most is 10000 m\. Is its unit the metre\?"),
-    ("mesh.obj", lambda: TETRAHEDRON.replace("v 0 0 1", "v 0 0 1e30"), r"is 1e\+30 m long; the most is 10000 m"),
-    ("mesh.obj", lambda: TETRAHEDRON.replace("v 1", "v 1e-5").replace("0 1", "0 1e-5").replace("1 0", "1e-5 0"), r"the least is 0\.0001 m"),
+    ("mesh.obj", lambda: TETRAHEDRON.replace("v 0 0 1", "v 0 0 70000"), r"is 7e\+04 m long; the maximum is 10000 m\. Is its unit"),
+    ("mesh.obj", lambda: TETRAHEDRON.replace("v 0 0 1", "v 0 0 1e30"), r"is 1e\+30 m long; the maximum is 10000 m"),
+    ("mesh.obj", lambda: TETRAHEDRON.replace("v 1", "v 1e-5").replace("0 1", "0 1e-5").replace("1 0", "1e-5 0"), r"minimum is 0\.0001 m"),
     ("mesh.off", lambda: "OFF\n4 1 0\n0 0 0\n1 0 0\n", r"'mesh\.off' cannot be read as off"),
     ("mesh.ply", lambda: "ply\nformat ascii 1.0\n", r"'mesh\.ply' cannot be read as ply"),
     ("mesh.ply", lambda: wedge().export(file_type="ply")[:-9], r"'mesh\.ply' cannot be read as ply: PLY is unexpected length"),
@@ -327,9 +327,9 @@ def repaired(path: Path, message: str, **options: Any) -> World:
 
 
 REPAIRED: list[tuple[str, Callable[[], str | bytes], str]] = [
-    ("mesh.obj", lambda: TETRAHEDRON + "f 1 3 2\nf 3 2 1\n", r"Mesh 'm' \(mesh\.obj\): 2 triangles that were there twice left out"),
+    ("mesh.obj", lambda: TETRAHEDRON + "f 1 3 2\nf 3 2 1\n", r"Mesh 'm' \(mesh\.obj\): 2 triangles removed as duplicates"),
     ("mesh.obj", lambda: TETRAHEDRON + "f 1 1 2\n", "1 triangle without area left out"),
-    ("mesh.obj", lambda: TETRAHEDRON.replace("f 1 3 2", "f 1 2 3"), "1 triangle that faced against their neighbours turned over"),
+    ("mesh.obj", lambda: TETRAHEDRON.replace("f 1 3 2", "f 1 2 3"), "1 triangle that faced opposite to their neighbours reversed"),
     (
         "mesh.obj",
         lambda: (
@@ -338,7 +338,7 @@ REPAIRED: list[tuple[str, Callable[[], str | bytes], str]] = [
             .replace("f 1 4 3", "f 4 1 3")
             .replace("f 2 3 4", "f 3 2 4")
         ),
-        "it was inside out; all its triangles are turned over",
+        "all its triangles faced inwards and are reversed",
     ),
     (
         "mesh.obj",

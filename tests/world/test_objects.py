@@ -13,14 +13,14 @@ from actr3d.errors import Actr3dError, WorldError
 from actr3d.recording import Recorded
 from actr3d.runner.replay import replay
 from actr3d.simulation import Simulation
-from actr3d.world import Aperture, Floor, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, Wall, World
 
 PARTS = (
     Floor(),
     Wall(name="wall", start=(3, -1), end=(3, 1)),
     Aperture(),
-    Loose(name="pole", shape="cylinder", size=(0.1, 1.0), position=(5, 2, 1), mass=None),
-    Loose(name="box", shape="box", size=(0.3, 0.3, 0.3), position=(1, 2, 0.15), mass=5),
+    SimpleObject(name="pole", shape="cylinder", size=(0.1, 1.0), position=(5, 2, 1), mass=None),
+    SimpleObject(name="box", shape="box", size=(0.3, 0.3, 0.3), position=(1, 2, 0.15), mass=5),
     Mannequin(name="walker"),
 )
 
@@ -63,7 +63,7 @@ def test_nothing_is_put_inside_something_else() -> None:
 
 def holding(*parts: Wall) -> Simulation:
     """Returns a simulation in which the right hand of `m` holds the box `o`."""
-    box = Loose(name="o", size=(0.1, 0.1, 0.1), position=(0.12, -0.16075, 0.773), mass=0.2)
+    box = SimpleObject(name="o", size=(0.1, 0.1, 0.1), position=(0.12, -0.16075, 0.773), mass=0.2)
     simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="m"), box, *parts)), seed=1)
     simulation.command("grasp", "o", body="m")
     simulation.run(0.1)

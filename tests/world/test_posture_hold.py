@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from actr3d.errors import WorldError
-from actr3d.world import Body, Floor, Load, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Body, Floor, Load, Mannequin, Scene, SimpleObject, Wall, World
 from tests.helpers.small_agents import near
 
 
@@ -59,7 +59,7 @@ def test_extreme_postures_do_not_move_it_nor_turn_it_from_its_way(sideways: bool
 
 def test_a_joint_without_a_command_bears_a_load() -> None:
     """Six kilograms lie on the box that it holds; the bound of the servos, 60 N m, is more."""
-    lies = Loose(name="weight", shape="box", size=(0.2, 0.2, 0.1), mass=6, position=(0.36, 0.0, 1.2))
+    lies = SimpleObject(name="weight", shape="box", size=(0.2, 0.2, 0.1), mass=6, position=(0.36, 0.0, 1.2))
     world, body = living(lies, load=Load(shape="box", size=(0.4, 0.5, 0.1), mass=2))
     world.step(1000)
     start = {name: joint.position for name, joint in body.joints.items()}
@@ -71,8 +71,8 @@ def test_a_joint_without_a_command_bears_a_load() -> None:
 
 
 def test_a_push_moves_a_standing_body_and_it_stays_there() -> None:
-    other = Mannequin(name="other", position=(0.7, 0.0), push=200)
-    world, body = living(other, push=400)
+    other = Mannequin(name="other", position=(0.7, 0.0), leg_force=200)
+    world, body = living(other, leg_force=400)
     body.set("walk", 0.5)
     world.step(1000)
     pushed = world.bodies["other"].get("pose").x
@@ -86,7 +86,7 @@ def test_a_push_moves_a_standing_body_and_it_stays_there() -> None:
 
 
 def test_who_is_stronger_is_not_pushed_away() -> None:
-    world, body = living(Mannequin(name="other", position=(0.7, 0.0), heading=math.pi), push=150)
+    world, body = living(Mannequin(name="other", position=(0.7, 0.0), heading=math.pi), leg_force=150)
     body.set("walk", 0.5)
     world.step(3000)
     assert world.bodies["other"].get("pose").x == near(0.7, abs=0.02)

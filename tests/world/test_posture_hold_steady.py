@@ -14,20 +14,20 @@ from tests.helpers.small_agents import near
 
 
 def course(heading: float) -> tuple[list[bytes], list[bool]]:
-    """Returns the states of a walk with commands, up to a wall, and whether each look was met."""
+    """Returns the states of a walk with commands, up to a wall, and whether the steady state was reached at each look."""
     wall = Wall(name="wall", start=(1.5, -9), end=(1.5, 9))
     world = World(Scene(parts=(Floor(), Mannequin(name="walker", heading=heading), Mannequin(name="other", position=(-1, 1)), wall)))
     body = world.bodies["walker"]
     states: list[bytes] = []
     looks: list[bool] = []
-    met = SteadyState.met
+    is_reached = SteadyState.is_reached
 
     def looked(self: SteadyState) -> bool:
-        looks.append(met(self))
+        looks.append(is_reached(self))
         return looks[-1]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(SteadyState, "met", looked)
+        patch.setattr(SteadyState, "is_reached", looked)
         for tick in range(300):
             if tick in (10, 120, 200):
                 body.set("walk", 1.0, (0.0, 0.7)[tick == 120], 0.3)
@@ -46,7 +46,7 @@ def never(_: SteadyState) -> bool:
 def test_it_is_taken_and_changes_nothing(heading: float, monkeypatch: pytest.MonkeyPatch) -> None:
     quick, looks = course(heading)
     assert sum(looks) > 300  # of 600 of two bodies, one of which never does anything
-    monkeypatch.setattr(SteadyState, "met", never)
+    monkeypatch.setattr(SteadyState, "is_reached", never)
     thorough, _ = course(heading)
     assert quick == thorough
 

@@ -15,7 +15,7 @@ import pytest
 from mujoco import MjSpec, mjtGeom
 
 from actr3d.errors import Actr3dError
-from actr3d.world import Aperture, Body, Car, Floor, Loose, Mannequin, Scene, Wall, World
+from actr3d.world import Aperture, Body, Car, Floor, Mannequin, Scene, SimpleObject, Wall, World
 from actr3d.world.anatomy import Anatomy
 from actr3d.world.sensor_noise import SensorNoise
 from actr3d.world.sensors.render import Picture
@@ -147,7 +147,7 @@ def test_contacts_add_up_to_the_weight() -> None:
 
 
 def test_a_blow_that_is_over_before_the_tick_is_felt() -> None:
-    ball = Loose(name="ball", shape="sphere", size=(0.1,), mass=0.5, position=(0.5, 0.0, 1.0))
+    ball = SimpleObject(name="ball", shape="sphere", size=(0.1,), mass=0.5, position=(0.5, 0.0, 1.0))
     world, body = walker_in(ball)
     body.get("contacts")
     free = world.mj_model.joint("ball").dofadr[0]
@@ -184,7 +184,7 @@ def test_the_rangefinder_measures_from_the_eye(angle: float, elevation: float) -
 
 
 def test_its_own_body_and_what_it_holds_do_not_hide_the_world() -> None:
-    cup = Loose(name="cup", size=(0.06, 0.06, 0.3), position=(0.05, -0.2, 0.68), mass=0.2)
+    cup = SimpleObject(name="cup", size=(0.06, 0.06, 0.3), position=(0.05, -0.2, 0.68), mass=0.2)
     _, body = walker_in(WALL, cup)
     assert body.get("rangefinder", at="torso") == near(2.9)
     assert body.get("rangefinder", at="left_upper_arm", angle=-math.pi / 2) is None
@@ -198,7 +198,7 @@ def test_the_laser_sweeps_from_left_to_right() -> None:
     world, body = walker_in(Aperture(position=(2.0, 0.0), width=0.8, thickness=0.1))
     world.refresh()
     ahead = 1.95 - world.mj_data.site("walker_eye").xpos[0]
-    scan = body.get("laser", rays=181, width=math.pi, reach=30.0)
+    scan = body.get("laser", rays=181, fov=math.pi, reach=30.0)
     assert len(scan) == 181
     assert scan[0] is None
     assert scan[90] is None
@@ -207,13 +207,13 @@ def test_the_laser_sweeps_from_left_to_right() -> None:
         across = ahead * math.tan(angle)
         if 0.4 < abs(across) < 2.8:
             assert distance == near(ahead / math.cos(angle), abs=1e-9)
-    one_sided = walker_in(Wall(name="left", start=(-5, 2), end=(5, 2)))[1].get("laser", rays=3, width=math.pi)
+    one_sided = walker_in(Wall(name="left", start=(-5, 2), end=(5, 2)))[1].get("laser", rays=3, fov=math.pi)
     assert one_sided[0] == near(1.95)
     assert one_sided[1:] == (None, None)
 
 
 def test_proximity_is_the_nearest_surface() -> None:
-    ball = Loose(name="ball", shape="sphere", size=(0.2,), mass=None, position=(0.0, 0.9, 0.818 * 1.75))
+    ball = SimpleObject(name="ball", shape="sphere", size=(0.2,), mass=None, position=(0.0, 0.9, 0.818 * 1.75))
     _, body = walker_in(ball, WALL)
     found = body.get("proximity", 3.0)
     assert (found.part, found.other) == ("left_shoulder_joint", "ball")
@@ -281,7 +281,7 @@ def test_without_egl_pictures_are_refused_with_a_reason() -> None:
 
 
 def test_reading_everything_changes_nothing() -> None:
-    box = Loose(name="box", position=(0.9, 0.0, 0.15))
+    box = SimpleObject(name="box", position=(0.9, 0.0, 0.15))
     (read, body), (unread, other) = walker_in(WALL, box), walker_in(WALL, box)
     for each in (body, other):
         each.set("walk", 1.4, 0.1)

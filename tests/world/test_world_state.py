@@ -9,7 +9,7 @@ import pytest
 
 import actr3d.camera  # pyright: ignore[reportUnusedImport] # noqa: F401 - it gives bodies the word `view`
 from actr3d.errors import WorldError
-from actr3d.world import Aperture, Car, Floor, ImportedBody, Loose, Mannequin, Scene, World
+from actr3d.world import Aperture, Car, Floor, ImportedBody, Mannequin, Scene, SimpleObject, World
 from actr3d.world.body import ACTUATORS, SENSORS
 from tests.helpers.object_contents import picture
 
@@ -22,7 +22,7 @@ ARM = """<mujoco>
 </mujoco>"""
 
 DERIVED = {
-    ("Physics", "moment"),  # counts states, so that readings of an earlier one are known to be stale
+    ("Physics", "state_number"),  # counts states, so that readings of an earlier one are known to be stale
     ("Physics", "_refreshed"),
     ("Physics", "_solved"),  # whether MuJoCo's derived numbers are up to date
     ("Physics", "_scratch"),
@@ -71,7 +71,7 @@ PICTURES = {"image", "depth"}
 
 def world() -> World:
     walker = Mannequin(name="walker", noise=(("velocity", 0.01),))
-    ball = Loose(name="ball", size=(0.05, 0.05, 0.2), position=(0.0, -0.24, 0.66), mass=0.2)  # beside the right hand
+    ball = SimpleObject(name="ball", size=(0.05, 0.05, 0.2), position=(0.0, -0.24, 0.66), mass=0.2)  # beside the right hand
     parts = (Floor(), walker, Car(position=(-9.0, 3.0)), ImportedBody(name="arm", text=ARM, position=(0.0, 4.0, 0.0)))
     return World(Scene(parts=(*parts, ball, Aperture(width=0.9, position=(2.5, 0.0)))), seed=3)
 

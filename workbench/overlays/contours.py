@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from actr3d.camera import Stand, View
+    from actr3d.camera import EyePose, View
 
 Places = NDArray[np.float64]
 """Points in the world [m], `(..., 3)`."""
@@ -47,10 +47,10 @@ def contours_of(view: View) -> Places:
     return np.array(lines).reshape(-1, 2, 3)
 
 
-def into_world(points: Places, stand: Stand) -> Places:
+def into_world(points: Places, pose: EyePose) -> Places:
     """Converts points from the upright frame of an eye to the world frame, given the pose of that eye."""
-    c, s = math.cos(stand.heading), math.sin(stand.heading)
-    return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]]) + np.array(stand[:3])
+    c, s = math.cos(pose.heading), math.sin(pose.heading)
+    return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]]) + np.array(pose[:3])
 
 
 def _tangent(part: Any, fov: float, view: View) -> Any:

@@ -44,7 +44,7 @@ class Edges(Overlay):
 
 
 def _edges(body: Body, eyesight: CameraParameters) -> bytes:
-    from actr3d.camera import glance, stand_of
+    from actr3d.camera import eye_pose_of, view_for_observer
 
-    places = into_world(NEARER * contours_of(glance(body, eyesight)), stand_of(body, body.physics.mj_data))
+    places = into_world(NEARER * contours_of(view_for_observer(body, eyesight)), eye_pose_of(body, body.physics.mj_data))
     return places.astype(np.float32).tobytes()

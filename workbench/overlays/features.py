@@ -117,7 +117,7 @@ def _outline(sighting: Sighting, points: Places) -> Places:
     sides = np.array([[lower_left, upper_left], [lower_right, upper_right]])
     edges = _edges(sighting.feature, sighting.view, points)
     if edges is not None:
-        sides[..., :2] = into_world(edges, sighting.stood)[:, None, :2]
+        sides[..., :2] = into_world(edges, sighting.eye_pose)[:, None, :2]
     return np.array([sides.mean(axis=1), *sides])
 
 
@@ -128,7 +128,7 @@ def _frame(sighting: Sighting) -> Places:
     if wide != high:
         return np.array([[corners[0], corners[2]]])
     if not wide:
-        way = sighting.stood.heading + sighting.feature.direction
+        way = sighting.eye_pose.heading + sighting.feature.direction
         up, aside = np.array((0.0, 0.0, DIAMOND)), DIAMOND * np.array((-math.sin(way), math.cos(way), 0.0))
         corners = corners.mean(axis=0) + np.array((up, aside, -up, -aside))
     return np.stack((corners, np.roll(corners, -1, axis=0)), axis=1)

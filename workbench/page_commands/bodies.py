@@ -36,10 +36,10 @@ class View(Question):
     body: Name | None = None
 
     def answer(self, run: ControlledRun) -> dict[str, Any]:
-        from actr3d.camera import EXTENT_FIELDS, glance_with_geoms
+        from actr3d.camera import EXTENT_FIELDS, view_and_geoms_for_observer
 
         shown, body = _found(run, self.body)
-        view, geoms = glance_with_geoms(body, shown.eyesight(body.name))
+        view, geoms = view_and_geoms_for_observer(body, shown.eyesight(body.name))
         fields = [{"name": field.name, "title": field.title, "unit": field.unit, "about": field.about} for field in EXTENT_FIELDS]
         return {
             "body": body.name,

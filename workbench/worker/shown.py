@@ -9,7 +9,7 @@ from dataclasses import asdict
 from functools import cache, cached_property, partial
 from typing import Any
 
-from actr3d.camera import CameraParameters, Sight
+from actr3d.camera import CameraParameters, EyeSense
 from actr3d.clock import microseconds
 from actr3d.errors import Actr3dError
 from actr3d.parameter_schema import Parameter
@@ -17,7 +17,7 @@ from actr3d.simulation import Simulation
 from actr3d.simulation.surroundings import surroundings
 from actr3d.vision import visions
 from actr3d.world import Aperture
-from actr3d.world.compiled import loaded, saved
+from actr3d.world.compiled import from_bytes, to_bytes
 from workbench.curves import CurveReader, stretch, thinned
 from workbench.geom_colours import colour_of_object, dress
 from workbench.overlays import OVERLAYS, Observed
@@ -43,7 +43,7 @@ class Shown:
         self.kept = kept or Kept(self.period)
         self.kept.keep(0, simulation.world, {})
         simulation.event_log.keep_states(self.kept)
-        self.mj_model = saved(simulation.world.mj_model)
+        self.mj_model = to_bytes(simulation.world.mj_model)
         """The compiled scene at the start, in MuJoCo's binary format."""
         self.surroundings = surroundings(simulation.world)
         self._openings = self.scene()[1]
@@ -103,7 +103,7 @@ class Shown:
     @cached_property
     def _curves(self) -> CurveReader:
         """Computes curves from the past, on a copy of the scene; created at the first request."""
-        return CurveReader(loaded(self.mj_model), self.surroundings)
+        return CurveReader(from_bytes(self.mj_model), self.surroundings)
 
     def colours(self, geoms: Mapping[int, tuple[int, ...]]) -> dict[int, str]:
         """Returns the colours with which objects are drawn in the scene, by label.
@@ -116,7 +116,7 @@ class Shown:
     @cached_property
     def _colour_of(self) -> Callable[[tuple[int, ...]], str]:
         """Returns the colour in which an object is drawn, by its geoms; each is computed once."""
-        model = loaded(self.mj_model)
+        model = from_bytes(self.mj_model)
         dress(model, [self.surroundings["bodies"][name]["root"] for name in self.simulation.embodied])
         return cache(partial(colour_of_object, model))
 
@@ -124,7 +124,7 @@ class Shown:
         """Returns how an agent sees with its body's eye: as its vision module does, or else as in the body's first view."""
         agent, body = self.simulation.agents.get(name), self.simulation.world.bodies[name]
         own = None if agent is None else next((vision.eyesight for vision in visions(agent)), None)
-        return own or next((sense.parameters for sense in body.senses if isinstance(sense, Sight)), CameraParameters())
+        return own or next((sense.parameters for sense in body.senses if isinstance(sense, EyeSense)), CameraParameters())
 
 
 def widths(apertures: Iterable[str], parameters: Iterable[Parameter]) -> dict[str, tuple[int, int]]:

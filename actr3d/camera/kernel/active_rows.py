@@ -34,14 +34,14 @@ def room_for_active_rows(things: int, rows: int) -> ActiveRows:
 
 
 @compiled
-def send_away(active: ActiveRows) -> None:
+def remove_all(active: ActiveRows) -> None:
     """Removes all items."""
     for row in range(len(active.starting)):
         active.starting[row] = -1
 
 
 @compiled
-def enter(active: ActiveRows, thing: int, first: int, last: int) -> None:
+def add_item(active: ActiveRows, thing: int, first: int, last: int) -> None:
     """Adds an item from its first to its last row; does nothing if there are no rows."""
     if first <= last:
         active.following[thing] = active.starting[first]
@@ -50,7 +50,7 @@ def enter(active: ActiveRows, thing: int, first: int, last: int) -> None:
 
 
 @compiled
-def bring_up(active: ActiveRows, row: int, present: int) -> int:
+def update_active(active: ActiveRows, row: int, present: int) -> int:
     """Updates the active items from the row above to this row; returns their number."""
     kept = 0
     for i in range(present):

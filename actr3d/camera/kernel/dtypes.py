@@ -21,7 +21,7 @@ PLANE, HFIELD, SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX, MESH, SDF = range(9)
 """The types of geoms. Source: MuJoCo 4.0, `mjtGeom`."""
 
 UNSEEN: Final = -1
-"""The object number of geoms that the eye looks through."""
+"""The object number of geoms that are invisible to the eye."""
 BACKGROUND: Final = 0
 """The object number of geoms that hide others but are not reported."""
 
@@ -58,7 +58,7 @@ PIECE = np.dtype(
 
 PATCH = np.dtype(
     [
-        ("even", "i8"),  # 1: k w = n . d, 0: a w^2 - 2 (q . d) w + d Q d = 0
+        ("flat", "i8"),  # 1 for a plane: k w = n . d, 0 for a quadric: a w^2 - 2 (q . d) w + d Q d = 0
         ("both", "i8"),  # whether its far side can be seen as well
         ("object", "i8"),
         ("geom", "i8"),
@@ -106,15 +106,17 @@ class ExtentField(NamedTuple):
 EXTENT_FIELDS: Final = (
     ExtentField("row", "i4", "scan line", "", "which scan line, counted from 0 at the top"),
     ExtentField("label", "i4", "object", "", "a number that distinguishes objects, without meaning"),
-    ExtentField("y", "f8", "height", "", "where the scan line is on the screen: 0 at the top, 1 at the bottom"),
-    ExtentField("x1", "f8", "left edge", "", "where its left edge is on the screen: 0 at the left, 1 at the right"),
-    ExtentField("x2", "f8", "right edge", "", "where its right edge is on the screen: 0 at the left, 1 at the right"),
-    ExtentField("d1", "f8", "left distance", "m", "how far its left edge is from the eye"),
-    ExtentField("d2", "f8", "right distance", "m", "how far its right edge is from the eye"),
+    ExtentField("y", "f8", "height", "", "the position of the scan line on the screen: 0 at the top, 1 at the bottom"),
+    ExtentField("x1", "f8", "left edge", "", "the position of its left edge on the screen: 0 at the left, 1 at the right"),
+    ExtentField("x2", "f8", "right edge", "", "the position of its right edge on the screen: 0 at the left, 1 at the right"),
+    ExtentField("d1", "f8", "left distance", "m", "the distance from the eye to its left edge"),
+    ExtentField("d2", "f8", "right distance", "m", "the distance from the eye to its right edge"),
     ExtentField("a1", "f8", "left angle", "°", "the angle between the line of sight and the direction to its left edge"),
     ExtentField("a2", "f8", "right angle", "°", "the angle between the line of sight and the direction to its right edge"),
-    ExtentField("xn", "f8", "nearest point", "", "where on the screen its nearest point is, as measured on the ground: 0 left, 1 right"),
-    ExtentField("dn", "f8", "nearest distance", "m", "how far that nearest point is from the eye"),
+    ExtentField(
+        "xn", "f8", "nearest point", "", "the position on the screen of its nearest point, as measured on the ground: 0 left, 1 right"
+    ),
+    ExtentField("dn", "f8", "nearest distance", "m", "the distance from the eye to that nearest point"),
 )
 """The fields of an extent, in order; the page shows these texts with the columns."""
 

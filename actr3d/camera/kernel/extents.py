@@ -17,9 +17,9 @@ SURELY_WIDE = 1e-4
 
 @compiled
 def goes_on(object: int, low: float, optics: Record, extents: Records, first: int, done: int) -> bool:
-    """Checks whether the last extent of a row belongs to the given object and reaches to a tangent, or nearly so.
+    """Checks whether the last extent of a row belongs to the given object and reaches up to a tangent, within the precision.
 
-    Until the row ends, the `x` of extents are tangents, and their `a` the numbers of the pieces seen there.
+    Until `end_row`, `x1` and `x2` of extents are tangents, and `a1` and `a2` the numbers of the pieces at these edges.
     """
     if done == first or extents[done - 1].label != object:
         return False

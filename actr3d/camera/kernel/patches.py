@@ -10,7 +10,7 @@ from actr3d.camera.kernel.roots import add_roots
 from actr3d.camera.kernel.screen import zero
 from actr3d.jit import compiled
 
-SEEN, PASSED_BY, IN_PARTS = 1, 0, -1
+SEEN, NO_PIECE, TO_CUT = 1, 0, -1
 """The states of a patch on a row: one whole piece, no piece, or to be cut."""
 
 
@@ -22,7 +22,7 @@ def add_patch(patch: Record, v: float, optics: Record, room: Records, pieces: Re
     """
     curve = pieces[count]
     curve.object, curve.geom = patch.object, patch.geom
-    if patch.even:
+    if patch.flat:
         curve.side, curve.b0, curve.c0, curve.c1 = LINE, 0.0, (patch.q[1] * v + patch.q[2]) / patch.k, patch.q[0] / patch.k
         whole = _whole_line(patch, v, optics, curve, cuts)
     else:
@@ -34,7 +34,7 @@ def add_patch(patch: Record, v: float, optics: Record, room: Records, pieces: Re
         whole = _whole_conic(patch, v, optics, curve, cuts)
     if whole == SEEN:
         return count + 1
-    if whole == PASSED_BY:
+    if whole == NO_PIECE:
         return count
     room[0] = curve
     return _add_parts(patch, v, optics, room[0], pieces, count, cuts)
@@ -45,10 +45,10 @@ def _whole_line(patch: Record, v: float, optics: Record, line: Record, cuts: Arr
     """Checks whether a whole line or disc is seen, cut only by the ends of a disc and of the field of view."""
     low, high = -optics.right, optics.right
     if patch.slabs > 0 or (patch.radius > 0.0 and patch.ceiling > optics.nearest):
-        return IN_PARTS
+        return TO_CUT
     if patch.radius > 0.0:
         if _cut_disc(patch, v, line, cuts, zero()) < 2:
-            return PASSED_BY
+            return NO_PIECE
         low, high = max(low, min(cuts[0], cuts[1])), min(high, max(cuts[0], cuts[1]))
     return _seen_between(low, high, optics, line)
 
@@ -57,13 +57,13 @@ def _whole_line(patch: Record, v: float, optics: Record, line: Record, cuts: Arr
 def _seen_between(low: float, high: float, optics: Record, line: Record) -> int:
     """Checks whether a line is seen between two tangents, and sets its ends and bounds."""
     if not high - low > NEGLIGIBLE:
-        return PASSED_BY
+        return NO_PIECE
     first, last = nearness(line, low), nearness(line, high)
     floor, ceiling = min(first, last), max(first, last)
     if ceiling <= 0.0 or floor > optics.nearest:
-        return PASSED_BY
+        return NO_PIECE
     if floor <= 0.0 or ceiling > optics.nearest:
-        return IN_PARTS
+        return TO_CUT
     line.low, line.high, line.floor, line.ceiling = low, high, floor, ceiling
     return SEEN
 
@@ -76,16 +76,16 @@ def _whole_conic(patch: Record, v: float, optics: Record, conic: Record, cuts: A
     its silhouette.
     """
     if patch.both or patch.ceiling > optics.nearest or not conic.a > 0.0 or not conic.b1 * conic.b1 < conic.a * conic.c2:
-        return IN_PARTS
+        return TO_CUT
     if _cut_silhouette(conic, cuts, zero()) < 2:
-        return PASSED_BY
+        return NO_PIECE
     low, high = min(cuts[0], cuts[1]), max(cuts[0], cuts[1])
     least = min(conic.b0 + conic.b1 * low, conic.b0 + conic.b1 * high)
     if not least > 0.0:
-        return IN_PARTS
+        return TO_CUT
     low, high = max(low, -optics.right), min(high, optics.right)
     if not high - low > NEGLIGIBLE:
-        return PASSED_BY
+        return NO_PIECE
     conic.low, conic.high, conic.floor, conic.ceiling = low, high, least / conic.a, min(patch.ceiling, summit(conic))
     return _within_slabs(patch, v, conic)
 
@@ -100,9 +100,9 @@ def _within_slabs(patch: Record, v: float, conic: Record) -> int:
         first, last = along + axis[0] * conic.low, along + axis[0] * conic.high
         least, most = min(first, last), max(first, last)
         if most < min(low * conic.floor, low * conic.ceiling) or least > max(high * conic.floor, high * conic.ceiling):
-            return PASSED_BY
+            return NO_PIECE
         if least < max(low * conic.floor, low * conic.ceiling) or most > min(high * conic.floor, high * conic.ceiling):
-            whole = IN_PARTS
+            whole = TO_CUT
     return whole
 
 

@@ -1,4 +1,4 @@
-"""The only compiled function called from Python: computes everything that an eye sees at one moment."""
+"""The compiled function of this package that Python calls: computes everything that an eye sees at one moment."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from functools import cache
 from typing import TypeAlias
 
 from actr3d.camera.kernel import SOURCES
-from actr3d.camera.kernel.active_rows import bring_up
+from actr3d.camera.kernel.active_rows import update_active
 from actr3d.camera.kernel.dtypes import BACKGROUND, FAR_SIDE, Array, Record, Records
 from actr3d.camera.kernel.extents import finish
 from actr3d.camera.kernel.faces import add_face
-from actr3d.camera.kernel.lower_envelope import Row, trace_row
 from actr3d.camera.kernel.nearest import find_nearest
 from actr3d.camera.kernel.patches import add_patch
 from actr3d.camera.kernel.pieces import bound
 from actr3d.camera.kernel.scene import EyeScene, Geoms, Topology, set_scene
 from actr3d.camera.kernel.screen import row_tangent, zero
+from actr3d.camera.kernel.upper_envelope import Row, trace_row
 from actr3d.jit import compiled, kept
 
 MAX_PIECES_OF_A_PATCH = 10
@@ -72,7 +72,7 @@ def _look(
     row.stretches[0].count = row.stretches[0].open = 0
     for number in range(optics.rows):
         v = row_tangent(number, optics)
-        present = bring_up(scene.surfaces, number, present)
+        present = update_active(scene.surfaces, number, present)
         pieces, aside = _add_pieces(v, optics, topology, scene, present, row)
         pieces = _add_range(v, optics, row, pieces)
         first = done

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from actr3d.camera.kernel.active_rows import ActiveRows, enter, room_for_active_rows, send_away
+from actr3d.camera.kernel.active_rows import ActiveRows, add_item, remove_all, room_for_active_rows
 from actr3d.camera.kernel.dtypes import BOX, HFIELD, MESH, NUMBER, OCCLUDER, PATCH, PLANE, UNSEEN, Array, Record, Records
 from actr3d.camera.kernel.faces import face_rows
 from actr3d.camera.kernel.occluders import LARGE, MAX_OCCLUDERS, hidden, offer
@@ -107,7 +107,7 @@ def set_scene(eye: Array, place: Array, turn: Array, geoms: Geoms, topology: Top
         scene: The work arrays to fill.
     """
     count, occluders = zero(), zero()
-    send_away(scene.surfaces)
+    remove_all(scene.surfaces)
     for turn_of in range(2):  # first those that may hide others
         for geom in range(len(topology.kind)):
             first = topology.kind[geom] == BOX and _is_large(geoms.size[geom], place[geom], eye)
@@ -155,7 +155,7 @@ def _add_round(geom: int, reach: float, geoms: Geoms, topology: Topology, optics
     for i in range(before, count):
         patch = scene.patches[i]
         patch.object, patch.geom = topology.objects[geom], geom
-        enter(scene.surfaces, i, patch.first_row, patch.last_row)
+        add_item(scene.surfaces, i, patch.first_row, patch.last_row)
     return count
 
 
@@ -205,7 +205,7 @@ def _add_polyhedron(geom: int, geoms: Geoms, topology: Topology, optics: Record,
     one_sided = kind == BOX and box_distance(size, place, turn) > optics.corner
     for face in range(topology.faces[geom], topology.faces[geom + 1]):
         first, last = face_rows(topology.face_corners[face], scene.corners, one_sided, optics)
-        enter(scene.surfaces, len(scene.patches) + face, first, last)
+        add_item(scene.surfaces, len(scene.patches) + face, first, last)
         if one_sided and first <= last:
             occluders = offer(topology.face_corners[face], scene.corners, optics, scene.occluders, occluders)
     return occluders

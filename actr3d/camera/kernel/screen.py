@@ -12,7 +12,8 @@ from actr3d.jit import compiled
 def screen_part(tangent: float, most: float, e2: float) -> float:
     """Returns a tangent as a part of half the screen, from -1 to 1.
 
-    On a retina (`e2` above 0) equal parts are equal parts of the cortex: a degree at eccentricity E takes 1 / (E + e2).
+    On a retina (`e2` above 0) equal parts of the screen are equal lengths of cortex: the width of a degree at eccentricity E is
+    proportional to 1 / (E + e2).
     """
     if e2 == 0.0:
         return tangent / most
@@ -35,7 +36,7 @@ def row_tangent(row: float, optics: Record) -> float:
 
 
 @compiled
-def row_before(v: float, optics: Record) -> float:
+def row_at(v: float, optics: Record) -> float:
     """Returns the row coordinate of an upward tangent: 0 at the middle of the topmost scan line."""
     return 0.5 * (optics.rows * (1.0 - screen_part(v, optics.top, optics.e2)) - 1.0)
 
@@ -43,13 +44,13 @@ def row_before(v: float, optics: Record) -> float:
 @compiled
 def first_row(v: float, optics: Record) -> int:
     """Returns the topmost row that may be at or below the tangent v."""
-    return math.ceil(row_before(min(v, optics.top), optics) - 1e-6)
+    return math.ceil(row_at(min(v, optics.top), optics) - 1e-6)
 
 
 @compiled
 def last_row(v: float, optics: Record) -> int:
     """Returns the lowest row that may be at or above the tangent v."""
-    return math.floor(row_before(max(v, -optics.top), optics) + 1e-6)
+    return math.floor(row_at(max(v, -optics.top), optics) + 1e-6)
 
 
 @compiled

@@ -59,7 +59,7 @@ def add_patches(kind: int, size: Array, place: Array, turn: Array, both: bool, o
         set_rows(patches[count], place, yy, yz, zz, optics, False)
         count += 1
     for i in range(start, count):
-        patches[i].both = both and not patches[i].even
+        patches[i].both = both and not patches[i].flat
     return count
 
 
@@ -72,7 +72,7 @@ def _along(turn: Array, place: Array) -> float:
 @compiled
 def _set_quadric(patch: Record, place: Array, turn: Array, x: float, y: float, z: float) -> None:
     """Sets a patch to an ellipsoid with the given half axes (infinite for a tube): (p - c) Q (p - c) = 1, where c is its centre."""
-    patch.even, patch.slabs, patch.radius = 0, 0, 0.0
+    patch.flat, patch.slabs, patch.radius = 0, 0, 0.0
     a = -1.0
     for i in range(3):
         for j in range(i, 3):
@@ -90,7 +90,7 @@ def _set_quadric(patch: Record, place: Array, turn: Array, x: float, y: float, z
 @compiled
 def _set_flat(patch: Record, place: Array, turn: Array) -> None:
     """Sets a patch to a plane through a position, normal to a geom's third axis."""
-    patch.even, patch.slabs, patch.radius = 1, 0, 0.0
+    patch.flat, patch.slabs, patch.radius = 1, 0, 0.0
     for i in range(3):
         patch.q[i] = turn[i, 2]
     patch.k = _along(turn, place)

@@ -1,4 +1,4 @@
-"""Obstacles: all visible objects within a bearing."""
+"""Obstacles: all visible objects up to an angle from straight ahead."""
 
 from __future__ import annotations
 
@@ -20,10 +20,16 @@ from actr3d.vision.units import Label, Metres, MetresPerSecond, Radians, Seconds
 
 @dataclass(frozen=True, kw_only=True)
 class Obstacle(Feature):
-    """The visible part of an object. `distance` and `direction` are those of its nearest point within the bearing."""
+    """The visible part of an object. `distance` and `direction` are those of its nearest point within `bearing`."""
 
     salience: ClassVar[str] = "nearness"
-    bare: ClassVar[Mapping[str, str]] = {"distance": "<=", "time_to_contact": "<=", "aside": "<=", "width": ">=", "height": ">="}
+    default_comparisons: ClassVar[Mapping[str, str]] = {
+        "distance": "<=",
+        "time_to_contact": "<=",
+        "aside": "<=",
+        "width": ">=",
+        "height": ">=",
+    }
     aliases: ClassVar[Mapping[str, str]] = {"radius": "distance"}
 
     width: Metres
@@ -39,7 +45,7 @@ class Obstacle(Feature):
     rightmost: Radians
     """The direction of its rightmost visible point."""
     aside: Metres
-    """Distance of its nearest point from the line straight ahead: a body narrower than twice this passes it."""
+    """Lateral distance of its nearest point from the line straight ahead. A body whose width is less than twice this distance passes it."""
     object: Label
     """The label of the object."""
     time_to_contact: Seconds | None = None
@@ -57,10 +63,10 @@ class Obstacle(Feature):
 
 @detector(Obstacle)
 def obstacle(view: View, *, bearing: Annotated[Radians, Ge(0)] = math.pi, speed: MetresPerSecond | None = None) -> tuple[Obstacle, ...]:
-    """Finds all objects within a bearing, in the order of their labels.
+    """Finds all objects that are visible within `bearing`, in the order of their labels.
 
-    The nearest point is exact, except between two scan lines. If it is outside the bearing, the surface between it and an edge on the
-    same scan line is assumed to be straight.
+    The nearest point is exact, except between two scan lines. If it is outside `bearing`, the surface between it and an edge on the same
+    scan line is assumed to be straight.
 
     Args:
         view: The view.

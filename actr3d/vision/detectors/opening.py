@@ -19,7 +19,7 @@ from actr3d.vision.kernel.openings import OPENING
 from actr3d.vision.units import Label, Metres
 
 SHOWN = 11
-"""Number of an opening's fields that are used; the kernel needs the others."""
+"""The number of fields of an `OPENING` record that an `Opening` is made from; only the kernel uses the others."""
 
 APART = 0.1
 """Greatest distance of an opening's edges from one row to the next [m]: an edge that leans by 45 degrees, seen from 8 m
@@ -28,19 +28,19 @@ on the default screen. Source: chosen."""
 
 @dataclass(frozen=True, kw_only=True)
 class Opening(Feature):
-    """A gap between two edges that are seen at the same heights, with nothing between them that is as near as they are.
+    """A gap between two edges on the same scan lines; everything visible between them is farther away than both.
 
     Its size is that of the largest upright rectangle in it (by area). `distance` and `direction` are those of the middle between its
     two edges, of which one may be at the front of a wall and the other at its back.
     """
 
     salience: ClassVar[str] = "size"
-    bare: ClassVar[Mapping[str, str]] = {"distance": "<=", "width": ">=", "height": ">=", "depth": ">="}
+    default_comparisons: ClassVar[Mapping[str, str]] = {"distance": "<=", "width": ">=", "height": ">=", "depth": ">="}
 
     width: Metres
     """Free width on the ground, along its boundary if that is one line (a wall), otherwise straight from edge to edge."""
     height: Metres
-    """Height of the scan lines that it spans; exact to one of them. If open above, the height of its sides."""
+    """Height that its scan lines cover, accurate to one scan line. If it is open above, the height of its sides."""
     depth: Metres
     """Free depth behind it, perpendicular to its width, up to the nearest edge that is visible through it; infinite without one."""
     top: Metres

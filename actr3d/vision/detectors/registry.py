@@ -79,7 +79,7 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
             name, or if the function does not take a view and parameters by keyword with defaults.
     """
     if not (isinstance(finds, type) and issubclass(finds, Feature)):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
-        raise VisionError(f"detector: takes the class of what it finds, a subclass of Feature (got {finds!r})")
+        raise VisionError(f"detector: must be given the class that it finds, a subclass of Feature (got {finds!r})")
     name = finds.called()
     slots = slot_names(finds)
     unknown = [field for field, kind in types_of(finds).items() if field not in slots and get_origin(kind) is not ClassVar]
@@ -89,7 +89,7 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
     def add(detect: D) -> D:
         builtin = detect.__module__.startswith("actr3d.")
         if name in DETECTORS and DETECTORS[name].builtin and not builtin:
-            raise VisionError(f"detector: the library finds '{name}' itself; give the class {finds.__name__} another name")
+            raise VisionError(f"detector: the library already has a detector '{name}'; rename the class {finds.__name__}")
         _, *others = inspect.signature(detect).parameters.values() or (None,)
         wrong = [p.name for p in others if p.kind is not p.KEYWORD_ONLY or p.default is p.empty]
         if wrong or not inspect.signature(detect).parameters:

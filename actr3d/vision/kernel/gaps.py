@@ -13,9 +13,8 @@ from actr3d.jit import compiled
 NARROWEST = 1e-6
 """Fraction of the screen's width below which there is no gap: edges that touch."""
 THICKEST = 0.35 + 1e-6
-"""The thickness of a wall up to which its jambs bound one gap, with a margin for rounding [m]: the greatest distance of a gap's
-edges from the line through the far ends of its boundary, for a gap in that line. Source: chosen; walls of buildings are 0.1 to
-0.3 m thick."""
+"""Maximum thickness of a wall [m], with a margin for rounding: the edges of a gap may lie this far from the line of the wall's front and
+still bound one gap in the wall. Source: chosen; walls of buildings are 0.1 to 0.3 m thick."""
 
 GAP = np.dtype(
     [
@@ -24,7 +23,7 @@ GAP = np.dtype(
         ("right", "i8"),
         ("before", "i8"),  # the gap on the row above that it continues, or -1
         ("number", "i8"),  # of the opening it is part of
-        ("along", "f8", (2,)),  # the direction from left to right in which its width is meant (ahead, left)
+        ("along", "f8", (2,)),  # unit vector from left to right along which its width is measured (ahead, left)
         ("width", "f8"),  # [m]
         ("deep", "f8"),  # how far it is free behind, square to its width [m]
         ("highs", "f8", (2,)),  # where its row ends above and below at the left and at the right edge, above the eye [m]
@@ -40,8 +39,8 @@ GAP = np.dtype(
 def find_gaps(extents: Records, points: Array, optics: Record, up: float, step: float, gaps: Records) -> int:
     """Writes all gaps, by rows; returns their number, including those without room.
 
-    A gap goes from the right edge of one extent to the left edge of another on the same row, if all between them is farther
-    than both by `step` at least [m], or nothing is there. `up` is how upright the eye is, the cosine of its tilt.
+    A gap goes from the right edge of one extent to the left edge of another on the same row, if all between them is farther than both by
+    `step` at least [m], or nothing is there. `up` is the cosine of the eye's tilt: 1 for an upright eye.
     """
     count, first, total = 0, 0, len(extents)
     while first < total:

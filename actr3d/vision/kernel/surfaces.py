@@ -36,7 +36,7 @@ def set_surfaces(extents: Records, points: Array, bearing: float, surfaces: Reco
     Args:
         extents: The view's.
         points: Where their edges are.
-        bearing: How far to the left and right of ahead the nearest points are looked for [rad].
+        bearing: Greatest angle from straight ahead, to the left and right, at which nearest points are searched [rad].
         surfaces: One for each label and one for none.
     """
     most = 0

@@ -1,8 +1,8 @@
 """The commands that move bodies.
 
-A command holds until another one of its kind replaces it. Motion starts at once while the body touches nothing; otherwise
-its bounded forces start it. A stopped base or joint stops dead, and holds its place. Numbers may be given as text, because
-patterns bind text.
+A command holds until another one of its kind replaces it. Motion starts at once while the body touches nothing; otherwise its bounded
+forces start it. A base or joint that is stopped stops immediately, and holds its position. Numbers may be given as text, because patterns
+bind text.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from collections.abc import Mapping
 from actr3d.errors import WorldError
 from actr3d.world.anatomy import Steering
 from actr3d.world.body import MAX_CONTROL, Body, actuator
-from actr3d.world.command_registry import checked_angle, known, number
+from actr3d.world.command_registry import checked_angle, checked_name, number
 from actr3d.world.frames import FULL_TURN
 from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import HEADING, TURN
 from actr3d.world.objects import place
 
 MODERATE = 2.0
-"""Default speed of joints [rad/s]. Source: the order of the original ACT-R 3D's 120 degrees a second (docs/human-data.md)."""
+"""Default speed of joints [rad/s]. Source: about the 120 degrees/s of the original ACT-R 3D (docs/human-data.md)."""
 
 MOST_TURNS = 3
 """How far a turn goes at most, in full turns; `walk(0, turn=...)` turns without an end. Source: chosen for this library."""
@@ -28,7 +28,7 @@ MOST_TURNS = 3
 SACCADE, SACCADE_PER_RAD = 0.02, 0.002 * math.degrees(1)
 """Duration of a saccade: 20 ms, and 2 ms for each degree, [s] and [s/rad]. Source: EMMA (Salvucci 2001; docs/human-data.md)."""
 
-_if_walking = actuator.if_body(lambda body: body.anatomy.push is not None)
+_if_walking = actuator.if_body(lambda body: body.anatomy.walking_servos is not None)
 _if_jointed = actuator.if_body(lambda body: any(joint.driven for joint in body.joints.values()))
 _if_drivable = actuator.if_body(lambda body: body.anatomy.steering is not None)
 _if_movable = actuator.if_body(lambda body: body.base.planar or body.base.free)
@@ -47,7 +47,7 @@ def walk(body: Body, speed: float, turn: float = 0.0, direction: float = 0.0) ->
     fastest, spin, _ = body.fastest()
     speed, turn = number(speed, "walk: speed", -fastest, fastest), number(turn, "walk: turn", -spin, spin)
     direction = checked_angle(direction, "walk: direction")
-    body.motion.forget_course()
+    body.motion.cancel_base_movements()
     left = speed * math.sin(direction) if direction else 0.0
     body.hold.drive_base((speed * math.cos(direction), left, turn))
     body.physics.changed()
@@ -61,7 +61,7 @@ def heading(body: Body, angle: float, speed: float = MODERATE) -> None:
         WorldError: If a value is not a number, the angle is more than a full turn, or the speed is not > 0 or is too fast.
     """
     angle, speed = checked_angle(angle, "heading: angle"), number(speed, "heading: speed", 1e-6, body.fastest()[1])
-    body.motion.forget_course()
+    body.motion.cancel_base_movements()
     body.motion.targets[HEADING] = (angle, speed)
 
 
@@ -73,7 +73,7 @@ def turn(body: Body, angle: float, speed: float = MODERATE) -> None:
         WorldError: If a value is not a number, the angle is more than three full turns, or the speed is not > 0 or is too fast.
     """
     angle, speed = checked_angle(angle, "turn: angle", MOST_TURNS), number(speed, "turn: speed", 1e-6, body.fastest()[1])
-    body.motion.forget_course()
+    body.motion.cancel_base_movements()
     body.motion.targets[TURN] = (body.base.place[2] + angle, speed)
 
 
@@ -87,14 +87,14 @@ def waypoint(body: Body, x: float, y: float, speed: float = 1.3, turn: float = M
     x, y = number(x, "waypoint: x"), number(y, "waypoint: y")
     fastest, spin, _ = body.fastest()
     speed, turn = number(speed, "waypoint: speed", 1e-6, fastest), number(turn, "waypoint: turn", 1e-6, spin)
-    body.motion.forget_course()
+    body.motion.cancel_base_movements()
     body.motion.waypoint = (x, y, speed, turn)
 
 
 @_if_walking
 def stop(body: Body) -> None:
-    """Stops legs and all joints dead."""
-    body.motion.forget_course()
+    """Stops the legs and all joints immediately."""
+    body.motion.cancel_base_movements()
     body.motion.targets.clear()
     body.hold.drive_base((0.0, 0.0, 0.0))
     for joint in body.joints.values():
@@ -193,13 +193,13 @@ def teleport(body: Body, x: float, y: float, heading: float | None = None) -> No
 
 @_if_eye_moves
 def gaze(body: Body, left: float, up: float = 0.0, speed: float | None = None) -> None:
-    """Turns the eye to a direction relative to the head [rad, to the left and up], or to its limits; at a speed [rad/s] or as people do."""
+    """Turns the eye to a direction relative to the head [rad, left and up], or to its limits; without a speed [rad/s], as a saccade."""
     _look(body, checked_angle(left, "gaze: left"), checked_angle(up, "gaze: up"), speed)
 
 
 @_if_eye_moves
 def saccade(body: Body, left: float, up: float = 0.0) -> None:
-    """Turns the eye by an angle from its present direction [rad to the left, rad up], or to its limits, as fast as people do."""
+    """Turns the eye by an angle from its present direction [rad, left and up], or to its limits, in the time of a human saccade."""
     yaw, pitch = body.joints["eye_yaw"].position, body.joints["eye_pitch"].position
     _look(body, yaw + checked_angle(left, "saccade: left"), checked_angle(up, "saccade: up") - pitch)
 
@@ -211,7 +211,7 @@ def grasp(body: Body, object: str, hand: str = "right") -> None:
     Raises:
         WorldError: If there is no such object or hand, or the object is fixed.
     """
-    holds = body.hands[known(hand, body.hands, body.name, "hand")]
+    holds = body.hands[checked_name(hand, body.hands, body.name, "hand")]
     number = body.physics.loose(object)
     body.physics.refresh()
     if holds.held is None and holds.reaches(number):
@@ -227,7 +227,7 @@ def release(body: Body, hand: str | None = None) -> None:
         WorldError: If there is no such hand.
     """
     if hand is not None:
-        known(hand, body.hands, body.name, "hand")
+        checked_name(hand, body.hands, body.name, "hand")
     for side, holds in body.hands.items():
         if hand in (None, side):
             holds.release()
@@ -236,7 +236,8 @@ def release(body: Body, hand: str | None = None) -> None:
 
 @_if_foreign
 def control(body: Body, name: str, *values: float) -> None:
-    """Sets the control of an actuator that an imported description names, in that actuator's own unit: one number, or all of several.
+    """Sets the control of an actuator that an imported description names, in that actuator's own unit. It takes one number for each of its
+    controls.
 
     Raises:
         WorldError: If there is no such actuator, it does not take that many numbers, or one is too great for the physics.
@@ -281,7 +282,7 @@ def _within(joint: Joint, angle: float) -> float:
 
 
 def _look(body: Body, left: float, up: float, speed: float | None = None) -> None:
-    """Turns the eye to a direction relative to the head [rad], or to its limits; at a speed [rad/s] or as people do."""
+    """Turns the eye to a direction relative to the head [rad], or to its limits; at a speed [rad/s], or in the time of a saccade."""
     yaw, pitch = body.joints["eye_yaw"], body.joints["eye_pitch"]
     to_yaw, to_pitch = _within(yaw, left), _within(pitch, -up)
     turns = (abs(to_yaw - yaw.position), abs(to_pitch - pitch.position))

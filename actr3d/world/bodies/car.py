@@ -13,7 +13,7 @@ from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
 from actr3d.world.anatomy import Anatomy, Steering, body_kind
 from actr3d.world.bodies.planar_base import add_planar_base
-from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Name
+from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Name, Positive
 from actr3d.world.sensor_noise import Noise
 from actr3d.world.velocity_servo import add_servo
 
@@ -32,9 +32,9 @@ WAIST = 0.62
 class Car(Configuration):
     """A car that moves like a bicycle: its rear wheel rolls where it points, its front wheel where it is steered.
 
-    Both hold sideways with the grip of their tyres, so within it the rear axle's middle drives a circle of radius
-    wheelbase / tan(road wheel angle). Throttle and brake push along; the drag grows with the speed.
-    Its position and heading are those of the rear axle's middle.
+    The sideways force of both wheels is limited by the grip of their tyres; within it, the middle of the rear axle follows a circle of
+    radius wheelbase / tan(road wheel angle). Throttle and brake act along the heading; drag is proportional to speed. Its position and
+    heading are those of the rear axle's middle.
 
     Source of mass and axles: the vehicle of the driver model in docs/human-data.md (mass 1175, a 0.946, b 1.719).
     """
@@ -57,28 +57,28 @@ class Car(Configuration):
     size: tuple[Length, Length, Length] = (4.2, 1.7, 1.45)
     """Length, width and height [m]. Source: chosen, a compact car."""
 
-    mass: Length = 1175.0
+    mass: Positive = 1175.0
     """[kg]"""
 
-    ratio: Length = 16.0
+    ratio: Positive = 16.0
     """Turns of the steering wheel for one of the road wheels. Source: chosen, passenger cars have 12 to 20."""
 
     lock: Annotated[float, Gt(0), Lt(1.4)] = math.radians(35)
     """Greatest angle of the road wheels to each side [rad]. Source: chosen, usual."""
 
-    steering_rate: Length = 4 * math.pi
+    steering_rate: Positive = 4 * math.pi
     """Greatest speed of the steering wheel [rad/s]. Source: 720 degrees a second, as in NHTSA's fishhook manoeuvre."""
 
-    drive: Length = 4000.0
+    drive: Positive = 4000.0
     """Force of the engine at full throttle [N]. Source: chosen, 3.4 m/s^2."""
 
-    top_speed: Length = 50.0
+    top_speed: Positive = 50.0
     """Speed at which drag equals the drive [m/s]; drag is proportional to speed. Source: chosen, 180 km/h."""
 
-    brakes: Length = 9000.0
+    brakes: Positive = 9000.0
     """Force of the brakes when fully pressed [N]. Source: chosen, 0.78 of the weight, on dry asphalt."""
 
-    grip: Length = 0.9
+    grip: Positive = 0.9
     """Greatest sideways force of the tyres as a fraction of their load. Source: chosen, dry asphalt."""
 
     eye: tuple[float, float, float] = (1.2, 0.35, 1.2)

@@ -7,7 +7,7 @@ from typing import Literal
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
-from actr3d.world.scene_objects import Colour, Length
+from actr3d.world.scene_objects import Colour, Length, Positive
 
 _SIZES = {"bar": (2, "length and thickness"), "box": (3, "depth, width and height")}
 
@@ -22,7 +22,7 @@ class Load(Configuration):
     size: tuple[Length, ...] = (1.0, 0.03)
     """Full sizes [m]: bar (length, thickness), box (depth, width, height) as seen by the holder."""
 
-    mass: Length = 1.0
+    mass: Positive = 1.0
     """[kg]; the arms carry its weight."""
 
     colour: Colour = (0.72, 0.53, 0.33, 1.0)

@@ -19,7 +19,7 @@ from actr3d.world.bodies.load import Load
 from actr3d.world.bodies.mannequin_limits import FASTEST_JOINT, FASTEST_TURN, FASTEST_WALK, limits_of, strength_of
 from actr3d.world.bodies.planar_base import add_planar_base
 from actr3d.world.gait import OWN, Gait, LegPlan
-from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Name
+from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Name, Positive
 from actr3d.world.sensor_noise import Noise
 from actr3d.world.velocity_servo import add_servo
 
@@ -82,10 +82,10 @@ Source: the names are those of the original ACT-R 3D; their definition for shoul
 class Mannequin(Configuration):
     """A person: legs, pelvis, torso, shoulders, arms, head and eye, joined by three hinges each (yaw, pitch, roll).
 
-    It moves over the floor at a set speed and stops dead; obstacles stop it. With a `gait` it steps and sways, otherwise its legs
-    glide. It stands facing its heading with hanging arms, or holding its load. Its parts are `legs`, `pelvis`, `torso`,
-    `left_shoulder`, `left_upper_arm` (with forearm and hand), the same on the right, `head`, `eye` and `load`; its joints
-    `torso_yaw`, `torso_pitch` and so on.
+    It moves over the floor at the commanded speed and stops immediately; obstacles stop it, too. With a `gait` it steps and sways,
+    otherwise its legs glide. It stands facing its heading with hanging arms, or holding its load. Its parts are `legs`, `pelvis`, `torso`,
+    `left_shoulder`, `left_upper_arm` (with forearm and hand), the same on the right, `head`, `eye` and `load`; its joints `torso_yaw`,
+    `torso_pitch` and so on.
 
     Source of proportions: Drillis & Contini (1966), as given by Winter (2009), in fractions of the height; of masses:
     Dempster (1955), as given there.
@@ -117,7 +117,7 @@ class Mannequin(Configuration):
     arm_length: Length | None = None
     """From the shoulder joint to the finger tips [m]; None is 0.44 of the height."""
 
-    mass: Length = 75.0
+    mass: Positive = 75.0
     """Without load [kg]. Source: chosen, a body mass index of 24.5 at the default height."""
 
     trunk: Literal["ellipsoid", "box"] = "ellipsoid"
@@ -128,13 +128,13 @@ class Mannequin(Configuration):
     joint `stance_yaw` of the part `stance`. Otherwise the legs face the walking direction."""
 
     gait: Gait | None = None
-    """How it walks; None: its legs are stiff and glide. With a gait, the part `stance` carries all but the feet's place on the ground,
-    and the legs are `left_thigh`, `left_shank` and `left_foot`, the same on the right; no command moves these."""
+    """How it walks; None: its legs are stiff and glide. With a gait, the part `stance` carries the whole body above the base, and the legs
+    are `left_thigh`, `left_shank` and `left_foot`, the same on the right; no command moves these."""
 
     load: Load | None = None
     """The load in both hands in front of it; None for hanging arms."""
 
-    push: Annotated[float, Gt(0), Le(2000)] = 300.0
+    leg_force: Annotated[float, Gt(0), Le(2000)] = 300.0
     """Greatest force of the legs [N]. Source: chosen; pushing while walking, people reach 200 to 400 N."""
 
     noise: Noise = ()
@@ -151,10 +151,10 @@ class Mannequin(Configuration):
             ConfigurationError: If a field is wrong, or sizes contradict each other.
         """
         super().__post_init__()
-        if not 0.87 * self.height < self.eyes < 0.99 * self.height:
+        if not 0.87 * self.height < self.height_of_eyes < 0.99 * self.height:
             low, high = 0.87 * self.height, 0.99 * self.height
             raise ConfigurationError(
-                f"Mannequin.eye_height: must be in the head, here >= {low:.2f} and <= {high:.2f} m (got {self.eyes!r})"
+                f"Mannequin.eye_height: must be in the head, here >= {low:.2f} and <= {high:.2f} m (got {self.height_of_eyes!r})"
             )
         if self.shoulder_width < 0.15 * self.height:
             raise ConfigurationError(f"Mannequin.shoulder_width: must be >= 0.15 of the height (got {self.shoulder_width!r})")
@@ -164,23 +164,23 @@ class Mannequin(Configuration):
         if self.load is not None and self.load.height / 2 >= self.grip_height:
             most = 2 * self.grip_height
             raise ConfigurationError(f"Mannequin.load: would touch the floor; it can be {most:.2f} m high (got {self.load.height!r})")
-        if self.arms > 0.75 * self.height:
-            raise ConfigurationError(f"Mannequin.arm_length: hands would touch the floor (got {self.arms!r})")
+        if self.length_of_arms > 0.75 * self.height:
+            raise ConfigurationError(f"Mannequin.arm_length: hands would touch the floor (got {self.length_of_arms!r})")
 
     @property
-    def eyes(self) -> float:
+    def height_of_eyes(self) -> float:
         """Height of the eyes [m]."""
         return 0.936 * self.height if self.eye_height is None else self.eye_height
 
     @property
-    def arms(self) -> float:
+    def length_of_arms(self) -> float:
         """Length of an arm from the shoulder joint to the finger tips [m]."""
         return 0.44 * self.height if self.arm_length is None else self.arm_length
 
     @property
     def grip_height(self) -> float:
-        """Height of the hands that hold a load, with square elbows [m]."""
-        return SHOULDER * self.height - self.arms * UPPER_ARM
+        """Height of the hands that hold a load, with the elbows bent by 90 degrees [m]."""
+        return SHOULDER * self.height - self.length_of_arms * UPPER_ARM
 
     @property
     def legs(self) -> LegPlan:
@@ -203,7 +203,7 @@ class Mannequin(Configuration):
     def anatomy(self) -> Anatomy:
         """Returns its description for a `Body`."""
         prefix = f"{self.name}_"
-        push = (f"{prefix}forward", f"{prefix}sideways", f"{prefix}turn")
+        walking = (f"{prefix}forward", f"{prefix}sideways", f"{prefix}turn")
         joints = tuple(f"{prefix}{segment}_{hinge}" for segment, hinge in self.joints)
         return Anatomy(
             root=self.name,
@@ -212,8 +212,8 @@ class Mannequin(Configuration):
             eye=f"{prefix}eye",
             noise=self.noise,
             fastest=(FASTEST_WALK, FASTEST_TURN, FASTEST_JOINT),
-            push=push,
-            servos=push + joints,
+            walking_servos=walking,
+            servos=walking + joints,
             movements=MOVEMENTS,
             hands=tuple(f"{prefix}{side}_hand" for side in SIDES),
             shoulders=self.shoulder_width,
@@ -232,7 +232,7 @@ class _Builder:
         self.deltoid = min(0.035 * tall, person.shoulder_width / 4)
         self.shoulder_y = person.shoulder_width / 2 - self.deltoid
         self.shoulder_z = SHOULDER * tall
-        self.upper, self.fore, self.hand = (person.arms * part for part in (UPPER_ARM, 0.146 / 0.44, 0.108 / 0.44))
+        self.upper, self.fore, self.hand = (person.length_of_arms * part for part in (UPPER_ARM, 0.146 / 0.44, 0.108 / 0.44))
 
     def build(self) -> None:
         """Adds everything to the specification."""
@@ -250,7 +250,7 @@ class _Builder:
         if person.load is not None:
             self._load()
         for one, other in combinations(self.bodies, 2):
-            # Its limbs are not in each other's way, but the trunk stops what presses the load back.
+            # Parts of the body have no contacts with each other, except load and trunk: the trunk stops a load that is pushed back.
             if (one, other) not in (("pelvis", "load"), ("torso", "load")):
                 self.mj_spec.add_exclude(bodyname1=self.bodies[one][0].name, bodyname2=self.bodies[other][0].name)
         self._servos()
@@ -388,10 +388,10 @@ class _Builder:
         low, half = 0.87 * tall, (0.055 * tall, 0.044 * tall, 0.065 * tall)
         self._geom("head", "head", mjtGeom.mjGEOM_ELLIPSOID, (0, 0, low + half[2]), half, 0.075)
         self._capsule("head", "neck", (0, 0, 0.84 * tall), (0, 0, low + half[2]), 0.03 * tall, 0.0059)
-        front = half[0] * math.sqrt(1 - ((person.eyes - low - half[2]) / half[2]) ** 2)
-        r = min(0.012, front, tall - person.eyes)
-        self._segment("eye", "head", (front - r, 0, person.eyes))
-        self._geom("eye", "eye", mjtGeom.mjGEOM_SPHERE, (front - r, 0, person.eyes), (r, 0, 0), 0.0001, touches=False)
+        front = half[0] * math.sqrt(1 - ((person.height_of_eyes - low - half[2]) / half[2]) ** 2)
+        r = min(0.012, front, tall - person.height_of_eyes)
+        self._segment("eye", "head", (front - r, 0, person.height_of_eyes))
+        self._geom("eye", "eye", mjtGeom.mjGEOM_SPHERE, (front - r, 0, person.height_of_eyes), (r, 0, 0), 0.0001, touches=False)
         body, _ = self.bodies["eye"]
         ahead = [r + EYE_GAP, 0, 0]
         body.add_site(name=self._name("eye"), pos=ahead)
@@ -426,12 +426,12 @@ class _Builder:
     def _servos(self) -> None:
         """Adds the servos, and the welds by which hands hold objects."""
         base = self._name("base")
-        for name, axis, force in (("forward", 0, self.person.push), ("sideways", 1, self.person.push), ("turn", 5, TURN)):
+        for name, axis, force in (("forward", 0, self.person.leg_force), ("sideways", 1, self.person.leg_force), ("turn", 5, TURN)):
             gear = tuple(float(n == axis) for n in range(6))
             add_servo(self.mj_spec, self._name(name), base, force, gear)
         for segment, hinge in self.person.joints:
             joint = self._name(f"{segment}_{hinge}")
-            add_servo(self.mj_spec, joint, joint, strength_of(segment) if hinge in HINGES else self.person.push)
+            add_servo(self.mj_spec, joint, joint, strength_of(segment) if hinge in HINGES else self.person.leg_force)
         for side in SIDES:
             arm = self._name(f"{side}_upper_arm")
             hand = self.mj_spec.add_equality(name=self._name(f"{side}_hand"), type=mjtEq.mjEQ_WELD, objtype=mjtObj.mjOBJ_BODY, name1=arm)

@@ -26,13 +26,13 @@ LIMITS: dict[str, dict[str, Range]] = {
 """By segment, the left one of a pair: the range of each joint relative to the segment that carries it [rad] [m], 0 standing upright with
 hanging arms.
 
-All axes are right-handed about the carrying segment's x (roll), y (pitch) and z (yaw): a positive yaw turns to the left, a positive
-pitch bows, a positive roll leans to the right; an arm or a leg is lifted forward by a negative pitch, the left one sideways by a positive
-roll. Source: ranges of motion of the American Academy of Orthopaedic Surgeons (hips, thoracolumbar and cervical spine, shoulder);
+All axes are right-handed about the carrying segment's x (roll), y (pitch) and z (yaw): a positive yaw turns to the left, a positive pitch
+bends forward, a positive roll leans to the right; an arm or a leg is lifted forward by a negative pitch, the left one sideways by a
+positive roll. Source: ranges of motion of the American Academy of Orthopaedic Surgeons (hips, thoracolumbar and cervical spine, shoulder);
 clavicle elevation and depression from the same, its yaw of 20 degrees and the torso's of 90 from the original (docs/human-data.md);
-eye: Guitton & Volle (1987), about 55 degrees to each side. The clavicle's pitch and the eye's roll were chosen
-for this library; so was the stance, the legs relative to the walking direction: people can walk sideways; and the ranges of legs, which
-are wider than gait needs.
+eye: Guitton & Volle (1987), about 55 degrees to each side. The clavicle's pitch and the eye's roll were chosen for this library; so were
+the ranges of the stance, the legs relative to the walking direction (people can walk sideways), and of the legs, which are wider than gait
+needs.
 """
 
 STRENGTH = {

@@ -1,4 +1,4 @@
-"""The changes that a user can make in a world; a module of this package that defines one is found by itself."""
+"""The changes that a user can make in a world; all modules of this package are imported automatically."""
 
 from actr3d.registry import import_modules
 from actr3d.world.changes.world_change import WorldChange

@@ -107,7 +107,7 @@ def gyroscope(body: Body, part: str | None = None) -> Vector:
 
 @sensor
 def accelerometer(body: Body, part: str | None = None) -> Vector:
-    """Senses the acceleration of a part's origin against free fall, along its own axes [m/s^2].
+    """Senses the proper acceleration of a part's origin (relative to free fall), along its own axes [m/s^2].
 
     The part is by default the head, or the base without a head. At rest the reading is about 9.81 upwards.
 

@@ -29,7 +29,7 @@ class Proprioception:
     positions: tuple[float, ...] = field(metadata=NOT_TRACED)
     """Of all joints, in the order of the sensor `anatomy` [rad] or [m]. A recording has them in the physics state of the same tick."""
     moving: tuple[str, ...]
-    """The joints that a command still moves, or tries to."""
+    """The joints whose commanded speed is not 0, whether they really move or not."""
     speed: tuple[float, float, float]
     """Of the base, forward and to the left [m/s], and turning to the left [rad/s]; 0 for one that cannot walk."""
     walking: bool
@@ -43,10 +43,11 @@ class Proprioception:
     height: float
     """Of that box [m]."""
     middle: float
-    """How far the middle of that box is to the left of the base [m]: a bar in front of a turned body is beside it."""
+    """Lateral position of the middle of that box relative to the base [m, left is positive], such as that of a turned body that holds a
+    bar."""
 
     def with_noise(self, sd: Any, random: Any) -> Proprioception:
-        """Raises an error: a motor module needs these numbers to know when a movement is over, and has its own parameters for noise.
+        """Always raises an error: a motor module needs exact numbers to detect the end of movements, and has its own parameters for noise.
 
         Raises:
             WorldError: Always.
@@ -65,7 +66,7 @@ def bounding_box(body: Body, frame: str = "body") -> Size:
 def proprioception(body: Body) -> Proprioception:
     """Senses at once the positions of all joints, what still moves, and width, depth and height of the body in this posture."""
     positions: list[float] = body.physics.mj_data.qpos.tolist()
-    walks = body.anatomy.push is not None
+    walks = body.anatomy.walking_servos is not None
     box = body.bounding_box("body")
     depth, width, height = box.size
     return Proprioception(

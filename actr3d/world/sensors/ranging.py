@@ -50,17 +50,17 @@ def rangefinder(body: Body, angle: float = 0.0, elevation: float = 0.0, reach: f
 
 @sensor
 def laser(
-    body: Body, rays: int = 181, width: float = math.pi, elevation: float = 0.0, reach: float = 10.0, at: str | None = None
+    body: Body, rays: int = 181, fov: float = math.pi, elevation: float = 0.0, reach: float = 10.0, at: str | None = None
 ) -> tuple[float | None, ...]:
-    """Senses distances [m] in a fan of rays from left to right, `width` [rad] wide; None where nothing is within reach.
+    """Senses distances [m] in a fan of rays from left to right, over the angle `fov` [rad]; None where nothing is within reach.
 
     The other arguments are those of the rangefinder.
 
     Raises:
-        WorldError: If `rays` is not a whole number in 1 to 100,000, `width` not in 0 to 2 pi, or as for the rangefinder.
+        WorldError: If `rays` is not a whole number in 1 to 100,000, `fov` not in 0 to 2 pi, or as for the rangefinder.
     """
     count = whole(rays, "laser: rays", 1, 100_000)
-    half = number(width, "laser: width", 0, 2 * math.pi) / 2
+    half = number(fov, "laser: fov", 0, 2 * math.pi) / 2
     angles = np.linspace(half, -half, count) if count > 1 else np.zeros(1)
     return _cast(body, at, angles, checked_angle(elevation, "laser: elevation"), number(reach, "laser: reach", 0))
 

@@ -40,7 +40,7 @@ class Picture:
         return np.frombuffer(self.pixels, dtype=np.float32).reshape(self.height, self.width)
 
     def with_noise(self, sd: Any, random: np.random.Generator) -> Picture:
-        """Returns the same picture with noise on every pixel: of `sd` steps of 255, or [m].
+        """Returns the same picture with noise on every pixel; `sd` is in the unit of the pixels: steps of 255, or [m] for depth.
 
         Raises:
             WorldError: If `sd` is not one number.
@@ -67,7 +67,7 @@ def image(body: Body, width: int = 320, height: int = 240) -> Picture:
 
 @_if_eye
 def depth(body: Body, width: int = 320, height: int = 240) -> Picture:
-    """Senses a picture of distances from the eye [m], of a size in pixels.
+    """Senses a depth picture: distances along the line of sight [m], of a size in pixels.
 
     Raises:
         WorldError: If a size is not a whole number of pixels in 1 to 4096, or EGL cannot be used.

@@ -1,7 +1,7 @@
-"""The skin: what touches which part of a body, and how hard.
+"""The skin: what touches which part of a body, and with which force.
 
-From the first reading of its contacts on, a body's skin watches every physics step and keeps the peak force of each touch within
-a tick, so that it feels a blow that ends before the tick does. The first reading is of the present state alone.
+From the first reading of its contacts on, a body's skin watches every physics step and keeps the peak force of each touch within a tick, so
+that it also reports a blow that ends within the tick. The first reading is of the present state alone.
 """
 
 from __future__ import annotations

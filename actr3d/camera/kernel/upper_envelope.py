@@ -84,7 +84,7 @@ def trace_row(v: float, level: float, optics: Record, row: Row, count: int, exte
     done, waiting, present, start, floor = first, zero(), zero(), -optics.right, -math.inf
     sort_by_start(row.order, row.starts, row.pieces, count)
     while True:
-        waiting, present = _bring_in(start, row, count, waiting, present, floor)
+        waiting, present = _activate(start, row, count, waiting, present, floor)
         if present == 0:
             if waiting == count:
                 return end_row(v, optics, row.pieces, extents, first, done)
@@ -92,9 +92,9 @@ def trace_row(v: float, level: float, optics: Record, row: Row, count: int, exte
             continue
         front, rivals, end = _front(row, present)
         floor = row.pieces[front].floor
-        waiting, present, end = _pass_by(end, row, count, waiting, present, front)
+        waiting, present, end = _activate_behind(end, row, count, waiting, present, front)
         if rivals == 1:
-            done = _tell(front, start, end, level, optics, row, rivals, extents, first, done)
+            done = _append_stretch(front, start, end, level, optics, row, rivals, extents, first, done)
         else:
             done = _trace_stretch(start, end, level, optics, row, rivals, extents, first, done)
         start, kept = end, zero()
@@ -107,7 +107,7 @@ def trace_row(v: float, level: float, optics: Record, row: Row, count: int, exte
 
 
 @compiled
-def _bring_in(start: float, row: Row, count: int, waiting: int, present: int, floor: float) -> tuple[int, int]:
+def _activate(start: float, row: Row, count: int, waiting: int, present: int, floor: float) -> tuple[int, int]:
     """Activates the pieces that begin at a tangent, and skips those that one active piece hides completely.
 
     Returns the number of pieces already processed (activated or skipped), and the number of active pieces.
@@ -166,8 +166,8 @@ def _front(row: Row, present: int) -> tuple[int, int, float]:
 
 
 @compiled
-def _pass_by(end: float, row: Row, count: int, waiting: int, present: int, front: int) -> tuple[int, int, float]:
-    """Activates the pieces that begin before a tangent completely behind the front piece, if they end after it.
+def _activate_behind(end: float, row: Row, count: int, waiting: int, present: int, front: int) -> tuple[int, int, float]:
+    """Processes the pieces that begin before a tangent completely behind the front piece; activates those that end after the front piece.
 
     Returns the number of pieces already processed, the number of active pieces, and the tangent at which the next piece begins, or
     the given tangent.
@@ -207,12 +207,12 @@ def _trace_stretch(
                 row.stack[waiting, 1] = row.cuts[i] if i < number else high
                 waiting += 1
         else:
-            done = _tell(winner, low, high, level, optics, row, rivals, extents, first, done)
+            done = _append_stretch(winner, low, high, level, optics, row, rivals, extents, first, done)
     return done
 
 
 @compiled
-def _tell(
+def _append_stretch(
     winner: int, low: float, high: float, level: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int
 ) -> int:
     """Appends a stretch in which one piece is nearest, or extends the last extent by it; does nothing for the background."""
@@ -249,13 +249,13 @@ def _winner(u: float, row: Row, rivals: int) -> int:
         w = nearness(piece, u)
         if w > best * (1.0 + SAME_DEPTH):
             winner, best = number, w
-        elif w > best * (1.0 - SAME_DEPTH) and _goes_first(row.places, piece.geom, row.pieces[winner].geom):
+        elif w > best * (1.0 - SAME_DEPTH) and _precedes(row.places, piece.geom, row.pieces[winner].geom):
             winner, best = number, max(w, best)
     return winner
 
 
 @compiled
-def _goes_first(places: Array, one: int, other: int) -> bool:
+def _precedes(places: Array, one: int, other: int) -> bool:
     """Checks whether a geom's centre is nearer than another's, or if equal, further to the left or down.
 
     The geom number decides only between two geoms at one place: a view cannot show which of two identical objects is seen, but it
