@@ -23,7 +23,7 @@ def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:
     productions = _own_productions(agent)
     tasks = {task: name for name, unit in units.items() for task in unit.unit_tasks}
     taken = {name for production in productions for name in _named(production, "unit_task")}
-    if not any(_takes_any(production) for production in productions):
+    if not any(_matches_any_unit_task(production) for production in productions):
         for task, unit in tasks.items():
             if task not in taken:
                 raise PlanError(
@@ -39,7 +39,7 @@ def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:
 
 
 def matches_state(agent: Any, state: str) -> bool:
-    """Returns whether a production of the modeller's matches a state of planning units or unit tasks by its name."""
+    """Returns whether one of the modeller's productions tests for this state by name, in a planning unit or a unit task."""
     return any(state in _named(production, "state") for production in _own_productions(agent))
 
 
@@ -56,7 +56,7 @@ def _named(production: Production, key: str) -> Iterator[str]:
             yield condition.value
 
 
-def _takes_any(production: Production) -> bool:
+def _matches_any_unit_task(production: Production) -> bool:
     """Returns whether a production may match any unit task."""
     found = [condition for condition in production.conditions if condition.name == "b_unit_task" and condition.op != "empty"]
     return bool(found) and not any(condition.key == "unit_task" and condition.op == "is" for condition in found)
