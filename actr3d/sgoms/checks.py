@@ -8,7 +8,7 @@ from typing import Any
 from actr3d.actr import ProductionSystem
 from actr3d.actr.kernel.tree import subtree
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import rules_of
+from actr3d.actr.procedural.production_system import procedural_state_of
 from actr3d.errors import PlanError, did_you_mean
 from actr3d.sgoms.units import PlanningUnit
 from actr3d.warnings import warn_at
@@ -45,7 +45,7 @@ def matches_state(agent: Any, state: str) -> bool:
 
 def _own_productions(agent: Any) -> list[Production]:
     """Returns an agent's productions without those that every SGOMS agent has."""
-    productions = [p for part in subtree(agent) if isinstance(part, ProductionSystem) for p in rules_of(part).productions]
+    productions = [p for part in subtree(agent) if isinstance(part, ProductionSystem) for p in procedural_state_of(part).productions]
     return [p for p in productions if not p.name.startswith("sgoms_")]
 
 

@@ -52,7 +52,7 @@ class DMSpreading(MemorySubModule):
         In python_actr 1.9.5 a module that is made when the memory already has chunks must be given each of them by the model;
         here it counts them by itself, with the same result.
         """
-        if self.rules.spread_by_slots:
+        if self.effective_profile.spread_by_slots:
             return  # see `_count`
         same = _Same(chunk)
         if same in self._counted:
@@ -80,7 +80,7 @@ class DMSpreading(MemorySubModule):
     def activation(self, chunk: Any) -> float:
         total = 0.0
         values: list[Any] = list(chunk.values())
-        by_slots = self.rules.spread_by_slots
+        by_slots = self.effective_profile.spread_by_slots
         if by_slots:
             self._count()
         for buffer in self.buffers:

@@ -31,7 +31,7 @@ class ConflictSet:
         return self.threshold is not None and bool(self.utilities) and max(self.utilities.values()) < self.threshold
 
     @property
-    def stands(self) -> bool:
+    def is_current(self) -> bool:
         """Whether it still says something: a production is about to fire, or none was allowed to."""
         return self.chosen is not None or self.held_back or bool(self.forbidden)
 
