@@ -135,7 +135,7 @@ def test_parts_that_do_not_fit(line: str, message: str) -> None:
 
 def test_keywords_of_a_planning_unit_that_the_memory_does_not_know_are_warned_of() -> None:
     own = "class Agent(Base):\n    DM = Memory(SGOMS.b_DM)\n    level = DMBaseLevel(DM)\n"
-    with pytest.warns(ModelWarning, match="no keyword 'basleevel' .* did you mean 'baselevel'"):
+    with pytest.warns(ModelWarning, match="no activation module has a keyword 'basleevel'; did you mean 'baselevel'"):
         cooking(f"{own}    tea = Ordered('boil', 'steep', 'pour', basleevel=2)")
 
 

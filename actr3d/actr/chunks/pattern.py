@@ -222,9 +222,12 @@ def is_empty_in_pattern(target: Any, name: str | None) -> bool:
 
 
 def function_matches(function: Callable[[Any, Bindings], Any], target: Any, bindings: Bindings) -> bool:
-    """Calls a modeller's function and returns whether it agrees; a result equal to False, or an error from a missing slot, is a no."""
+    """Calls a modeller's function and returns whether it matches.
+
+    It does not match if its result equals False, or if it raises an AttributeError, TypeError or KeyError, as for a missing slot.
+    """
     try:
-        return function(target, bindings) != False  # noqa: E712 - None means yes
+        return function(target, bindings) != False  # noqa: E712 - None counts as a match
     except (AttributeError, TypeError, KeyError):
         return False
 

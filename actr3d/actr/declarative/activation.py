@@ -94,8 +94,8 @@ class DMNoise(MemorySubModule):
 
     Args:
         memory: The memory.
-        noise: s of the noise drawn at each request.
-        baseNoise: s of the noise drawn once for each chunk.
+        noise: The scale s of the logistic noise drawn at each request.
+        baseNoise: The scale s of the logistic noise drawn once for each chunk.
     """
 
     @named_parameters

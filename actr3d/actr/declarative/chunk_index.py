@@ -47,7 +47,7 @@ def _mutator(name: str, *, removes: bool = False) -> Callable[..., Any]:
                 observer.changed(name.strip("_"), before, self)
 
     method.__name__ = name
-    method.__doc__ = f"Does what `list.{name}` does, and throws the indexes away."
+    method.__doc__ = f"Does the same as `list.{name}`, then discards the indexes."
     return method
 
 

@@ -43,7 +43,7 @@ class Memory(WithParameters, Model):
         threshold: The minimum activation for retrieval; None for no minimum.
         maximum_time: The maximum duration of a retrieval or its failure [s]; by default the profile's: 10 s, or none in ACT-R 7. Without
             a threshold, a failure takes this time, or 10 s if there is no maximum.
-        finst_size: The number of retrieved chunks that are marked as such.
+        finst_size: The number of finsts: how many recently retrieved chunks are marked.
         finst_time: The lifetime of these marks [s].
         profile: «python-actr» or «act-r-7»; None for the agent's.
 
@@ -326,7 +326,7 @@ class Memory(WithParameters, Model):
             wanted = Chunk(chunk, self._bound())
             known = self.dm.equal_to(wanted)
             if known is None:
-                raise ChunkError(f"memory '{self.name}' holds no chunk '{wanted}'")
+                raise ChunkError(f"memory '{self.name}' has no chunk '{wanted}'")
             chunk = known
         return total(self._parts(chunk))
 
@@ -443,7 +443,7 @@ def check_keywords(keys: Mapping[str, Any], modules: Iterable[MemorySubModule]) 
             return
         taken |= names
     for name in sorted(unknown - taken):
-        warn_modeller(f"memory.add has no keyword '{name}' that any activation module takes{did_you_mean(name, taken)}")
+        warn_modeller(f"memory.add: no activation module has a keyword '{name}'{did_you_mean(name, taken)}")
 
 
 @weak_cache

@@ -26,7 +26,11 @@ class DMSpreading(MemorySubModule):
 
     Args:
         memory: The memory.
-        buffers: The sources.
+        buffers: The source buffers.
+
+    Attributes:
+        strength: S, the maximum associative strength; 1 by default.
+        weight: W of each source buffer, 1 by default: `spreading.weight[goal] = 0.5`.
 
     Source: Anderson & Lebiere (1998), equation 3.5; ACT-R 7 reference manual, spreading activation.
     """

@@ -1,7 +1,6 @@
 """Explains an agent: which productions match and why the others do not, and which chunk won a retrieval and why.
 
-An explanation of the current state reads the model, as a run need not be traced; one of a past time reads the trace, and needs nothing
-else.
+An explanation of the present reads the model; the run need not be traced. An explanation of a past time reads only the trace.
 """
 
 from __future__ import annotations

@@ -87,7 +87,7 @@ class Past:
 
     Args:
         trace: A trace of the run.
-        number: The number of the run in it, if it has another one in the trace that names the parts; None if that is this trace.
+        number: The number of the run in this trace, if the paths of the parts come from another trace; None if they come from this one.
         time: The time [us].
         parts: The parts to reconstruct.
     """

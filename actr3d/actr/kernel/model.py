@@ -185,7 +185,7 @@ class Model(TreeNode):
         Args:
             key: The attribute's name.
             value: The model.
-            overlooked: Whether `get_children` leaves it out, and chunks made of it do not have the name it is set under.
+            overlooked: Whether `get_children` leaves it out, and a chunk made from it does not contain the attribute's name.
         """
         if value.__dict__.get("parent") is not None or any(above is value for above in lineage(self)):
             return False
@@ -366,10 +366,11 @@ class Model(TreeNode):
             limit: How long [s from now]. The clock counts whole microseconds, so a run ends at the one nearest to its
                 exact end, and the next run continues from there: `run(1/3)` ends at 0.333333, 0.666667 and 1 s. Repeated
                 calls therefore never drift.
-            func: Called first.
+            func: A function that is scheduled at the current time before the run starts; events of the same priority that are already
+                queued for that time come first.
 
         Raises:
-            SchedulerError: If time stands still, or something cannot be waited for.
+            SchedulerError: If there is an endless loop in which no time passes, or something cannot be waited for.
             Exception: What a listener of the trace has raised.
         """
         if not self._converted:

@@ -308,8 +308,8 @@ class Scheduler:
         """Runs the queued events, up to a time [us], if any; warns if a run is already active."""
         if self.running:
             warn_modeller(
-                f"run was called while the model is running (at {self.time:g} s): what follows waits for its end; "
-                "to let time pass, yield a number of seconds"
+                f"run was called while the model is running (at {self.time:g} s): "
+                "the calling code continues only when the inner run has ended; to let time pass, yield a number of seconds"
             )
         before, self.running = self.running, True
         try:
@@ -391,7 +391,7 @@ class Scheduler:
         last = self.fired
         whose = getattr(getattr(event.call, "__self__", None), "_path", None)
         return SchedulerError(
-            f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; the last was {event.describe()}"
+            f"endless loop at {self.time:g} s: {STANDSTILL:,} events without any time passing; the last was {event.describe()}"
             + (f" of '{whose}'" if whose else "")
             + (f", the production that fired last '{last.name}' ({last.place})" if last is not None else "")
         )

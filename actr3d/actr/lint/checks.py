@@ -28,7 +28,7 @@ _WANTED: ContextVar[bool] = ContextVar("_WANTED", default=True)
 
 @contextmanager
 def unchecked() -> Generator[None]:
-    """Lets agents begin without checks within the block, where nobody reads warnings."""
+    """Disables the checks of agents that start inside the block, for runs whose warnings nobody reads."""
     before = _WANTED.set(False)
     try:
         yield

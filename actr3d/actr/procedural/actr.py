@@ -210,7 +210,10 @@ class ACTR(ProductionSystem):
             module.create(production)
 
     def reward(self, value: float) -> None:
-        """Applies a reward to the productions that fired before it."""
+        """Applies a reward.
+
+        `PMNew` and `PMPGC` apply it to all productions chosen since the last reward, `PMTD` to the one that fired last.
+        """
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "reward", {"value": value})

@@ -1,4 +1,4 @@
-"""Finds the productions that match: productions that test for a certain value are indexed by it, so that the others cost nothing.
+"""Finds the productions that match: those that test a slot for a value are indexed by it, and tried only if the slot has it.
 
 Each production is compiled into straight-line code that reads each slot at most once, and only if all tests before it hold.
 No reasons are kept: `actr3d.actr.explain.trial` tests the conditions of a production again when somebody asks why it does not match.
@@ -24,7 +24,7 @@ from actr3d.actr.kernel.tracing import UNWATCHED
 from actr3d.actr.procedural.production import Production
 
 MatchedPlace = tuple[str, Any]
-"""What is read: the name of an object, and a slot; a slot of None asks whether the object is empty."""
+"""What is read: the name of an object, and a slot; the slot None means the test whether the object is empty."""
 
 
 class Matcher:

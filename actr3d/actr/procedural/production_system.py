@@ -54,9 +54,9 @@ class ProceduralState:
     forbidden: set[str] = field(default_factory=set[str])
     """The productions that a user has forbidden: each is left out of the next choice for which it matches."""
     wanted: Production | None = None
-    """The production that a user has fire next."""
+    """The production that a user makes fire next."""
     by_hand: dict[str, Any] = field(default_factory=dict[str, Any])
-    """What of the latest choice is due to a user: the names that were `forbidden`, the production that was `wanted`."""
+    """How a user has changed the latest choice: the productions that were left out as `forbidden`, and the `wanted` one."""
 
     def add(self, production: Production) -> None:
         """Adds a production during the run."""
@@ -97,7 +97,7 @@ class ProductionSystem(WithParameters, Model):
     production_time: NotNegative | Callable[[], float] = 0.05
     """How long a production takes to fire [s]; a number, or a function without arguments."""
     production_match_delay: NotNegative = 0
-    """How long matching takes, as a part of that [s]."""
+    """The part of `production_time` that matching takes [s]."""
     _auto_run_start = False
     _by_utility = False
 
@@ -296,7 +296,7 @@ def _determine_context(system: ProductionSystem) -> None:
     """Determines what the productions of a system see by name.
 
     Raises:
-        ProductionException: If a production matches on a name that there is not.
+        ProductionException: If a production tests a name that neither the agent nor its ancestors have.
     """
     context: dict[str, Any] = {}
     top: Model = system
@@ -337,7 +337,7 @@ def trace_utility_parts(system: ProductionSystem, production: Production, trace:
 
 
 def refresh_attribute(system: ProductionSystem, part: Model, name: str) -> None:
-    """Has the bodies of a system see the present value of a part's attribute, if they see that attribute by its bare name."""
+    """Updates the value of a part's attribute in the bodies of a system's productions, if they use it by its plain name."""
     state = procedural_state_of(system)
     if name in state.context and next(above for above in lineage(system) if name in above.__dict__) is part:
         state.context[name] = part.__dict__[name]
@@ -346,7 +346,7 @@ def refresh_attribute(system: ProductionSystem, part: Model, name: str) -> None:
 
 
 def choose_next(system: ProductionSystem, production: Production) -> None:
-    """Has a production be chosen at the next match if it matches then, in place of the one that is about to fire."""
+    """Makes a production the choice of the next match, if it matches then; withdraws the one that is about to fire."""
     procedural_state_of(system).wanted = production
     procedural_state_of(system).forbidden.discard(production.name)
     _withdraw(system)
