@@ -49,7 +49,7 @@ def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]], within:
     foreign = sorted(_IN_USE & {name.partition(".")[0] for name in helpers})
     if foreign:
         raise RecordingError(
-            f"the recording contains helper modules that no program can have loaded: "
+            "the recording contains helper modules that no program can have loaded: "
             f"Python uses modules of these names ({', '.join(foreign)})"
         )
     with _LOCK, tempfile.TemporaryDirectory(prefix="actr3d-replay-", dir=within) as name:
