@@ -197,4 +197,5 @@ def _install() -> None:
 
 
 def _remove() -> dict[str, ModuleType]:
+    """Removes all modules of the old names from `sys.modules`, and returns them."""
     return {name: sys.modules.pop(name) for name in list(sys.modules) if is_old_name(name)}
