@@ -244,7 +244,7 @@ trace_kind(
     source="system",
     data="utilities [parts drawn threshold forbidden wanted]",
     meaning="the productions that match, their utilities and the parts of these, the modules that drew noise, the utility threshold; "
-    "the productions that a user had forbidden, and the one that the user has fire",
+    "the productions that a user had forbidden, and the one that the user made fire next",
     group="choice",
 )
 trace_kind(

@@ -184,7 +184,7 @@ def test_time_that_stands_still_is_an_error(tmp_path: Path) -> None:
         tmp_path, ENDLESS.replace("goal = Buffer()", "goal = Buffer(); production_time = 0").replace("print('on')", "pass") + "model.run()"
     )
     assert done.returncode == 1
-    assert "error: time stands still at 0 s" in done.stderr
+    assert "error: endless loop at 0 s" in done.stderr
     assert "'on' (model.py:8)" in done.stderr
     assert "of 'top'" in done.stderr
 

@@ -327,5 +327,5 @@ class Agent(ACTR):
     agent.run(1)
     told = agent.explain(0.02)
     assert told.production("yes").matches
-    assert told.production("no").found == "what is not known (an object whose text only its own code can produce)"
+    assert told.production("no").found == "unknown (an object that only its own code can convert to text)"
     assert told.production("no").matches is None

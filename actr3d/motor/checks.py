@@ -6,7 +6,7 @@ from weakref import WeakKeyDictionary
 
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import subtree, top_of
-from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
+from actr3d.actr.procedural.production_system import ProductionSystem, procedural_state_of
 from actr3d.errors import did_you_mean
 from actr3d.warnings import warn_at
 
@@ -20,7 +20,7 @@ def check_patterns(motor: Model) -> None:
     for system in subtree(top_of(motor)):
         if not isinstance(system, ProductionSystem) or frozenset(known) in _CHECKED.get(type(system), ()):
             continue
-        productions = rules_of(system).productions
+        productions = procedural_state_of(system).productions
         of_motor = [production for production in productions if any(target is motor for target in production.context.values())]
         if of_motor:
             _CHECKED.setdefault(type(system), set()).add(frozenset(known))

@@ -1,9 +1,10 @@
 """The SGOMS agent: an ACT-R agent that works by planning units, and can be interrupted and resume.
 
 Its productions move from unit task to unit task, into a response, and back. They are ordinary productions of the agent, and
-take its `production_time` each. From the end of an ordered unit task to the next: `sgoms_ask_next`, the retrieval,
-`sgoms_take`; of a situated one: `sgoms_look`, then the choice. An interruption takes one production; resumption after a
-response `sgoms_resume`, the retrieval of the place, `sgoms_take_up`.
+take its `production_time` each. Between two ordered unit tasks: `sgoms_ask_next`, a retrieval, `sgoms_take`. Between two
+situated unit tasks: `sgoms_look`, then the production of the chosen unit task. An interruption takes one production. A
+resumption takes `sgoms_resume`, the retrieval of the saved place, and `sgoms_take_up`; if places are stored in a buffer, only
+`sgoms_resume_from_buffer`.
 """
 # pyright: reportSelfClsParameterName=false
 # ruff: noqa: N803, N805, N815, N816, ARG001 - buffers and productions follow Python ACT-R's own idiom
@@ -30,9 +31,9 @@ if TYPE_CHECKING:  # names that bodies of productions use
 
 URGENT = 10
 """The utility of productions that interrupt; those that match in a unit task have 0 by default, before learning."""
-ELSE = -10
-"""The utility of asking memory again, when its answer is useless to the waiting productions."""
-FIRST = 1
+FALLBACK = -10
+"""The utility of the productions that repeat a request, or give up, when no other production matches."""
+END_PRIORITY = 1
 """The utility of ending a situated planning unit, higher than that of its unit tasks."""
 
 IN_MEMORY = ("sgoms_resume", "sgoms_resume_again", "sgoms_take_up", "sgoms_forget_place")
@@ -90,8 +91,8 @@ class SGOMS(ACTR):
             made = choices(name, unit)
             if taken := sorted(made.keys() & methods.keys()):
                 raise PlanError(
-                    f"{type(self).__name__}.{name}: a production named '{taken[0]}' is made for it, and there is one already: that of "
-                    "SGOMS, of another planning unit, or your own; give the planning unit or its unit task another name"
+                    f"{type(self).__name__}.{name}: production name '{taken[0]}' is used twice: by this planning unit, and by "
+                    "SGOMS, another planning unit or your own production; rename the planning unit or its unit task"
                 )
             methods.update(made)
         super()._convert_info(objects, methods)
@@ -106,7 +107,7 @@ class SGOMS(ACTR):
             if not isinstance(objects[name], (Level, Interruption)):
                 raise PlanError(
                     f"{kind}.{name}: must be the buffer that every SGOMS agent has; leave it out, or write {name} = SGOMS.{name} "
-                    "to make a module with it"
+                    "if a module of this class needs it as an argument"
                 )
         if not isinstance(objects["DM"], Memory) or buffer_of(objects["DM"]) is not objects["b_DM"]:
             raise PlanError(f"{kind}.DM: must be a memory with the buffer b_DM: DM = Memory(SGOMS.b_DM)")
@@ -176,7 +177,7 @@ class SGOMS(ACTR):
     # -- ordered planning units
 
     def sgoms_begin(b_plan_unit: Any = "planning_unit:?unit type:ordered cue:?cue unit_task:?task state:begin", DM: Any = "busy:False"):
-        """Asks memory for the first unit task, or again for the one after the present."""
+        """Requests the first unit task from memory; after a resumption or a failed retrieval, the one after the present unit task."""
         DM.request("planning_unit:?unit cuelag:?cue cue:?task")
         self._clear_below()
         b_plan_unit.modify(state="retrieving")
@@ -186,16 +187,16 @@ class SGOMS(ACTR):
         b_unit_task: Any = "state:finished",
         DM: Any = "busy:False",
     ):
-        """Asks memory for the next unit task; the last one and the present one are the cues."""
+        """Requests the next unit task from memory; the previous unit task and the present one are the cues."""
         DM.request("planning_unit:?unit cuelag:?cue cue:?task")
         b_plan_unit.modify(state="retrieving")
 
     def sgoms_ask_again(
         b_plan_unit: Any = "planning_unit:?unit cue:?cue unit_task:?task state:retrieving",
         DM: Any = "busy:False error:False",
-        utility: Any = ELSE,
+        utility: Any = FALLBACK,
     ):
-        """Asks again after another request has replaced this one."""
+        """Repeats the request for the next unit task, if another request has replaced it."""
         DM.request("planning_unit:?unit cuelag:?cue cue:?task")
 
     def sgoms_take(
@@ -226,12 +227,12 @@ class SGOMS(ACTR):
     # -- situated planning units
 
     def sgoms_begin_situated(b_plan_unit: Any = "type:situated state:begin"):
-        """Looks at the situation."""
+        """Starts the choice of the first unit task by the situation."""
         self._clear_below()
         b_plan_unit.modify(state="choosing")
 
     def sgoms_look(b_plan_unit: Any = "type:situated state:running", b_unit_task: Any = "state:finished"):
-        """Looks at the situation after the unit task."""
+        """Starts the choice of the next unit task by the situation."""
         b_plan_unit.modify(state="choosing")
 
     # -- interruption
@@ -267,24 +268,24 @@ class SGOMS(ACTR):
         b_plan_unit: Any = "state:!begin!retrieving!choosing!running!lost",
         utility: Any = URGENT,
     ):
-        """Responds after a planning unit, or during retrieval of the place of another."""
+        """Starts the response when the planning unit is finished, or while the place of an interrupted one is being retrieved."""
         self._interrupt(b_interrupt["planning_unit"])
 
     def sgoms_answer_idle(b_interrupt: Any = "planning_unit:?response", b_plan_unit: Any = None, utility: Any = URGENT):
-        """Responds when there is nothing to interrupt."""
+        """Starts the response when there is nothing to interrupt."""
         self._interrupt(b_interrupt["planning_unit"])
 
     # -- resumption
 
     def sgoms_resume(b_plan_unit: Any = "interrupted:?unit!none place:?place state:finished", DM: Any = "busy:False"):
-        """Asks memory for the place of the interrupted planning unit."""
+        """Requests the place of the interrupted planning unit from memory."""
         DM.request("saved:?unit place:?place")
         b_plan_unit.modify(state="resuming")
 
     def sgoms_resume_again(
-        b_plan_unit: Any = "interrupted:?unit place:?place state:resuming", DM: Any = "busy:False error:False", utility: Any = ELSE
+        b_plan_unit: Any = "interrupted:?unit place:?place state:resuming", DM: Any = "busy:False error:False", utility: Any = FALLBACK
     ):
-        """Asks again after another request has replaced this one."""
+        """Repeats the request for the place, if another request has replaced it."""
         DM.request("saved:?unit place:?place")
 
     def sgoms_take_up(b_plan_unit: Any = "interrupted:?unit state:resuming", b_DM: Any = "saved:?unit", DM: Any = "busy:False"):
@@ -300,7 +301,7 @@ class SGOMS(ACTR):
         """Resumes at the place in the buffer."""
         self._take_up(b_place.chunk)
 
-    def sgoms_lose_place(b_plan_unit: Any = "interrupted:?unit!none state:finished", utility: Any = ELSE):
+    def sgoms_lose_place(b_plan_unit: Any = "interrupted:?unit!none state:finished", utility: Any = FALLBACK):
         """Notes that the buffer does not hold the place."""
         b_plan_unit.modify(lost="place", state="lost")
 
@@ -329,7 +330,7 @@ def _end(unit: str, situation: Any) -> Callable[..., None]:
     def end(
         b_plan_unit: Any = f"planning_unit:{unit} state:choosing",
         b_context: Any = situation,
-        utility: Any = FIRST,
+        utility: Any = END_PRIORITY,
     ) -> None:
         b_plan_unit.modify(state="finished")
         self._clear_below()

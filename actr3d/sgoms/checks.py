@@ -8,7 +8,7 @@ from typing import Any
 from actr3d.actr import ProductionSystem
 from actr3d.actr.kernel.tree import subtree
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import rules_of
+from actr3d.actr.procedural.production_system import procedural_state_of
 from actr3d.errors import PlanError, did_you_mean
 from actr3d.sgoms.units import PlanningUnit
 from actr3d.warnings import warn_at
@@ -23,7 +23,7 @@ def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:
     productions = _own_productions(agent)
     tasks = {task: name for name, unit in units.items() for task in unit.unit_tasks}
     taken = {name for production in productions for name in _named(production, "unit_task")}
-    if not any(_takes_any(production) for production in productions):
+    if not any(_matches_any_unit_task(production) for production in productions):
         for task, unit in tasks.items():
             if task not in taken:
                 raise PlanError(
@@ -39,13 +39,13 @@ def check_plans(agent: Any, units: Mapping[str, PlanningUnit]) -> None:
 
 
 def matches_state(agent: Any, state: str) -> bool:
-    """Returns whether a production of the modeller's matches a state of planning units or unit tasks by its name."""
+    """Returns whether one of the modeller's productions tests for this state by name, in a planning unit or a unit task."""
     return any(state in _named(production, "state") for production in _own_productions(agent))
 
 
 def _own_productions(agent: Any) -> list[Production]:
     """Returns an agent's productions without those that every SGOMS agent has."""
-    productions = [p for part in subtree(agent) if isinstance(part, ProductionSystem) for p in rules_of(part).productions]
+    productions = [p for part in subtree(agent) if isinstance(part, ProductionSystem) for p in procedural_state_of(part).productions]
     return [p for p in productions if not p.name.startswith("sgoms_")]
 
 
@@ -56,7 +56,7 @@ def _named(production: Production, key: str) -> Iterator[str]:
             yield condition.value
 
 
-def _takes_any(production: Production) -> bool:
+def _matches_any_unit_task(production: Production) -> bool:
     """Returns whether a production may match any unit task."""
     found = [condition for condition in production.conditions if condition.name == "b_unit_task" and condition.op != "empty"]
     return bool(found) and not any(condition.key == "unit_task" and condition.op == "is" for condition in found)

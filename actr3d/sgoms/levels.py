@@ -17,9 +17,9 @@ LEVELS = ("b_plan_unit", "b_unit_task", "b_method", "b_operator")
 STATES = ("begin", "retrieving", "choosing", "running", "finished", "resuming", "lost")
 """The states of a planning unit."""
 STEM = "finish"
-"""A state of a unit task that begins with this is a form of «finished», and so is a beginning of this."""
+"""A unit-task state that starts with this («finishing»), or that is a prefix of it («fin»), is treated as a misspelt «finished»."""
 SHORTEST = 3
-"""The number of letters from which a beginning of the stem counts."""
+"""The minimum length of such a prefix [letters]."""
 
 
 def _agent_of(buffer: Buffer) -> Any:
@@ -137,8 +137,9 @@ class PlanUnitLevel(Level):
     """Holds the present planning unit, its place in its chain, and its state.
 
     `set("planning_unit:tea")` begins one; other slots have defaults. States: «begin»; «retrieving» or «choosing» the
-    next unit task; «running»; «finished»; «resuming» the unit that it interrupted; «lost», with what memory did not find in
-    the slot `lost`: «unit_task» or «place». Set the state «begin» to ask for the unit task again, «finished» for the place.
+    next unit task; «running»; «finished»; «resuming» the unit that it interrupted; «lost»: the slot `lost` contains what memory
+    did not find, «unit_task» or «place». To repeat the request, set the state to «begin» for a lost unit task, to «finished» for a lost
+    place.
     """
 
     _slots = frozenset({"planning_unit", "type", "cuelag", "cue", "unit_task", "state", "interrupted", "place", "lost", "saved"})
@@ -155,7 +156,7 @@ class PlanUnitLevel(Level):
         """
         made = self._made(chunk)
         if "planning_unit" not in made:
-            raise PlanError(f"b_plan_unit: '{made}' names no planning unit; write 'planning_unit:…'")
+            raise PlanError(f"b_plan_unit: '{made}' has no slot planning_unit; write 'planning_unit:…'")
         name = as_text(made["planning_unit"])
         made.setdefault("type", plans_of(_agent_of(self)).unit(name, "b_plan_unit").kind)
         for slot, value in (("cuelag", BEFORE), ("cue", BEFORE), ("unit_task", START), ("state", "begin")):
@@ -188,13 +189,15 @@ class PlanUnitLevel(Level):
         if state not in STATES:
             raise PlanError(f"b_plan_unit: no state '{state}'{alternatives(state, STATES)}")
         if state == "resuming" and slots["place"] == "none":
-            raise PlanError(f"b_plan_unit: '{slots['planning_unit']}' has interrupted nothing, so no place is saved to resume at")
+            raise PlanError(
+                f"b_plan_unit: '{slots['planning_unit']}' did not interrupt a planning unit, so there is no saved place to resume at"
+            )
 
 
 class UnitTaskLevel(Level):
     """Holds the present unit task: `unit_task planning_unit type state resumed`.
 
-    It begins in the state «start»; its productions set the state «finished» at its end, and any others before.
+    It begins in the state «start»; its productions set the state «finished» at its end, and may set any other state before.
     """
 
     _slots = frozenset({"unit_task", "planning_unit", "type", "state", "resumed"})
@@ -208,7 +211,7 @@ class UnitTaskLevel(Level):
         """
         made = self._made(chunk)
         if "unit_task" not in made:
-            raise PlanError(f"b_unit_task: '{made}' names no unit task; write 'unit_task:…'")
+            raise PlanError(f"b_unit_task: '{made}' has no slot unit_task; write 'unit_task:…'")
         agent = _agent_of(self)
         plans_of(agent).check_unit_task(as_text(made["unit_task"]))
         plan: dict[Any, Any] = agent.b_plan_unit.chunk or {}
@@ -283,7 +286,7 @@ class Interruption(Buffer):
 
     def _check(self, made: Chunk) -> None:
         if "planning_unit" not in made:
-            raise PlanError(f"b_interrupt: '{made}' names no planning unit; write 'planning_unit:… when:now'")
+            raise PlanError(f"b_interrupt: '{made}' has no slot planning_unit; write 'planning_unit:… when:now'")
         plans_of(_agent_of(self)).unit(as_text(made["planning_unit"]), "b_interrupt")
         when = made.get("when")
         if when not in ("now", "end"):

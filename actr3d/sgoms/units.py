@@ -21,11 +21,11 @@ class Ordered:
     """A planning unit whose unit tasks follow one another in a fixed order; its name is that of the agent's attribute.
 
     The order is stored as chunks in declarative memory, `planning_unit:… cuelag:… cue:… unit_task:…`: the unit task before
-    the last, the last, and the next. So the next one is retrieved, which takes time and can fail.
+    the previous one, the previous one, and the next one. So the next one is retrieved, which takes time and can fail.
 
     Args:
         unit_tasks: Their names, in order.
-        added: Arguments of each chunk for the memory's activation modules: `baselevel`, `fixed`, `time`, as in `Memory.add`.
+        activation: Arguments of each chunk for the memory's activation modules: `baselevel`, `fixed`, `time`, as in `Memory.add`.
 
     Raises:
         PlanError: If there is no unit task, a name is not one word or is reserved, or the cues are ambiguous, because the same two
@@ -33,15 +33,15 @@ class Ordered:
     """
 
     unit_tasks: tuple[str, ...]
-    added: Mapping[str, Any]
+    activation: Mapping[str, Any]
     kind = "ordered"
 
-    def __init__(self, *unit_tasks: str, **added: Any) -> None:
+    def __init__(self, *unit_tasks: str, **activation: Any) -> None:
         if not unit_tasks:
             raise PlanError("Ordered(): a planning unit needs unit tasks: Ordered('boil', 'pour')")
         _check_words("Ordered", unit_tasks)
         object.__setattr__(self, "unit_tasks", unit_tasks)
-        object.__setattr__(self, "added", added)
+        object.__setattr__(self, "activation", activation)
         known: dict[tuple[str, str], str] = {}
         for lag, cue, task in self.links():
             if known.setdefault((lag, cue), task) != task:
@@ -55,14 +55,14 @@ class Ordered:
             )
 
     def links(self) -> list[tuple[str, str, str]]:
-        """Returns the chain: (unit task before the last, last one, next one)."""
+        """Returns the chain: (unit task before the previous one, previous one, next one)."""
         line = (BEFORE, START, *self.unit_tasks, END)
         return list(zip(line, line[1:], line[2:], strict=False))
 
     def remember(self, name: str, memory: Memory) -> None:
         """Adds the chain to declarative memory."""
         for lag, cue, task in self.links():
-            memory.add({"planning_unit": name, "cuelag": lag, "cue": cue, "unit_task": task}, **self.added)
+            memory.add({"planning_unit": name, "cuelag": lag, "cue": cue, "unit_task": task}, **self.activation)
 
 
 @dataclass(frozen=True, init=False)
@@ -147,8 +147,8 @@ class Plans:
 
 
 def plans_of(agent: Any) -> Plans:
-    """Returns the planning units of an agent; its public attributes belong to the modeller, so it has them under a private name."""
-    return agent.__dict__["_plans"]
+    """Returns the planning units of an agent."""
+    return agent.__dict__["_plans"]  # private, because the public attributes of an agent belong to the modeller
 
 
 def _check_words(kind: str, names: Any) -> None:

@@ -8,7 +8,7 @@ from numbers import Integral, Real
 from typing import Any, cast
 
 from actr3d.actr.changes import AgentChange
-from actr3d.actr.chunks.chunk import LASTING_TYPES
+from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES
 from actr3d.change import CHANGES
 from actr3d.errors import SimulationError, alternatives, did_you_mean, followed
 from actr3d.simulation.agents import Agents
@@ -87,7 +87,7 @@ def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str
 
 def _fixed(value: Any) -> Any:
     """Returns an immutable value that can be recorded."""
-    if type(value) in LASTING_TYPES:
+    if type(value) in IMMUTABLE_TYPES:
         return value
     if isinstance(value, Real):  # of numpy, for instance
         return int(value) if isinstance(value, Integral) else float(value)

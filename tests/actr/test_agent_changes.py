@@ -133,8 +133,8 @@ def test_a_production_fires_next_in_place_of_the_chosen_one_whatever_its_utility
         simulation.command("fire_next", "mind", name)
     for at in (None, 0.125):
         explained = simulation.agents["mind"].explain(at)
-        assert explained.production(name).verdict == "selected: the user had it fire next"
-        assert explained.production(loser).verdict == f"not selected: the user had {name} fire next"
+        assert explained.production(name).verdict == "selected: the user made it fire next"
+        assert explained.production(loser).verdict == f"not selected: the user made {name} fire next"
     simulation.run(0.05)
     when, data = next((time, data) for time, data in events(simulation, "fire") if time > 0.12)
     assert (when, data["production"]) == (0.17, name)  # it takes its own 50 ms from the change on

@@ -16,11 +16,11 @@ from tests.helpers.warnings_of_models import HEAD, warned
 @pytest.mark.parametrize(
     ("body", "message", "line"),
     [
-        ("def p(goal='a:1 a:2'): pass", "production 'p' can never match: goal's slot 'a' must be '1' and '2' at once", 10),
+        ("def p(goal='a:1 a:2'): pass", "production 'p' can never match: goal's slot 'a' must be '1' and '2' at the same time", 10),
         ("def p(goal='a:1!1'): pass", "can never match: goal's slot 'a' must and must not be '1'", 10),
         ("def p(goal='?x!?x'): pass", "can never match: goal's slot '0' must and must not be ?x", 10),
-        ("def p(goal=[None, 'a']): pass", "can never match: 'goal' must be empty and hold a chunk at once", 10),
-        ("def p(goal='a b', retrieval=['a', 'b']): pass", "retrieval's slot '0' must be 'a' and 'b' at once", 10),
+        ("def p(goal=[None, 'a']): pass", "can never match: 'goal' must be empty and contain a chunk at the same time", 10),
+        ("def p(goal='a b', retrieval=['a', 'b']): pass", "retrieval's slot '0' must be 'a' and 'b' at the same time", 10),
         ("def p(goal=5): pass", "goal=5 is not a pattern and matches anything; write text, such as goal='5'", 10),
         (
             "def init(): goal.set('count:1')\ndef p(goal='cuont:1'): pass",

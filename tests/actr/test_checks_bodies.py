@@ -22,16 +22,16 @@ COUNTING = (
 @pytest.mark.parametrize(
     ("body", "message"),
     [
-        ("    goal.set('cuont:1 last:5')", "production 'p': nothing ever looks at a slot 'cuont'; did you mean 'count'?"),
-        ("    goal.set(f'Count:{x} last:5')", "nothing ever looks at a slot 'Count'; did you mean 'count'?"),
-        ("    imaginal.set('cuont:1')", "nothing ever looks at a slot 'cuont'; did you mean 'count'?"),
-        ("    memory.add('nuber:1 nxet:2')", "nothing ever looks at a slot 'nxet'; did you mean 'next'?"),
+        ("    goal.set('cuont:1 last:5')", "production 'p': no production and no request reads a slot 'cuont'; did you mean 'count'?"),
+        ("    goal.set(f'Count:{x} last:5')", "no production and no request reads a slot 'Count'; did you mean 'count'?"),
+        ("    imaginal.set('cuont:1')", "no production and no request reads a slot 'cuont'; did you mean 'count'?"),
+        ("    memory.add('nuber:1 nxet:2')", "no production and no request reads a slot 'nxet'; did you mean 'next'?"),
         ("    memory.request('numbr:?x')", "production 'p': no chunk is ever given a slot 'numbr'; did you mean 'number'?"),
         ("    memory.request('nubmer:1 next:?y', require_new=True)", "no chunk is ever given a slot 'nubmer'; did you mean 'number'?"),
         ("    goal.modify(cuont=2)", "no chunk is ever given a slot 'cuont'; did you mean 'count'?"),
         (
             "    pass\ndef act(self):\n    self.goal.set('cuont:1')",
-            "Agent.act: nothing ever looks at a slot 'cuont'; did you mean 'count'?",
+            "Agent.act: no production and no request reads a slot 'cuont'; did you mean 'count'?",
         ),
     ],
 )
@@ -115,7 +115,7 @@ def test_slips(one: str, other: str, slip: bool) -> None:
         ),
         (
             "def p(goal='state:start'):\n    goal.modify(state='next step')",
-            "state='next step' stores this text literally, which no pattern can name, for there is a space in it; write one word",
+            "state='next step' stores this text literally; no pattern can match it, because it contains a space; write one word",
         ),
         ("def p(goal='a'):\n    self.stop", "'self.stop' without brackets does nothing; did you mean 'self.stop()'?"),
     ],

@@ -17,7 +17,7 @@ from tests.helpers.warnings_of_models import warned
 @pytest.mark.parametrize(
     ("body", "message"),
     [
-        ("def p(goal='a:?x b:?x a:1 b:2'): pass", "can never match: ?x must be '1' and '2' at once"),
+        ("def p(goal='a:?x b:?x a:1 b:2'): pass", "can never match: ?x must be '1' and '2' at the same time"),
         ("def p(goal='a:?x', retrieval='a:?x!1', imaginal=None, eye='busy:?x!?x'): pass", "eye's slot 'busy' must and must not be ?x"),
         ("def p(goal='a:?x!?y b:?y c:?y c:?x'): pass", "goal's slot 'a' must and must not be the same as ?y"),
         ("def p(goal='a:?x!1', retrieval='b:?x b:1'): pass", "goal's slot 'a' must not be '1', but it must equal another slot that is"),

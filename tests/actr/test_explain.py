@@ -157,7 +157,7 @@ def test_the_first_failing_condition_is_named_with_what_was_expected_and_found()
     assert told["other_value"] == ("goal: colour:!red", "anything but 'red'", "'red'")
     assert told["same"] == ("goal: size:?c", "'red' (?c)", "'3'")
     assert told["empty_buffer"] == ("retrieval: 0:?x", "some value for ?x", "retrieval is empty")
-    assert told["not_empty"] == ("goal: None", "nothing in it", "something")
+    assert told["not_empty"] == ("goal: None", "empty", "not empty")
     assert told["says_no"][1] == "anything but False"
     text = str(why)
     assert "+ matching: matches  ?c=red  <- selected" in text

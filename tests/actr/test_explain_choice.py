@@ -62,9 +62,9 @@ def test_the_threshold_that_excludes_the_best_is_explained() -> None:
     assert why.matches
     assert not why.selected
     assert why.utility is not None
-    assert why.verdict == f"held back: its utility {why.utility:.4g} is below the production threshold 50"
+    assert why.verdict == f"not selected: its utility {why.utility:.4g} is below the production threshold 50"
     assert agent.explain(0.1).production("high") == why
-    assert "held back" in str(agent.explain())
+    assert "below the production threshold" in str(agent.explain())
 
 
 def test_a_plain_production_system_chooses_at_random() -> None:

@@ -38,10 +38,10 @@ def test_conditions_are_explained_one_by_one() -> None:
         assert told(agent, "fires", at) == [
             ("goal: task:add", True, "'add'"),
             ("goal: now:?now", True, "'3'"),
-            ("other: None", True, "nothing in it"),
+            ("other: None", True, "empty"),
             ("goal: last:!?now", True, "'5'"),
         ]
-        assert told(agent, "asks", at)[-1] == ("goal: small()", True, "it agreed")
+        assert told(agent, "asks", at)[-1] == ("goal: small()", True, "a value other than False")
 
 
 def test_conditions_after_the_failing_one_are_explained_as_far_as_possible() -> None:
@@ -62,5 +62,5 @@ def test_conditions_after_the_failing_one_are_explained_as_far_as_possible() -> 
         assert told(agent, "asks_nothing", at)[-1] == (
             "goal: small()",
             None,
-            "what is not known (it is asked only where all before it holds)",
+            "unknown (the function is called only if all conditions before it hold)",
         )

@@ -40,7 +40,7 @@ def test_results_of_pattern_functions_are_explained_without_calling_them_again()
     assert live.production("fits").matches
     assert live.production("fits").bindings == {"word": "ab", "n": "2", "size": "2"}
     long = live.production("long")
-    assert (long.matches, long.condition, long.found) == (False, "goal: <lambda>()", "False, or an error for want of a slot")
+    assert (long.matches, long.condition, long.found) == (False, "goal: <lambda>()", "False, or an error such as a missing slot")
     assert long.bindings == {"word": "ab", "size": "2"}
     agent.run(0.05)
     assert agent.explain().production("fits").condition == "goal: is_small()"
@@ -68,7 +68,7 @@ class Agent(ACTR):
     agent.run(0.03)
     why = agent.explain().production("r")
     assert why.matches is None
-    assert why.found == "what is not known (it was last asked with ?w=one)"
+    assert why.found == "unknown (the function was last called with ?w=one)"
     assert agent.explain(0.03).production("r") == why
     assert agent.explain(0.01).production("r").matches
     assert agent.explain().production("q").condition == "side: 0:stop"
@@ -76,7 +76,7 @@ class Agent(ACTR):
     agent.run(0.001)
     q = agent.explain().production("q")
     assert q.matches is None
-    assert q.found == "what is not known (it has not been asked)"
+    assert q.found == "unknown (the function has not been called)"
     assert "? q" in str(q)
 
 

@@ -193,7 +193,9 @@ def test_an_empty_buffer_is_no_chunk() -> None:
 
 def test_a_misspelt_keyword_warns_in_the_models_file_and_changes_nothing() -> None:
     agent = remembering()
-    with pytest.warns(ModelWarning, match=r"no keyword 'baselvel' that any activation module takes; did you mean 'baselevel'\?") as caught:
+    with pytest.warns(
+        ModelWarning, match=r"memory.add: no activation module has a keyword 'baselvel'; did you mean 'baselevel'\?"
+    ) as caught:
         agent.memory.add("a", baselvel=3)
     assert [warning.filename for warning in caught] == [__file__]
     assert agent.memory.get_activation("a") == 0
@@ -277,7 +279,7 @@ def test_matched_may_leave_candidates_out() -> None:
 
 def test_get_activation_of_what_is_not_there() -> None:
     agent = remembering()
-    with pytest.raises(ChunkError, match="memory 'memory' holds no chunk 'a b'"):
+    with pytest.raises(ChunkError, match="memory 'memory' has no chunk 'a b'"):
         agent.memory.get_activation("a b")
     agent.memory.add("a b", fixed=2)
     assert agent.memory.get_activation(Chunk("a b")) == 2

@@ -190,8 +190,8 @@ def test_the_profile_reaches_every_part_however_it_came() -> None:
     agents = [agent, world.late]
     for one in agents:
         memories = [one.inner.memory, one.parallel.store, one.derived]
-        assert [(m.rules.name, m.latency) for m in memories] == [("act-r-7", 1.0)] * 3
-        assert (one.given.rules.name, one.given.latency) == ("act-r-7", 0.3)
+        assert [(m.effective_profile.name, m.latency) for m in memories] == [("act-r-7", 1.0)] * 3
+        assert (one.given.effective_profile.name, one.given.latency) == ("act-r-7", 0.3)
     assert agent.later.latency == 1.0
     assert world._profile is None
 

@@ -11,7 +11,7 @@ import pytest
 
 from actr3d.actr import Model
 from actr3d.actr.kernel.events import Trigger
-from actr3d.actr.kernel.scheduler import MAX_LEFT, Scheduler
+from actr3d.actr.kernel.scheduler import MAX_REMAINDERS, Scheduler
 from tests.helpers.production_cycle import fired, run
 from tests.helpers.scheduler_models import Part, seen
 
@@ -329,7 +329,7 @@ def test_many_different_delays_in_turn_do_not_drift() -> None:
                 delay = delays[turn % len(delays)]
                 exact += Fraction(delay) * 1_000_000
                 yield delay
-                assert abs(self.sch.now_us - exact) < MAX_LEFT
+                assert abs(self.sch.now_us - exact) < MAX_REMAINDERS
 
     World().run()
 

@@ -181,7 +181,7 @@ class Agent(ACTR):
 
 def test_a_body_that_yields_is_named_with_its_line() -> None:
     body = "class Agent(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('a')\n    def p(goal='a'):\n        yield 1\n"
-    with pytest.raises(ProductionException, match=r"forms\.py:8: production 'p' yields; a production acts at once"):
+    with pytest.raises(ProductionException, match=r"forms\.py:8: production 'p' yields; the body of a production cannot wait"):
         ran(body)
 
 

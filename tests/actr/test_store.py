@@ -153,5 +153,5 @@ def test_a_chunk_that_has_left_the_memory_is_not_held(method: str, values: tuple
     chunk = memory.dm[0]
     getattr(memory.dm, method)(*values)
     assert not memory.dm.holds(chunk)
-    with pytest.raises(ChunkError, match="holds no chunk 'a b'"):
+    with pytest.raises(ChunkError, match="has no chunk 'a b'"):
         memory.get_activation(chunk)

@@ -123,7 +123,7 @@ def test_a_command_to_the_motor_that_waited_for_the_body_is_reported_at_its_line
     text = WALKER.format(first='motor.rotate("elbwo", 1)', statement="pass") + "simulation.run(0.2)\n"
     report = reported(text)
     assert (report.file, report.line) == ("mine.py", line_of(text, "elbwo"))
-    assert f"asked for by 'walker.motor' in production 'init' (mine.py:{report.line})" in report.message
+    assert f"requested by 'walker.motor' in production 'init' (mine.py:{report.line})" in report.message
 
 
 @pytest.mark.parametrize(("statement", "nth"), [("self.later()", 0), ("self.hop()", 1)])
@@ -145,7 +145,7 @@ def test_a_request_of_a_module_s_own_is_reported_at_no_line_of_the_model(monkeyp
     with pytest.raises(WorldError) as caught:
         module.simulation.run(0.1)
     report = traceback_report(caught.value, __file__)
-    assert report.message == "walker has no anatomy\n  asked for by 'walker.motor'"
+    assert report.message == "walker has no anatomy\n  requested by 'walker.motor'"
     assert (report.file, report.line) == (None, None)
 
 

@@ -139,5 +139,5 @@ def test_forged_helpers_are_refused_in_one_line(path: Path, capsys: pytest.Captu
     forge(path, helpers)
     capsys.readouterr()
     assert main(["replay", str(path)]) == 2
-    error = "error: the recording holds modules that no program can have loaded: Python's own are in use (os)\n"
+    error = "error: the recording contains helper modules that no program can have loaded: Python uses modules of these names (os)\n"
     assert capsys.readouterr() == ("", error)

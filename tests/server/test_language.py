@@ -211,7 +211,7 @@ def test_a_completion_says_what_it_is(ask: Asked) -> None:
     assert (slot["detail"], slot["apply"]) == ("slot of pose", "heading:")
     assert "left is positive" in slot["text"]
     said = ask("document item", "from actr3d.actr import *\nDMNoise(None, noi|)", "noise=")
-    assert said["text"].startswith("s of the noise")
+    assert said["text"].startswith("The scale s of the logistic noise")
     said = ask("document item", "from actr3d.world import Ap|", "Aperture")
     assert said["title"].startswith("Aperture(name")
     assert "doorway" in said["text"]

@@ -66,15 +66,15 @@ class Agent(SGOMS):
             "b_plan_unit: Agent has no planning unit 'phnoe'; did you mean 'phone'? It has: phone, tea",
         ),
         ("b_plan_unit.modify(planning_unit='te')", "no planning unit 'te'; did you mean 'tea'"),
-        ("b_plan_unit.set('tea')", "names no planning unit; write 'planning_unit:…'"),
+        ("b_plan_unit.set('tea')", "has no slot planning_unit; write 'planning_unit:…'"),
         ("b_plan_unit.modify(state='finnished')", "no state 'finnished'; did you mean 'finished'"),
-        ("b_plan_unit.modify(state='resuming')", "'tea' has interrupted nothing, so no place is saved to resume at"),
+        ("b_plan_unit.modify(state='resuming')", "'tea' did not interrupt a planning unit, so there is no saved place to resume at"),
         (
             "b_unit_task.set('unit_task:puor')",
             "no planning unit of Agent has a unit task 'puor'; did you mean 'pour'? There are: talk, boil, pour",
         ),
         ("b_unit_task.modify(unit_task='tlak')", "has a unit task 'tlak'; did you mean 'talk'"),
-        ("b_unit_task.set('state:start')", "names no unit task"),
+        ("b_unit_task.set('state:start')", "has no slot unit_task"),
         ("b_unit_task.modify(state='finishd')", "state 'finishd' does not end the unit task; did you mean 'finished'"),
         ("b_unit_task.modify(state='finish')", "state 'finish' does not end the unit task; did you mean 'finished'"),
         ("b_unit_task.modify(state='Finishing')", "state 'Finishing' does not end the unit task; did you mean 'finished'"),
@@ -84,7 +84,7 @@ class Agent(SGOMS):
         ("b_interrupt.set('planning_unit:phoen when:now')", "b_interrupt: Agent has no planning unit 'phoen'; did you mean 'phone'"),
         ("b_interrupt.set('planning_unit:phone')", "has no valid 'when'; 'when:now' interrupts"),
         ("b_interrupt.set('planning_unit:phone when:ned')", "has no valid 'when'; did you mean 'end'"),
-        ("b_interrupt.set('phone when:now')", "b_interrupt: .* names no planning unit"),
+        ("b_interrupt.set('phone when:now')", "b_interrupt: .* has no slot planning_unit"),
     ],
 )
 def test_misspelt_names_in_productions(text: str, message: str) -> None:
@@ -135,7 +135,7 @@ def test_parts_that_do_not_fit(line: str, message: str) -> None:
 
 def test_keywords_of_a_planning_unit_that_the_memory_does_not_know_are_warned_of() -> None:
     own = "class Agent(Base):\n    DM = Memory(SGOMS.b_DM)\n    level = DMBaseLevel(DM)\n"
-    with pytest.warns(ModelWarning, match="no keyword 'basleevel' .* did you mean 'baselevel'"):
+    with pytest.warns(ModelWarning, match="no activation module has a keyword 'basleevel'; did you mean 'baselevel'"):
         cooking(f"{own}    tea = Ordered('boil', 'steep', 'pour', basleevel=2)")
 
 
@@ -209,10 +209,13 @@ def test_what_is_modified_is_checked_like_what_is_set(buffer: str, changes: dict
 @pytest.mark.parametrize(
     ("units", "message"),
     [
-        ("ask = Situated(next='call:open', until='call:none')", r"Agent\.ask: a production named 'sgoms_ask_next' is made for it"),
+        (
+            "ask = Situated(next='call:open', until='call:none')",
+            r"Agent\.ask: production name 'sgoms_ask_next' is used twice: by this planning unit",
+        ),
         (
             "check = Situated(door_open='call:open', until='call:none')\n    check_door = Situated(open='call:open', until='call:none')",
-            r"Agent\.check_door: a production named 'sgoms_check_door_open' is made for it, and there is one already",
+            r"Agent\.check_door: production name 'sgoms_check_door_open' is used twice: by this planning unit, and by SGOMS, another",
         ),
     ],
 )

@@ -474,7 +474,7 @@ def test_an_unknown_word_names_the_modellers_line() -> None:
     with pytest.raises(WorldError, match="has no actuator 'wlk'; did you mean 'walk'") as caught:
         simulation.run(0.1)
     line = 1 + MINDS.__dict__["__actr3d_source__"].split("\n").index('        self.body.set("wlk", 1)')
-    assert caught.value.__notes__ == [f"  asked for by 'walker.body' in agents.py:{line}"]
+    assert caught.value.__notes__ == [f"  requested by 'walker.body' in agents.py:{line}"]
     with pytest.raises(SimulationError, match=r"the run has failed at 0\.02 s and cannot go on"):
         simulation.step()
     simulation.seek(0.01)
@@ -595,7 +595,7 @@ def build() -> Simulation:
 
 def test_an_agent_that_stops_without_end_in_no_time_says_so() -> None:
     simulation = load_text(HALT.replace("IMPORT", "actr3d.actr").replace("TIME", "0"), "halt.py").build()
-    with pytest.raises(SchedulerError, match="time stands still at 0 s"):
+    with pytest.raises(SchedulerError, match="endless loop at 0 s"):
         simulation.run(0.1)
 
 

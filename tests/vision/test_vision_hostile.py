@@ -191,7 +191,7 @@ def test_an_error_of_it_names_the_production_and_the_line_that_asked(code: str, 
     with pytest.raises(kind) as caught:
         lives(text)
     line = (HEAD + text).split("\n").index('        goal.set("done")') + 2
-    assert f"  asked for by 'walker.vision' in production 'look' (looking.py:{line})" in caught.value.__notes__
+    assert f"  requested by 'walker.vision' in production 'look' (looking.py:{line})" in caught.value.__notes__
     if isinstance(caught.value, Actr3dError):
         assert caught.value.location == ("looking.py", line)
 

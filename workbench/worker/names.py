@@ -13,7 +13,7 @@ from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.actr.kernel.tree import path_of, subtree
-from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
+from actr3d.actr.procedural.production_system import ProductionSystem, procedural_state_of
 from actr3d.errors import Actr3dError, did_you_mean
 from workbench.loader import ModelListing
 from workbench.worker.messages import Notice, notice
@@ -160,7 +160,7 @@ def names_of(tops: Iterable[Top], bodies: Iterable[str] = ()) -> Names:
             if type(part) is not Buffer:
                 held.add(id(part))
         elif isinstance(part, ProductionSystem):
-            productions.update(production.name for production in rules_of(part).productions)
+            productions.update(production.name for production in procedural_state_of(part).productions)
         else:
             held.update(id(value) for value in part.__dict__.values() if isinstance(value, Buffer))  # no code of the model
     return Names(

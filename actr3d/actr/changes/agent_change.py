@@ -9,7 +9,7 @@ from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tree import path_of, subtree
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
+from actr3d.actr.procedural.production_system import ProductionSystem, procedural_state_of
 from actr3d.change import Change
 from actr3d.errors import ChunkError, SimulationError, alternatives
 
@@ -53,7 +53,7 @@ class Parts:
             SimulationError: If there is no such system or production; with those that there are.
         """
         system = self.part(ProductionSystem, path, "production system")
-        known = {production.name: production for production in rules_of(system).productions}
+        known = {production.name: production for production in procedural_state_of(system).productions}
         if name not in known:
             raise SimulationError(f"no production '{name}' in '{path}'{alternatives(name, known)}")
         return system, known[name]

@@ -15,7 +15,7 @@ from actr3d.errors import ProductionException
 @change
 @dataclass(frozen=True)
 class FireNext(AgentChange):
-    """Has a production that matches fire next, whatever its utility; the one that was about to fire does not."""
+    """Makes a production that matches fire next, whatever its utility, instead of the one that was about to fire."""
 
     word = "fire_next"
     of = "production"

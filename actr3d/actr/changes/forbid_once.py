@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from actr3d.actr.changes.agent_change import AgentChange, Parts
-from actr3d.actr.procedural.production_system import leave_out_once, rules_of
+from actr3d.actr.procedural.production_system import leave_out_once, procedural_state_of
 from actr3d.change import change
 from actr3d.errors import ProductionException
 
@@ -27,6 +27,6 @@ class ForbidOnce(AgentChange):
 
     def carry_out(self, on: Parts) -> None:
         system, production = on.production(self.system, self.production)
-        if production.name in rules_of(system).forbidden:
+        if production.name in procedural_state_of(system).forbidden:
             raise ProductionException(f"'{self.production}' is forbidden already, and has not been left out of a choice yet")
         leave_out_once(system, production)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from actr3d.actr.changes.agent_change import AgentChange, Parts
-from actr3d.actr.chunks.chunk import LASTING_TYPES
+from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import check_parameter
-from actr3d.actr.procedural.production_system import ProductionSystem, see_again
+from actr3d.actr.procedural.production_system import ProductionSystem, refresh_attribute
 from actr3d.change import change
 from actr3d.errors import SimulationError, did_you_mean
 
@@ -31,11 +31,11 @@ class SetParameter(AgentChange):
     def carry_out(self, on: Parts) -> None:
         place, _, name = self.path.rpartition(".")
         part = on.part(Model, place or "top", "part")
-        known = [known for known, now in part.__dict__.items() if known[0] != "_" and type(now) in LASTING_TYPES]
+        known = [known for known, now in part.__dict__.items() if known[0] != "_" and type(now) in IMMUTABLE_TYPES]
         if name not in known:
             raise SimulationError(f"no parameter '{self.path}': '{place}' has no '{name}'{did_you_mean(name, known)}")
         check_parameter(part, name, self.value, f"parameter '{self.path}'")
         setattr(part, name, self.value)
         for system in on:
             if isinstance(system, ProductionSystem):
-                see_again(system, part, name)
+                refresh_attribute(system, part, name)

@@ -12,7 +12,7 @@ from actr3d.errors import ChunkError, did_you_mean
 Slot = int | str
 PLAIN_TYPES = frozenset({str, float, int, bool})
 """Plain types: a chunk copies such values from an object, and a trace keeps them unchanged."""
-LASTING_TYPES = PLAIN_TYPES | {type(None)}
+IMMUTABLE_TYPES = PLAIN_TYPES | {type(None)}
 """Immutable types: their text never changes."""
 _COLLECTIONS = (tuple, list, set, frozenset)
 DEEPEST = 8
@@ -22,7 +22,7 @@ DEEPEST = 8
 class ChunkStoreLike(Protocol):
     """A memory's list of chunks, which finds them by their slots."""
 
-    def forget_order(self) -> None:
+    def discard_indexes(self) -> None:
         """Is called when a chunk in the list has changed."""
         ...
 
@@ -62,14 +62,14 @@ def as_text(value: object) -> str:
         return value
     if isinstance(value, float):
         return f"{value:g}"
-    if type(value) not in LASTING_TYPES and type(value).__module__ == "numpy" and getattr(value, "shape", None) == ():
+    if type(value) not in IMMUTABLE_TYPES and type(value).__module__ == "numpy" and getattr(value, "shape", None) == ():
         return as_text(cast("Any", value).item())
     return repr(value)
 
 
 def plain_text(value: Any) -> str | None:
     """Returns a value as patterns compare it (`as_text`); None if only the modeller's code can convert it."""
-    if type(value) in LASTING_TYPES:
+    if type(value) in IMMUTABLE_TYPES:
         return as_text(value)
     if isinstance(value, str):
         return str.__str__(value)
@@ -80,7 +80,7 @@ def plain_text(value: Any) -> str | None:
 
 def _prints_plainly(value: Any, depth: int = 0) -> bool:
     """Returns whether printing a value runs none of the modeller's code."""
-    if type(value) in LASTING_TYPES:
+    if type(value) in IMMUTABLE_TYPES:
         return True
     if depth > DEEPEST:
         return False
@@ -195,7 +195,7 @@ class Chunk(dict[Any, Any]):
             rest = [key for key in self if not (type(key) is int and 0 <= key < places)]
             words += [f"{key}:{self[key]}" for key in sorted(rest, key=str) if str(key)[:1] != "_"]
         text = " ".join(words)
-        if self.stores and LASTING_TYPES.issuperset(map(type, self.values())):
+        if self.stores and IMMUTABLE_TYPES.issuperset(map(type, self.values())):
             self.cached_text = text  # the text of a chunk in memory is used many times
         return text
 
@@ -217,7 +217,7 @@ class Chunk(dict[Any, Any]):
     def _changed(self) -> None:
         self.cached_text = None
         for store in self.stores:
-            store.forget_order()
+            store.discard_indexes()
         for watch in self.watches:
             watch.changed(self)
 

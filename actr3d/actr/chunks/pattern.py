@@ -216,15 +216,18 @@ def is_empty(target: Any) -> bool:
         return False
 
 
-def holds_empty(target: Any, name: str | None) -> bool:
+def is_empty_in_pattern(target: Any, name: str | None) -> bool:
     """Returns whether the pattern None holds; in a request, only None itself is empty."""
     return bool(target == None) if name is None else is_empty(target)  # noqa: E711
 
 
-def calls(function: Callable[[Any, Bindings], Any], target: Any, bindings: Bindings) -> bool:
-    """Calls a modeller's function and returns whether it agrees; a result equal to False, or an error from a missing slot, is a no."""
+def function_matches(function: Callable[[Any, Bindings], Any], target: Any, bindings: Bindings) -> bool:
+    """Calls a modeller's function and returns whether it matches.
+
+    It does not match if its result equals False, or if it raises an AttributeError, TypeError or KeyError, as for a missing slot.
+    """
     try:
-        return function(target, bindings) != False  # noqa: E712 - None means yes
+        return function(target, bindings) != False  # noqa: E712 - None counts as a match
     except (AttributeError, TypeError, KeyError):
         return False
 
@@ -261,10 +264,10 @@ class Pattern:
             if target is MISSING:
                 return None
             if op == "empty":
-                if not holds_empty(target, name):
+                if not is_empty_in_pattern(target, name):
                     return None
             elif op == "call":
-                if not calls(value, target, bindings):
+                if not function_matches(value, target, bindings):
                     return None
             elif not self._holds(op, target, key, value, bindings, obj):
                 return None

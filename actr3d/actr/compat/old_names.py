@@ -117,12 +117,12 @@ class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
     def find_spec(self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None) -> ModuleSpec | None:
         part = _part(fullname)
-        return _spec(fullname, part) if _IN_FORCE and part is not None and part in _PARTS else None
+        return _spec(fullname, part) if _ACTIVE and part is not None and part in _PARTS else None
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
-        if not _IN_FORCE:
+        if not _ACTIVE:
             raise ModuleNotFoundError(f"No module named '{spec.name}'", name=spec.name)
-        names = _IN_FORCE[-1]
+        names = _ACTIVE[-1]
         names.used()
         return names.module(spec.name)
 
@@ -131,8 +131,8 @@ class _Finder(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 
 
 _LOCK = RLock()
-_IN_FORCE: list[OldNames] = []
-_REAL: dict[str, ModuleType] = {}
+_ACTIVE: list[OldNames] = []
+_ORIGINALS: dict[str, ModuleType] = {}
 """The modules of the old names before the first program became active, such as the real python_actr."""
 _FINDER = _Finder()
 # It is never removed: while another thread iterates over the list, that would hide the next finder from it.
@@ -174,27 +174,28 @@ def aliases(names: OldNames | None = None) -> Generator[None]:
     """
     names = names or OldNames()
     with _LOCK:
-        if not _IN_FORCE:
-            _REAL.update(_taken_out())
-        _IN_FORCE.append(names)
-        _put_in()
+        if not _ACTIVE:
+            _ORIGINALS.update(_remove())
+        _ACTIVE.append(names)
+        _install()
     try:
         yield
     finally:
         with _LOCK:
-            del _IN_FORCE[max(i for i, one in enumerate(_IN_FORCE) if one is names)]
-            _put_in()
+            del _ACTIVE[max(i for i, one in enumerate(_ACTIVE) if one is names)]
+            _install()
 
 
-def _put_in() -> None:
+def _install() -> None:
     """Puts the active old names into `sys.modules`, or the real modules if none are active."""
-    _taken_out()
-    if _IN_FORCE:
-        sys.modules.update(_IN_FORCE[-1].modules)
+    _remove()
+    if _ACTIVE:
+        sys.modules.update(_ACTIVE[-1].modules)
     else:
-        sys.modules.update(_REAL)
-        _REAL.clear()
+        sys.modules.update(_ORIGINALS)
+        _ORIGINALS.clear()
 
 
-def _taken_out() -> dict[str, ModuleType]:
+def _remove() -> dict[str, ModuleType]:
+    """Removes all modules of the old names from `sys.modules`, and returns them."""
     return {name: sys.modules.pop(name) for name in list(sys.modules) if is_old_name(name)}

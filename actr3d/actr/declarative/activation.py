@@ -28,7 +28,7 @@ class ActivatedMemory(Protocol):
         ...
 
     @property
-    def rules(self) -> Profile:
+    def effective_profile(self) -> Profile:
         """Its profile."""
         ...
 
@@ -84,9 +84,9 @@ class MemorySubModule(WithParameters):
         return 0 if parent is None or not is_converted(parent) else parent.now()
 
     @property
-    def rules(self) -> Profile:
+    def effective_profile(self) -> Profile:
         """The profile of this module."""
-        return PYTHON_ACTR if self.parent is None else self.parent.rules
+        return PYTHON_ACTR if self.parent is None else self.parent.effective_profile
 
 
 class DMNoise(MemorySubModule):
@@ -94,8 +94,8 @@ class DMNoise(MemorySubModule):
 
     Args:
         memory: The memory.
-        noise: s of the noise drawn at each request.
-        baseNoise: s of the noise drawn once for each chunk.
+        noise: The scale s of the logistic noise drawn at each request.
+        baseNoise: The scale s of the logistic noise drawn once for each chunk.
     """
 
     @named_parameters
@@ -165,7 +165,7 @@ class DMBaseLevel(MemorySubModule):
     def limit(self) -> int | None:
         """The number of times that are kept; None for all."""
         if isinstance(self._limit, ByProfile):
-            return 0 if self.rules.optimized_learning else None
+            return 0 if self.effective_profile.optimized_learning else None
         return self._limit
 
     @limit.setter
@@ -193,7 +193,7 @@ class DMBaseLevel(MemorySubModule):
         chunk.count += 1
         limit = self.limit
         if limit is not None and len(chunk.times) > limit:
-            times = sorted(chunk.times) if self.rules.optimized_learning else chunk.times  # Python ACT-R keeps those added last
+            times = sorted(chunk.times) if self.effective_profile.optimized_learning else chunk.times  # Python ACT-R keeps those added last
             chunk.times = times[-limit:] if limit else []
         if baselevel == "calculate":
             chunk.__dict__.pop("baselevel", None)
@@ -207,22 +207,22 @@ class DMBaseLevel(MemorySubModule):
         d = self.decay
         if d is None:
             return 0
-        rules = self.rules
+        profile = self.effective_profile
         now = self.now()
         times: list[float] | None = getattr(chunk, "times", None)
         if times is None:
             raise ChunkError(f"DMBaseLevel has no data about chunk '{chunk}': add it with memory.add, after the module is made")
         limit = self.limit
-        if rules.optimized_learning and limit == 0:
+        if profile.optimized_learning and limit == 0:
             times = []  # Python ACT-R counts the first time exactly until there is a second
-        youngest = rules.youngest_age
+        youngest = profile.youngest_age
         total = 0.0
         for time in times:
             total += math.pow(max(now - time, youngest), -d)
         forgotten = chunk.count - len(times)
         if forgotten > 0 and limit is not None:
             latest = now - times[0] if times else None
-            if rules.optimized_learning:
+            if profile.optimized_learning:
                 latest = max(now - min(times), youngest) if times else None
                 total += _forgotten(forgotten, max(now - chunk.first, youngest), latest, d, youngest)
             else:  # it also counts a chunk's life from when it was added, even if it is declared to be older

@@ -58,7 +58,7 @@ class DMAssociate(MemorySubModule):
 
     def _time(self) -> DMBaseLevel:
         """Returns the links' base level, with the memory's clock; in python_actr 1.9.5 without a clock: no time passes for links."""
-        self._base.parent = None if self.rules is PYTHON_ACTR else self.parent
+        self._base.parent = None if self.effective_profile is PYTHON_ACTR else self.parent
         return self._base
 
     def recalled(self, chunk: Any) -> None:
@@ -118,11 +118,11 @@ class DMInhibition(MemorySubModule):
         chunk.latestUse = max(getattr(chunk, "latestUse", -math.inf), self.now() - time)
 
     def activation(self, chunk: Any) -> float:
-        latest: float | None = getattr(chunk, "mostRecentTime" if self.rules is PYTHON_ACTR else "latestUse", None)
+        latest: float | None = getattr(chunk, "mostRecentTime" if self.effective_profile is PYTHON_ACTR else "latestUse", None)
         if latest is None:
             raise ChunkError(f"DMInhibition has no data about chunk '{chunk}': add it with memory.add, after the module is made")
         age = self.now() - latest
         try:
             return -math.log(1 + math.pow(age, -self.decayScale) / self.timeScale)
         except ValueError:  # undefined for an age of 0, and for most negative ages
-            return -math.log(1 + math.pow(self.rules.youngest_age, -self.decayScale) / self.timeScale)
+            return -math.log(1 + math.pow(self.effective_profile.youngest_age, -self.decayScale) / self.timeScale)

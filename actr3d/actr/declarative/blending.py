@@ -53,7 +53,7 @@ class BlendingMemory(Memory):
 
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
         matches = [match for match in matches if not math.isnan(match.activation)]
-        if self.rules.blend_every_slot:
+        if self.effective_profile.blend_every_slot:
             chunk = self._compromise(matches)
         else:
             numeric = [slot for slot in sorted(chunk, key=str) if _number(chunk[slot]) is not None]
@@ -118,14 +118,14 @@ class BlendingMemory(Memory):
         temperature: float | None = getattr(self, "temperature", None)
         if temperature is not None:
             return temperature
-        if self.rules.blend_every_slot:
+        if self.effective_profile.blend_every_slot:
             noise = next((a.noise for a in self.adaptors if isinstance(a, DMNoise)), 0.0)
             if noise > 0:
                 return math.sqrt(2) * noise
         return 1.0
 
     def _strength(self, record: Retrieval, best: float) -> float:
-        if not self.rules.blend_every_slot:
+        if not self.effective_profile.blend_every_slot:
             return best
         return self._match_score([c.chunk for c in record.candidates if not math.isnan(c.activation)])
 

@@ -6,7 +6,7 @@ import copy
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol, SupportsIndex
 
-from actr3d.actr.chunks.chunk import LASTING_TYPES, Chunk, Slot, as_text
+from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES, Chunk, Slot, as_text
 
 Postings = dict[str, list[Chunk]]
 
@@ -40,14 +40,14 @@ def _mutator(name: str, *, removes: bool = False) -> Callable[..., Any]:
         try:
             return original(self, *args, **keys)
         finally:
-            self.forget_order()
+            self.discard_indexes()
             if removes:
                 self.release(before)
             if observer is not None and listening:
                 observer.changed(name.strip("_"), before, self)
 
     method.__name__ = name
-    method.__doc__ = f"Does what `list.{name}` does, and throws the indexes away."
+    method.__doc__ = f"Does the same as `list.{name}`, then discards the indexes."
     return method
 
 
@@ -72,7 +72,7 @@ class ChunkStore(list[Chunk]):
         self._equals: dict[frozenset[Any] | None, list[Chunk]] | None = None
         """The chunks by their items; under None those with a mutable value."""
 
-    def forget_order(self) -> None:
+    def discard_indexes(self) -> None:
         """Discards the indexes, because chunks were added, removed or changed."""
         self.version += 1
         self._slots.clear()
@@ -168,7 +168,7 @@ class ChunkStore(list[Chunk]):
         """Adds a chunk to the index of one slot."""
         if slot in chunk:
             value = chunk[slot]
-            if type(value) not in LASTING_TYPES:
+            if type(value) not in IMMUTABLE_TYPES:
                 self._changeable.add(slot)
             postings.setdefault(as_text(value), []).append(chunk)
 
@@ -188,6 +188,6 @@ class ChunkStore(list[Chunk]):
 def _likeness(chunk: Chunk) -> frozenset[Any] | None:
     """Returns the items of a chunk as a key that equal chunks share; None if a value is mutable."""
     for value in chunk.values():
-        if type(value) not in LASTING_TYPES:
+        if type(value) not in IMMUTABLE_TYPES:
             return None
     return frozenset(chunk.items())

@@ -43,7 +43,7 @@ class Memory(WithParameters, Model):
         threshold: The minimum activation for retrieval; None for no minimum.
         maximum_time: The maximum duration of a retrieval or its failure [s]; by default the profile's: 10 s, or none in ACT-R 7. Without
             a threshold, a failure takes this time, or 10 s if there is no maximum.
-        finst_size: The number of retrieved chunks that are marked as such.
+        finst_size: The number of finsts: how many recently retrieved chunks are marked.
         finst_time: The lifetime of these marks [s].
         profile: «python-actr» or «act-r-7»; None for the agent's.
 
@@ -72,10 +72,10 @@ class Memory(WithParameters, Model):
         self.error = False
         self.busy = False
         self.adaptors: list[MemorySubModule] = []
-        self.latency = self.rules.latency if latency is None else latency
+        self.latency = self.effective_profile.latency if latency is None else latency
         self._latency_given = latency is not None
         self.threshold = threshold
-        self.maximum_time = self.rules.maximum_time if isinstance(maximum_time, ByProfile) else maximum_time
+        self.maximum_time = self.effective_profile.maximum_time if isinstance(maximum_time, ByProfile) else maximum_time
         self._maximum_time_given = not isinstance(maximum_time, ByProfile)
         self.partials: list[Partial] = []
         self.finst = Finst(self, size=finst_size, time=finst_time)
@@ -85,7 +85,7 @@ class Memory(WithParameters, Model):
         self._last: Retrieval | None = None
 
     @property
-    def rules(self) -> Profile:
+    def effective_profile(self) -> Profile:
         """The profile of this memory: its own, or its agent's."""
         return self._profile or PYTHON_ACTR
 
@@ -94,10 +94,10 @@ class Memory(WithParameters, Model):
         super()._follow(profile)
         self._own_chunks(self.dm)
         if not self._latency_given:
-            self.__dict__["latency"] = self.rules.latency
+            self.__dict__["latency"] = self.effective_profile.latency
         if not self._maximum_time_given:
-            self.__dict__["maximum_time"] = self.rules.maximum_time
-        if self.rules.harvest and self.parent is not None:
+            self.__dict__["maximum_time"] = self.effective_profile.maximum_time
+        if self.effective_profile.harvest and self.parent is not None:
             self.sch.harvests = True
             harvesters: list[Harvester] = self.parent.__dict__.setdefault("_harvesters", [])
             if all(one.memory is not self for one in harvesters):
@@ -216,7 +216,7 @@ class Memory(WithParameters, Model):
         if self.error:
             self.error = False
         number = self.__dict__["_request_count"] = self._request_count + 1
-        profile = self.rules
+        profile = self.effective_profile
         if self._pending is not None and not profile.awaits_expiry:
             self.sch.drop([self._pending])
         if profile.clear_at_request:
@@ -257,7 +257,7 @@ class Memory(WithParameters, Model):
 
     def fail(self, request_number: int) -> Iterator[float]:
         """Waits for the time of a failure, then sets `error` and clears the buffer."""
-        self.sch.forget_left()
+        self.sch.discard_remainders()
         yield self._time_of_failure()
         if request_number != self._request_count:
             return
@@ -271,7 +271,7 @@ class Memory(WithParameters, Model):
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
         """Waits for the retrieval time, then puts a chunk into the buffer."""
         self.finst.add(chunk)
-        self.sch.forget_left()
+        self.sch.discard_remainders()
         yield self._time(chunk.activation)
         self._arrive(chunk, request_number)
 
@@ -326,7 +326,7 @@ class Memory(WithParameters, Model):
             wanted = Chunk(chunk, self._bound())
             known = self.dm.equal_to(wanted)
             if known is None:
-                raise ChunkError(f"memory '{self.name}' holds no chunk '{wanted}'")
+                raise ChunkError(f"memory '{self.name}' has no chunk '{wanted}'")
             chunk = known
         return total(self._parts(chunk))
 
@@ -443,7 +443,7 @@ def check_keywords(keys: Mapping[str, Any], modules: Iterable[MemorySubModule]) 
             return
         taken |= names
     for name in sorted(unknown - taken):
-        warn_modeller(f"memory.add has no keyword '{name}' that any activation module takes{did_you_mean(name, taken)}")
+        warn_modeller(f"memory.add: no activation module has a keyword '{name}'{did_you_mean(name, taken)}")
 
 
 @weak_cache

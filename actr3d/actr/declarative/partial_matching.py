@@ -18,7 +18,7 @@ class PartialMemory(Protocol):
     partials: list[Partial]
 
     @property
-    def rules(self) -> Profile:
+    def effective_profile(self) -> Profile:
         """Its profile."""
         ...
 
@@ -72,7 +72,7 @@ class Partial(WithParameters):
         """Returns the similarity of two different values, given as patterns compare them."""
         similarity = self.sims.get((a, b))
         if similarity is None and (a, b) in self._texts:
-            if self._memory.rules is PYTHON_ACTR:  # patterns compare text, and it looks text up among numbers
+            if self._memory.effective_profile is PYTHON_ACTR:  # patterns compare text, and it looks text up among numbers
                 warn_modeller(f"the similarity of {a} and {b} is not found, because patterns compare text: write '{a}', '{b}'")
             else:
                 similarity = self._texts[a, b]
@@ -85,5 +85,5 @@ class Partial(WithParameters):
 
     def negated(self, key: Slot, value: str) -> float | None:
         """Returns the penalty for a value that the pattern negates; None if it excludes the chunk (not in ACT-R 7)."""
-        profile = self._memory.rules
+        profile = self._memory.effective_profile
         return (self.strength or 0.0) * self.limit if profile.negations_cost else None

@@ -26,7 +26,11 @@ class DMSpreading(MemorySubModule):
 
     Args:
         memory: The memory.
-        buffers: The sources.
+        buffers: The source buffers.
+
+    Attributes:
+        strength: S, the maximum associative strength; 1 by default.
+        weight: W of each source buffer, 1 by default: `spreading.weight[goal] = 0.5`.
 
     Source: Anderson & Lebiere (1998), equation 3.5; ACT-R 7 reference manual, spreading activation.
     """
@@ -52,7 +56,7 @@ class DMSpreading(MemorySubModule):
         In python_actr 1.9.5 a module that is made when the memory already has chunks must be given each of them by the model;
         here it counts them by itself, with the same result.
         """
-        if self.rules.spread_by_slots:
+        if self.effective_profile.spread_by_slots:
             return  # see `_count`
         same = _Same(chunk)
         if same in self._counted:
@@ -80,7 +84,7 @@ class DMSpreading(MemorySubModule):
     def activation(self, chunk: Any) -> float:
         total = 0.0
         values: list[Any] = list(chunk.values())
-        by_slots = self.rules.spread_by_slots
+        by_slots = self.effective_profile.spread_by_slots
         if by_slots:
             self._count()
         for buffer in self.buffers:

@@ -1,7 +1,6 @@
 """Explains an agent: which productions match and why the others do not, and which chunk won a retrieval and why.
 
-An explanation of the current state reads the model, as a run need not be traced; one of a past time reads the trace, and needs nothing
-else.
+An explanation of the present reads the model; the run need not be traced. An explanation of a past time reads only the trace.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from actr3d.actr.explain.trial import why
 from actr3d.actr.kernel.model import Model, ensure_converted
 from actr3d.actr.kernel.tree import path_of, places_in, subtree, top_of
 from actr3d.actr.modules.port import Searching
-from actr3d.actr.procedural.production_system import ProductionSystem, prepare_context, rules_of
+from actr3d.actr.procedural.production_system import ProductionSystem, prepare_context, procedural_state_of
 from actr3d.actr.reasons import Explanation
 from actr3d.clock import microseconds, seconds
 from actr3d.errors import ParameterError, SchedulerError
@@ -33,13 +32,15 @@ def explain(agent: ProductionSystem, at: float | None = None) -> Explanation:
         prepare_context(system)
     memories, eyes = _modules_in_sight(Memory, agent, systems), _modules_in_sight(Searching, agent, systems)
     state = Present(agent) if at is None else _past(agent, at, systems, [*memories, *eyes])
-    productions = [why(p, state) for system in systems if state.exists(system) for p in rules_of(system).productions if state.learned(p)]
+    productions = [
+        why(p, state) for system in systems if state.exists(system) for p in procedural_state_of(system).productions if state.learned(p)
+    ]
     retrievals = [state.retrieval(memory) for memory in memories if state.exists(memory)]
     searches = [reason for eye in eyes if state.exists(eye) for reason in state.searches(eye)]
     return Explanation(
         time=state.time,
         agent=state.path(agent),
-        begun=rules_of(agent).matcher is not None,
+        begun=procedural_state_of(agent).matcher is not None,
         productions=tuple(productions),
         retrievals=tuple(reason for reason in retrievals if reason is not None),
         searches=tuple(searches),
@@ -67,7 +68,7 @@ def _past(agent: ProductionSystem, at: float, systems: list[ProductionSystem], m
     begin = next((event.time for event in trace if event.run == run), agent.now())
     if time < microseconds(begin):
         raise ParameterError(f"explain(at): the trace begins at {begin:g} s; what was before the trace is not known (got {at:g} s)")
-    visible = [target for system in systems for target in rules_of(system).context.values() if isinstance(target, Model)]
+    visible = [target for system in systems for target in procedural_state_of(system).context.values() if isinstance(target, Model)]
     state = Past(
         trace, None if trace is traces[0] else run, time, list({id(part): part for part in (agent, *systems, *modules, *visible)}.values())
     )
@@ -87,7 +88,7 @@ def _modules_in_sight(kind: type[Kind], agent: Model, systems: list[ProductionSy
     """Returns an agent's modules of a kind, and those of its ancestors that its productions see by name."""
     found = [part for part in subtree(agent) if isinstance(part, kind)]
     for system in systems:
-        for target in rules_of(system).context.values():
+        for target in procedural_state_of(system).context.values():
             if isinstance(target, kind) and not any(target is known for known in found):
                 found.append(target)
     return found

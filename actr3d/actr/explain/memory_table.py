@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
-from actr3d.actr.chunks.chunk import LASTING_TYPES, Chunk
+from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES, Chunk
 from actr3d.actr.declarative.activation import DMBaseLevel, DMFixed, MemorySubModule
 from actr3d.actr.declarative.association import DMAssociate, DMInhibition
 from actr3d.actr.declarative.memory import Memory, own_activation
@@ -67,7 +67,7 @@ def _parts(memory: Memory, chunk: Chunk) -> Iterator[tuple[str, float | None]]:
 
 def _part(module: MemorySubModule, chunk: Chunk) -> float | None:
     """Returns what a module adds to a chunk's activation now; None if it is known only at a retrieval."""
-    if type(module) not in _READABLE or not LASTING_TYPES.issuperset(map(type, chunk.values())):
+    if type(module) not in _READABLE or not IMMUTABLE_TYPES.issuperset(map(type, chunk.values())):
         return None
     try:
         return module.activation_for_observer(chunk) if isinstance(module, DMSpreading) else module.activation(chunk)

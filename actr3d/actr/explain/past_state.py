@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any, NamedTuple, cast
 
-from actr3d.actr.chunks.chunk import LASTING_TYPES, Slot, as_text
+from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES, Slot, as_text
 from actr3d.actr.chunks.pattern import MISSING
 from actr3d.actr.explain.module_reasons import outcome_of, past_retrieval, past_search
 from actr3d.actr.explain.state import NOT_KNOWN, OPAQUE, Fact, FunctionResult, is_unknown
@@ -15,7 +15,7 @@ from actr3d.actr.kernel.tree import path_of, places_in
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.matcher import records_changes, result_label
 from actr3d.actr.procedural.production import Production, ProductionOwner
-from actr3d.actr.procedural.production_system import ProductionSystem, rules_of, system_of, utility_part_names
+from actr3d.actr.procedural.production_system import ProductionSystem, procedural_state_of, system_of, utility_part_names
 from actr3d.actr.reasons import RetrievalReason, SearchReason
 from actr3d.clock import seconds
 from actr3d.trace import Trace, TraceEvent, renumbered
@@ -87,7 +87,7 @@ class Past:
 
     Args:
         trace: A trace of the run.
-        number: The number of the run in it, if it has another one in the trace that names the parts; None if that is this trace.
+        number: The number of the run in this trace, if the paths of the parts come from another trace; None if they come from this one.
         time: The time [us].
         parts: The parts to reconstruct.
     """
@@ -107,7 +107,7 @@ class Past:
                     source = place.path if number is None else renumbered(place.path, number)
                     places.setdefault(source, []).append((place.begin, place.end, known))
         for part in parts:
-            for name, target in (rules_of(part).context if isinstance(part, ProductionSystem) else {}).items():
+            for name, target in (procedural_state_of(part).context if isinstance(part, ProductionSystem) else {}).items():
                 self._named.setdefault(id(target), []).append((part, name))
         for number, event in enumerate(trace):
             for begin, end, known in places.get(event.source, ()):
@@ -136,7 +136,7 @@ class Past:
             return self._slot_of_chunk(target, key)
         found = self._observations(target, key)
         recorded = self._of(target).attributes.get(str(key)) if isinstance(target, Model) and records_changes(target, key) else None
-        certain = recorded is not None and type(recorded.value) in LASTING_TYPES
+        certain = recorded is not None and type(recorded.value) in IMMUTABLE_TYPES
         latest = max((record.event if certain else held for record, held in found), default=-1)
         if found and (recorded is None or recorded.event < latest):
             record, _ = max(found, key=lambda pair: pair[0].event)
@@ -159,7 +159,7 @@ class Past:
             return NOT_KNOWN
         chunk: dict[str, Any] = recorded.value or {}
         value = chunk.get(str(key), MISSING)
-        if value is MISSING or type(value) in LASTING_TYPES:
+        if value is MISSING or type(value) in IMMUTABLE_TYPES:
             return Fact(value if value is MISSING else as_text(value))
         texts = self._of(buffer).attributes.get("texts")
         if texts is None or texts.event != recorded.event or str(key) not in texts.value:
@@ -206,12 +206,12 @@ class Past:
             utilities=data.get("utilities", {}),
             parts=data.get("parts", {}),
             threshold=data.get("threshold"),
-            weighed=rules_of(system_of(production)).by_utility,
+            weighed=procedural_state_of(system_of(production)).by_utility,
             chosen=known.chosen,
             forbidden=data.get("forbidden", ()),
             wanted=data.get("wanted"),
         )
-        return choice if choice.stands else None
+        return choice if choice.is_current else None
 
     def retrieval(self, memory: Model) -> RetrievalReason | None:
         known = self._of(memory)

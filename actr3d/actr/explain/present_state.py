@@ -15,7 +15,7 @@ from actr3d.actr.modules.port import Searching
 from actr3d.actr.procedural.conflict_set import ConflictSet
 from actr3d.actr.procedural.matcher import Observed
 from actr3d.actr.procedural.production import Production
-from actr3d.actr.procedural.production_system import ProductionSystem, rules_of, standing_choice, system_of, utility_parts
+from actr3d.actr.procedural.production_system import ProductionSystem, current_choice, procedural_state_of, system_of, utility_parts
 from actr3d.actr.reasons import RetrievalReason, SearchReason
 from actr3d.clock import seconds
 
@@ -73,14 +73,14 @@ class Present:
         return FunctionResult(given, agrees, bound, f"as asked at {seconds(asked.time):.3f} s")
 
     def matched(self, production: Production) -> bool:
-        matcher = rules_of(system_of(production)).matcher
+        matcher = procedural_state_of(system_of(production)).matcher
         return matcher is not None and production in matcher.last
 
     def parts(self, production: Production) -> dict[str, float | None]:
         return utility_parts(system_of(production), production)
 
     def choice(self, production: Production) -> ConflictSet | None:
-        return standing_choice(system_of(production))
+        return current_choice(system_of(production))
 
     def retrieval(self, memory: Any) -> RetrievalReason | None:
         return live_retrieval(memory)
@@ -90,5 +90,5 @@ class Present:
 
 
 def _observed(production: Production) -> Observed:
-    matcher = rules_of(system_of(production)).matcher
+    matcher = procedural_state_of(system_of(production)).matcher
     return matcher.observed if matcher is not None else Observed()

@@ -10,7 +10,7 @@ from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import Model, state_of
 from actr3d.actr.kernel.tracing import traceable
 from actr3d.actr.kernel.tree import path_of, subtree
-from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
+from actr3d.actr.procedural.production_system import ProductionSystem, procedural_state_of
 
 MAX_PARTS = 400
 """The maximum number of parts in a snapshot."""
@@ -31,12 +31,12 @@ def _part(part: Any) -> dict[str, Any]:
         return {**known, "chunk": traceable(part.chunk)}
     known["state"] = state_of(part)
     if isinstance(part, ProductionSystem):
-        rules = rules_of(part)
-        chosen = rules.chosen
-        known["productions"] = [production.name for production in rules.productions]
+        state = procedural_state_of(part)
+        chosen = state.chosen
+        known["productions"] = [production.name for production in state.productions]
         known["chosen"] = None if chosen is None else chosen.name
-        if rules.forbidden:
-            known["forbidden"] = sorted(rules.forbidden)
+        if state.forbidden:
+            known["forbidden"] = sorted(state.forbidden)
     return known
 
 

@@ -1,7 +1,7 @@
 """The interface through which explanations read the state of an agent, current or past: facts, and how they are known.
 
-The tests of conditions are the same for both (`trial`). The facts have two sources: the model for now, because a run need not be traced
-to be explained, and objects outside the model are read as they are; the trace for the past, which no longer exists elsewhere.
+The tests of conditions are the same for both (`trial`). The facts have two sources. The present is read from the model and from the
+objects that it sees, because a run need not be traced to be explained. The past is read from the trace.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class FunctionResult(NamedTuple):
     source: str
 
 
-NOT_KNOWN = Fact(UNKNOWN, "no production has looked at it")
-OPAQUE = Fact(UNKNOWN, "an object whose text only its own code can produce")
+NOT_KNOWN = Fact(UNKNOWN, "no production has read it")
+OPAQUE = Fact(UNKNOWN, "an object that only its own code can convert to text")
 
 
 class AgentState(Protocol):

@@ -67,7 +67,7 @@ class ProductionTrial:
             self.source = self._source or self.source
             self.bindings = {name: as_text(value) for name, value in self._bound.items()}
         if failure is None:
-            found = self._fact or "what is not known"
+            found = self._fact or "unknown"
             return ConditionReason(
                 condition=_text(condition), holds=True, expected=self._expected(condition), found=found, source=self._source
             )
@@ -78,7 +78,7 @@ class ProductionTrial:
 
     def _expected(self, condition: Condition) -> str:
         if condition.op in ("empty", "call"):
-            return "nothing in it" if condition.op == "empty" else "anything but False"
+            return "empty" if condition.op == "empty" else "anything but False"
         return _expected(condition, self._bound.get(condition.value) if condition.op in ("same", "differs") else condition.value)
 
     def _failure(self, number: int, condition: Condition) -> Failure | None:
@@ -89,9 +89,9 @@ class ProductionTrial:
         if op == "empty":
             fact = self._known(self._state.empty(self._production, name))
             if is_unknown(fact.value):
-                return self._unknown(_text(condition), "nothing in it", fact.source)
-            self._fact = "nothing in it" if fact.value else "something"
-            return None if fact.value else Failure(condition=_text(condition), expected="nothing in it", found="something")
+                return self._unknown(_text(condition), "empty", fact.source)
+            self._fact = "empty" if fact.value else "not empty"
+            return None if fact.value else Failure(condition=_text(condition), expected="empty", found=self._fact)
         if isinstance(key, str) and key[:1] == "?":
             if key[1:] in self._open:
                 return self._unknown(_text(condition), f"a slot that ?{key[1:]} names", f"?{key[1:]} is not known")
@@ -134,17 +134,17 @@ class ProductionTrial:
         result = self._state.function_result(self._production, number)
         text, expected = _text(condition), "anything but False"
         if self.failure is not None:
-            return _not_known(text, expected, "it is asked only where all before it holds")
+            return _not_known(text, expected, "the function is called only if all conditions before it hold")
         if result is None:
-            return self._unknown(text, expected, "it has not been asked")
+            return self._unknown(text, expected, "the function has not been called")
         self._source = result.source
         if self._open or _texts(result.given) != _texts(self._bound):
             with_what = " ".join(f"?{name}={as_text(value)}" for name, value in result.given.items())
-            return _not_known(text, expected, f"it was last asked with {with_what or 'no variables'}")
+            return _not_known(text, expected, f"the function was last called with {with_what or 'no variables'}")
         if not result.agrees:
-            return Failure(condition=text, expected=expected, found="False, or an error for want of a slot")
+            return Failure(condition=text, expected=expected, found="False, or an error such as a missing slot")
         self._bound.update(result.bound)
-        self._fact = "it agreed"
+        self._fact = "a value other than False"
         return None
 
     def _unknown(self, text: str, expected: str, why: str | None) -> Failure | None:
@@ -152,7 +152,7 @@ class ProductionTrial:
         if self.failure is None and self._state.matched(self._production):
             self._source = AT_THE_LAST_MATCH
             return None
-        return _not_known(text, expected, why or "it depends on what is not known")
+        return _not_known(text, expected, why or "it depends on something unknown")
 
 
 def _text(condition: Condition) -> str:
@@ -161,7 +161,7 @@ def _text(condition: Condition) -> str:
 
 
 def _not_known(text: str, expected: str, why: str) -> Failure:
-    return Failure(condition=text, expected=expected, found=f"what is not known ({why})", unknown=True)
+    return Failure(condition=text, expected=expected, found=f"unknown ({why})", unknown=True)
 
 
 def _texts(bound: Bindings) -> dict[str, str]:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Final, NamedTuple, cast
 
-from actr3d.actr.chunks.chunk import LASTING_TYPES, Chunk, Slot, plain_text
+from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES, Chunk, Slot, plain_text
 from actr3d.actr.chunks.pattern import MISSING, Missing
 from actr3d.actr.kernel.model import Model, profile_of
 from actr3d.actr.kernel.parameters import named_parameters
@@ -116,7 +116,7 @@ class Buffer(Model):
         """Records the buffer's chunk, and observes changes of the chunk itself."""
         own = self.__dict__
         data: Data
-        if type(chunk) is Chunk and LASTING_TYPES.issuperset(map(type, chunk.values())):
+        if type(chunk) is Chunk and IMMUTABLE_TYPES.issuperset(map(type, chunk.values())):
             data = partial(_chunk_data, dict(chunk))
         else:
             data = {"chunk": traceable(chunk), **(_texts(chunk) if chunk and trace.all else {})}
@@ -164,7 +164,7 @@ def _chunk_data(slots: dict[Any, Any]) -> dict[str, Any]:
 
 def _texts(chunk: Chunk) -> dict[str, dict[str, str]]:
     """Returns the text that patterns compare for values that are not plain, such as lists, if it is known."""
-    texts = {str(key): plain_text(value) for key, value in chunk.items() if type(value) not in LASTING_TYPES}
+    texts = {str(key): plain_text(value) for key, value in chunk.items() if type(value) not in IMMUTABLE_TYPES}
     known = {key: text for key, text in texts.items() if text is not None}
     return {"texts": known} if known else {}
 

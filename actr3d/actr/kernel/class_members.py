@@ -28,7 +28,7 @@ def has_setter(member: object) -> bool:
     return hasattr(type(member), "__set__")
 
 
-def minding_properties(inherited: Callable[[Any, str, Any], None]) -> Callable[[Any, str, Any], None]:
+def with_property_setters(inherited: Callable[[Any, str, Any], None]) -> Callable[[Any, str, Any], None]:
     """Returns a `__setattr__` that calls a class's properties for their attributes, and the inherited one for all others."""
 
     def set_with_properties(self: Any, key: str, value: Any) -> None:

@@ -10,8 +10,8 @@ from typing import Any, Final, cast
 AGAIN: Final = object()
 """The library's own generators yield this to continue at the same moment, with the priority of their event."""
 
-NOTHING_LEFT: Final[Mapping[float, float]] = {}
-"""No rounding remainders."""
+NO_REMAINDERS: Final[Mapping[float, float]] = {}
+"""No rounding errors are carried over."""
 
 
 class Trigger:
@@ -41,13 +41,13 @@ class Trigger:
 class Call:
     """A scheduled call of a function of the library: it returns None, and nothing waits for it."""
 
-    __slots__ = ("args", "call", "left")
+    __slots__ = ("args", "call", "remainders")
 
     def __init__(self, call: Callable[..., Any], args: Sequence[Any] = ()) -> None:
         self.call = call
         self.args = args
-        self.left: Mapping[float, float] = NOTHING_LEFT
-        """The rounding remainders of the delays that led to it; see `Scheduler.left`."""
+        self.remainders: Mapping[float, float] = NO_REMAINDERS
+        """The rounding errors of the delays that led to it; see `Scheduler.remainders`."""
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.describe()}>"

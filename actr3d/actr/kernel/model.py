@@ -9,9 +9,17 @@ from types import MethodType
 from typing import Any, Protocol
 from weakref import ref
 
-from actr3d.actr.chunks.chunk import LASTING_TYPES, PLAIN_TYPES, PlaceName
+from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES, PLAIN_TYPES, PlaceName
 from actr3d.actr.kernel import log as logs
-from actr3d.actr.kernel.class_members import Method, check_methods, check_names, class_members, copy_objects, has_setter, minding_properties
+from actr3d.actr.kernel.class_members import (
+    Method,
+    check_methods,
+    check_names,
+    class_members,
+    copy_objects,
+    has_setter,
+    with_property_setters,
+)
 from actr3d.actr.kernel.events import Event, Trigger
 from actr3d.actr.kernel.profile import PROFILES, PYTHON_ACTR, Profile
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
@@ -177,7 +185,7 @@ class Model(TreeNode):
         Args:
             key: The attribute's name.
             value: The model.
-            overlooked: Whether `get_children` leaves it out, and chunks made of it do not have the name it is set under.
+            overlooked: Whether `get_children` leaves it out, and a chunk made from it does not contain the attribute's name.
         """
         if value.__dict__.get("parent") is not None or any(above is value for above in lineage(self)):
             return False
@@ -234,7 +242,7 @@ class Model(TreeNode):
         if setters:
             cls._setters = cls._setters | setters
             if "__setattr__" not in vars(cls) and cls.__setattr__.__name__ != "set_with_properties":
-                type.__setattr__(cls, "__setattr__", minding_properties(cls.__setattr__))
+                type.__setattr__(cls, "__setattr__", with_property_setters(cls.__setattr__))
 
     def __setattr__(self, key: str, value: Any) -> None:
         own = self.__dict__
@@ -310,7 +318,7 @@ class Model(TreeNode):
         """Returns the attributes that describe the part; lists and dicts of the library's own modules are internal and left out."""
         own = {key: value for key, value in self.__dict__.items() if key[0] != "_" and key not in UNWATCHED}
         lists = () if type(self).__module__.startswith("actr3d.actr.") else COLLECTIONS
-        return {k: traceable(v) for k, v in own.items() if type(v) in LASTING_TYPES or issubclass(type(v), lists)}
+        return {k: traceable(v) for k, v in own.items() if type(v) in IMMUTABLE_TYPES or issubclass(type(v), lists)}
 
     def _trace_request(self, call: str, **particulars: Any) -> None:
         """Records a request to this module."""
@@ -323,7 +331,7 @@ class Model(TreeNode):
         """Records one attribute's new value."""
         if not trace.all:
             return
-        if type(value) in LASTING_TYPES:
+        if type(value) in IMMUTABLE_TYPES:
             trace.emit(self.sch.now_us, self._path, "state", {key: value})
         elif self.__dict__.get("_children", {}).get(key) is not value:  # an «added» event reports a part that has joined
             trace.emit(self.sch.now_us, self._path, "state", {key: traceable(value)})
@@ -358,10 +366,11 @@ class Model(TreeNode):
             limit: How long [s from now]. The clock counts whole microseconds, so a run ends at the one nearest to its
                 exact end, and the next run continues from there: `run(1/3)` ends at 0.333333, 0.666667 and 1 s. Repeated
                 calls therefore never drift.
-            func: Called first.
+            func: A function that is scheduled at the current time before the run starts; events of the same priority that are already
+                queued for that time come first.
 
         Raises:
-            SchedulerError: If time stands still, or something cannot be waited for.
+            SchedulerError: If there is an endless loop in which no time passes, or something cannot be waited for.
             Exception: What a listener of the trace has raised.
         """
         if not self._converted:

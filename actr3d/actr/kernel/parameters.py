@@ -20,7 +20,7 @@ from actr3d.warnings import warn_modeller
 P = ParamSpec("P")
 Self = TypeVar("Self")
 NotNegative = Annotated[float, Ge(0)]
-"""A time [s], or the scale of noise."""
+"""A number >= 0, such as a time [s] or the scale of noise."""
 Count = Annotated[int, Ge(0)]
 """How many there are of something."""
 Extended = Annotated[float, Infinite()]
@@ -94,7 +94,7 @@ ELSEWHERE: dict[type, str] = {}
 
 
 def elsewhere(module: object) -> str:
-    """Returns which other module of its name may be meant, for the end of an error about what a module does not know; empty if none."""
+    """Returns a hint at another module of the same name, for the end of an error message; empty if there is none."""
     words = ELSEWHERE.get(type(module), "")
     return words and f"; {words}"
 
@@ -119,7 +119,10 @@ _HINTS: WeakKeyDictionary[type, dict[str, str]] = WeakKeyDictionary()
 
 
 def slip_hint(name: str, known: set[str]) -> str:
-    """Returns a hint at the parameter that a name may mean, or an empty text if it is not misspelt: `times` is not, beside `time`."""
+    """Returns a hint for a name that looks like a misspelt parameter; otherwise an empty text.
+
+    A name that extends a known one (`times`, where there is `time`), or is the first words of one, does not count as misspelt.
+    """
     if any(name.startswith(other) or other.startswith(f"{name}_") for other in known):
         return ""
     return did_you_mean(name, known, NEAR)

@@ -69,9 +69,9 @@ class RunLimits:
     clock: Callable[[], int] = field(default=lambda: 0, repr=False)
     """Returns the time of the latest run [us]."""
     passing: Callable[[Any, int], object] | None = field(default=None, repr=False)
-    """Called before the time of a run advances, after all events at that time: with the run's scheduler and the new time [us]. It can
-    hold the program up, or end it with an `EndOfRun`. If it returns True, something was changed by hand: events are then run up to the
-    present, and it is called again."""
+    """Called before the time of a run advances, after all events at that time: with the run's scheduler and the new time [us]. It may
+    block the program, or end it with an `EndOfRun`. It returns True if a user has changed something: then the events up to the present
+    time are run, and it is called again."""
     ticked: Callable[[Any, int], object] | None = field(default=None, repr=False)
     """Called with a simulation before its first tick and after each tock, and with the time passed [us]; replaces `passing`,
     which would be called within a tick."""

@@ -10,7 +10,7 @@ from numbers import Real
 from types import CodeType
 from typing import Any, ClassVar, Literal, cast
 
-from actr3d.actr.kernel.events import AGAIN, NOTHING_LEFT, Call, Event, Trigger, makes_generator
+from actr3d.actr.kernel.events import AGAIN, NO_REMAINDERS, Call, Event, Trigger, makes_generator
 from actr3d.actr.kernel.log import LOG
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
 from actr3d.actr.kernel.run_limits import RunLimits
@@ -29,7 +29,7 @@ FAR = 1e12
 """Delays up to this one [s] need no further check."""
 NO_PART = 1e-9
 """A smaller fraction of a microsecond is a floating-point rounding error: 0.07 s are 70000.00000000001 us."""
-MAX_LEFT = 32
+MAX_REMAINDERS = 32
 """The maximum number of different delays whose rounding errors an event carries one by one; beyond it, the oldest error is included
 in the current delay, so that no error is lost. A single sum of all rounding errors would be simpler, but would shift the times of
 random delays by a microsecond: printed with few digits, some would then differ from python_actr's."""
@@ -51,7 +51,7 @@ class Scheduler:
         self.queue: EventQueue[Call] = EventQueue(first_come)
         self.now_us = 0
         """The current time, in whole microseconds."""
-        self.left: Mapping[float, float] = NOTHING_LEFT
+        self.remainders: Mapping[float, float] = NO_REMAINDERS
         """The rounding errors of the delays that led to the current event, by delay [us]. The next equal delay that follows from this event
         includes the error, so that a series of equal delays does not drift: 60 times 1/60 s is 1 s. The times of retrievals, which
         depend on activations, are rounded independently."""
@@ -129,16 +129,16 @@ class Scheduler:
     def call_after(self, delay: float, call: Callable[..., Any], args: Sequence[Any] = ()) -> Call:
         """Schedules a plain call of the library itself, which returns None; its delay is rounded independently."""
         event = Call(call, args)
-        kept, self.left = self.left, NOTHING_LEFT
+        kept, self.remainders = self.remainders, NO_REMAINDERS
         self.put(event, delay)
-        self.left = kept
+        self.remainders = kept
         return event
 
     def call_at(self, time: int, call: Callable[..., Any], args: Sequence[Any] = ()) -> Call:
         """Schedules such a call at a time [us] returned by `after`."""
         event = Call(call, args)
         if time == self.now_us:
-            event.left = self.left
+            event.remainders = self.remainders
         self.queue.push(time, event, 0, (time - self.now_us) / MICROSECONDS)
         return event
 
@@ -159,7 +159,7 @@ class Scheduler:
     def put(self, event: Call, delay: float, priority: float = 0) -> None:
         """Adds an event to the queue, `delay` seconds from now.
 
-        The rounding error of the delay is included in the next equal delay; see `left`. For models with events at whole
+        The rounding error of the delay is included in the next equal delay; see `remainders`. For models with events at whole
         milliseconds, the time is rounded to a millisecond and no error is carried over, as in ACT-R 7.
 
         Raises:
@@ -172,29 +172,29 @@ class Scheduler:
         exact = delay * MICROSECONDS
         later = round(exact)
         part = exact - later
-        left = event.left = self.left
+        carried = event.remainders = self.remainders
         if self.round_ms and later > 0 and _profile_of(event).whole_milliseconds:
             time = max(self.now_us, round((self.now_us + later) / 1000) * 1000)
         elif -NO_PART < part < NO_PART:
             time = self.now_us + later
         else:
-            kept = {known: of for known, of in left.items() if known != delay} if len(left) > 1 or delay not in left else {}
-            part += left.get(delay, 0.0)
-            if len(kept) >= MAX_LEFT:
+            kept = {known: of for known, of in carried.items() if known != delay} if len(carried) > 1 or delay not in carried else {}
+            part += carried.get(delay, 0.0)
+            if len(kept) >= MAX_REMAINDERS:
                 part += kept.pop(next(iter(kept)))
             more = max(round(part), -later)
             time = self.now_us + later + more
             kept[delay] = part - more
-            event.left = kept
+            event.remainders = kept
         self.queue.push(time, event, priority, delay)
 
-    def forget_left(self) -> None:
+    def discard_remainders(self) -> None:
         """Discards the carried rounding errors, so that delays that follow from the current event are rounded independently."""
-        self.left = NOTHING_LEFT
+        self.remainders = NO_REMAINDERS
 
     def put_now(self, event: Event) -> None:
         """Adds an event to the queue at the current time, with its own priority."""
-        event.left = self.left
+        event.remainders = self.remainders
         self.queue.push(self.now_us, event, event.priority)
 
     def after(self, delay: float) -> int:
@@ -308,8 +308,8 @@ class Scheduler:
         """Runs the queued events, up to a time [us], if any; warns if a run is already active."""
         if self.running:
             warn_modeller(
-                f"run was called while the model is running (at {self.time:g} s): what follows waits for its end; "
-                "to let time pass, yield a number of seconds"
+                f"run was called while the model is running (at {self.time:g} s): "
+                "the calling code continues only when the inner run has ended; to let time pass, yield a number of seconds"
             )
         before, self.running = self.running, True
         try:
@@ -345,7 +345,7 @@ class Scheduler:
                     raise self._standstill(heap[0][3])
             self.step += 1
             _, queue.sum, _, event = heappop(heap)
-            self.left = event.left
+            self.remainders = event.remainders
             if isinstance(event, Event):
                 self._happen(event)
             else:
@@ -391,7 +391,7 @@ class Scheduler:
         last = self.fired
         whose = getattr(getattr(event.call, "__self__", None), "_path", None)
         return SchedulerError(
-            f"time stands still at {self.time:g} s: {STANDSTILL:,} events happened without any passing; the last was {event.describe()}"
+            f"endless loop at {self.time:g} s: {STANDSTILL:,} events without any time passing; the last was {event.describe()}"
             + (f" of '{whose}'" if whose else "")
             + (f", the production that fired last '{last.name}' ({last.place})" if last is not None else "")
         )
@@ -418,7 +418,7 @@ class Scheduler:
                 self.ended_by = "stop"
                 return
         self.now_us = time
-        self.left = NOTHING_LEFT
+        self.remainders = NO_REMAINDERS
         self.queue.sum = total
         LOG.time_us = time
 
@@ -427,7 +427,7 @@ class Scheduler:
         if time > self.now_us:
             self.queue.sum += seconds(time - self.now_us)
             self.now_us = LOG.time_us = time
-            self.forget_left()
+            self.discard_remainders()
 
     def finish(self, event: Event) -> None:
         """Marks an event as finished, and wakes the events that wait for it."""

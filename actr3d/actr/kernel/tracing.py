@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from actr3d.actr.chunks.chunk import LASTING_TYPES, Chunk
+from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES, Chunk
 from actr3d.actr.kernel.tree import TreeNode, path_of
 from actr3d.values import Naming, plain
 
@@ -18,9 +18,9 @@ def _known_part(value: Any) -> str | None:
 
 def traceable(value: Any) -> Any:
     """Returns what a trace keeps of a value: plain values unchanged, chunks, lists and dicts as a copy, parts by their path."""
-    if type(value) in LASTING_TYPES:
+    if type(value) in IMMUTABLE_TYPES:
         return value
-    if type(value) is Chunk and LASTING_TYPES.issuperset(map(type, value.values())):
+    if type(value) is Chunk and IMMUTABLE_TYPES.issuperset(map(type, value.values())):
         return lasting_slots(value)
     return plain(value, _known_part)
 
@@ -35,7 +35,7 @@ def chunk_text(chunk: Chunk) -> str:
     text = chunk.cached_text
     if text is not None:
         return text
-    if LASTING_TYPES.issuperset(map(type, chunk.values())):
+    if IMMUTABLE_TYPES.issuperset(map(type, chunk.values())):
         return str(chunk)
     kept = {key: traceable(value) for key, value in chunk.items()}
     return (Naming if any(type(value) is Naming for value in kept.values()) else str)(Chunk(kept))

@@ -21,8 +21,8 @@ class TreeNode:
     def get_children(self) -> list[Any]:
         """Returns the models directly below this one, in the order in which they were added.
 
-        In models written for python_actr, without the child that brought this model to life by joining it: python_actr 1.9.5
-        does not see that one, and its vision modules do not either.
+        In models written for python_actr, the child whose attachment converted this model is left out: python_actr 1.9.5 does
+        not list it, so its vision modules do not see it either.
         """
         overlooked = self.__dict__.get("_overlooked")
         return [part for part in children_of(self) if part is not overlooked]

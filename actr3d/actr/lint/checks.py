@@ -19,7 +19,7 @@ from actr3d.actr.lint.classes import check_names_in_modules, check_names_of_meth
 from actr3d.actr.lint.contradictions import check_contradictions
 from actr3d.actr.lint.method_calls import check_actions, check_modeller_method
 from actr3d.actr.lint.patterns import check_patterns, check_slots, check_variables
-from actr3d.actr.procedural.production_system import ProductionSystem, rules_of
+from actr3d.actr.procedural.production_system import ProductionSystem, procedural_state_of
 
 _CHECKED: WeakSet[type] = WeakSet()
 _CHECKED_CLASSES: WeakSet[type] = WeakSet()
@@ -28,7 +28,7 @@ _WANTED: ContextVar[bool] = ContextVar("_WANTED", default=True)
 
 @contextmanager
 def unchecked() -> Generator[None]:
-    """Lets agents begin without checks within the block, where nobody reads warnings."""
+    """Disables the checks of agents that start inside the block, for runs whose warnings nobody reads."""
     before = _WANTED.set(False)
     try:
         yield
@@ -46,19 +46,19 @@ def check_agent(system: ProductionSystem) -> Callable[[], None] | None:
     if type(system) in _CHECKED or not _WANTED.get():
         return None
     _CHECKED.add(type(system))
-    rules = rules_of(system)
-    for production in rules.productions:
+    state = procedural_state_of(system)
+    for production in state.productions:
         check_contradictions(production)
         check_variables(production)
         check_patterns(production)
-    for production in (*rules.initializers, *rules.productions):
-        check_actions(production, rules.productions)
+    for production in (*state.initializers, *state.productions):
+        check_actions(production, state.productions)
     check_classes(top_of(system))
     check_parameters(system)
-    check_names_in_modules(system, rules.context)
+    check_names_in_modules(system, state.context)
 
     def check_names() -> None:
-        for production in rules.productions:
+        for production in state.productions:
             check_slots(production)
 
     return check_names

@@ -92,7 +92,10 @@ def check_parameters(system: WithParameters) -> None:
 
 
 def check_names_in_modules(system: Model, context: Mapping[str, Any]) -> None:
-    """Warns about names that an agent's utility modules were given and that its productions do not see."""
+    """Warns about names in the parameters of utility modules that are no attributes of the agent or its ancestors.
+
+    An example is `PMCompile(keep='goall')`.
+    """
     for module in utility_modules(system):
         for parameter, name in module.names_in_productions:
             if name not in context:

@@ -18,7 +18,7 @@ def check_contradictions(production: Production) -> None:
     tests = [condition for condition in production.conditions if condition.op != "call"]
     empty = {condition.name for condition in tests if condition.op == "empty"}
     filled = {condition.name for condition in tests if condition.op != "empty"}
-    reasons = [f"'{name}' must be empty and hold a chunk at once" for name in sorted(str(n) for n in empty & filled)]
+    reasons = [f"'{name}' must be empty and contain a chunk at the same time" for name in sorted(str(n) for n in empty & filled)]
     slots: dict[tuple[str | None, Any], list[Condition]] = {}
     for condition in tests:
         slots.setdefault((condition.name, condition.key), []).append(condition)
@@ -42,7 +42,7 @@ def _in_one_slot(conditions: Iterable[Condition]) -> str:
     for condition in conditions:
         sets.get(condition.op, set()).add(condition.value)
     if len(wanted) > 1:
-        return f"must be {' and '.join(repr(v) for v in sorted(wanted))} at once"
+        return f"must be {' and '.join(repr(v) for v in sorted(wanted))} at the same time"
     if wanted & refused:
         return f"must and must not be {wanted.pop()!r}"
     if same & different:
@@ -83,7 +83,7 @@ class _Equals:
 
 
 def _across_slots(conditions: Iterable[Condition]) -> list[str]:
-    """Returns the contradiction in variables that several slots share, or an empty text."""
+    """Returns the contradiction in variables that several slots share, as a list of at most one text."""
     equals = _Equals()
     pairs: list[tuple[Condition, Thing, Thing]] = []
     for condition in conditions:
@@ -96,7 +96,7 @@ def _across_slots(conditions: Iterable[Condition]) -> list[str]:
         if condition.op in ("bind", "same"):
             values = sorted(equals.join(variable, slot))
             if len(values) > 1:
-                return [f"?{condition.value} must be {values[0]!r} and {values[1]!r} at once"]
+                return [f"?{condition.value} must be {values[0]!r} and {values[1]!r} at the same time"]
     for condition, slot, variable in pairs:
         where = f"{condition.name}'s slot '{condition.key}'"
         value = equals.value(slot)

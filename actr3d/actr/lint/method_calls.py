@@ -141,7 +141,9 @@ def _check_slots(call: ast.Call, owner: object, method: str, func: Callable[...,
         slots = [slot for slot in slots_in(text) if slot not in read | words.mentioned | words.modified]
         read &= words.giving  # slots that are read but never set are reported where they are read
         near = [(slot, slip_of(slot, (other for other in read if words.apart(slot, other)))) for slot in slots]
-        found = [(slot, f"nothing ever looks at a slot '{slot}'", f"; did you mean '{meant}'?") for slot, meant in near if meant]
+        found = [
+            (slot, f"no production and no request reads a slot '{slot}'", f"; did you mean '{meant}'?") for slot, meant in near if meant
+        ]
     else:
         return
     for slot, what, hint in found:
@@ -188,7 +190,7 @@ def _check_values(call: ast.Call, production: Production, productions: Sequence[
             meant = _VARIABLE.sub("{\\1}", value)
             hint = f"; with the variable's value it is {keyword.arg}=f'{meant}'"
         elif len(value.split()) > 1 and _is_compared(keyword.arg, productions):
-            hint = ", which no pattern can name, for there is a space in it; write one word"
+            hint = "; no pattern can match it, because it contains a space; write one word"
         else:
             continue
         message = f"production '{production.name}': {keyword.arg}={value!r} stores this text literally{hint}"

@@ -1,8 +1,8 @@
 """Import isolation: what the files of one program share, namely the meaning of `import`, and their texts.
 
-Every file that is loaded here, including helper modules, has its own builtins, whose `__import__` is the program's. So the old
-names mean this library in it, whenever and in whatever thread it imports them, and in no other files. Helper modules are
-those beside the program, and those in folders that the program has added to `sys.path`.
+Every file that is loaded here, including helper modules, has its own builtins, whose `__import__` is the program's. Therefore
+`python_actr` and `ccm` mean this library in these files, at any time and in any thread, and in no other files. Helper modules
+are those beside the program, and those in folders that the program has added to `sys.path`.
 """
 
 from __future__ import annotations

@@ -48,7 +48,10 @@ def sealed(file: str, source: str, helpers: Mapping[str, Sequence[str]], within:
     """
     foreign = sorted(_IN_USE & {name.partition(".")[0] for name in helpers})
     if foreign:
-        raise RecordingError(f"the recording holds modules that no program can have loaded: Python's own are in use ({', '.join(foreign)})")
+        raise RecordingError(
+            "the recording contains helper modules that no program can have loaded: "
+            f"Python uses modules of these names ({', '.join(foreign)})"
+        )
     with _LOCK, tempfile.TemporaryDirectory(prefix="actr3d-replay-", dir=within) as name:
         folder, folders = Path(name), installed_folders()
         _lay_out(folder, [(Path(file).name, source), *helpers.values()])

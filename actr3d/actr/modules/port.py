@@ -1,4 +1,4 @@
-"""The port: an agent's connection to its body; it sends commands, and asks for what the body senses."""
+"""The port: an agent's connection to its body; it sends commands, and requests readings of sensors."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from actr3d.errors import Actr3dError, SimulationError
 from actr3d.warnings import is_library, of_library
 
 RAW_VISION = ("view", "image", "depth")
-"""Sensors of the eye, that only a vision module should ask a body for; any other part of an agent thereby bypasses vision."""
+"""Raw sensors of the eye. Only a vision module should read them; any other part of an agent that reads them bypasses vision."""
 
 
 class Reading(Event):
-    """An answer that the body will give: `yield reading` waits for it, `reading.value` is it."""
+    """An answer that the body will give: `yield reading` waits for it, then `reading.value` is the answer."""
 
     __slots__ = ("_value", "word")
 
@@ -289,4 +289,4 @@ def note_request(error: Exception, port: Port, site: CallSite | None) -> None:
         where = f" in {site.describe()}"
         if isinstance(error, Actr3dError) and all(of_library(frame.f_code) for frame, _ in walk_tb(error.__traceback__)):
             error.at(site.file, site.line)
-    error.add_note(f"  asked for by '{path_of(port)}'{where}")
+    error.add_note(f"  requested by '{path_of(port)}'{where}")

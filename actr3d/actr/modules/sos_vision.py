@@ -23,6 +23,7 @@ class SOSVision(WithParameters, Model):
     Args:
         buffer: The buffer for what is seen.
         delay: The duration of a search [s].
+        log: Ignored; kept for existing models.
         delay_sd: The standard deviation of the duration [s]; None for no noise.
 
     Source: SOS Vision (West & Emond 2002).

@@ -64,8 +64,8 @@ class ACTR(ProductionSystem):
     def _process_productions(self) -> Iterator[Any]:
         """Matches, chooses the best, waits, matches again, fires; then waits for everything else at that moment."""
         self._begin()
-        rules = self._rules
-        matcher = rules.matcher
+        state = self._procedural
+        matcher = state.matcher
         assert matcher is not None
         adaptors = self._adaptors
         sch = self.sch
@@ -73,7 +73,7 @@ class ACTR(ProductionSystem):
         while True:
             if self.production_match_delay > 0:
                 yield self.production_match_delay
-            matching = rules.without_forbidden(matcher.matching()) if sch.trace is None else self._match()
+            matching = state.without_forbidden(matcher.matching()) if sch.trace is None else self._match()
             choice = self._choose(matching) if matching else None
             if choice is None:
                 yield self._top.changes
@@ -82,7 +82,7 @@ class ACTR(ProductionSystem):
                 adaptor.selecting(choice)
             self._select(choice)
             yield self._duration()
-            if rules.chosen is not choice:  # a user has withdrawn it
+            if state.chosen is not choice:  # a user has withdrawn it
                 continue
             if not matcher.matches(choice):
                 self._abandon(choice)
@@ -100,7 +100,7 @@ class ACTR(ProductionSystem):
         if len(matching) == 1 and self._indifferent and self.production_threshold is None:
             if trace is not None and trace.all:
                 only = matching[0]
-                data = {"utilities": {only.name: only.base_utility}, **self._rules.by_hand}
+                data = {"utilities": {only.name: only.base_utility}, **self._procedural.by_hand}
                 trace.emit(self.sch.now_us, self._path, "conflict", data)
             return pick(self.random, matching)
         parts: list[list[float]] = []
@@ -119,7 +119,7 @@ class ACTR(ProductionSystem):
         weighed = self.__dict__["_weighed"] = Weighed(matching, utilities, parts, threshold)
         if trace is not None and trace.all:
             self._trace_utilities(weighed, trace)
-        wanted = self._rules.wanted_of(matching)
+        wanted = self._procedural.wanted_of(matching)
         if wanted is not None:
             return wanted
         if threshold is not None and best < threshold:
@@ -148,7 +148,7 @@ class ACTR(ProductionSystem):
             data["drawn"] = self._drawn_names()
         if threshold is not None:
             data["threshold"] = threshold
-        data |= self._rules.by_hand
+        data |= self._procedural.by_hand
         trace.emit(self.sch.now_us, self._path, "conflict", data)
 
     def _trace_state(self, trace: Trace) -> None:
@@ -170,7 +170,7 @@ class ACTR(ProductionSystem):
         return {adaptor.name: known_part(adaptor, production) for adaptor in self._adaptors}
 
     def _latest_choice(self) -> ConflictSet | None:
-        weighed, matcher, picked = self._weighed, self._rules.matcher, self._rules.chosen
+        weighed, matcher, picked = self._weighed, self._procedural.matcher, self._procedural.chosen
         if weighed is None or matcher is None or weighed.matching is not matcher.last:
             return super()._latest_choice()
         matching, utilities, parts, threshold = weighed
@@ -181,7 +181,7 @@ class ACTR(ProductionSystem):
             threshold=threshold,
             weighed=True,
             chosen=picked.name if picked is not None else None,
-            **self._rules.by_hand,
+            **self._procedural.by_hand,
         )
 
     def _duration(self) -> float:
@@ -193,7 +193,7 @@ class ACTR(ProductionSystem):
         return max(0, time - self.production_match_delay)
 
     def _abandon(self, choice: Production) -> None:
-        self._rules.chosen = None
+        self._procedural.chosen = None
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "changed", {"production": choice.name})
@@ -210,7 +210,10 @@ class ACTR(ProductionSystem):
             module.create(production)
 
     def reward(self, value: float) -> None:
-        """Applies a reward to the productions that fired before it."""
+        """Applies a reward.
+
+        `PMNew` and `PMPGC` apply it to all productions chosen since the last reward, `PMTD` to the one that fired last.
+        """
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "reward", {"value": value})

@@ -93,7 +93,7 @@ class CompiledProduction(Production):
 
 
 def _filled(pattern: Any, bound: Bindings) -> Any:
-    """Returns a pattern with the values of its variables in its text, to be read by people: a value need not be a word of a pattern."""
+    """Returns a pattern with its variables replaced by their values, for display only: the result need not be a valid pattern."""
     if isinstance(pattern, str):
         # The longest name first: ?a must not match the beginning of ?ab.
         for name in sorted(bound, key=len, reverse=True):

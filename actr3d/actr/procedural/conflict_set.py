@@ -23,7 +23,7 @@ class ConflictSet:
     forbidden: Collection[str] = ()
     """The productions that matched, and were left out because a user had forbidden them once."""
     wanted: str | None = None
-    """The production that was chosen because a user had it fire."""
+    """The production that was chosen because a user made it fire next."""
 
     @property
     def held_back(self) -> bool:
@@ -31,8 +31,8 @@ class ConflictSet:
         return self.threshold is not None and bool(self.utilities) and max(self.utilities.values()) < self.threshold
 
     @property
-    def stands(self) -> bool:
-        """Whether it still says something: a production is about to fire, or none was allowed to."""
+    def is_current(self) -> bool:
+        """Whether it is still current: a production is about to fire, or every production was below the threshold or forbidden."""
         return self.chosen is not None or self.held_back or bool(self.forbidden)
 
     def verdict(self, name: str) -> str | None:
@@ -40,12 +40,12 @@ class ConflictSet:
         if name in self.forbidden:
             return "left out: the user had forbidden it once"
         if self.wanted is not None and self.wanted == self.chosen:
-            return "selected: the user had it fire next" if name == self.wanted else f"not selected: the user had {self.wanted} fire next"
+            return "selected: the user made it fire next" if name == self.wanted else f"not selected: the user made {self.wanted} fire next"
         utility = self.utilities.get(name)
         if self.held_back:
             if utility is None:
                 return "did not match when utilities were last compared"
-            return f"held back: its utility {utility:.4g} is below the production threshold {self.threshold:.4g}"
+            return f"not selected: its utility {utility:.4g} is below the production threshold {self.threshold:.4g}"
         if self.chosen is None:
             return None
         if self.chosen not in self.utilities:  # a trace that begins later does not contain them

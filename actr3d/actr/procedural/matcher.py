@@ -1,4 +1,4 @@
-"""Finds the productions that match: productions that test for a certain value are indexed by it, so that the others cost nothing.
+"""Finds the productions that match: those that test a slot for a value are indexed by it, and tried only if the slot has it.
 
 Each production is compiled into straight-line code that reads each slot at most once, and only if all tests before it hold.
 No reasons are kept: `actr3d.actr.explain.trial` tests the conditions of a production again when somebody asks why it does not match.
@@ -16,15 +16,15 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from actr3d.actr.chunks.chunk import LASTING_TYPES, as_text, plain_text
-from actr3d.actr.chunks.pattern import MISSING, Bindings, Condition, Missing, calls, get_attribute, is_empty, look_up, slot_named
+from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES, as_text, plain_text
+from actr3d.actr.chunks.pattern import MISSING, Bindings, Condition, Missing, function_matches, get_attribute, is_empty, look_up, slot_named
 from actr3d.actr.kernel.buffer import UNKNOWN, Buffer, plain_empty, plain_value, reads_chunk
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tracing import UNWATCHED
 from actr3d.actr.procedural.production import Production
 
 MatchedPlace = tuple[str, Any]
-"""What is read: the name of an object, and a slot; a slot of None asks whether the object is empty."""
+"""What is read: the name of an object, and a slot; the slot None means the test whether the object is empty."""
 
 
 class Matcher:
@@ -282,7 +282,7 @@ def _holds(extra: tuple[Condition, Any], bound: Bindings) -> bool:
     if condition.op == "empty":
         return is_empty(target)
     if condition.op == "call":
-        return calls(condition.value, target, bound)
+        return function_matches(condition.value, target, bound)
     key = bound.get(str(condition.key)[1:], MISSING)
     found = MISSING if key is MISSING else look_up(target, slot_named(key))
     if found is MISSING:
@@ -320,7 +320,7 @@ def _plain(bound: Bindings) -> dict[str, Any]:
     """Returns variables as a trace keeps them: plain values unchanged, others as text."""
     found: dict[str, Any] = {}
     for name, value in bound.items():
-        found[name] = value if type(value) in LASTING_TYPES else plain_text(value) or f"<{type(value).__name__}>"
+        found[name] = value if type(value) in IMMUTABLE_TYPES else plain_text(value) or f"<{type(value).__name__}>"
     return found
 
 
@@ -339,7 +339,7 @@ def records_changes(target: Any, key: Any) -> bool:
 def _lasts(target: Any, key: str) -> bool:
     """Returns whether an attribute's current value is immutable."""
     own: dict[str, Any] = target.__dict__
-    return type(own.get(key, MISSING)) in LASTING_TYPES
+    return type(own.get(key, MISSING)) in IMMUTABLE_TYPES
 
 
 class Observed:

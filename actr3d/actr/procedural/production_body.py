@@ -193,8 +193,8 @@ def _refuse_waiting(statements: Iterable[ast.stmt], name: str, filename: str) ->
             if isinstance(part, (ast.Yield, ast.YieldFrom, ast.Await)):
                 word = "awaits" if isinstance(part, ast.Await) else "yields"
                 raise ProductionException(
-                    f"{filename}:{part.lineno}: production '{name}' {word}; a production acts at once: "
-                    "let it call a generator method, which may wait"
+                    f"{filename}:{part.lineno}: production '{name}' {word}; the body of a production cannot wait: "
+                    "call a generator method, which can"
                 ).at(filename, part.lineno)
 
 

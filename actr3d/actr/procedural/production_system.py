@@ -34,7 +34,7 @@ EXPLAINERS: list[Callable[[ProductionSystem, float | None], Explanation]] = []
 
 
 @dataclass(eq=False)
-class Rules:
+class ProceduralState:
     """The productions of a system, and the state of its cycle.
 
     They are kept apart from the system because productions see every public attribute of a model.
@@ -54,9 +54,9 @@ class Rules:
     forbidden: set[str] = field(default_factory=set[str])
     """The productions that a user has forbidden: each is left out of the next choice for which it matches."""
     wanted: Production | None = None
-    """The production that a user has fire next."""
+    """The production that a user makes fire next."""
     by_hand: dict[str, Any] = field(default_factory=dict[str, Any])
-    """What of the latest choice is due to a user: the names that were `forbidden`, the production that was `wanted`."""
+    """How a user has changed the latest choice: the productions that were left out as `forbidden`, and the `wanted` one."""
 
     def add(self, production: Production) -> None:
         """Adds a production during the run."""
@@ -97,12 +97,12 @@ class ProductionSystem(WithParameters, Model):
     production_time: NotNegative | Callable[[], float] = 0.05
     """How long a production takes to fire [s]; a number, or a function without arguments."""
     production_match_delay: NotNegative = 0
-    """How long matching takes, as a part of that [s]."""
+    """The part of `production_time` that matching takes [s]."""
     _auto_run_start = False
     _by_utility = False
 
-    _rules: Rules
-    # Parts of the rules under the names that python_actr has, for existing models.
+    _procedural: ProceduralState
+    # Parts of that state under the names that python_actr has, for existing models.
     _productions: list[Production]
     _initializers: list[Production]
     _context: dict[str, Any]
@@ -115,8 +115,8 @@ class ProductionSystem(WithParameters, Model):
             objects["profile"] = wanted
             own["_profile"] = find_profile(wanted, f"{type(self).__name__}.profile")
             self.sch.round_ms = self.sch.round_ms or own["_profile"].whole_milliseconds
-        rules = own["_rules"] = Rules(by_utility=self._by_utility)
-        own["_productions"], own["_initializers"] = rules.productions, rules.initializers
+        state = own["_procedural"] = ProceduralState(by_utility=self._by_utility)
+        own["_productions"], own["_initializers"] = state.productions, state.initializers
         for name in sorted(FUNCTION_PARAMETERS & methods.keys()):
             if defaults_of(methods[name]) is not None:  # a plain function: it computes the parameter
                 objects[name] = methods.pop(name)
@@ -125,7 +125,7 @@ class ProductionSystem(WithParameters, Model):
         for name, func in methods.items():
             patterns = defaults_of(func)
             if patterns is not None:
-                (rules.productions if patterns else rules.initializers).append(Production(self, name, func))
+                (state.productions if patterns else state.initializers).append(Production(self, name, func))
         own["_process"] = self.sch.add(self._process_productions)
 
     def _settable(self) -> set[str]:
@@ -145,50 +145,50 @@ class ProductionSystem(WithParameters, Model):
             if not matching:
                 yield self._top.changes
                 continue
-            choice = self._rules.wanted_of(matching) or pick(self.random, matching)
+            choice = self._procedural.wanted_of(matching) or pick(self.random, matching)
             self._select(choice)
             yield self._duration()
-            if self._rules.chosen is choice:  # otherwise a user has withdrawn it
+            if self._procedural.chosen is choice:  # otherwise a user has withdrawn it
                 self._fire(choice)
 
     def _begin(self) -> None:
         """Determines what productions see by name, runs the methods without parameters, and builds the matcher."""
         _determine_context(self)
-        rules = self._rules
+        state = self._procedural
         afterwards = [check(self) for check in BEFORE_FIRST_CYCLE]
-        for production in rules.initializers:
+        for production in state.initializers:
             production.bound = {}
             trace = self.sch.trace
             if trace is not None and trace.all:
                 trace.emit(self.sch.now_us, self._path, "initialize", {"method": production.name})
             production.fire()
             if self.sch.bound:  # every production sees what an initializer assigns
-                rules.context.update(self.sch.bound)
-        for production in rules.productions:
+                state.context.update(self.sch.bound)
+        for production in state.productions:
             production.share_globals()
         for check in afterwards:
             if check is not None:
                 check()
-        matcher = rules.matcher = Matcher(rules.context)
-        matcher.build(rules.productions)
+        matcher = state.matcher = Matcher(state.context)
+        matcher.build(state.productions)
 
     def _match(self) -> list[Production]:
         """Returns the productions that match now; records in the trace what they read beyond buffers and modules."""
-        matcher = self._rules.matcher
+        matcher = self._procedural.matcher
         assert matcher is not None
-        matching = self._rules.without_forbidden(matcher.matching())
+        matching = self._procedural.without_forbidden(matcher.matching())
         trace = self.sch.trace
         if trace is not None and trace.all:
             if matcher.observed.used:
                 self._observe(trace)
             if not matching or not self._by_utility:
                 utilities = {production.name: production.base_utility for production in matching}
-                trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities, **self._rules.by_hand})
+                trace.emit(self.sch.now_us, self._path, "conflict", {"utilities": utilities, **self._procedural.by_hand})
         return matching
 
     def _observe(self, trace: Trace) -> None:
         """Records in the run's trace what has changed of what productions see, beyond what the trace records by itself."""
-        matcher = self._rules.matcher
+        matcher = self._procedural.matcher
         seen = matcher.observed.news(trace) if matcher is not None else {}
         if seen:
             trace.emit(self.sch.now_us, self._path, "observe", seen)
@@ -196,18 +196,18 @@ class ProductionSystem(WithParameters, Model):
     def _trace_state(self, trace: Trace) -> None:
         super()._trace_state(trace)
         if trace.all:
-            rules = self._rules
-            matcher, chosen = rules.matcher, rules.chosen
+            state = self._procedural
+            matcher, chosen = state.matcher, state.chosen
             data = {
-                "productions": [production.name for production in rules.productions],
-                "initializers": [production.name for production in rules.initializers],
+                "productions": [production.name for production in state.productions],
+                "initializers": [production.name for production in state.initializers],
                 "chosen": None if chosen is None else chosen.name,
                 "matched": [] if matcher is None else [production.name for production in matcher.last],
                 "drawn": self._drawn_names(),
             }
-            choice = standing_choice(self)
+            choice = current_choice(self)
             if choice is not None:
-                data |= {"utilities": choice.utilities, "parts": choice.parts, "threshold": choice.threshold, **rules.by_hand}
+                data |= {"utilities": choice.utilities, "parts": choice.parts, "threshold": choice.threshold, **state.by_hand}
             trace.emit(self.sch.now_us, self._path, "productions", data)
             if trace is self.sch.trace:
                 self._observe(trace)
@@ -229,16 +229,16 @@ class ProductionSystem(WithParameters, Model):
 
     def _latest_choice(self) -> ConflictSet | None:
         """Returns the conflict set of the latest match; None before the first."""
-        rules = self._rules
-        if rules.matcher is None:
+        state = self._procedural
+        if state.matcher is None:
             return None
-        utilities = {production.name: production.base_utility for production in rules.matcher.last}
-        chosen = rules.chosen.name if rules.chosen is not None else None
-        return ConflictSet(utilities=utilities, parts={}, threshold=None, weighed=self._by_utility, chosen=chosen, **rules.by_hand)
+        utilities = {production.name: production.base_utility for production in state.matcher.last}
+        chosen = state.chosen.name if state.chosen is not None else None
+        return ConflictSet(utilities=utilities, parts={}, threshold=None, weighed=self._by_utility, chosen=chosen, **state.by_hand)
 
     def _select(self, choice: Production) -> None:
         """Records which production will fire."""
-        self._rules.chosen = choice
+        self._procedural.chosen = choice
         trace = self.sch.trace
         if trace is not None and trace.production:
             trace.emit(self.sch.now_us, self._path, "select", {"production": choice.name})
@@ -250,7 +250,7 @@ class ProductionSystem(WithParameters, Model):
         return (time() if callable(time) else time) - self.production_match_delay
 
     def _fire(self, choice: Production) -> None:
-        self._rules.chosen = None
+        self._procedural.chosen = None
         trace = self.sch.trace
         if trace is not None and trace.production:
             bound = traceable(choice.bound) if choice.more_bound else dict(choice.bound or {})
@@ -276,9 +276,9 @@ class ProductionSystem(WithParameters, Model):
 # every public name of a model; the private methods are those that `ACTR` extends.
 
 
-def rules_of(system: ProductionSystem) -> Rules:
+def procedural_state_of(system: ProductionSystem) -> ProceduralState:
     """Returns the productions of a system and the state of its cycle; empty before the system is converted."""
-    return system.__dict__.get("_rules") or Rules()
+    return system.__dict__.get("_procedural") or ProceduralState()
 
 
 def system_of(production: Production) -> ProductionSystem:
@@ -288,7 +288,7 @@ def system_of(production: Production) -> ProductionSystem:
 
 def prepare_context(system: ProductionSystem) -> None:
     """Determines what the productions of a system see by name, if it has not begun to run."""
-    if rules_of(system).matcher is None:
+    if procedural_state_of(system).matcher is None:
         _determine_context(system)
 
 
@@ -296,11 +296,11 @@ def _determine_context(system: ProductionSystem) -> None:
     """Determines what the productions of a system see by name.
 
     Raises:
-        ProductionException: If a production matches on a name that there is not.
+        ProductionException: If a production tests a name that neither the agent nor its ancestors have.
     """
     context: dict[str, Any] = {}
     top: Model = system
-    rules = rules_of(system)
+    state = procedural_state_of(system)
     for above in lineage(system):
         for name, value in above.__dict__.items():
             if name[0] != "_" and name != "parent" and name not in context and not isinstance(value, MethodWrapper):
@@ -309,8 +309,8 @@ def _determine_context(system: ProductionSystem) -> None:
     context["self"] = system
     context["top"] = top
     system.__dict__["_top"] = top
-    system.__dict__["_context"] = rules.context = context
-    for production in (*rules.initializers, *rules.productions):
+    system.__dict__["_context"] = state.context = context
+    for production in (*state.initializers, *state.productions):
         production.context = context
         for name in production.keys:
             if name not in context:
@@ -322,7 +322,7 @@ def _determine_context(system: ProductionSystem) -> None:
 
 def add_production(system: ProductionSystem, production: Production) -> None:
     """Adds a production during the run (compilation)."""
-    rules_of(system).add(production)
+    procedural_state_of(system).add(production)
     trace = system.sch.trace
     if trace is not None and trace.all:
         trace_utility_parts(system, production, trace)
@@ -336,53 +336,53 @@ def trace_utility_parts(system: ProductionSystem, production: Production, trace:
             trace.emit(system.sch.now_us, path_of(system), "utility", data)
 
 
-def see_again(system: ProductionSystem, part: Model, name: str) -> None:
-    """Has the bodies of a system see the present value of a part's attribute, if they see that attribute by its bare name."""
-    rules = rules_of(system)
-    if name in rules.context and next(above for above in lineage(system) if name in above.__dict__) is part:
-        rules.context[name] = part.__dict__[name]
-        for production in (*rules.initializers, *rules.productions):
+def refresh_attribute(system: ProductionSystem, part: Model, name: str) -> None:
+    """Updates the value of a part's attribute in the bodies of a system's productions, if they use it by its plain name."""
+    state = procedural_state_of(system)
+    if name in state.context and next(above for above in lineage(system) if name in above.__dict__) is part:
+        state.context[name] = part.__dict__[name]
+        for production in (*state.initializers, *state.productions):
             production.forget_body()
 
 
 def choose_next(system: ProductionSystem, production: Production) -> None:
-    """Has a production be chosen at the next match if it matches then, in place of the one that is about to fire."""
-    rules_of(system).wanted = production
-    rules_of(system).forbidden.discard(production.name)
+    """Makes a production the choice of the next match, if it matches then; withdraws the one that is about to fire."""
+    procedural_state_of(system).wanted = production
+    procedural_state_of(system).forbidden.discard(production.name)
     _withdraw(system)
 
 
 def leave_out_once(system: ProductionSystem, production: Production) -> None:
     """Leaves a production out of the next choice for which it matches; if it is about to fire, that choice is made again now."""
-    rules = rules_of(system)
-    rules.forbidden.add(production.name)
-    if rules.chosen is production:
+    state = procedural_state_of(system)
+    state.forbidden.add(production.name)
+    if state.chosen is production:
         _withdraw(system)
 
 
 def _withdraw(system: ProductionSystem) -> None:
     """Withdraws the production that is about to fire, if any, and matches again now."""
-    rules, sch = rules_of(system), system.sch
+    state, sch = procedural_state_of(system), system.sch
     process, changes = system.__dict__["_process"], system.__dict__.get("_top", system).changes
     waits = any(event is process for event in changes.waiting)
-    if rules.chosen is None and not waits:
+    if state.chosen is None and not waits:
         return  # it is about to match anyway
-    if rules.chosen is not None:
-        withdrawn, rules.chosen = rules.chosen, None
+    if state.chosen is not None:
+        withdrawn, state.chosen = state.chosen, None
         for module in utility_modules(system):
             module.withdrawn(withdrawn)
         if sch.trace is not None and sch.trace.production:
             sch.trace.emit(sch.now_us, path_of(system), "withdrawn", {"production": withdrawn.name})
     changes.waiting = [event for event in changes.waiting if event is not process]
     sch.drop([process])
-    sch.forget_left()
+    sch.discard_remainders()
     sch.put_now(process)
 
 
-def standing_choice(system: ProductionSystem) -> ConflictSet | None:
+def current_choice(system: ProductionSystem) -> ConflictSet | None:
     """Returns the latest conflict set until the chosen production fires; one in which none was chosen, until the next."""
     choice = system._latest_choice()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
-    return choice if choice is not None and choice.stands else None
+    return choice if choice is not None and choice.is_current else None
 
 
 def utility_parts(system: ProductionSystem, production: Production) -> dict[str, float | None]:

@@ -107,8 +107,8 @@ class PMNoise(ProceduralSubModule):
     """Adds logistic noise to utilities.
 
     Args:
-        noise: s of the noise drawn at each choice.
-        baseNoise: s of the noise drawn once for each production.
+        noise: The scale s of the logistic noise drawn at each choice.
+        baseNoise: The scale s of the logistic noise drawn once for each production.
     """
 
     _decisive = frozenset({"noise"})
@@ -225,14 +225,14 @@ class PMPGC(RewardLearning):
 
 
 class PMPGCSuccessWeighted(PMPGC):
-    """PMPGC with P = 1 and the cost counted for each success."""
+    """PMPGC with P = 1 and the cost per success: U = G - time / successes."""
 
     def utility(self, prod: Any) -> float:
         return 1.0 * self.goal - prod.time / prod.successes
 
 
 class PMPGCMixedWeighted(PMPGC):
-    """PMPGC with the cost counted for each success."""
+    """PMPGC with the cost per success: U = P G - time / successes."""
 
     def utility(self, prod: Any) -> float:
         return prod.successes / (prod.successes + prod.failures) * self.goal - prod.time / prod.successes
