@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import radians
@@ -65,7 +64,7 @@ class BodyPart:
 
 
 class Limbs:
-    """A motor module's knowledge of its body, updated with each reading.
+    """A motor module's knowledge of its body that follows from the plan of the body.
 
     Args:
         plan: The description of the body.
@@ -76,8 +75,6 @@ class Limbs:
         self.joints: dict[str, JointPlan] = {joint.name: joint for part in plan.parts for joint in part.joints}
         self.order = tuple(self.joints)
         """The joints in the order of readings."""
-        self.number = {joint: number for number, joint in enumerate(self.order)}
-        """By joint, its index there."""
         self.shown_as = {name: f"{name}_{'angle' if joint.kind == 'hinge' else 'position'}" for name, joint in self.joints.items()}
         """By joint, the motor module's attribute with its felt position."""
         self.unit = {name: radians(1) if joint.kind == "hinge" else 1.0 for name, joint in self.joints.items()}
@@ -90,48 +87,6 @@ class Limbs:
         """All muscle groups."""
         self.fastest = plan.fastest or (math.inf, math.inf, math.inf)
         """Greatest speeds of walking [m/s], turning [rad/s] and joints [rad/s]."""
-        self.felt: dict[str, float] = {}
-        """By joint, its felt position [rad] or [m]."""
-        self.minimum: dict[str, float] = {}
-        self.maximum: dict[str, float] = {}
-
-    def feel(self, positions: Mapping[str, float]) -> None:
-        """Updates the felt positions of some joints [rad] or [m]."""
-        self.felt.update(positions)
-        minimum, maximum = self.minimum, self.maximum
-        for joint, position in positions.items():
-            if position < minimum.setdefault(joint, position):
-                minimum[joint] = position
-            if position > maximum.setdefault(joint, position):
-                maximum[joint] = position
-
-    def degree_of_freedom(self, joint: str) -> DegreeOfFreedom:
-        """Returns the present knowledge of a joint.
-
-        Raises:
-            WorldError: If the body has no such joint.
-        """
-        plan = self.joints[checked_name(joint, self.joints, self.plan.name, "joint")]
-        return DegreeOfFreedom(
-            name=joint,
-            axis=plan.axis,
-            lower=plan.lower,
-            upper=plan.upper,
-            angle=self.felt[joint],
-            minimum=self.minimum[joint],
-            maximum=self.maximum[joint],
-            driven=plan.driven,
-        )
-
-    def tree(self) -> BodyPart:
-        """Returns the present knowledge of all parts, from the base on."""
-        made: dict[str, BodyPart] = {}
-        for part in reversed(self.plan.parts):
-            carried = tuple(made[other.name] for other in self.plan.parts if other.on == part.name)
-            made[part.name] = BodyPart(
-                name=part.name, joints=tuple(self.degree_of_freedom(joint.name) for joint in part.joints), parts=carried
-            )
-        return made[self.plan.parts[0].name]
 
     def joint(self, name: str, axis: str | None) -> str:
         """Returns the name of a joint, given its name or the name of its part. A part with several joints also needs the axis.

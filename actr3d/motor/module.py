@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from math import copysign, radians
-from typing import Any
+from typing import Annotated, Any
+
+from annotated_types import Ge, Gt, Lt
 
 from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.declarative.memory import Memory, collect
@@ -14,7 +16,7 @@ from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import WithParameters, named_parameters
 from actr3d.actr.modules.port import CallSite, Port, Request, note_request
 from actr3d.clock import seconds
-from actr3d.errors import ParameterError, SimulationError, WorldError
+from actr3d.errors import SimulationError, WorldError
 from actr3d.motor.checks import check_patterns
 from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, DegreeOfFreedom, Limbs
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Order, Step, Turn, Walk, gait
@@ -25,7 +27,13 @@ from actr3d.world.sensors.anatomy import BodyPlan
 from actr3d.world.sensors.proprioception import Proprioception
 
 HUGE = 1e9
-"""Upper bound of every parameter."""
+"""All parameters are less than this."""
+Positive = Annotated[float, Gt(0), Lt(HUGE)]
+"""A speed, distance or time > 0."""
+FromZero = Annotated[float, Ge(0), Lt(HUGE)]
+"""A time or the scale of noise, >= 0."""
+Grid = Annotated[float, Ge(FINEST), Lt(HUGE)]
+"""The step to which numbers are rounded."""
 
 SIZES = ("width", "depth", "height", "middle")
 """The felt sizes of the body."""
@@ -81,18 +89,18 @@ class Motor(WithParameters, Port):
     @named_parameters
     def __init__(
         self,
-        buffer: Any = None,
-        memory: Any = None,
-        speed: float = 120.0,
-        angle_grid: float = 1.0,
-        size_grid: float = 0.001,
-        extreme_step: float | None = 10.0,
-        extreme_slide: float | None = 0.02,
-        angle_noise: float = 0.0,
-        size_noise: float = 0.0,
-        patience: float | None = 0.1,
-        preparation: float = 0.0,
-        initiation: float = 0.0,
+        buffer: Buffer | None = None,
+        memory: Memory | None = None,
+        speed: Positive = 120.0,
+        angle_grid: Grid = 1.0,
+        size_grid: Grid = 0.001,
+        extreme_step: Positive | None = 10.0,
+        extreme_slide: Positive | None = 0.02,
+        angle_noise: FromZero = 0.0,
+        size_noise: FromZero = 0.0,
+        patience: Positive | None = 0.1,
+        preparation: FromZero = 0.0,
+        initiation: FromZero = 0.0,
     ) -> None:
         Model.__init__(self)
         self._buffer = buffer
@@ -117,9 +125,6 @@ class Motor(WithParameters, Port):
         self.depth: float | None = None
         self.height: float | None = None
         self.middle: float | None = None
-        for name, given, kind in (("buffer", buffer, Buffer), ("memory", memory, Memory)):
-            if given is not None and not isinstance(given, kind):
-                raise ParameterError(f"Motor.{name}: must be a {kind.__name__}, or None (got {given!r})")
         self.speed = speed
         self.angle_grid = angle_grid
         self.size_grid = size_grid
@@ -130,18 +135,6 @@ class Motor(WithParameters, Port):
         self.patience = patience
         self.preparation = preparation
         self.initiation = initiation
-        self._check_parameters(vars(self))
-
-    def _check_parameters(self, values: Mapping[str, Any]) -> None:
-        for name in ("speed", "extreme_step", "extreme_slide", "patience", "angle_grid", "size_grid"):
-            if values[name] is not None and not 0 < values[name] < HUGE:
-                raise ParameterError(f"Motor.{name}: must be > 0 and < {HUGE:g} (got {values[name]!r})")
-        for name in ("angle_noise", "size_noise", "preparation", "initiation"):
-            if not 0 <= values[name] < HUGE:
-                raise ParameterError(f"Motor.{name}: must be >= 0 and < {HUGE:g} (got {values[name]!r})")
-        for name in ("angle_grid", "size_grid"):
-            if values[name] < FINEST:
-                raise ParameterError(f"Motor.{name}: must be >= {FINEST:g} (got {values[name]!r})")
 
     # -- the known body
 
@@ -152,7 +145,7 @@ class Motor(WithParameters, Port):
         Raises:
             SimulationError: If the body is not known yet.
         """
-        return self._known().tree()
+        return self._felt().tree()
 
     def joint(self, name: str) -> DegreeOfFreedom:
         """Returns the present knowledge of a joint: its position, limits and extremes. Radians.
@@ -161,12 +154,12 @@ class Motor(WithParameters, Port):
             SimulationError: If the body is not known yet.
             WorldError: If it has no such joint.
         """
-        return self._known().degree_of_freedom(name)
+        return self._felt().degree_of_freedom(name)
 
-    def _known(self) -> Limbs:
-        if self._limbs is None or self._schema is None:
+    def _felt(self) -> BodySchema:
+        if self._schema is None:
             raise SimulationError(f"'{self._path}' does not know its body yet; it learns about it in the first tick of a Simulation")
-        return self._limbs
+        return self._schema
 
     # -- legs
 
@@ -203,7 +196,7 @@ class Motor(WithParameters, Port):
 
     def _walk(self, speed: float, site: CallSite | None) -> None:
         self._need("walk")
-        self._known().check_speed("walk", speed, 0, 1.0)
+        self._felt().limbs.check_speed("walk", speed, 0, 1.0)
         walk = self._under_way.get("walk")
         if speed == 0:
             self._accept()
@@ -213,7 +206,7 @@ class Motor(WithParameters, Port):
 
     def _turn(self, angle: float | None, rate: float, site: CallSite | None) -> None:
         self._need("walk")
-        self._known().check_speed("turn", rate, 1, radians(1))
+        self._felt().limbs.check_speed("turn", rate, 1, radians(1))
         turn = self._under_way.get("turn")
         if rate == 0:
             self._accept()
@@ -231,9 +224,9 @@ class Motor(WithParameters, Port):
             self._begin({key: movement})
 
     def _stop(self, groups: Sequence[Any], site: CallSite | None) -> None:
-        plan = self._known().plan
+        plan = self._felt().limbs.plan
         for group in groups:
-            checked_name(group, self._known().groups, plan.name, "muscle group")
+            checked_name(group, self._felt().limbs.groups, plan.name, "muscle group")
         self._accept()
         self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], site)
         if not groups and "stop" in plan.actuators:
@@ -245,7 +238,7 @@ class Motor(WithParameters, Port):
         Raises:
             WorldError: If it does not.
         """
-        plan = self._known().plan
+        plan = self._felt().limbs.plan
         if command not in plan.actuators:
             raise WorldError(f"{plan.name} cannot {command}; its commands are: {', '.join(plan.actuators) or 'none'}")
 
@@ -332,13 +325,13 @@ class Motor(WithParameters, Port):
         self._ask()
 
     def _rotate(self, joint: Any, axis: Any, to: float | None, pace: float, usual: bool, site: CallSite | None) -> None:
-        limbs = self._known()
+        limbs = self._felt().limbs
         name = limbs.joint(joint, axis)
         target = limbs.limit(name, pace) if to is None else to * limbs.unit[name]
         self._turn_joints(name, {name: copysign(INFINITE, pace) if target is None else target}, pace, usual, to is None, site)
 
     def _move(self, movement: Any, side: Any, to: float | None, pace: float, usual: bool, site: CallSite | None) -> None:
-        limbs = self._known()
+        limbs = self._felt().limbs
         named = limbs.movement(movement, side)
         if named.to is not None and (to is not None or pace < 0):
             raise WorldError(f"{movement} always ends in the same posture: it takes no angle, and a speed > 0")
@@ -351,7 +344,7 @@ class Motor(WithParameters, Port):
         self._turn_joints(name, targets, pace, usual, to is None and named.to is None, site)
 
     def _assume(self, posture: Chunk, pace: float, usual: bool, site: CallSite | None) -> None:
-        limbs = self._known()
+        limbs = self._felt().limbs
         ways = {joint: number(posture[joint], f"assume: {joint}") * limbs.unit[joint] for joint in limbs.order if joint in posture}
         if not ways:
             raise WorldError(f"assume: '{posture}' names no joint of {limbs.plan.name}; it has {', '.join(limbs.order) or 'none'}")
@@ -368,7 +361,7 @@ class Motor(WithParameters, Port):
             to_limit: Whether the targets are limits.
             site: The line of the modeller's code that gives the command.
         """
-        limbs = self._known()
+        limbs = self._felt().limbs
         by_group: dict[str, dict[str, float]] = {}
         for joint, target in ways.items():
             if not limbs.joints[joint].driven:
@@ -498,10 +491,10 @@ class Motor(WithParameters, Port):
         for movement in halted:
             if movement.begun and isinstance(movement, JointMovement):
                 self._send(movement.halt(), site)
-        if any(movement.base and movement.begun for movement in halted):
+        if any(movement.begun and not isinstance(movement, JointMovement) for movement in halted):
             self._send(self._gait(), site)
         self._end([(movement, end) for movement in halted])
-        self._ended += [(movement, end) for movement in halted if movement.begun and not movement.base]
+        self._ended += [(movement, end) for movement in halted if movement.begun and isinstance(movement, JointMovement)]
 
     def _end(self, ended: Iterable[tuple[Movement, str]]) -> None:
         """Shows the end of movements to productions and in the trace."""
@@ -567,11 +560,11 @@ class Motor(WithParameters, Port):
         felt = {joint: at + draw(0, sd) if (sd := noise[limbs.joints[joint].kind]) else at for joint, at in felt.items()}
         schema = self._schema
         if schema is None:
-            limbs.feel(felt)
-            schema = self._schema = BodySchema(limbs, self.angle_grid, self.size_grid, self.extreme_step, self.extreme_slide)
-            for joint in felt:
-                self._become(limbs.shown_as[joint], schema.at[joint])
-        new = schema.feel(felt)
+            grids = {"angle_grid": self.angle_grid, "size_grid": self.size_grid}
+            schema = self._schema = BodySchema(limbs, felt, **grids, step=self.extreme_step, slide=self.extreme_slide)
+            new = tuple(felt)
+        else:
+            new = schema.feel(felt)
         for joint in new:
             self._become(limbs.shown_as[joint], schema.at[joint])
         self._box = {name: getattr(reading, name) for name in SIZES}

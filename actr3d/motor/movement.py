@@ -45,9 +45,6 @@ class Movement:
         site: The line of the modeller's code that gives the command.
     """
 
-    base = False
-    """Whether the legs carry it out."""
-
     def __init__(self, name: str, group: str, site: CallSite | None) -> None:
         self.name = name
         self.group = group
@@ -165,8 +162,6 @@ class JointMovement(Movement):
 class Walk(Movement):
     """Walks at a speed [m/s], backward if negative, until it is stopped."""
 
-    base = True
-
     def __init__(self, speed: float, site: CallSite | None) -> None:
         super().__init__("walk", BASE_GROUP, site)
         self.speed = speed
@@ -184,8 +179,6 @@ class Walk(Movement):
 
 class Turn(Movement):
     """Turns the whole body by an angle [rad, left is positive], or without an end at a rate [rad/s]."""
-
-    base = True
 
     def __init__(self, angle: float | None, rate: float, site: CallSite | None) -> None:
         super().__init__("turn", BASE_GROUP, site)

@@ -1,4 +1,4 @@
-"""The body schema: postures with the size felt in them, as chunks for declarative memory."""
+"""The body schema: what is felt of the joints, and postures with the size felt in them, as chunks for declarative memory."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from actr3d.motor.limbs import Limbs, on_grid
+from actr3d.motor.limbs import BodyPart, DegreeOfFreedom, Limbs, on_grid
+from actr3d.world.command_registry import checked_name
 
 AWAY, AWAY_SLIDE = 5.0, 0.01
 """Displacement from the first felt position above which a posture also includes a joint that it does not always include: of a hinge
@@ -14,34 +15,51 @@ AWAY, AWAY_SLIDE = 5.0, 0.01
 
 
 class BodySchema:
-    """Makes posture chunks from felt values. All numbers are rounded to a grid; otherwise no posture would ever occur twice and merge.
+    """Stores the felt positions of the joints, and makes posture chunks from them.
+
+    All numbers in chunks are rounded to a grid; otherwise no posture would ever occur twice and merge.
 
     A posture has a slot for each joint that the body's named movements turn to any angle (without such movements, for
     each joint), and one for every other joint that is away from its start.
 
     Args:
-        limbs: The body, felt at the start.
+        limbs: The body.
+        positions: By joint, its first felt position [rad] or [m].
         angle_grid: Step to which angles are rounded [degrees].
         size_grid: Step to which lengths are rounded [m].
         step: Distance beyond the former extreme that makes a new one [degrees]; None for never.
         slide: The same for slides [m].
     """
 
-    def __init__(self, limbs: Limbs, angle_grid: float, size_grid: float, step: float | None, slide: float | None) -> None:
-        self._limbs = limbs
+    def __init__(
+        self,
+        limbs: Limbs,
+        positions: Mapping[str, float],
+        *,
+        angle_grid: float,
+        size_grid: float,
+        step: float | None,
+        slide: float | None,
+    ) -> None:
+        self.limbs = limbs
         self._size_grid = size_grid
         self._grids = {joint: angle_grid if plan.kind == "hinge" else size_grid for joint, plan in limbs.joints.items()}
         steps = {"hinge": math.inf if step is None else step, "slide": math.inf if slide is None else slide}
         self._steps = {joint: steps[plan.kind] * limbs.unit[joint] for joint, plan in limbs.joints.items()}
         named = {joint for movement in limbs.plan.movements if movement.to is None for joint, _ in movement.joints}
         self._always = [joint for joint in limbs.order if joint in named or not named]
-        self._first = dict(limbs.felt)
-        self._start = {joint: self.shown(joint, limbs.felt[joint]) for joint in limbs.order}
+        self._first = dict(positions)
+        self.felt = dict(positions)
+        """By joint, its felt position [rad] or [m]."""
+        self.minimum, self.maximum = dict(positions), dict(positions)
+        """By joint, the minimum and maximum of its felt positions."""
+        self._start = {joint: self.shown(joint, positions[joint]) for joint in limbs.order}
         self.at = dict(self._start)
         """By joint, its felt position on the grid."""
-        self._from, self._to = dict(limbs.felt), dict(limbs.felt)
+        self._from, self._to = dict(positions), dict(positions)
         """By joint, the least and the greatest of its felt positions since the one on the grid last changed."""
-        self._least, self._most = dict(limbs.felt), dict(limbs.felt)
+        self._least, self._most = dict(positions), dict(positions)
+        """By joint, the least and the greatest of its positions in the postures that were stored."""
 
     def feel(self, positions: Mapping[str, float]) -> Sequence[str]:
         """Updates the felt positions of some joints [rad] or [m], and their values on the grid.
@@ -53,9 +71,12 @@ class BodySchema:
         """
         least, most = self._from, self._to
         new = {joint: at for joint, at in positions.items() if not least[joint] <= at <= most[joint]}
-        self._limbs.felt.update(positions)
-        self._limbs.feel(new)
+        self.felt.update(positions)
         for joint, at in new.items():
+            if at < self.minimum[joint]:
+                self.minimum[joint] = at
+            elif at > self.maximum[joint]:
+                self.maximum[joint] = at
             shown = self.shown(joint, at)
             if shown != self.at[joint]:
                 least[joint] = most[joint] = at
@@ -68,7 +89,7 @@ class BodySchema:
 
     def shown(self, joint: str, position: float) -> float:
         """Returns a joint's position on the grid: degrees, or metres for a slide."""
-        return on_grid(position / self._limbs.unit[joint], self._grids[joint])
+        return on_grid(position / self.limbs.unit[joint], self._grids[joint])
 
     def size(self, length: float) -> float:
         """Returns a length on the grid [m]."""
@@ -83,27 +104,25 @@ class BodySchema:
             joint: The joint that moved: the slot `extreme` shows whether this is its extreme.
             box: The felt width, depth, height and middle.
         """
-        limbs = self._limbs
         at = self.at
         extreme = "none"
         if joint is not None:
-            ends = {"maximum": self.shown(joint, limbs.maximum[joint]), "minimum": self.shown(joint, limbs.minimum[joint])}
+            ends = {"maximum": self.shown(joint, self.maximum[joint]), "minimum": self.shown(joint, self.minimum[joint])}
             extreme = next((which for which, end_at in ends.items() if at[joint] == end_at != self._start[joint]), "none")
             self.note((joint,))
         angles = {of: value for of, value in at.items() if of in self._always or self._away(of)}
         return {"posture": name, "end": end, "extreme": extreme, **angles, **box}
 
     def _away(self, joint: str) -> bool:
-        limbs = self._limbs
+        limbs = self.limbs
         away = AWAY * limbs.unit[joint] if limbs.joints[joint].kind == "hinge" else AWAY_SLIDE
-        return abs(limbs.felt[joint] - self._first[joint]) > away
+        return abs(self.felt[joint] - self._first[joint]) > away
 
     def extremes(self, joints: Iterable[str]) -> tuple[str, ...]:
         """Returns the joints that are at least one step beyond their extremes in all earlier postures."""
-        limbs = self._limbs
         further: list[str] = []
         for joint in joints:
-            at = limbs.felt[joint]
+            at = self.felt[joint]
             step = self._steps[joint]
             if at >= self._most[joint] + step or at <= self._least[joint] - step:
                 further.append(joint)
@@ -112,6 +131,35 @@ class BodySchema:
     def note(self, joints: Iterable[str]) -> None:
         """Updates the extremes of some joints with their present positions."""
         for joint in joints:
-            at = self._limbs.felt[joint]
+            at = self.felt[joint]
             self._least[joint] = min(self._least[joint], at)
             self._most[joint] = max(self._most[joint], at)
+
+    def degree_of_freedom(self, joint: str) -> DegreeOfFreedom:
+        """Returns the present knowledge of a joint.
+
+        Raises:
+            WorldError: If the body has no such joint.
+        """
+        limbs = self.limbs
+        plan = limbs.joints[checked_name(joint, limbs.joints, limbs.plan.name, "joint")]
+        return DegreeOfFreedom(
+            name=joint,
+            axis=plan.axis,
+            lower=plan.lower,
+            upper=plan.upper,
+            angle=self.felt[joint],
+            minimum=self.minimum[joint],
+            maximum=self.maximum[joint],
+            driven=plan.driven,
+        )
+
+    def tree(self) -> BodyPart:
+        """Returns the present knowledge of all parts, from the base on."""
+        plan = self.limbs.plan
+        made: dict[str, BodyPart] = {}
+        for part in reversed(plan.parts):
+            carried = tuple(made[other.name] for other in plan.parts if other.on == part.name)
+            joints = tuple(self.degree_of_freedom(joint.name) for joint in part.joints)
+            made[part.name] = BodyPart(name=part.name, joints=joints, parts=carried)
+        return made[plan.parts[0].name]

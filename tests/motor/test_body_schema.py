@@ -15,8 +15,8 @@ def test_felt_positions_and_extremes_are_those_of_each_single_reading(step: floa
     limbs = Limbs(body.get("anatomy"))
     draw = random.Random(1)
     now = [draw.uniform(-0.5, 0.5) for _ in limbs.order]
-    limbs.feel(dict(zip(limbs.order, now, strict=True)))
-    schema = BodySchema(limbs, 1.0, 0.001, 10.0, 0.02)
+    first = dict(zip(limbs.order, now, strict=True))
+    schema = BodySchema(limbs, first, angle_grid=1.0, size_grid=0.001, step=10.0, slide=0.02)
     least, most = list(now), list(now)
     for _ in range(400):
         now = [at + draw.gauss(0, step) for at in now]
@@ -25,7 +25,7 @@ def test_felt_positions_and_extremes_are_those_of_each_single_reading(step: floa
         for number, joint in enumerate(limbs.order):
             grid = 1.0 if limbs.joints[joint].kind == "hinge" else 0.001
             assert schema.at[joint] == on_grid(now[number] / limbs.unit[joint], grid)
-            assert (limbs.felt[joint], limbs.minimum[joint], limbs.maximum[joint]) == (now[number], least[number], most[number])
+            assert (schema.felt[joint], schema.minimum[joint], schema.maximum[joint]) == (now[number], least[number], most[number])
         further = schema.extremes(limbs.order)
         assert set(further) <= set(new)
         schema.note(further)
