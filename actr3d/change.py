@@ -34,7 +34,8 @@ class Change(Configuration):
         """Makes the change.
 
         Args:
-            on: The world, for a change of the world; the parts of the agents, for a change of an agent.
+            on: The parts of the agents, for an `AgentChange`; otherwise the world. A change of the world changes its state, not
+                the compiled model, so that a stored state contains its effect.
 
         Raises:
             Actr3dError: If it cannot be made; then nothing has changed.

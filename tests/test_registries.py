@@ -19,7 +19,7 @@ import actr3d.world
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.modules import MODULES
 from actr3d.bench import find_benchmarks
-from actr3d.change import CHANGES, Target, change
+from actr3d.change import CHANGES, Change, Target, change
 from actr3d.errors import SimulationError, WorldError
 from actr3d.experiment import find_measures
 from actr3d.simulation import Simulation
@@ -27,7 +27,6 @@ from actr3d.vision import DETECTORS
 from actr3d.world import Body, Car, Floor, ImportedBody, Scene, World
 from actr3d.world.anatomy import BODY_KINDS, Anatomy, Embodied, body_kind
 from actr3d.world.body import ACTUATORS, SENSORS, actuator, sensor
-from actr3d.world.changes import WorldChange
 
 ARM = """<mujoco><worldbody><body name="arm"><joint name="elbow" axis="0 0 1"/><geom size="0.1"/><site name="eye"/></body></worldbody>
   <actuator><motor name="turn" joint="elbow"/></actuator></mujoco>"""
@@ -150,7 +149,7 @@ def test_no_part_of_the_library_asks_for_a_kind_of_body() -> None:
 def test_a_new_change_of_the_world_reaches_it_from_a_simulation() -> None:
     @change
     @dataclass(frozen=True)
-    class Lower(WorldChange):
+    class Lower(Change):
         """Lowers the floor."""
 
         word = "lower"

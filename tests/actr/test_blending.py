@@ -54,7 +54,7 @@ def test_act_r_7_takes_its_temperature_from_the_noise() -> None:
         agent.memory.add("n:0 k:a", fixed=1)
         agent.memory.add("n:1 k:a", fixed=1)
         agent.memory.request("k:a")
-        drawn = [(c.activation, float(c.chunk["n"])) for c in agent.memory._last.candidates]
+        drawn = [(activation, float(chunk["n"])) for chunk, _, _, activation in agent.memory._last.rows]
         agent.run(10)
         assert agent.buffer.chunk["n"] == near(mean(drawn, math.sqrt(2) * noise), rel=1e-12)
 

@@ -22,7 +22,7 @@ def partial_agent(profile: str = "python-actr", kind: Any = Partial, **options: 
 
 def costs(agent: Any, pattern: str) -> dict[str, tuple[float, float]]:
     agent.memory.request(pattern)
-    return {str(c.chunk): (c.partial, c.activation) for c in agent.memory._last.candidates}
+    return {str(chunk): (partial, activation) for chunk, _, partial, activation in agent.memory._last.rows}
 
 
 @pytest.mark.parametrize("profile", ["python-actr", "act-r-7"])
@@ -74,9 +74,9 @@ def test_which_partial_serves_a_request() -> None:
     agent.memory.add("a:x")
     assert costs(agent, "a:y") == {"a:x": (-1, -1)}
     agent.second.request("a:y")
-    assert [c.partial for c in agent.memory._last.candidates] == [-3]
+    assert [partial for _, _, partial, _ in agent.memory._last.rows] == [-3]
     agent.memory.request("a:y", partial=agent.second)
-    assert [c.partial for c in agent.memory._last.candidates] == [-3]
+    assert [partial for _, _, partial, _ in agent.memory._last.rows] == [-3]
     assert agent.memory.find_matching_chunks("a:y") == []
 
 

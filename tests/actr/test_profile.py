@@ -85,9 +85,9 @@ def test_a_negative_test_costs(level: str) -> None:
     agent.memory.threshold = -10
     agent.memory.add("a:red b:1")
     agent.memory.request("a:!red b:1")
-    assert [(c.activation, c.partial) for c in agent.memory._last.candidates] == [(-2, -2)]
+    assert [(activation, partial) for _, _, partial, activation in agent.memory._last.rows] == [(-2, -2)]
     agent.memory.request("a:!blue b:2")
-    assert [c.partial for c in agent.memory._last.candidates] == [-2]
+    assert [partial for _, _, partial, _ in agent.memory._last.rows] == [-2]
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -97,7 +97,7 @@ def test_blending(level: str) -> None:
     agent.memory.threshold = None
     agent.memory.add("v:1")
     agent.memory.request("v:?")
-    score = agent.memory._last.candidates[0].activation
+    score = agent.memory._last.rows[0][3]
     assert agent.memory._last.latency == near(math.exp(-score), abs=5e-4)
 
 

@@ -60,15 +60,7 @@ class Parts:
 
 
 class AgentChange(Change):
-    """A change of a part of an agent."""
-
-    def carry_out(self, on: Parts) -> None:
-        """Makes the change.
-
-        Raises:
-            Actr3dError: If it cannot be made; then nothing has changed.
-        """
-        raise NotImplementedError
+    """A change of a part of an agent; `carry_out` gets the parts of all agents."""
 
 
 def chunk_of(text: str, where: str) -> Chunk:

@@ -127,7 +127,7 @@ class BlendingMemory(Memory):
     def _strength(self, record: Retrieval, best: float) -> float:
         if not self.effective_profile.blend_every_slot:
             return best
-        return self._match_score([c.chunk for c in record.candidates if not math.isnan(c.activation)])
+        return self._match_score([chunk for chunk, _, _, activation in record.rows if not math.isnan(activation)])
 
     def _match_score(self, matches: Sequence[Any]) -> float:
         """Returns ln sum exp A."""

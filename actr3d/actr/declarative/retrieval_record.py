@@ -16,20 +16,8 @@ from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.warnings import warn_modeller
 
 Row = tuple[Chunk, tuple[float, ...], float, float]
-"""A candidate in memory: a plain tuple because there may be thousands: (chunk, parts, partial, activation)."""
-
-
-@dataclass(frozen=True, slots=True)
-class Candidate:
-    """A chunk that matched a request, and its activation."""
-
-    chunk: Chunk
-    parts: tuple[float, ...]
-    """What each activation module added, in the memory's order."""
-    partial: float
-    """The penalty of mismatches (0 or less)."""
-    activation: float
-    """The sum."""
+"""A chunk that matched a request, as a plain tuple, because there may be thousands: the chunk, what each activation module added in the
+memory's order, the penalty of mismatches (0 or less), and the activation, which is the sum."""
 
 
 def written(pattern: Any) -> str:
@@ -102,11 +90,6 @@ class Retrieval:
                 warn_modeller(f"memory '{memory}': the activation of '{chunk}' is not a number, so it cannot be retrieved")
         self.best = best
         return winners
-
-    @property
-    def candidates(self) -> list[Candidate]:
-        """The chunks that matched, in the order in which they were added to the memory."""
-        return [Candidate(*row) for row in self.rows]
 
     def to_data(self) -> dict[str, Any]:
         """Returns the request as plain values, for the trace and for explanations.

@@ -7,14 +7,13 @@ from typing import Annotated
 
 from annotated_types import Ge
 
-from actr3d.change import change
-from actr3d.world.changes.world_change import WorldChange
+from actr3d.change import Change, change
 from actr3d.world.world import World
 
 
 @change
 @dataclass(frozen=True)
-class SetAperture(WorldChange):
+class SetAperture(Change):
     """Sets the free width of an aperture."""
 
     word = "aperture"

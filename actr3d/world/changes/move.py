@@ -7,8 +7,7 @@ from typing import Annotated
 
 from annotated_types import Ge, Le
 
-from actr3d.change import change
-from actr3d.world.changes.world_change import WorldChange
+from actr3d.change import Change, change
 from actr3d.world.objects import FARTHEST
 from actr3d.world.scene_objects import Heading
 from actr3d.world.world import World
@@ -16,7 +15,7 @@ from actr3d.world.world import World
 
 @change
 @dataclass(frozen=True)
-class MoveObject(WorldChange):
+class MoveObject(Change):
     """Puts a body, a wall or another object elsewhere at once; what moves keeps its posture, its height and its commands."""
 
     word = "move"

@@ -7,16 +7,15 @@ from typing import Annotated
 
 from annotated_types import Ge, Gt, Le
 
-from actr3d.change import change
+from actr3d.change import Change, change
 from actr3d.errors import ConfigurationError
-from actr3d.world.changes.world_change import WorldChange
 from actr3d.world.objects import LONGEST, MAX_FORCE
 from actr3d.world.world import World
 
 
 @change
 @dataclass(frozen=True)
-class PushObject(WorldChange):
+class PushObject(Change):
     """Pushes a body or a loose object with a horizontal force for a time; the impulse is their product."""
 
     word = "push"
