@@ -56,6 +56,41 @@ def test_the_value_of_a_live_parameter_is_that_of_the_moment_for_all_who_look(pa
     until(page, lambda: commands(page) == ["speed 1.2 -> 1.5 m/s"])
 
 
+def test_the_last_change_by_hand_is_undone_by_its_key_and_from_the_palette(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="buffers")
+    shows(page, "#status", "at its start")
+    search = page.get_by_role("combobox", name="Search commands")
+    options = page.get_by_role("dialog", name="Commands").get_by_role("option")
+    page.keyboard.press("Control+k")
+    search.fill("undo")
+    expect(options.first).to_have_text("Undo the last change by handRunCtrl Z")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("dialog").get_by_role("status")).to_contain_text("Nothing was changed by hand up to now.")
+    page.keyboard.press("Escape")
+    say(page, type="step", ticks=10)
+    shows(page, "#time", r"0\.10")
+    for chunk in ("first", "second"):
+        say(page, type="command", word="set_buffer", named={"buffer": "goal", "chunk": chunk})
+    shows(page, "tr[data-path=goal]", "second")
+    say(page, type="step", ticks=10)
+    shows(page, "#time", r"0\.20")
+    page.get_by_label("Filter rows").focus()
+    page.keyboard.type("a")
+    page.keyboard.press("Control+z")  # a text field undoes its own text
+    expect(page.get_by_label("Filter rows")).to_have_value("")
+    page.locator("#status").click()
+    page.keyboard.press("Control+z")
+    shows(page, "#status", r"undone at 0\.10 s; a branch was kept")
+    shows(page, "tr[data-path=goal]", "first")
+    until(page, lambda: len(commands(page)) == 1)
+    page.keyboard.press("Control+k")
+    search.fill("undo")
+    expect(options.first).to_contain_text("Undo the last change by hand: set buffer goal task:count number:2 last:5 -> first")
+    page.keyboard.press("Enter")
+    shows(page, "tr[data-path=goal]", "count")
+    until(page, lambda: commands(page) == [])
+
+
 @pytest.mark.slow
 def test_an_agent_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", refusals=True)
