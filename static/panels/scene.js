@@ -130,6 +130,7 @@ commandsOf(() => (session.value?.overlays ?? []).map(({ name, title }) => {
   return { text: `${shown ? "Hide" : "Show"} overlay: ${title}`, group: "3D view", work: () => overlay(name).set(!shown), ready: isShown, why: noView };
 }));
 const openScene = command({ text: "Open the 3D view in a window of its own", group: "Page", work: () => openWindow("scene"), ready: isShown, why: noView });
+noteKey("double click", "Look at the thing that is clicked", "3D view");
 noteKey("W A S D Q E", "Move the camera, where it is free", "3D view");
 
 /** Shows the time of the 3D view if it cannot keep up with the run. */
@@ -170,6 +171,7 @@ export function Scene() {
   useEffect(() => {
     const hear = ({ source, data }) => {
       if (source === frame.current.contentWindow && typeof data?.drawn === "boolean") pictured.value = { of: address.current, drawn: data.drawn };
+      if (source === frame.current.contentWindow && data?.focused && view.value === "follow") view.value = "free"; // what is focused stays in the middle
     };
     addEventListener("message", hear);
     return () => removeEventListener("message", hear);

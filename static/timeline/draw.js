@@ -177,7 +177,7 @@ function drawPlotNames(surface, { plot, height }, y, { column, present, end }) {
   const values = plot.series.slice(0, shown).map((curve) => numberText(present > end ? null : valueAt(curve, present)));
   const labels = labelsOf(plot, room - 12);
   const widest = (texts) => Math.max(0, ...texts.map((text) => widthOf(text, SMALL)));
-  const isWide = widest(labels) + BESIDE + widest(values) <= room - 12; // otherwise the names have the room
+  const isWide = widest(labels.slice(0, shown)) + BESIDE + widest(values) <= room - 12; // otherwise the names have the room
   values.forEach((value, n) => {
     const at = y + 25 + NAME * n;
     surface.line([8, at, 16, at], seriesColour(n), { width: 2 });
