@@ -1,7 +1,7 @@
 // The 3D view: viser's page in a frame that never moves, because moving it would reload it; and the buttons on its edge.
 
 import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
-import { askAndMake, changesOf } from "../changes/changes.js";
+import { askAndMake, changesOf, OF_PROGRAM } from "../changes/changes.js";
 import { RetinaInset } from "../eye/inset.js";
 import { command, commandsOf } from "../commands.js";
 import { hearKeys, noteKey, buttonTitle } from "../keys.js";
@@ -70,7 +70,6 @@ function ViewBar() {
 }
 
 const MOVES = "Move or push a body or an object of the scene";
-const OF_PROGRAM = "Only the program itself moves the things of its own Simulation, with simulation.command; in a model with a function build, they can be moved here";
 
 /** Whether the scene is that of a program. */
 function isOfProgram() {

@@ -362,3 +362,37 @@ def test_a_warning_is_shown_where_the_run_has_given_it_and_nowhere_else(pages: C
     expect(earlier).to_have_text([re.compile("three is odd")])
     page.reload()
     says(False)
+
+
+OWN = """from actr3d.actr import *
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Scene
+
+class Mind(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+
+    def init():
+        goal.set("on")
+
+    def go(goal="on"):
+        goal.set("off")
+
+Simulation(Scene(parts=(Floor(),)), bodiless={"mind": Mind}).run(1)
+"""
+"""A program that makes its own simulation."""
+
+
+def test_the_panels_of_a_program_with_its_own_simulation_say_once_that_it_cannot_be_changed_by_hand(
+    pages: Callable[..., Page], workbench: Served
+) -> None:
+    (workbench.folder / "own.py").write_text(OWN, encoding="utf-8")
+    page = pages("own.py", tab="buffers")
+    shows(page, "tr[data-path='mind.goal']", "empty")
+    for tab in ("Buffers", "Memory", "Productions"):
+        open_tab(page, tab)
+        expect(page.get_by_text("A program that makes its own Simulation changes its agents and its world itself")).to_have_count(1)
+    page = pages("counting.py", tab="buffers")
+    shows(page, "#status", "at its start")
+    expect(page.get_by_text("A program that makes its own Simulation")).to_have_count(0)

@@ -630,6 +630,6 @@ class ProgramRun(ControlledRun):
 
 def _refusal(what: str) -> SimulationError:
     return SimulationError(
-        f"'{what}' cannot be done: in a program, only agents without a body can be changed; to change a simulation, "
-        "return it from `build(parameters) -> Simulation`"
+        f"'{what}' cannot be done: in a program, only agents without a body can be changed, and none once it has made "
+        "a `Simulation`; to change a simulation by hand, return it from `build(parameters) -> Simulation`"
     )
