@@ -801,7 +801,7 @@ def test_plots_are_resized_and_name_every_curve_with_its_value_at_the_playhead(p
     )
     until(page, lambda: page.evaluate(PLOTTED)["texts"][1:] and "–" not in page.evaluate(PLOTTED)["texts"])
     row = page.evaluate(PLOTTED)
-    speeds = []
+    speeds: list[list[str]] = []
     for time in ("0.50", "0.00"):
         page.evaluate("async (time) => (await part('timeline/seek.js')).seek(time)", float(time))
         when(page, time)
