@@ -32,6 +32,9 @@ function isWriting(element) {
   return takesText || ["TEXTAREA", "SELECT"].includes(element?.tagName);
 }
 
+/** Keys with Mod that have a meaning of their own in text fields. */
+const OF_TEXT = ["Mod+z"];
+
 /** Keys that the focused element handles itself: buttons are pressed, sliders and tabs moved. */
 const OWN = {
   "Space Enter NumpadEnter": "button, a, summary, [role=tab], [type=checkbox], [type=radio]",
@@ -71,8 +74,8 @@ export function buttonTitle({ text, key }, shown = text) {
   return key ? `${shown} (${keyText(key)})` : shown;
 }
 
-/** Runs the command of a key; returns whether there is one, and the page takes the key. Keys without Mod are ignored while the user
- * types. */
+/** Runs the command of a key; returns whether there is one, and the page takes the key. Keys without Mod, and those of text fields, are
+ * ignored while the user types. */
 function press(event) {
   const mod = isMac ? event.metaKey : event.ctrlKey;
   const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
@@ -80,7 +83,7 @@ function press(event) {
   const bound = commandOf(`${mod ? "Mod+" : ""}${shift}${name}`);
   if (!bound || event.altKey || event.defaultPrevented) return false;
   if (document.querySelector("dialog[open]")) return false;
-  if (bound.key === "Escape" ? !bound.ready() || document.querySelector(":popover-open") : !mod && isWriting(document.activeElement)) return false;
+  if (bound.key === "Escape" ? !bound.ready() || document.querySelector(":popover-open") : (!mod || OF_TEXT.includes(bound.key)) && isWriting(document.activeElement)) return false;
   const focused = document.activeElement?.checkVisibility() ? document.activeElement : null; // for a moment it may lie in a dialog that was just closed
   if (!mod && isOwn(focused, event) && !isTaken(focused, event)) return false;
   event.preventDefault();

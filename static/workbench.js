@@ -7,6 +7,7 @@ import { begin, listModels } from "./bar/models.js";
 import { RecordingBanner } from "./bar/recorded.js";
 import { StatusLine } from "./bar/status.js";
 import { Transport } from "./bar/transport.js";
+import "./changes/undo.js";
 import { command, run } from "./commands.js";
 import { noteKey } from "./keys.js";
 import { AREAS, hasWorld, isCollapsed, layoutCommands, maximised, panelsWidth, swapped, timelineHeight } from "./layout.js";

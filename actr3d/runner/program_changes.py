@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
 from actr3d.actr.changes import AgentChange, Parts
@@ -44,6 +45,11 @@ class ProgramChanges:
             return None
         run, time, _ = self.known[self.made]
         return time if run == self._number(sch) and sch.now_us <= time < end else None
+
+    def up_to(self, sch: Scheduler, time: int) -> int:
+        """Returns the number of known changes up to a time of a run [us], those that are yet to be repeated at that time included."""
+        ahead = takewhile(lambda one: one.run == self._number(sch) and one.tick <= time, self.known[self.made :])
+        return self.made + sum(1 for _ in ahead)
 
     def repeat(self, sch: Scheduler, end: int) -> bool:
         """Makes the next known change if it is due before a time [us]; returns whether it was. A function for `RunLimits.passing`.

@@ -378,6 +378,21 @@ class Simulation:
             self.event_log.check()
             self._observers.show(self._glimpse)
 
+    def undo(self) -> None:
+        """Undoes the last command up to now: goes to its moment, before it, and forgets it and what came after it, also in the recording.
+
+        A command of the present moment that is yet to be repeated after `seek` counts too.
+
+        Raises:
+            SimulationError: If there is no command up to now; and as `seek` does.
+        """
+        self._enter()
+        with self._call():
+            with self._random:
+                self.timeline.undo()
+            self.event_log.check()
+            self._observers.show(self._glimpse)
+
     # -- observing, without an effect on the run
 
     def observe(self, observer: Observer, *, of_calls: bool = False) -> None:

@@ -203,6 +203,26 @@ class Timeline:
         lockstep.trace_command(command)
         self._log.command(command)
 
+    @property
+    def latest(self) -> Command | None:
+        """The last known command up to the present moment, even if it has not been repeated here yet; None if there is none."""
+        return next((command for command in reversed(self._history.commands) if command.tick <= self.ticks), None)
+
+    def undo(self) -> None:
+        """Goes to the moment of the latest command, before it, and forgets this command and what came after it.
+
+        Raises:
+            SimulationError: If there is no command up to the present, or as `seek` does.
+        """
+        latest, history = self.latest, self._history
+        if latest is None:
+            raise SimulationError(f"undo: there is no command up to {seconds(self.lockstep.agents.time):g} s")
+        kept = next(number for number, command in enumerate(history.commands) if command is latest)
+        self.seek(latest.tick)
+        self.lockstep.repeat_commands(history.commands[:kept])
+        history.cut(latest.tick, kept)
+        self._log.cut(latest.tick, kept)
+
     # -- known commands
 
     def plan(self, commands: Sequence[Command], ticks: int) -> None:

@@ -6,21 +6,21 @@ import { remembered } from "../local_storage.js";
 import { call, isLeft, say } from "../server.js";
 import { complain, session, shownRecording } from "../store.js";
 import { openRun } from "../runs/actions.js";
-import { furthest, inThePast, present } from "../timeline/seek.js";
+import { furthest, present } from "../timeline/seek.js";
 
 const seconds = (time) => `${time.toFixed(2)} s`;
 
 /** Returns whether the server has a recording; it may have been deleted or renamed since it was opened. */
 const isThere = (id) => call("GET", `/api/recordings/${id}`).then(() => true, () => false);
 
-/** Sends a command that changes the run; if the run is in its past and has no recording, asks first. Returns whether it was
- * sent; throws an Error with the reason if it cannot be done. */
-export async function change(what) {
+/** Sends a command that changes the run from a moment [s] on; if this is in its past and the run has no recording, asks first. Returns
+ * whether it was sent; throws an Error with the reason if it cannot be done. */
+export async function change(what, at = present.peek()) {
   const recording = shownRecording.peek();
-  if (!inThePast.peek() || (recording !== null && (await isThere(recording)))) return say(what).then(() => true);
-  const [here, end] = [seconds(present.peek()), seconds(furthest.peek())];
+  if (at > furthest.peek() - 1e-7 || (recording !== null && (await isThere(recording)))) return say(what).then(() => true);
+  const [now, there, end] = [present.peek(), at, furthest.peek()].map(seconds);
   const why = recording === null ? "It is not recorded" : "Its recording was deleted or renamed";
-  const text = `The run is at ${here} and has reached ${end}. ${why}: if it is changed here, what came after ${here} is lost.`;
+  const text = `The run is at ${now} and has reached ${end}. ${why}: if it is changed ${now === there ? "here" : `at ${there}`}, what came after ${there} is lost.`;
   if (!(await confirmed("Change the past?", text, "Change it, and lose the rest"))) return false;
   await say({ ...what, drop: true });
   return true;

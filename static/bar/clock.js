@@ -1,12 +1,16 @@
-// Shows the time and the speed of the run.
+// Shows the time and the speed of the run; the time is a button to go to another one.
 
 import { html } from "../vendor/preact.js";
-import { state } from "../store.js";
+import { run } from "../commands.js";
+import { buttonTitle } from "../keys.js";
+import { alive, state } from "../store.js";
+import { goToTime } from "../timeline/go_to_time.js";
 
 export function Clock() {
   const { time, measured } = state.value ?? {};
+  const text = time === undefined ? "–" : `t = ${time.toFixed(2)} s`;
   return html`<div class="clock">
-    <output id="time" aria-label="Time of the run">${time === undefined ? "–" : `t = ${time.toFixed(2)} s`}</output>
+    <button id="time" class="bare" disabled=${!alive.value} title=${buttonTitle(goToTime)} aria-label="Time of the run: ${text}. Go to a time" onClick=${() => run(goToTime)}>${text}</button>
     <output id="measured" aria-label="Measured speed">${measured ? `${measured.toFixed(measured < 1 ? 2 : measured < 100 ? 1 : 0)} x` : ""}</output>
   </div>`;
 }

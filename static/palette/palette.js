@@ -24,6 +24,9 @@ const recent = remembered("recent commands", []);
 
 const nameOf = ({ group, text }) => `${group}: ${text}`;
 
+/** Returns the text of an entry, with what its command would act on. */
+const textOf = ({ text, about }) => [text, about?.()].filter(Boolean).join(": ");
+
 /** Returns the entries for a search: {of, heading, places}. */
 function found() {
   const all = [...permanent().filter((one) => one !== opening), ...present()];
@@ -41,7 +44,7 @@ function found() {
   };
   const hits = all
     .flatMap((of) => {
-      const hit = match(words, `${of.text} ${of.group}`);
+      const hit = match(words, `${textOf(of)} ${of.group}`);
       return hit === null ? [] : [{ of, heading: "Commands", places: hit.places, score: hit.score + rank(of) }];
     })
     .sort((one, other) => other.of.ready() - one.of.ready() || other.score - one.score);
@@ -88,7 +91,7 @@ function Entry({ entry, n }) {
     onPointerMove=${() => (chosen.value = n)}
     onClick=${() => take(entry)}
   >
-    <span class="palette-text"><${Text} text=${of.text} places=${places} /></span>
+    <span class="palette-text"><${Text} text=${textOf(of)} places=${places} /></span>
     ${heading === of.group ? null : html`<span class="palette-group quiet">${of.group}</span>`}
     ${of.key ? html`<kbd>${keyText(of.key)}</kbd>` : null}
   </li>`;

@@ -1,7 +1,7 @@
 // The 3D view: viser's page in a frame that never moves, because moving it would reload it; and the buttons on its edge.
 
 import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
-import { askAndMake, changesOf } from "../changes/changes.js";
+import { askAndMake, changesOf, OF_PROGRAM } from "../changes/changes.js";
 import { RetinaInset } from "../eye/inset.js";
 import { command, commandsOf } from "../commands.js";
 import { hearKeys, noteKey, buttonTitle } from "../keys.js";
@@ -70,7 +70,6 @@ function ViewBar() {
 }
 
 const MOVES = "Move or push a body or an object of the scene";
-const OF_PROGRAM = "Only the program itself moves the things of its own Simulation, with simulation.command; in a model with a function build, they can be moved here";
 
 /** Whether the scene is that of a program. */
 function isOfProgram() {
@@ -130,6 +129,7 @@ commandsOf(() => (session.value?.overlays ?? []).map(({ name, title }) => {
   return { text: `${shown ? "Hide" : "Show"} overlay: ${title}`, group: "3D view", work: () => overlay(name).set(!shown), ready: isShown, why: noView };
 }));
 const openScene = command({ text: "Open the 3D view in a window of its own", group: "Page", work: () => openWindow("scene"), ready: isShown, why: noView });
+noteKey("double click", "Look at the thing that is clicked", "3D view");
 noteKey("W A S D Q E", "Move the camera, where it is free", "3D view");
 
 /** Shows the time of the 3D view if it cannot keep up with the run. */
@@ -170,6 +170,7 @@ export function Scene() {
   useEffect(() => {
     const hear = ({ source, data }) => {
       if (source === frame.current.contentWindow && typeof data?.drawn === "boolean") pictured.value = { of: address.current, drawn: data.drawn };
+      if (source === frame.current.contentWindow && data?.focused && view.value === "follow") view.value = "free"; // what is focused stays in the middle
     };
     addEventListener("message", hear);
     return () => removeEventListener("message", hear);

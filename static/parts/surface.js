@@ -72,6 +72,10 @@ export class CanvasSurface {
     context.globalAlpha = 1;
   }
 
+  clear(x, y, width, height) {
+    this.context.clearRect(x, y, width, height);
+  }
+
   /** A line through [x, y, x, y, …]; NaN breaks it. */
   line(points, name, { width = 1, dash = [] } = {}) {
     const { context } = this;

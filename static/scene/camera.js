@@ -4,8 +4,15 @@
 import { FOV, NOTHING, anchorOf, cameraPose } from "./stage.js";
 import { cross, plus } from "./space.js";
 
+/** The names of viser's nodes that are things of the world, in contrast to what is drawn over it. */
+export const THING = /^\/(fixed_)?bodies\//;
 const SLIGHT = 1e-6; // smaller movements are ignored [m]
 const DEEP = 500; // without perspective, the visible depth before and behind the target [m]
+
+/** Returns whether an object of the scene is shown, with all that it is in. */
+function isSeen(object) {
+  return object === null || (object.visible && isSeen(object.parent));
+}
 
 /** @param viewer Viser's own objects. */
 export class SceneCamera {
@@ -20,6 +27,7 @@ export class SceneCamera {
     this.covered = NOTHING;
     this.aspect = 0;
     this.touched = false; // whether the user has moved it
+    this.aim = null; // where it is to look once its view is free, in the frame of three.js
     this.vector = this.camera.position.clone();
     this.other = this.vector.clone();
     this.matrix = this.camera.matrix.clone();
@@ -32,6 +40,7 @@ export class SceneCamera {
     };
     this.straightenRays();
     this.actions = this.controls.constructor.ACTION;
+    this.root.__r3f.root.getState().gl.domElement.addEventListener("dblclick", (event) => this.focus(event));
     for (const kind of ["controlstart", "control"]) this.controls.addEventListener(kind, () => (this.touched = true));
     camera.up.copy(this.toThree([0, 0, 1], true));
     this.controls.updateCameraUp();
@@ -68,7 +77,26 @@ export class SceneCamera {
       const place = this.toThree(plus(target, back, distance)).toArray();
       controls.setLookAt(...place, ...this.toThree(target).toArray(), false);
     }
+    if (stays && this.aim) controls.moveTo(...this.aim.toArray(), false);
+    this.aim = null;
     camera.updateProjectionMatrix();
+    this.viewer.requestRender();
+  }
+
+  /** Moves the camera so that the thing at the pointer is in the middle. A view that follows the body becomes free, which the page is asked for. */
+  focus({ offsetX, offsetY, currentTarget }) {
+    if (this.view === "eye") return;
+    const { raycaster } = this.root.__r3f.root.getState();
+    raycaster.setFromCamera({ x: (2 * offsetX) / currentTarget.clientWidth - 1, y: 1 - (2 * offsetY) / currentTarget.clientHeight }, this.camera);
+    const things = Object.entries(this.viewer.nodeRefFromName).flatMap(([name, node]) => (node && THING.test(name) ? [node] : []));
+    const hit = raycaster.intersectObjects(things, true).find(({ object }) => object.instancesCount !== undefined && isSeen(object)); // the rest is no shape
+    if (!hit) return;
+    const place = raycaster.ray.at(hit.distance, this.vector.clone()); // viser's shapes give it in the frame of the world
+    this.touched = true;
+    if (this.view === "follow") {
+      this.aim = place;
+      parent.postMessage({ focused: true }, location.origin);
+    } else this.controls.moveTo(...place.toArray(), false);
     this.viewer.requestRender();
   }
 

@@ -1,6 +1,7 @@
 // Cuts away what is between the camera and the body, around the body, with a shaded rim. The camera itself is not moved, so that the
 // picture never jumps; as the body has a fixed place in the picture, so has the opening.
 
+import { THING } from "./camera.js";
 import { dot, plus, unit } from "./space.js";
 
 const WIDE = 0.62; // the minimum width of the opening, relative to its height
@@ -57,7 +58,7 @@ export class Cutaway {
   /** Prepares the materials of everything that is not part of the body, as they are added. */
   prepare(own) {
     for (const [name, node] of Object.entries(this.viewer.nodeRefFromName)) {
-      if (!/^\/(fixed_)?bodies\//.test(name) || own.some((body) => `${name}/`.startsWith(`/bodies/${body}/`))) continue;
+      if (!THING.test(name) || own.some((body) => `${name}/`.startsWith(`/bodies/${body}/`))) continue;
       node?.traverse(({ material }) => {
         for (const one of [material].flat()) {
           if (!one || one.isShaderMaterial || this.prepared.has(one)) continue;

@@ -6,11 +6,11 @@ import { timeText } from "../parts/ticks.js";
 import { events, running, state, way } from "../store.js";
 import { dark } from "../theme.js";
 import { chosen, names, plots } from "./curves.js";
-import { drawAxis, drawTimeline, placeOf, secondsPerPixel, timeOf } from "./draw.js";
+import { drawPresent, drawTimeline, placeOf, secondsPerPixel, timeOf } from "./draw.js";
 import { begin, partAt, press, turn } from "./pointer.js";
 import { Painter } from "./painter.js";
 import { lanes, lanesVersion } from "./record.js";
-import { AXIS, column, hidden, layout } from "./rows.js";
+import { AXIS, column, filter, heights, hidden, layout, scroll } from "./rows.js";
 import { furthest, present } from "./seek.js";
 import { found, Tip } from "./tip.js";
 import { settle, span } from "./view.js";
@@ -18,11 +18,8 @@ import { settle, span } from "./view.js";
 const AROUND = 5; // the room left and right of the playhead's time in its label [px]
 
 const size = signal({ width: 0, height: 0 });
-const scroll = signal(0);
 /** The height of all rows [px]. */
 const height = signal(0);
-/** The names of the visible lanes and plots. */
-export const filter = signal("");
 
 /** Returns everything that a drawing needs; `whole` is for a picture with all rows. */
 export function scene(whole = false) {
@@ -36,6 +33,7 @@ export function scene(whole = false) {
     span: span.peek(),
     layout: rows,
     end: furthest.peek(),
+    present: present.peek(),
     now: whole ? null : labelOfNow(),
     begin: events.peek().missing > 0 || events.peek().first > 0 ? (lanes.begin ?? 0) : 0,
   };
@@ -58,10 +56,10 @@ function paint(canvas) {
   if (now.width > now.column) drawTimeline(new CanvasSurface(context), now);
 }
 
-/** Draws the axis again on the drawing that is there. */
-function paintAxis(canvas) {
+/** Draws again what depends on the playhead, on the drawing that is there. */
+function paintPresent(canvas) {
   const now = scene();
-  if (canvas.width > 0 && now.width > now.column) drawAxis(new CanvasSurface(canvas.getContext("2d")), now);
+  if (canvas.width > 0 && now.width > now.column) drawPresent(new CanvasSurface(canvas.getContext("2d")), now);
 }
 
 /** Places the playhead with its label, and the veil over the future. */
@@ -74,7 +72,7 @@ function place(stage) {
   head.hidden = label.hidden = !there;
   if (there) Object.assign(label.style, { transform: `translateX(${there.from}px)`, width: `${there.width}px` });
   label.textContent = timeText(present.value);
-  paintAxis(stage.querySelector("canvas"));
+  paintPresent(stage.querySelector("canvas"));
   head.style.transform = `translateX(${now}px)`;
   veil.style.left = `${inside(now)}px`;
   veil.style.width = `${now < far ? view.width - inside(now) : 0}px`; // also over the texts of the last marks
@@ -94,7 +92,7 @@ function attend(stage) {
     effect(() => settle(present.value, furthest.value, running.value)),
     effect(() => place(stage)),
     effect(() => {
-      for (const one of [dark, span, size, scroll, filter, hidden, column, chosen, names]) one.value;
+      for (const one of [dark, span, size, scroll, filter, hidden, column, heights, chosen, names]) one.value;
       painter.ask();
     }),
     effect(() => {

@@ -1,17 +1,19 @@
 // Draws the timeline on a surface: the axis, the lanes with their bands, the plots.
 
-import { drawCurves, drawTimes, seriesColour } from "../parts/curve.js";
+import { drawCurves, drawTimes, seriesColour, valueAt } from "../parts/curve.js";
 import { cut, cutBefore, widthOf } from "../parts/surface.js";
+import { numberText } from "../parts/ticks.js";
 import { session } from "../store.js";
 import { headingOf } from "./curves.js";
 import { bandText } from "./lanes.js";
 import { firstWhere, nextWhere } from "./search.js";
-import { AXIS, MARGIN } from "./rows.js";
+import { AXIS, MARGIN, NAME, PLOT } from "./rows.js";
 
 const SCALE = 44; // the width of a plot's scale in the column of names [px]
 const THIN = 3; // the width up to which a band is only a stroke [px]
 const ROOM = 34; // the minimum width for a text [px]
 const SMALL = { size: 10 };
+const BESIDE = 6; // between the name of a curve and its value [px]
 const LETTER = 7; // the width of a letter of a mark's text, rounded up [px]
 
 /**
@@ -22,6 +24,7 @@ const LETTER = 7; // the width of a letter of a mark's text, rounded up [px]
  * @property {number} scroll The scroll position of the rows [px].
  * @property {{from: number, to: number}} span The visible times [s].
  * @property {{rows: object[]}} layout See `layout` of rows.js.
+ * @property {number} present The time of the playhead [s].
  * @property {number} end The end of bands that are still open [s].
  * @property {{from: number, to: number}} [now] The position of the playhead's label [px]; absent without one.
  * @property {number} begin Earlier times are no longer known [s].
@@ -55,7 +58,7 @@ export function drawTimeline(surface, scene) {
       const y = row.y - scroll;
       if (y + row.height < AXIS || y > height) continue;
       if (row.begins) surface.line([0, y - 2.5, width, y - 2.5], "line");
-      if (row.plot) drawPlotRow(surface, row.plot, y, row.height, scene);
+      if (row.plot) drawPlotRow(surface, row, y, scene);
       else drawLane(surface, row, y, scene);
     }
   });
@@ -64,8 +67,22 @@ export function drawTimeline(surface, scene) {
   drawAxis(surface, scene);
 }
 
+/** Draws again what depends on the playhead, on the drawing that is there: the axis, and the values beside the names of curves. */
+export function drawPresent(surface, scene) {
+  const { height, column, layout, scroll } = scene;
+  surface.within(0, AXIS, column - SCALE, height - AXIS, () => {
+    for (const row of layout.rows) {
+      const y = row.y - scroll;
+      if (!row.plot || y + row.height < AXIS || y > height) continue;
+      surface.clear(0, y, column - SCALE, row.height - 1);
+      drawPlotNames(surface, row, y, scene);
+    }
+  });
+  drawAxis(surface, scene);
+}
+
 /** Draws the axis alone. Labels that the label of the playhead would cover are left out. */
-export function drawAxis(surface, scene) {
+function drawAxis(surface, scene) {
   const { width, height, column, now } = scene;
   const box = { x: column, y: AXIS, width: width - column, height: height - AXIS };
   surface.fill(0, 0, width, AXIS, "raised");
@@ -143,19 +160,31 @@ function drawMark(surface, band, x, { next, written, last }, y, height) {
   return isLeft ? x : x + 7 + LETTER * text.length;
 }
 
-function drawPlotRow(surface, plot, y, height, scene) {
+function drawPlotRow(surface, row, y, scene) {
+  const { plot, height } = row;
   const { column, width } = scene;
+  drawPlotNames(surface, row, y, scene);
+  surface.line([0, y + height - 0.5, column, y + height - 0.5], "raised");
+  drawCurves(surface, { x: column, y: y + 5, width: width - column, height: height - 9 }, { ...plot, span: wholeSpan(scene), until: scene.end });
+}
+
+/** Draws the heading of a plot, and the names of its curves, each with its value at the playhead if there is room. */
+function drawPlotNames(surface, { plot, height }, y, { column, present, end }) {
   const room = column - SCALE - 8;
   surface.text(cut(headingOf(plot), room), 8, y + 10, "text", { bold: true });
-  const lines = Math.floor((height - 18) / 13);
-  const shown = plot.series.length > lines ? lines - 1 : lines;
-  labelsOf(plot, room - 12).slice(0, shown).forEach((label, n) => {
-    const at = y + 25 + 13 * n;
+  const lines = Math.floor((height - PLOT) / NAME);
+  const shown = plot.series.length > lines ? Math.max(0, lines - 1) : plot.series.length;
+  const values = plot.series.slice(0, shown).map((curve) => numberText(present > end ? null : valueAt(curve, present)));
+  const labels = labelsOf(plot, room - 12);
+  const widest = (texts) => Math.max(0, ...texts.map((text) => widthOf(text, SMALL)));
+  const isWide = widest(labels.slice(0, shown)) + BESIDE + widest(values) <= room - 12; // otherwise the names have the room
+  values.forEach((value, n) => {
+    const at = y + 25 + NAME * n;
     surface.line([8, at, 16, at], seriesColour(n), { width: 2 });
-    surface.text(label, 20, at, "quiet", SMALL);
+    surface.text(labels[n], 20, at, "quiet", SMALL);
+    if (isWide) surface.text(value, column - SCALE - 1, at, "text", { ...SMALL, anchor: "end" });
   });
-  if (plot.series.length > lines) surface.text(`and ${plot.series.length - shown} more`, 20, y + 25 + 13 * shown, "quiet", { size: 10 });
-  drawCurves(surface, { x: column, y: y + 5, width: width - column, height: height - 9 }, { ...plot, span: wholeSpan(scene), until: scene.end });
+  if (shown < plot.series.length) surface.text(`${shown > 0 ? "and " : ""}${plot.series.length - shown} more`, 20, y + 25 + NAME * shown, "quiet", SMALL);
 }
 
 /** Returns the labels of a plot's curves, at most so wide: if one is too long, without the words that all begin or end with. */

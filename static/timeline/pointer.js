@@ -1,7 +1,7 @@
 // The actions of the pointer, the wheel and the keys on the timeline.
 
 import { placeOf, secondsPerPixel, timeOf } from "./draw.js";
-import { AXIS, column } from "./rows.js";
+import { AXIS, column, plotEndingAt, resize } from "./rows.js";
 import { furthest, goTicks, present, seek } from "./seek.js";
 import { pan, span, zoom } from "./view.js";
 
@@ -13,10 +13,10 @@ const NOTCH = 0.0015; // the zoom per pixel of the wheel
 const LINE = 16; // a line of the wheel [px]
 export const FEW = 5; // the ticks of a step with Shift
 
-/** Returns the area at a position of the timeline: "border", "axis", "names" or "lanes". */
+/** Returns the area at a position of the timeline: "border", "axis", "names", "lanes", or "height" at the lower border of the name of a plot. */
 export function partAt(x, y) {
   if (Math.abs(x - column.peek()) <= GRIP) return "border";
-  if (x < column.peek()) return "names";
+  if (x < column.peek()) return y > AXIS && plotEndingAt(y, GRIP) ? "height" : "names";
   return y < AXIS ? "axis" : "lanes";
 }
 
@@ -34,21 +34,23 @@ function placeIn(event, stage) {
   return [event.clientX - left, event.clientY - top];
 }
 
-/** Starts to scrub, to pan or to set the width of the names. */
+/** Starts to scrub, to pan, or to set the width of the names or the height of a plot. */
 export function begin(event) {
   if (event.button !== 0) return;
   const stage = event.currentTarget;
   let [x, y] = placeIn(event, stage);
   const there = partAt(x, y);
   if (there === "names") return;
+  const resized = there === "height" ? plotEndingAt(y, GRIP) : null;
   const part = there === "axis" && Math.abs(x - placeOf(present.peek(), sceneOf(stage))) <= HANDLE ? "lanes" : there;
   const began = x;
   let still = true;
   const move = (moved) => {
-    const [to] = placeIn(moved, stage);
+    const [to, toY] = placeIn(moved, stage);
     still &&= Math.abs(to - began) <= STILL;
     if (part === "axis" && still) return;
-    if (part === "border") column.value = Math.round(Math.min(Math.max(to, COLUMN[0]), COLUMN[1]));
+    if (resized) resize(resized.plot, resized.height + toY - y);
+    else if (part === "border") column.value = Math.round(Math.min(Math.max(to, COLUMN[0]), COLUMN[1]));
     else if (part === "axis") pan(secondsOf(x - to, stage), present.peek(), furthest.peek());
     else seek(Math.max(0, timeOf(to, sceneOf(stage))));
     x = to;

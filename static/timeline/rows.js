@@ -1,12 +1,16 @@
 // The rows of the timeline, their order and their heights.
 
+import { signal } from "../vendor/preact.js";
 import { remembered } from "../local_storage.js";
-import { contacts, names, plots } from "./curves.js";
+import { contacts, headingOf, names, plots } from "./curves.js";
 import { lanes } from "./record.js";
 
 export const AXIS = 20; // [px]
 export const LANE = 16;
-export const PLOT = 46;
+/** The height of a plot without the names of its curves, and that of a name [px]. */
+export const [PLOT, NAME] = [20, 13];
+const HEIGHTS = [PLOT + NAME, 500]; // the limits of the height of a plot [px]
+const USUAL = [2, 6]; // a plot that nobody has resized has room for the names of its curves: for so many at least, and at most
 /** The distance of the earliest visible time from the column of names, so that what is at it is drawn whole [px]. */
 export const MARGIN = 8;
 const GAP = 5; // between two groups
@@ -24,7 +28,33 @@ export const GROUPS = [
 /** The hidden groups. */
 export const hidden = remembered("timeline hidden", []);
 /** The width of the column of names [px]. */
-export const column = remembered("timeline names", 150);
+export const column = remembered("timeline names", 200);
+/** The names of the visible lanes and plots. */
+export const filter = signal("");
+/** The scroll position of the rows [px]. */
+export const scroll = signal(0);
+/** The heights of the plots that the user has resized, by heading [px]. */
+export const heights = remembered("plot heights", {});
+
+/** Returns the height of a plot [px]. */
+function heightOf(plot) {
+  return heights.value[headingOf(plot)] ?? PLOT + NAME * Math.min(Math.max(plot.series.length, USUAL[0]), USUAL[1]);
+}
+
+/** Sets the height of a plot [px], within limits. */
+export function resize(plot, height) {
+  heights.value = { ...heights.newest(), [headingOf(plot)]: Math.round(Math.min(Math.max(height, HEIGHTS[0]), HEIGHTS[1])) };
+}
+
+/** Makes all plots taller by a number of names; lower if it is negative. */
+export function grow(by) {
+  for (const plot of plots.peek()) resize(plot, heightOf(plot) + by * NAME);
+}
+
+/** Returns the row of the plot whose lower border is at a height of the stage, up to a distance [px]; undefined if there is none. */
+export function plotEndingAt(y, near) {
+  return layout(filter.peek()).rows.find((row) => row.plot && Math.abs(row.y + row.height - scroll.peek() - y) <= near);
+}
 
 /** The groups that are not empty. */
 export function groupsThere() {
@@ -63,7 +93,7 @@ export function layout(filter) {
   let y = AXIS;
   for (const { id } of GROUPS) {
     if (hidden.value.includes(id)) continue;
-    const found = id === "curves" ? plots.value.map((plot) => ({ plot, label: plot.title, height: PLOT })) : lanesOf(id, all).map((lane) => ({ lane, label: short(lane.label, start), height: LANE }));
+    const found = id === "curves" ? plots.value.map((plot) => ({ plot, label: plot.title, height: heightOf(plot) })) : lanesOf(id, all).map((lane) => ({ lane, label: short(lane.label, start), height: LANE }));
     const shown = found.filter(({ label, plot }) => [label, ...(plot?.series ?? []).map(({ name }) => name)].some((text) => text.toLowerCase().includes(sought)));
     shown.forEach((row, n) => {
       if (n === 0 && rows.length > 0) y += GAP;

@@ -56,6 +56,41 @@ def test_the_value_of_a_live_parameter_is_that_of_the_moment_for_all_who_look(pa
     until(page, lambda: commands(page) == ["speed 1.2 -> 1.5 m/s"])
 
 
+def test_the_last_change_by_hand_is_undone_by_its_key_and_from_the_palette(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="buffers")
+    shows(page, "#status", "at its start")
+    search = page.get_by_role("combobox", name="Search commands")
+    options = page.get_by_role("dialog", name="Commands").get_by_role("option")
+    page.keyboard.press("Control+k")
+    search.fill("undo")
+    expect(options.first).to_have_text("Undo the last change by handRunCtrl Z")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("dialog").get_by_role("status")).to_contain_text("Nothing was changed by hand up to now.")
+    page.keyboard.press("Escape")
+    say(page, type="step", ticks=10)
+    shows(page, "#time", r"0\.10")
+    for chunk in ("first", "second"):
+        say(page, type="command", word="set_buffer", named={"buffer": "goal", "chunk": chunk})
+    shows(page, "tr[data-path=goal]", "second")
+    say(page, type="step", ticks=10)
+    shows(page, "#time", r"0\.20")
+    page.get_by_label("Filter rows").focus()
+    page.keyboard.type("a")
+    page.keyboard.press("Control+z")  # a text field undoes its own text
+    expect(page.get_by_label("Filter rows")).to_have_value("")
+    page.locator("#status").click()
+    page.keyboard.press("Control+z")
+    shows(page, "#status", r"undone at 0\.10 s; a branch was kept")
+    shows(page, "tr[data-path=goal]", "first")
+    until(page, lambda: len(commands(page)) == 1)
+    page.keyboard.press("Control+k")
+    search.fill("undo")
+    expect(options.first).to_contain_text("Undo the last change by hand: set buffer goal task:count number:2 last:5 -> first")
+    page.keyboard.press("Enter")
+    shows(page, "tr[data-path=goal]", "count")
+    until(page, lambda: commands(page) == [])
+
+
 @pytest.mark.slow
 def test_an_agent_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", refusals=True)
@@ -327,3 +362,37 @@ def test_a_warning_is_shown_where_the_run_has_given_it_and_nowhere_else(pages: C
     expect(earlier).to_have_text([re.compile("three is odd")])
     page.reload()
     says(False)
+
+
+OWN = """from actr3d.actr import *
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Scene
+
+class Mind(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+
+    def init():
+        goal.set("on")
+
+    def go(goal="on"):
+        goal.set("off")
+
+Simulation(Scene(parts=(Floor(),)), bodiless={"mind": Mind}).run(1)
+"""
+"""A program that makes its own simulation."""
+
+
+def test_the_panels_of_a_program_with_its_own_simulation_say_once_that_it_cannot_be_changed_by_hand(
+    pages: Callable[..., Page], workbench: Served
+) -> None:
+    (workbench.folder / "own.py").write_text(OWN, encoding="utf-8")
+    page = pages("own.py", tab="buffers")
+    shows(page, "tr[data-path='mind.goal']", "empty")
+    for tab in ("Buffers", "Memory", "Productions"):
+        open_tab(page, tab)
+        expect(page.get_by_text("A program that makes its own Simulation changes its agents and its world itself")).to_have_count(1)
+    page = pages("counting.py", tab="buffers")
+    shows(page, "#status", "at its start")
+    expect(page.get_by_text("A program that makes its own Simulation")).to_have_count(0)

@@ -20,12 +20,36 @@ ENDED = """async () => {
 """Tells which run has ended; null where that is shown goes on."""
 
 
+def test_it_goes_to_a_time_that_is_typed(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'until', time: 0.3 }))")
+    shows(page, "#time", "0.30 s")
+    page.click("#status")
+    page.keyboard.press("g")
+    asked = page.get_by_role("dialog", name="Go to a time")
+    field = asked.get_by_label("Time, from 0 to 0.30 [s]")
+    expect(field).to_have_value("0.30")
+    for text, problem in (("soon", "must be a number of seconds, such as 1.5 (got 'soon')"), ("7", "has only reached 0.30 s")):
+        field.fill(text)
+        field.press("Enter")
+        expect(asked.get_by_role("alert")).to_contain_text(problem)
+    field.fill("0.123")
+    field.press("Enter")
+    expect(asked).to_have_count(0)
+    shows(page, "#time", "0.12 s")
+    page.click("#time")
+    field.fill("0.3")
+    asked.get_by_role("button", name="Go there").click()
+    shows(page, "#time", "0.30 s")
+
+
 @pytest.mark.slow
 def test_it_runs_until_what_is_asked(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py")
     shows(page, "#time", "0.00 s")
     asked, problem = page.get_by_role("dialog"), page.get_by_role("alert")
-    page.click("#time")
+    page.click("#status")
     page.keyboard.press("u")
     page.keyboard.type("soon")
     page.keyboard.press("Enter")

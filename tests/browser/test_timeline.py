@@ -16,7 +16,7 @@ from playwright.sync_api import FloatRect, Page, expect
 from tests.helpers.page import becomes_true, drawn, shows, until
 from tests.helpers.workbench_server import Served
 
-NAMES = 150
+NAMES = 200
 """How wide the column of names is at first [px]."""
 MARGIN = 8
 """How far inside the left edge of the axis the earliest moment is [px]."""
@@ -768,3 +768,58 @@ def test_a_sum_of_a_run_whose_beginning_is_not_known_says_from_when_on_it_counts
     assert found["whole"] == {"name": "memory busy", "times": [1, 3, 5, 6], "values": [0, 2, 2, 3]}
     assert found["late"] == {"name": "memory busy since 5.000 s", "times": [5, 6], "values": [0, 1]}
     assert found["idle"] == {"name": "memory busy since 3.000 s", "times": [3, 5, 6], "values": [0, 0, 1]}
+
+
+PLOTTED = """async (title) => {
+  const { drawTimeline } = await part("timeline/draw.js");
+  const { scene } = await part("timeline/canvas.js");
+  const texts = [];
+  const surface = { fill() {}, line() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
+  surface.text = (text, x, y) => texts.push([y, x, text]);
+  const now = scene();
+  drawTimeline(surface, now);
+  const { y, height, plot } = now.layout.rows.find(({ label }) => label === (title ?? "joints"));
+  const top = y - now.scroll;
+  const inside = texts.filter(([at, x]) => at > top + 15 && at < top + height && x < now.column - 40);
+  return { top, height, curves: plot.series.length, texts: inside.map(([, , text]) => text) };
+}"""
+"""The row of a plot: where it is, how many curves it has, and the texts below its heading."""
+
+
+def test_plots_are_resized_and_name_every_curve_with_its_value_at_the_playhead(pages: Callable[..., Page]) -> None:
+    page = pages(height=1000)
+    page.evaluate("localStorage.setItem('actr3d.timeline height', '620')")
+    page.reload()
+    shows(page, "#status", "at its start")
+    page.evaluate(
+        """async () => {
+          await (await part("server.js")).say({ type: "until", time: 0.5 });
+          const { names, plot } = await part("timeline/curves.js");
+          while (!names.value.some(({ group }) => group === "joint")) await new Promise((done) => setTimeout(done, 20));
+          names.value.filter(({ name }) => name.endsWith("_yaw")).slice(0, 5).forEach(({ name }) => plot(name, true));
+        }"""
+    )
+    until(page, lambda: page.evaluate(PLOTTED)["texts"][1:] and "–" not in page.evaluate(PLOTTED)["texts"])
+    row = page.evaluate(PLOTTED)
+    speeds: list[list[str]] = []
+    for time in ("0.50", "0.00"):
+        page.evaluate("async (time) => (await part('timeline/seek.js')).seek(time)", float(time))
+        when(page, time)
+        speeds.append(page.evaluate(PLOTTED, "speed")["texts"])
+    assert speeds == [["walker", "1.20"], ["walker", "0.000"]]
+    assert (row["curves"], row["height"], len(row["texts"])) == (5, 20 + 5 * 13, 10)  # each name and its value
+    page.locator("#status").click()
+    page.keyboard.press("Shift+h")
+    lower = page.evaluate(PLOTTED)
+    assert (lower["height"], len(lower["texts"]), lower["texts"][-1]) == (72, 3 * 2 + 1, "and 2 more")
+    area = box(page)
+    page.mouse.move(area["x"] + 20, area["y"] + lower["top"] + lower["height"])
+    expect(page.locator("#timeline")).to_have_attribute("data-part", "height")
+    page.mouse.down()
+    page.mouse.move(area["x"] + 20, area["y"] + lower["top"] + lower["height"] + 60)
+    page.mouse.up()
+    assert page.evaluate(PLOTTED)["height"] == 132
+    assert "0.00 s" in page.locator("#time").inner_text()  # it did not go elsewhere
+    page.reload()
+    until(page, lambda: page.evaluate("async () => (await part('timeline/curves.js')).plots.value.length > 0"))
+    assert page.evaluate(PLOTTED)["height"] == 132

@@ -430,6 +430,31 @@ WATCH_RESTART = """() => {
 """Notes of each picture how far the next shape is from where the body is said to be, and how many shapes there are."""
 
 
+FOCUS = """(place) => {
+  const { camera } = window.scene;
+  const { x, y } = camera.at(place);
+  return { x, y, off: camera.controls.getTarget(camera.vector.clone()).distanceTo(camera.toThree(place)), view: camera.view };
+}"""
+"""Where a place is in the picture, how far it is from what the camera turns about [m], and the view."""
+
+
+@pytest.mark.slow
+def test_a_double_click_moves_a_thing_to_the_middle(pages: Callable[..., Page]) -> None:
+    page = pages()
+    frame = frame_of(page)
+    in_the_middle(page, frame)
+    chosen = page.get_by_label("Camera")
+    for view, after, place in (("follow", "free", [6.95, 0.8, 1.2]), ("top", "top", [7.0, 0.8, 2.5])):
+        chosen.select_option(view)
+        until(page, lambda view=view: look(page, frame)["view"] == view)
+        area = page.locator("#scene iframe").bounding_box()
+        assert area is not None
+        told = frame.evaluate(FOCUS, place)
+        page.mouse.dblclick(area["x"] + told["x"] * area["width"], area["y"] + told["y"] * area["height"])
+        until(page, lambda place=place: frame.evaluate(FOCUS, place)["off"] < 0.3)
+        expect(chosen).to_have_value(after)
+
+
 @pytest.mark.slow
 def test_no_picture_mixes_two_runs(pages: Callable[..., Page]) -> None:
     page = pages()

@@ -34,7 +34,8 @@ from workbench.auth import Gate, Guard, Token
 from workbench.notebook import widget
 from workbench.notebook.live_run import LiveRun
 from workbench.notebook.server import NotebookWorker
-from workbench.page_commands.running import Pause, Run, Step
+from workbench.page_commands.changes import SimulationCommand, Undo
+from workbench.page_commands.running import Pause, Run, Seek, Speed, Step
 from workbench.worker.messages import FROM_WORKER, LENGTH, Cut, Do, Facts, FromWorker, News, Over, Start, State, framed
 
 
@@ -163,6 +164,26 @@ def test_a_page_runs_the_simulation_between_cells() -> None:
         assert simulation.time == left
         server.say(Pause())
         server.state(round(left, 6))
+
+    in_notebook(cells)
+
+
+def test_a_page_changes_and_undoes_and_no_cell_is_said_to_have_done_it() -> None:
+    async def cells() -> None:
+        simulation = counter()
+        server = Server(simulation)
+        simulation.run(0.3)
+        server.say(Seek(time=0.1))
+        change = SimulationCommand(word="aperture", values=(0.9,), drop=True)
+        for speed, (command, reason) in enumerate(((change, "changed at 0.10 s; the rest was lost"), (Undo(), "undone")), start=2):
+            server.say(command)
+            await asyncio.sleep(0.05)
+            server.say(Speed(factor=speed))  # shows the state once more
+            await asyncio.sleep(0.05)
+            while (state := server.state(0.1)).wanted != speed:
+                pass
+            assert state.reason == reason
+        assert len(simulation.timeline.commands) == 0
 
     in_notebook(cells)
 

@@ -134,6 +134,71 @@ def test_changes_are_repeated_exactly_by_going_back_by_a_replay_and_by_opening(k
         assert replay(recorded).difference is None
 
 
+@pytest.mark.parametrize("kind", MODELS)
+def test_an_undone_change_is_not_repeated_and_its_future_is_kept(kind: str, desk: Desk, tmp_path: Path) -> None:
+    source, agent, below = MODELS[kind]
+    talk = desk.begin(tmp_path, source, record=True)
+    there(talk, 0.3)
+    first = events(talk)
+    talk.say("seek", time=0.12)
+    talk.until("paused", time=0.12)
+    change(talk, "forbid_once", system=agent, production="up")
+    change(talk, "set_buffer", buffer=f"{below}goal", chunk="rest 5")
+    there(talk, 0.3)
+    before = {path for path in recording(talk).parent.glob("*.sqlite") if copied_from(path.stem)}
+    talk.say("undo")
+    state = talk.until("paused", time=0.12)
+    assert (state["furthest"], state["reason"]) == (0.12, "undone at 0.12 s; a branch was kept")
+    assert [data["command"] for _, _, kind, data in events(talk) if kind == "command"] == ["forbid_once"]
+    (branch,) = {path for path in recording(talk).parent.glob("*.sqlite") if copied_from(path.stem)} - before
+    with Recorded(branch) as recorded:
+        assert [command.data["command"] for command in recorded.commands()] == ["forbid_once", "set_buffer"]
+    there(talk, 0.3)
+    assert "rest" not in talk.state["parts"][f"{below}goal"]["chunk"].values()
+    talk.say("seek", time=0.12)  # the other change is yet to be repeated here
+    talk.until("paused", time=0.12)
+    talk.say("undo")
+    talk.until("paused", furthest=0.12)
+    there(talk, 0.3)
+    assert events(talk) == first
+    with pytest.raises(RefusedError, match=r"undo: nothing was changed by hand up to 0\.3 s"):
+        talk.say("undo")
+    path = recording(talk)
+    desk.do(talk.session.close())
+    with Recorded(path) as recorded:
+        assert list(recorded.commands()) == []
+        assert replay(recorded).difference is None
+
+
+@pytest.mark.parametrize("kind", MODELS)
+def test_a_change_can_be_undone_where_it_was_made_and_in_an_opened_recording(kind: str, desk: Desk, tmp_path: Path) -> None:
+    source, _, below = MODELS[kind]
+    talk = desk.begin(tmp_path, source, record=True)
+    there(talk, 0.1)
+    first = talk.state["parts"][f"{below}goal"]["chunk"]
+    change(talk, "set_buffer", buffer=f"{below}goal", chunk="rest 5")
+    talk.say("undo")
+    state = talk.wait(lambda: talk.state["reason"] == "undone")
+    assert state["parts"][f"{below}goal"]["chunk"] == first
+    change(talk, "set_buffer", buffer=f"{below}goal", chunk="rest 5")
+    there(talk, 0.3)
+    path = recording(talk)
+    desk.do(talk.session.close())
+    opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
+    there(opened, 0.3)
+    opened.say("undo")
+    state = opened.until("paused", time=0.1, furthest=0.1)
+    assert state["reason"] == "undone at 0.10 s; the recording keeps the rest"
+    assert state["parts"][f"{below}goal"]["chunk"] == first
+    there(opened, 0.3)
+    own = recording(opened)
+    desk.do(opened.sessions.close(opened.session.name))
+    with Recorded(own) as recorded:
+        assert list(recorded.commands()) == []
+        assert (recorded.facts["branched"], recorded.facts["origin"]) == (0.1, path.stem)
+        assert replay(recorded).difference is None
+
+
 def test_a_change_says_what_is_lost_if_the_opened_recording_has_been_deleted(desk: Desk, tmp_path: Path) -> None:
     path, opened = reopened(desk, tmp_path, PROGRAM)
     there(opened, 0.1)

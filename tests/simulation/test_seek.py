@@ -288,3 +288,44 @@ class Once(ACTR):
         simulation.seek(0.2)
     with pytest.raises(SimulationError, match="cannot go on; seek an earlier time"):
         simulation.step()
+
+
+def test_an_undone_command_is_not_repeated_and_those_before_it_are(tmp_path: Path) -> None:
+    simulation = driving("all")
+    with simulation.record(tmp_path / "undone.sqlite"):
+        simulation.run(0.2)
+        simulation.command("aperture", 0.5)
+        simulation.command("aperture", 0.6)
+        simulation.run(0.3)
+        simulation.undo()
+        assert (simulation.time, simulation.furthest) == (0.2, 0.2)
+        assert [command.values for command in simulation.timeline.commands] == [(0.5,)]
+        simulation.run(0.3)
+        undone = digest(simulation)
+    once = driving("all")
+    once.run(0.2)
+    once.command("aperture", 0.5)
+    once.run(0.3)
+    assert undone == digest(once)
+    with Recorded(tmp_path / "undone.sqlite") as recorded:
+        assert [command.data["data"]["values"] for command in recorded.commands()] == [[0.5]]
+        assert recorded.ticks == 50
+
+
+def test_undo_at_the_start_and_of_a_command_that_is_yet_to_be_repeated() -> None:
+    simulation = driving("all")
+    fresh = digest(simulation)
+    simulation.command("aperture", 0.5)
+    simulation.undo()
+    assert (simulation.time, digest(simulation)) == (0.0, fresh)
+    with pytest.raises(SimulationError, match="undo: there is no command up to 0 s"):
+        simulation.undo()
+    simulation.run(0.2)
+    simulation.command("aperture", 0.5)
+    simulation.run(0.2)
+    simulation.seek(0.1)
+    with pytest.raises(SimulationError, match=r"undo: there is no command up to 0\.1 s"):
+        simulation.undo()
+    simulation.seek(0.2)
+    simulation.undo()
+    assert (simulation.time, simulation.furthest) == (0.2, 0.2)

@@ -116,10 +116,13 @@ class LiveRun(SimulationRun):
 
     def _look(self) -> None:
         """Notices that a cell has gone back and given the run another future."""
-        ticks, trace = self._simulation.timeline.furthest, self.trace
-        if ticks < self._count:
+        if self._simulation.timeline.furthest < self._count:
             self._controller.goes_another_way(self._events, "changed by a cell")
-        self._count, self._events = ticks, 0 if trace is None else len(trace)
+        self._note()
+
+    def _note(self) -> None:
+        trace = self.trace
+        self._count, self._events = self._simulation.timeline.furthest, 0 if trace is None else len(trace)
 
     def write_to(self, recording: Recording) -> None:
         """Writes the run up to now to a new recording, which can only be looked at: commands and answers are left out."""
@@ -164,7 +167,7 @@ class LiveRun(SimulationRun):
             yield
         finally:
             self._own = False
-            self._look()
+            self._note()  # a page that has changed the past has been told so
 
 
 def _end(channel: Channel, wire: socket.socket) -> None:

@@ -37,6 +37,16 @@ class Set(Change):
 
 
 @page_command
+class Undo(Change):
+    """Undoes the last change by hand up to now: the run goes to its moment, and continues without it and without later changes."""
+
+    type: Literal["undo"] = "undo"
+
+    def carry_out(self, controller: RunController) -> None:
+        controller.undo(drop=self.drop)
+
+
+@page_command
 class SimulationCommand(Change):
     """Sends any command to the world, the agents or a body, as `Simulation.command` does."""
 

@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from actr3d.actr.explain.snapshot import snapshot_of
+from actr3d.clock import seconds
+from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.trace import Trace, TraceEvent
@@ -102,6 +104,18 @@ class ControlledRun(ABC):
         """
 
     @abstractmethod
+    def undo(self, *, drop: bool) -> None:
+        """Goes to the moment of the last change by hand up to now, and forgets it; the future of the run is kept as a branch.
+
+        Args:
+            drop: Whether what lies ahead of that moment may be lost if it cannot be kept.
+
+        Raises:
+            SimulationError: If there is no such change, what lies ahead cannot be kept and may not be lost, or as `go_to` does.
+            EndOfRun: To leave a program, which is then run again.
+        """
+
+    @abstractmethod
     def finish_output(self) -> None:
         """Traces an unfinished line, as nothing more will be printed."""
 
@@ -174,3 +188,8 @@ class ControlledRun(ABC):
             if left:
                 self._recording.leave()
             self._recording.close()
+
+
+def nothing_to_undo(time: int) -> SimulationError:
+    """Returns the error for `undo` at a time [us] up to which nothing was changed by hand."""
+    return SimulationError(f"undo: nothing was changed by hand up to {seconds(time):g} s")

@@ -65,11 +65,19 @@ class KeptBranch:
         if self._branch is not None:
             self._branch.unlink(missing_ok=True)
 
-    def announce(self, events: int) -> None:
+    def announce_undone(self) -> None:
+        """Informs the server that the run is now where a user has undone a change, and pauses there."""
+        controller, trace = self._controller, self._controller.run.trace
+        controller.status, controller.reason = "paused", "undone"
+        self.announce(0 if trace is None else len(trace), "undone")
+        controller.went_back(controller.reason)
+
+    def announce(self, events: int, what: str = "changed") -> None:
         """Informs the server that the run continues differently from its present moment on.
 
         Args:
             events: Number of events up to the change.
+            what: What was done.
         """
         if self._repeated is not None:
             self._controller.leave_recording(self._at, self._until)
@@ -82,4 +90,4 @@ class KeptBranch:
             self._controller.channel.post(Branched(recording=self._branch.stem, at=self._at, until=self._until))
         is_in_recording = self._repeated is not None and not self._is_gone
         kept_as = "a branch was kept" if self._branch else "the recording keeps the rest" if is_in_recording else "the rest was lost"
-        self._controller.goes_another_way(events, f"changed at {self._at:.2f} s; {kept_as}" if self._ahead else None)
+        self._controller.goes_another_way(events, f"{what} at {self._at:.2f} s; {kept_as}" if self._ahead else None)

@@ -30,7 +30,7 @@ from actr3d.values import to_json
 from workbench.curves import joined
 from workbench.loader import ModelListing
 from workbench.worker.change_menu import change_menu
-from workbench.worker.controlled_run import ControlledRun
+from workbench.worker.controlled_run import ControlledRun, nothing_to_undo
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
 from workbench.worker.kept_branch import KeptBranch
@@ -180,6 +180,8 @@ class ProgramRun(ControlledRun):
         self._waits: tuple[Scheduler, int, int] | None = None
         """While a model without a body waits for its time to pass: its scheduler, the time of its latest event [us], and the time of the
         program then [us]."""
+        self._undoing: KeptBranch | None = None
+        """While the program is run again up to a change that a user has undone: what is kept of its future."""
         self._changed = False
         """Whether a user has changed something whose effects of the moment have not happened yet."""
         self._helpers: dict[str, Sequence[str]] = dict(start.helpers)
@@ -313,9 +315,8 @@ class ProgramRun(ControlledRun):
     def _hold_at_start(self) -> None:
         """Waits before the program begins, where nothing says that it is to go on."""
         controller = self._controller
-        if self._rush == 0:
-            self._rush = None
-            controller.went_back()
+        if self._rush == 0 and self._undoing is None:
+            self._arrive()
         if self._rush is None:
             controller.show()
             controller.channel.flush()  # before the program does anything that could prevent it
@@ -340,6 +341,8 @@ class ProgramRun(ControlledRun):
 
     def _end(self, status: Any, reason: str) -> None:
         self._rush = None
+        if self._undoing is not None:
+            self._finish_undo(self._undoing)  # it did not get there: it differs from the first time
         self._over = True
         self._introduce()
         self._clock = max(self._clock, self._times.last)
@@ -375,6 +378,22 @@ class ProgramRun(ControlledRun):
             return True
         return due is not None and self._changes.repeat(sch, end)
 
+    def _arrive(self) -> None:
+        """Pauses the program, which has gone to another time; a change that a user undoes is forgotten there."""
+        self._rush = None
+        if self._undoing is None:
+            self._controller.went_back()
+        else:
+            self._finish_undo(self._undoing)
+
+    def _finish_undo(self, branch: KeptBranch) -> None:
+        """Forgets what came after the present, where the program was before the change that a user undoes."""
+        self._undoing = None
+        with self._recorded.changing() if self._recorded is not None else nullcontext():
+            pass
+        self._continue_differently()
+        branch.announce_undone()
+
     def _wait(self, to: int, *, again: bool) -> None:
         """Waits until the program may continue to a time [us], or a user has changed something before it.
 
@@ -386,11 +405,12 @@ class ProgramRun(ControlledRun):
         while True:
             self._check_left()
             if self._rush is not None:
-                if to < self._rush or (to == self._rush and not again):
+                # The changes of that moment that are not undone come before the one that is.
+                if to < self._rush or (to == self._rush and (not again or self._undoing is not None)):
                     self._clock = to
                     return
-                self._clock, self._rush = self._rush, None
-                controller.went_back()
+                self._clock = self._rush
+                self._arrive()
             controller.attend()
             if self._again or self._rush is not None:
                 continue
@@ -426,8 +446,7 @@ class ProgramRun(ControlledRun):
             if self._rush is not None:
                 if self._clock < self._rush:
                     return
-                self._rush = None
-                controller.went_back()
+                self._arrive()
             controller.attend()
             if self._rush is None and controller.pace(self._clock):
                 return
@@ -515,15 +534,37 @@ class ProgramRun(ControlledRun):
             branch.undo()
             raise
         self._commands = self._changes.known
-        self.forget_ahead()
         self._waits = sch, sch.now_us, self._clock
+        self._changed = True
+        self._controller.interrupt()
+        self._continue_differently()
+        branch.announce(before)
+
+    def undo(self, *, drop: bool) -> None:
+        changes = self._changes
+        known = changes.made
+        if self._waits is not None:
+            sch, begin, clock = self._waits
+            known = changes.up_to(sch, begin + self._clock - clock)
+        if known == 0:
+            raise nothing_to_undo(self._clock)
+        run, time, _ = changes.known[known - 1]
+        moment = self._clock if known > changes.made else self._times.whole(run, time)
+        self.flush()
+        self._undoing = KeptBranch(self._controller, self._recording, moment, self._furthest, drop=drop)
+        self._commands = changes.known[: known - 1]
+        self._rush = moment
+        self._controller.status = "running"
+        self._again = True
+        raise _Again
+
+    def _continue_differently(self) -> None:
+        """Forgets what lay ahead of the program, also how it ended."""
+        self.forget_ahead()
         if self._over:
             self._over = False
             self._record(ended=None, failed=None)
-        self._changed = True
-        self._controller.interrupt()
         self.flush()
-        branch.announce(before)
 
     def go_to(self, time: int) -> None:
         if time > self._furthest:
@@ -589,6 +630,6 @@ class ProgramRun(ControlledRun):
 
 def _refusal(what: str) -> SimulationError:
     return SimulationError(
-        f"'{what}' cannot be done: in a program, only agents without a body can be changed; to change a simulation, "
-        "return it from `build(parameters) -> Simulation`"
+        f"'{what}' cannot be done: in a program, only agents without a body can be changed, and none once it has made "
+        "a `Simulation`; to change a simulation by hand, return it from `build(parameters) -> Simulation`"
     )

@@ -185,11 +185,11 @@ class RunController:
         elif self.errors is not None:
             self.errors.finish()
 
-    def went_back(self) -> None:
-        """Records that the run is now at another time, whose events were all known."""
+    def went_back(self, reason: str = "went to this time") -> None:
+        """Records that the run is now at another time, whose events were all known, and why."""
         trace = self.run.trace
         self._seen = 0 if trace is None else len(trace)
-        self.status, self.reason = "paused", "went to this time"
+        self.status, self.reason = "paused", reason
         self._halt()
 
     def goes_another_way(self, events: int, changed: str | None) -> None:
@@ -282,6 +282,16 @@ class RunController:
         """
         self._reached = max(self._reached, self.run.clock)
         self.run.change(word, values, named or {}, body, drop=drop)
+        self.show()
+
+    def undo(self, *, drop: bool) -> None:
+        """Undoes the last change by hand up to now; see `ControlledRun.undo`.
+
+        Raises:
+            Exception: If it cannot be undone.
+        """
+        self._reached = max(self._reached, self.run.clock)
+        self.run.undo(drop=drop)
         self.show()
 
     def _check_events(self) -> None:

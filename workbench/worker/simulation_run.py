@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
@@ -27,7 +27,7 @@ from actr3d.values import to_json
 from workbench.live_parameters import parameter_set_by
 from workbench.loader import ModelListing
 from workbench.worker.change_menu import change_menu
-from workbench.worker.controlled_run import ControlledRun
+from workbench.worker.controlled_run import ControlledRun, nothing_to_undo
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
 from workbench.worker.helper_messages import helpers_of
 from workbench.worker.kept_branch import KeptBranch
@@ -211,13 +211,7 @@ class SimulationRun(ControlledRun):
             self._failed_at = self.clock
         fails = self._failed_at is not None and last * self.period < time <= self._failed_at
         tick = last if fails else round(time / self.period)
-        try:
-            self._simulation.seek(seconds(tick * self.period))
-        except SimulationError as error:
-            if self._simulation.timeline.lockstep.broken:
-                self._controller.end("failed", str(error))
-                self._controller.show()
-            raise
+        self._move(lambda: self._simulation.seek(seconds(tick * self.period)))
         if fails:
             try:
                 self._simulation.advance(1)
@@ -229,6 +223,16 @@ class SimulationRun(ControlledRun):
             return
         self._conclude()
         self._controller.end("ended", ENDINGS[self._end[1]])
+
+    def _move(self, move: Callable[[], None]) -> None:
+        """Goes to another time; if the run does not repeat itself on the way, it has failed."""
+        try:
+            move()
+        except SimulationError as error:
+            if self._simulation.timeline.lockstep.broken:
+                self._controller.end("failed", str(error))
+                self._controller.show()
+            raise
 
     def live_parameter(self, name: str, value: Any) -> LiveCommand:
         parameter = self._listing.parameter(name)
@@ -252,13 +256,30 @@ class SimulationRun(ControlledRun):
         except BaseException:
             branch.undo()
             raise
+        self._forget_end()
+        branch.announce(before)
+
+    def undo(self, *, drop: bool) -> None:
+        latest = self._simulation.timeline.latest
+        if latest is None:
+            raise nothing_to_undo(self.clock)
+        branch = KeptBranch(self._controller, self._recording, latest.tick * self.period, self.furthest, drop=drop)
+        try:
+            self._move(self._simulation.undo)
+        except BaseException:
+            branch.undo()
+            raise
+        self._forget_end()
+        branch.announce_undone()
+
+    def _forget_end(self) -> None:
+        """Forgets how the run ended or failed, because it continues differently now."""
         self._failed_at = None
         if self._failed:
             self._record_failure(None)
         if self._end is not None:
             self._end = None
             self._record(ended=None, whole=None)
-        branch.announce(before)
 
     def changed_parameters(self) -> dict[str, Any]:
         commands = self._simulation.timeline.commands

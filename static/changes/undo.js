@@ -1,0 +1,40 @@
+// Undoes the last change by hand: the run goes back to its moment, and forgets it and what came after it.
+
+import { change } from "../bar/branch.js";
+import { command } from "../commands.js";
+import { isLeft } from "../server.js";
+import { runStatus } from "../run_status.js";
+import { alive, complain, events } from "../store.js";
+import { commandText } from "../timeline/commands.js";
+import { present } from "../timeline/seek.js";
+import { changes } from "./changes.js";
+
+/** Returns the event of the last change by hand up to the present moment; undefined if none is known. */
+function latest() {
+  const now = present.peek() * 1e6 + 0.5;
+  return events.peek().list.findLast(([time, , kind]) => kind === "command" && time <= now);
+}
+
+/** Whether there may be a change to undo: one that is known, or one that is no longer kept here. */
+function canUndo() {
+  return alive.value && changes.value.length > 0 && (latest() !== undefined || events.value.missing > 0);
+}
+
+async function undo() {
+  const [time = 0] = latest() ?? [];
+  try {
+    await change({ type: "undo" }, time / 1e6);
+  } catch (error) {
+    if (!isLeft(error)) complain(error.message);
+  }
+}
+
+command({
+  text: "Undo the last change by hand",
+  about: () => (canUndo() && latest() ? commandText(latest()).join(" ") : ""),
+  key: "Mod+z",
+  group: "Run",
+  work: undo,
+  ready: canUndo,
+  why: () => (alive.value ? "Nothing was changed by hand up to now." : runStatus.value.text),
+});

@@ -1,0 +1,43 @@
+// «Go to a time»: asks for a time that the run has reached, and goes there.
+
+import { html, signal } from "../vendor/preact.js";
+import { command } from "../commands.js";
+import { dialog } from "../parts/dialog.js";
+import { Problem } from "../parts/problem.js";
+import { runStatus } from "../run_status.js";
+import { alive } from "../store.js";
+import { furthest, present, seek } from "./seek.js";
+
+const text = signal("");
+/** Why the run cannot go there; null if it can. */
+const problem = signal(null);
+
+/** Returns the problem with the text; null if there is none. */
+function wrong() {
+  const time = Number(text.value);
+  if (text.value.trim() === "" || !(time >= 0)) return `Time: must be a number of seconds, such as 1.5 (got '${text.value}')`;
+  const end = furthest.peek();
+  return time > end + 0.005 ? `Time: the run has only reached ${end.toFixed(2)} s; «Run until …» goes on to a later time (got ${time})` : null;
+}
+
+function Body() {
+  return html`<label class="field">
+      Time, from 0 to ${furthest.value.toFixed(2)} [s]
+      <input autofocus inputmode="decimal" spellcheck=${false} aria-invalid=${Boolean(problem.value)} value=${text.value} onInput=${(event) => (text.value = event.currentTarget.value)} />
+    </label>
+    <${Problem} text=${problem.value} />`;
+}
+
+async function ask() {
+  text.value = present.peek().toFixed(2);
+  problem.value = null;
+  const check = () => {
+    problem.value = wrong();
+    return problem.value === null;
+  };
+  const actions = [{ text: "Cancel", value: null }, { text: "Go there", value: true, kind: "primary" }];
+  if (await dialog({ title: "Go to a time", body: html`<${Body} />`, actions, check })) seek(Number(text.value));
+}
+
+/** The command that opens it. */
+export const goToTime = command({ text: "Go to a time …", key: "g", group: "Timeline", work: ask, ready: () => alive.value, why: () => runStatus.value.text });
