@@ -112,14 +112,6 @@ class Labels:
             self._write(labels)
             return label
 
-    def move(self, recording: str, to: str) -> None:
-        """Moves a label with its renamed recording."""
-        with self._changing():
-            labels = self.all()
-            if recording in labels:
-                labels[to] = labels.pop(recording)
-                self._write(labels)
-
     def forget(self, recordings: Iterable[str]) -> None:
         """Removes the labels of deleted recordings."""
         with suppress(OSError), self._changing():

@@ -1,4 +1,4 @@
-"""The REST interface for recordings: lists, downloads, compares, opens, replays, renames and deletes them."""
+"""The REST interface for recordings: lists, downloads, compares, opens, replays, labels and deletes them."""
 
 from __future__ import annotations
 
@@ -34,12 +34,6 @@ KINDS: dict[File, str] = {
     "replay.html": "text/html",
 }
 """The file formats in which a recording can be downloaded, with their media types."""
-
-
-class Naming(PageMessage):
-    """A new name for a recording."""
-
-    to: Annotated[str, Field(min_length=1, max_length=150)]
 
 
 class KnownLabel(PageMessage):
@@ -191,15 +185,6 @@ async def replaying(request: Request, recording: Id) -> dict[str, Any]:
     """Returns the share of a recording that has been run again, from 0 to 1; null if no replay is in progress."""
     sessions = sessions_of(request)
     return {"share": sessions.reruns.share(sessions.recordings.path(recording))}
-
-
-@router.post("/recordings/{recording}/rename")
-async def rename_recording(request: Request, recording: Id, body: Naming) -> dict[str, Any]:
-    """Renames a recording; a recording with a name given by a user is never deleted automatically."""
-    sessions = sessions_of(request)
-    await asyncio.to_thread(sessions.recordings.rename, recording, body.to)
-    sessions.listings_changed()
-    return {"renamed": body.to}
 
 
 @router.post("/recordings/{recording}/label")

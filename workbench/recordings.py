@@ -8,10 +8,10 @@ from collections.abc import Callable, Collection, Sequence
 from io import FileIO
 from pathlib import Path
 
-from actr3d.errors import Actr3dError, RecordingError
+from actr3d.errors import Actr3dError
 from workbench.files import OWN
 from workbench.labels import Labels
-from workbench.retention import Keeping, begun, erase, stamp, stands_alone, superfluous
+from workbench.retention import Keeping, begun, erase, stamp, superfluous
 
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
 
@@ -26,7 +26,7 @@ class NoSuchRecordingError(Actr3dError):
 
 
 class Recordings:
-    """Finds, renames and deletes the recordings of a models folder.
+    """Finds and deletes the recordings of a models folder.
 
     Args:
         root: The models folder.
@@ -81,33 +81,6 @@ class Recordings:
         """Deletes the recording of a run that nobody needs, unless a user has labelled it; none while labels are missing."""
         if self.labels.problem is None and path.stem not in self.labels.all():
             erase(path)
-
-    def rename(self, name: str, to: str) -> None:
-        """Renames a recording with its label; a recording that a user has named is kept until a user deletes it.
-
-        Raises:
-            NoSuchRecordingError: If there is no recording of that name.
-            RecordingError: If the new name is invalid or taken, or the recording is still being written; or if only the label could not
-                be moved.
-        """
-        path, target = self.path(name), self._folder / f"{to}.sqlite"
-        if _NAME.fullmatch(to) is None:
-            raise RecordingError("the name of a recording: must be 1 to 150 letters, digits, '_', '.' or '-'")
-        if not stands_alone(path):
-            raise RecordingError("the recording is still being written: stop or restart its run first")
-        try:
-            os.link(path, target, follow_symlinks=False)  # unlike rename, this never replaces an existing file
-            path.unlink(missing_ok=True)
-        except FileExistsError:
-            raise RecordingError(f"there is a recording '{to}' already") from None
-        except FileNotFoundError:
-            raise NoSuchRecordingError from None
-        except OSError as error:
-            raise RecordingError(f"the recording cannot be renamed: {error.strerror}") from None
-        try:
-            self.labels.move(name, to)
-        except OSError as error:
-            raise RecordingError(f"the recording is now '{to}', but its label cannot be moved from '{name}': {error.strerror}") from None
 
     def opened(self, name: str) -> FileIO:
         """Returns the file of a recording, opened for reading: it stays readable even if the recording is renamed or deleted.

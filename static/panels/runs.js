@@ -12,7 +12,7 @@ import { follow, listRuns, loading, problem, runs as list, total, warning } from
 import { chosen, sorted, Table } from "../runs/table.js";
 import { textOf } from "../runs/wording.js";
 
-command({ text: "Compare, rename or delete recordings: open their list", group: "Panels", work: () => (openTab.value = "runs") });
+command({ text: "Compare, name or delete recordings: open their list", group: "Panels", work: () => (openTab.value = "runs") });
 
 /** Returns the recordings that contain every word of a search. */
 function found(all, search) {

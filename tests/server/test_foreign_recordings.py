@@ -178,8 +178,8 @@ def foreign(desk: Desk, tmp_path: Path) -> Callable[[], bool]:
     mark = tmp_path / "mark"
     talk = desk.begin(tmp_path, MARKING.format(mark=str(mark)), record=True, run=True, wait="ended")
     desk.do(talk.session.stop())
-    talk.sessions.recordings.rename(talk.facts["recording"], "far")
-    path = talk.sessions.recordings.path("far")
+    recording = talk.sessions.recordings.path(talk.facts["recording"])
+    path = recording.rename(recording.with_name("far.sqlite"))
     with Recorded(path) as recorded:
         assert recorded.made_here
     forge(path, key=b"another key")
