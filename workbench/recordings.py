@@ -4,15 +4,23 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
+import time
 from collections.abc import Callable, Collection, Sequence
 from io import FileIO
 from pathlib import Path
 
-from actr3d.errors import Actr3dError
-from workbench.files import OWN
-from workbench.labels import Labels
-from workbench.retention import Keeping, begun, erase, stamp, superfluous
+import msgspec
 
+from actr3d.errors import Actr3dError, RecordingError
+from workbench.files import OWN, TRASH, move_to_trash, replace_file
+from workbench.labels import Label, Labels
+from workbench.retention import Keeping, begun, companions, erase, stamp, superfluous, written
+
+LABEL = ".label.json"
+"""The ending of the file in the trash folder with the label of a deleted recording."""
+LEFTOVER = 86_400.0
+"""The age from which an unfinished file is that of a process that was killed [s]."""
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
 
 
@@ -26,13 +34,14 @@ class NoSuchRecordingError(Actr3dError):
 
 
 class Recordings:
-    """Finds and deletes the recordings of a models folder.
+    """Finds, deletes and restores the recordings of a models folder.
 
     Args:
         root: The models folder.
     """
 
     def __init__(self, root: Path) -> None:
+        self._root = root
         self._folder = root / OWN / "recordings"
         self.labels = Labels(self._folder)
         """What users have written about them."""
@@ -68,8 +77,11 @@ class Recordings:
     def tidy(self, keeping: Keeping) -> None:
         """Deletes the oldest recordings that no user has named or labelled, if the limits are exceeded; none while labels are missing.
 
-        A recording that another server may still write is kept.
+        A recording that another server may still write is kept. What a killed process has left of unfinished files is deleted, too.
         """
+        for path in (*self._folder.glob(".*.part*"), *self._folder.glob(".*.tmp")):
+            if written(path) < time.time() - LEFTOVER:
+                path.unlink(missing_ok=True)
         if self.labels.problem is not None:
             return
         erased = superfluous(self._files(), keeping, self.labels.all().keys())
@@ -95,10 +107,37 @@ class Recordings:
         return FileIO(descriptor, "rb")
 
     def delete(self, name: str) -> None:
-        """Deletes a recording.
+        """Moves a recording to the trash folder, with its label.
 
         Raises:
             NoSuchRecordingError: If there is no recording of that name.
+            OSError: If it cannot be moved.
         """
-        erase(self.path(name))
+        path, label = self.path(name), self.labels.all().get(name)
+        trash = self._root / move_to_trash(self._root, path, *(each for each in companions(path) if each.exists()))
+        if label is not None:
+            replace_file(trash.with_suffix(LABEL), msgspec.json.encode(label))
         self.labels.forget([name])
+
+    def restore(self, name: str) -> None:
+        """Moves a deleted recording back from the trash folder, with its label; of several of that name, the one deleted last.
+
+        Raises:
+            NoSuchRecordingError: If none of that name is in the trash folder.
+            RecordingError: If there is a recording of that name.
+            OSError: If it cannot be moved.
+        """
+        target = self._folder / f"{name}.sqlite"
+        found = sorted((self._root / OWN / TRASH).glob(f"*/????-{target.name}")) if _NAME.fullmatch(name) else []
+        if not found:
+            raise NoSuchRecordingError
+        if target.exists():
+            raise RecordingError(f"the recording cannot be restored: there is a recording '{name}' already")
+        trash = found[-1]
+        for each, to in zip((*companions(trash), trash), (*companions(target), target), strict=True):
+            if each.exists():
+                shutil.move(each, to)
+        label = trash.with_suffix(LABEL)
+        if label.is_file():
+            self.labels.change(name, msgspec.structs.asdict(msgspec.json.decode(label.read_bytes(), type=Label)))
+            label.unlink()

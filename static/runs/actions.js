@@ -82,13 +82,15 @@ export async function deleteRuns(all) {
   }
   if (list.length === 0) return;
   const one = list.length === 1 ? `the recording «${nameOf(list[0])}»` : counted(list.length, "recording");
-  if (!(await confirmed(`Delete ${one}?`, "It cannot be undone: recordings do not go to the trash folder.", "Delete"))) return;
+  if (!(await confirmed(`Delete ${one}?`, `${list.length === 1 ? "It goes" : "They go"} to the trash folder .workbench/trash.`, "Delete"))) return;
   const refused = [];
+  const deleted = [];
   for (const [n, run] of list.entries()) {
     busy.value = { text: "Deleting", done: n, of: list.length };
     try {
       await call("POST", `/api/recordings/${run.id}/delete`, {});
       forgetRun(run.id);
+      deleted.push(run.id);
     } catch (error) {
       if (error.status === 404) forgetRun(run.id);
       else refused.push(`${run.model}: ${error.message}`);
@@ -98,5 +100,21 @@ export async function deleteRuns(all) {
   const done = new Set(list.map(({ id }) => id));
   chosen.value = new Set([...chosen.value].filter((id) => !done.has(id))); // others may have been chosen meanwhile
   if (refused.length > 0) complain(`${refused.length} of ${list.length} not deleted. ${refused[0]}`);
+  if (deleted.length > 0) {
+    const what = deleted.length === 1 ? `The recording «${nameOf(list.find(({ id }) => id === deleted[0]))}» is` : `${counted(deleted.length, "recording")} are`;
+    complain(`${what} in the trash folder.`, "info", { text: "Restore", work: () => restoreRuns(deleted) });
+  }
+  await listRuns();
+}
+
+/** Moves deleted recordings back from the trash folder. */
+async function restoreRuns(ids) {
+  for (const id of ids) {
+    try {
+      await call("POST", `/api/recordings/${id}/restore`, {});
+    } catch (error) {
+      complain(`Not restored: ${id}: ${error.message}`);
+    }
+  }
   await listRuns();
 }

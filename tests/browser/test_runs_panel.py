@@ -164,6 +164,11 @@ def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, work
     page.get_by_role("dialog").get_by_role("button", name="Delete").click()
     expect(page.get_by_text("No recording has all these words.")).to_be_visible()
     assert not any((recordings / f"{name}.sqlite").exists() for name in spare)
+    expect(page.locator(".toast")).to_contain_text("2 recordings are in the trash folder.")
+    page.locator(".toast").get_by_role("button", name="Restore").click()
+    for name in spare:
+        expect(row(page, name)).to_be_visible()
+    assert all((recordings / f"{name}.sqlite").exists() for name in spare)
 
 
 @pytest.mark.slow

@@ -318,4 +318,3 @@ def test_the_digest_of_a_file_is_computed_again_only_when_the_file_has_changed(t
     assert digest_of_file(file) is None
     file.unlink()
     assert digest_of_file(file) is None
-

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sqlite3
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -11,11 +12,13 @@ from pathlib import Path
 
 import pytest
 
+from actr3d.errors import RecordingError
 from tests.helpers.sessions import Desk
-from workbench.files import OWN
-from workbench.labels import Labels
-from workbench.recordings import Recordings
-from workbench.retention import Keeping, is_unnamed
+from workbench import app
+from workbench.files import OWN, empty_trash
+from workbench.labels import Label, Labels
+from workbench.recordings import NoSuchRecordingError, Recordings
+from workbench.retention import Keeping, is_unnamed, stands_alone
 
 
 @pytest.fixture
@@ -68,6 +71,67 @@ def test_what_another_server_writes_stays(recordings: Recordings, tmp_path: Path
     oldest.with_name(f"{oldest.name}-wal").touch()
     recordings.tidy(Keeping(number=2, megabytes=0))
     assert models(tmp_path) == ["model0", "model9"]
+
+
+def test_a_deleted_recording_is_restored_with_its_label_and_its_log(recordings: Recordings, tmp_path: Path) -> None:
+    path = recordings.all()[0]
+    path.with_name(f"{path.name}-wal").write_bytes(b"log")
+    recordings.labels.change(path.stem, {"name": "mine", "tags": ("x",)})
+    recordings.delete(path.stem)
+    assert (path.exists(), recordings.labels.all()) == (False, {})
+    assert sorted(each.name[5:] for each in (tmp_path / OWN / "trash").glob("*/*")) == sorted(
+        (path.name, f"{path.name}-wal", f"{path.stem}.label.json")
+    )
+    recordings.restore(path.stem)
+    assert (path.read_bytes(), path.with_name(f"{path.name}-wal").read_bytes()) == (bytes(1000), b"log")
+    assert recordings.labels.all() == {path.stem: Label(name="mine", tags=("x",))}
+    assert list((tmp_path / OWN / "trash").glob("*/*")) == []
+
+
+def test_what_is_not_in_the_trash_or_would_replace_a_recording_is_not_restored(recordings: Recordings) -> None:
+    path = recordings.all()[0]
+    for name in (path.stem, "..", "*", "a/b"):
+        with pytest.raises(NoSuchRecordingError):
+            recordings.restore(name)
+    recordings.delete(path.stem)
+    path.write_bytes(b"another one")
+    with pytest.raises(RecordingError, match="there is a recording .* already"):
+        recordings.restore(path.stem)
+    assert path.read_bytes() == b"another one"
+
+
+def test_what_was_deleted_long_ago_is_removed_from_the_trash(tmp_path: Path) -> None:
+    trash = tmp_path / OWN / "trash"
+    for name in ("20200101-000000", "29990101-000000", "notes"):
+        (trash / name).mkdir(parents=True)
+        (trash / name / "ab12-model.py").touch()
+    empty_trash(tmp_path)
+    assert sorted(folder.name for folder in trash.iterdir()) == ["29990101-000000", "notes"]
+    empty_trash(tmp_path / "nothing")
+
+
+def test_unfinished_files_of_killed_processes_are_removed_the_next_day(recordings: Recordings, tmp_path: Path) -> None:
+    folder = tmp_path / OWN / "recordings"
+    recordings.labels.change("kept", {"note": "x"})
+    for name in (".old.sqlite.part", ".old.sqlite.part-journal", ".0123.tmp", ".new.sqlite.part"):
+        (folder / name).touch()
+        if "new" not in name:
+            os.utime(folder / name, (1000, 1000))
+    recordings.tidy(Keeping())
+    assert sorted(path.name for path in folder.glob(".*")) == [".labels.json.lock", ".new.sqlite.part"]
+    assert len(models(tmp_path)) == 10
+
+
+def test_a_recording_that_a_killed_process_has_left_is_completed_when_the_workbench_starts(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "print('x')\n", record=True, run=True, wait="ended")
+    path = talk.sessions.recordings.path(talk.facts["recording"])
+    copy = path.with_name("model-20200101-000000-abcd.sqlite")
+    for end in ("", "-wal"):
+        shutil.copy(path.with_name(path.name + end), copy.with_name(copy.name + end))
+    desk.do(talk.session.stop())
+    assert not stands_alone(copy)
+    desk.do(app.tidy(talk.sessions, Keeping()))
+    assert {each.name for each in path.parent.glob("*.sqlite*")} == {path.name, copy.name}
 
 
 def test_labels_that_two_servers_change_at_once_are_all_kept(tmp_path: Path) -> None:
