@@ -95,7 +95,7 @@ def test_what_is_not_in_the_trash_or_would_replace_a_recording_is_not_restored(r
             recordings.restore(name)
     recordings.delete(path.stem)
     path.write_bytes(b"another one")
-    with pytest.raises(RecordingError, match="there is a recording .* already"):
+    with pytest.raises(RecordingError, match=r"there is a recording .* already"):
         recordings.restore(path.stem)
     assert path.read_bytes() == b"another one"
 
