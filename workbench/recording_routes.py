@@ -1,4 +1,4 @@
-"""The REST interface for recordings: lists, downloads, compares, opens, replays, labels, deletes and restores them."""
+"""The REST interface for recordings: lists, downloads, imports, compares, opens, replays, labels, deletes and restores them."""
 
 from __future__ import annotations
 
@@ -12,14 +12,17 @@ import msgspec
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
 from pydantic import Field
+from starlette.requests import ClientDisconnect
 
+from actr3d.errors import RecordingError
 from actr3d.values import escape_surrogates, to_json
+from workbench.auth import BODY_TIME, LARGEST_UPLOAD, UPLOAD_TYPE, too_large
 from workbench.labels import Label
 from workbench.listing import MAX_LISTED
-from workbench.open_file import OpenFile, while_wanted
+from workbench.open_file import DisconnectedError, OpenFile, while_wanted
 from workbench.page_commands import Name, PageMessage
 from workbench.recording_index import Summary
-from workbench.retention import stands_alone
+from workbench.retention import erase, stands_alone
 from workbench.routes import Id, sessions_of
 from workbench.sessions import SessionError, Sessions
 
@@ -34,6 +37,12 @@ KINDS: dict[File, str] = {
     "replay.html": "text/html",
 }
 """The file formats in which a recording can be downloaded, with their media types."""
+
+
+class UploadError(RecordingError):
+    """A file is too large to be received."""
+
+    status = 413
 
 
 class KnownLabel(PageMessage):
@@ -95,6 +104,58 @@ async def recordings(
     problem = await asyncio.to_thread(lambda: sessions.recordings.labels.problem)
     page = {"total": total, "recordings": [_listed(summary, writing, labels) for summary in found], "warning": problem}
     return Response(await asyncio.to_thread(to_json, page), media_type="application/json")
+
+
+@router.post(
+    "/recordings/import",
+    status_code=201,
+    openapi_extra={"requestBody": {"required": True, "content": {UPLOAD_TYPE: {"schema": {"type": "string", "format": "binary"}}}}},
+)
+async def import_recording(request: Request, name: Annotated[str, Query(min_length=1, max_length=100)]) -> Response:
+    """Adds a recording file, the body of the request, to the recordings, and returns its summary; 409 if it cannot be read as a recording.
+
+    Its code is not run. The `name`, that of the file, becomes its label, so that it is never deleted automatically.
+    """
+    sessions = sessions_of(request)
+    recordings = sessions.recordings
+    part = await asyncio.to_thread(recordings.unfinished)
+    try:
+        await _receive(request, part)
+        path = await asyncio.to_thread(recordings.add, part, name.removesuffix(".sqlite"))
+    finally:
+        await asyncio.to_thread(part.unlink, missing_ok=True)
+    summary = await sessions.listing.one(path.stem)
+    if summary.problem is not None:
+        await asyncio.to_thread(erase, path)
+        raise RecordingError(f"'{name}' cannot be added to the recordings: {summary.problem}")
+    await asyncio.to_thread(recordings.labels.change, path.stem, {"name": name.removesuffix(".sqlite")})
+    sessions.listings_changed()
+    return Response(to_json(await _recording(sessions, path.stem)), status_code=201, media_type="application/json")
+
+
+async def _receive(request: Request, to: Path) -> None:
+    """Writes the body of a request to a new file.
+
+    Raises:
+        UploadError: If the body is too large.
+        DisconnectedError: If the client disconnects before its end, or nothing of it arrives for `BODY_TIME`.
+        OSError: If the file cannot be written.
+    """
+    size, parts = 0, aiter(request.stream())
+    with await asyncio.to_thread(to.open, "xb") as file:
+        while True:
+            try:
+                part = await asyncio.wait_for(anext(parts), BODY_TIME)
+            except StopAsyncIteration:
+                return
+            except TimeoutError:
+                raise DisconnectedError(f"nothing of the file has arrived for {BODY_TIME:g} s") from None
+            except ClientDisconnect:
+                raise DisconnectedError("the client has disconnected before the end of the file") from None
+            size += len(part)
+            if size > LARGEST_UPLOAD:
+                raise UploadError(too_large(LARGEST_UPLOAD))
+            await asyncio.to_thread(file.write, part)
 
 
 @router.get("/recordings/{recording}")

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
+import secrets
 import shutil
 import time
 from collections.abc import Callable, Collection, Sequence
+from contextlib import suppress
 from io import FileIO
 from pathlib import Path
 
@@ -93,6 +96,30 @@ class Recordings:
         """Deletes the recording of a run that nobody needs, unless a user has labelled it; none while labels are missing."""
         if self.labels.problem is None and path.stem not in self.labels.all():
             erase(path)
+
+    def unfinished(self) -> Path:
+        """Returns a new file path for a recording that is being received; it is not listed."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+        return self._folder / f".{secrets.token_hex(8)}.part"
+
+    def add(self, file: Path, name: str) -> Path:
+        """Moves a received file to the recordings, and returns its path there.
+
+        Args:
+            file: The file, in the folder of recordings.
+            name: The name that it is to have, of any characters; a number is added if the name is taken.
+
+        Raises:
+            OSError: If it cannot be moved.
+        """
+        stem = re.sub(r"[^A-Za-z0-9_.\-]", "_", name)[:100].lstrip(".-") or "recording"
+        for number in itertools.count(1):
+            path = self._folder / f"{stem if number == 1 else f'{stem}-{number}'}.sqlite"
+            with suppress(FileExistsError):
+                os.link(file, path)  # unlike rename, this never replaces an existing file
+                file.unlink()
+                return path
+        raise AssertionError
 
     def opened(self, name: str) -> FileIO:
         """Returns the file of a recording, opened for reading: it stays readable even if the recording is renamed or deleted.
