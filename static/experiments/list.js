@@ -27,6 +27,10 @@ export const busy = signal(null);
 /** Whether an experiment runs. */
 export const isRunning = ({ state }) => state === "running" || state === "stopping";
 
+export const canStop = ({ state }) => state === "running";
+export const canResume = ({ state, done, total }) => (state === "stopped" || state === "failed") && (total === null || done < total);
+export const canMakeReport = (one) => one.done > 0 && !isRunning(one);
+
 let asked = 0;
 
 /** Reads the list. */

@@ -9,18 +9,18 @@ import { whenInFull, whenText } from "../runs/wording.js";
 import { call } from "../server.js";
 import { useFresh } from "./answer.js";
 import { Figure } from "./figure.js";
-import { busy, deleteExperiment, experiments, isRunning, makeReport, part, problem, resumeExperiment, shown, stopExperiment } from "./list.js";
+import { busy, canMakeReport, canResume, canStop, deleteExperiment, experiments, isRunning, makeReport, part, problem, resumeExperiment, shown, stopExperiment } from "./list.js";
 import { Parts } from "./parts.js";
 import { Trials } from "./trials.js";
 import { changedText, doneText, durationText, failuresText, levelsText, rateText, stateText } from "./wording.js";
 
 function Actions({ experiment }) {
-  const { state, done, total } = experiment;
+  const { state } = experiment;
   const waits = busy.value !== null;
   return html`
-    ${state === "running" || state === "stopping" ? html`<button disabled=${waits || state === "stopping"} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop</button>` : null}
-    ${(state === "stopped" || state === "failed") && (total === null || done < total) ? html`<button class="primary" disabled=${waits} title=${`Run the trials that are left, ${processesText(experiment)}`} onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume</button>` : null}
-    ${done > 0 && !isRunning(experiment) ? html`<button disabled=${waits} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report</button>` : null}
+    ${isRunning(experiment) ? html`<button disabled=${waits || !canStop(experiment)} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop</button>` : null}
+    ${canResume(experiment) ? html`<button class="primary" disabled=${waits} title=${`Run the trials that are left, ${processesText(experiment)}`} onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume</button>` : null}
+    ${canMakeReport(experiment) ? html`<button disabled=${waits} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report</button>` : null}
     ${isRunning(experiment) || state === "elsewhere" ? null : html`<button class="danger bare" aria-label="Delete" title="Delete" disabled=${waits} onClick=${() => deleteExperiment(experiment)}><${Icon} name="trash" /></button>`}
   `;
 }
