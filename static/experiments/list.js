@@ -91,7 +91,8 @@ async function doing(text, work, cancel = null) {
   }
 }
 
-const pathOf = (id) => `/api/experiments/${encodeURIComponent(id)}`;
+/** Returns the address of an experiment on the server. */
+export const pathOf = (id) => `/api/experiments/${encodeURIComponent(id)}`;
 
 /** Starts an experiment and shows it, unless the user has left the form meanwhile; throws an Error with the reason if it cannot be run. */
 export async function startExperiment(wanted) {
