@@ -20,6 +20,7 @@ from threading import Lock
 
 from actr3d.actr.loading.source_text import decode_source, read_bytes
 from actr3d.errors import Actr3dError
+from actr3d.replacing import replace_file
 
 LARGEST = 1_000_000
 """Maximum size of a model file [bytes]."""
@@ -259,21 +260,6 @@ def file_stamp(*paths: Path) -> tuple[int, ...]:
             now = path.stat()
             numbers += now.st_ino, now.st_mtime_ns, now.st_size
     return tuple(numbers)
-
-
-def replace_file(target: Path, data: bytes) -> None:
-    """Writes a file atomically: completely or not at all."""
-    beside = target.with_name(f".{secrets.token_hex(8)}.tmp")
-    try:
-        with beside.open("xb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        if target.exists():
-            beside.chmod(target.stat().st_mode)
-        beside.replace(target)
-    finally:
-        beside.unlink(missing_ok=True)
 
 
 def move_to_trash(root: Path, path: Path, *companions: Path) -> str:

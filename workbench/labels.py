@@ -16,7 +16,7 @@ from typing import Any
 import msgspec
 
 from actr3d.errors import Actr3dError
-from workbench.files import replace_file
+from actr3d.replacing import replace_file
 
 FILE = "labels.json"
 ASIDE = "labels-damaged-{}.json"

@@ -16,7 +16,8 @@ from pathlib import Path
 import msgspec
 
 from actr3d.errors import Actr3dError, RecordingError
-from workbench.files import OWN, TRASH, move_to_trash, replace_file
+from actr3d.replacing import replace_file
+from workbench.files import OWN, TRASH, move_to_trash
 from workbench.labels import Label, Labels
 from workbench.retention import Keeping, begun, companions, erase, stamp, superfluous, written
 
