@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import pytest
 from playwright.sync_api import Page, Route, expect
@@ -231,8 +232,9 @@ def test_a_figure_fills_in_although_its_means_take_long_and_stays_while_the_serv
 
 def test_an_experiment_that_cannot_be_read_says_why(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", tab="experiments", refusals=True)
-    one = {"id": "sums", "name": "sums", "made": 0, "state": "stopped", "done": 0, "total": 8, "failures": 0, "changed": {}, "model": ""}
-    page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [{**one, "left": None}]}))
+    one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "stopped", "done": 0, "total": 8, "failures": 0}
+    one |= {"changed": {}, "model": "", "left": None}
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [one]}))
     page.route("**/api/experiments/sums", lambda route: route.fulfill(status=409, json={"error": "facts.json is damaged"}))
     page.locator("tr[data-experiment=sums]").click()
     expect(page.get_by_role("alert")).to_have_text("The experiment cannot be read: facts.json is damaged")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from typing import Any
 
 from playwright.sync_api import Locator, Page, expect
 
@@ -109,8 +110,17 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
 
 def test_the_palette_has_the_experiments_and_what_can_be_done_with_the_present_run(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
-    one = {"id": "sums-20200101-101010-abcd", "name": "sums", "made": 0, "state": "stopped", "done": 3, "total": 8, "failures": 0}
-    page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [{**one, "changed": {}, "model": "", "left": None}]}))
+    one: dict[str, Any] = {
+        "id": "sums-20200101-101010-abcd",
+        "name": "sums",
+        "made": 0,
+        "state": "stopped",
+        "done": 3,
+        "total": 8,
+        "failures": 0,
+    }
+    one |= {"changed": {}, "model": "", "left": None}
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [one]}))
     shows(page, "#status", "at its start")
     page.click("#cycle")
     shows(page, "#time", "0.05 s")

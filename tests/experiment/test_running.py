@@ -565,9 +565,13 @@ def test_two_who_write_one_file_at_once_do_not_disturb_each_other(tmp_path: Path
         second.write_text("second", encoding="utf-8")
         assert not file.exists()
     assert file.read_text(encoding="utf-8") == "first"  # which was complete last
-    with pytest.raises(KeyError), replacing(file) as part:
+
+    def fail(part: Path) -> None:
         part.write_text("half", encoding="utf-8")
         raise KeyError
+
+    with pytest.raises(KeyError), replacing(file) as part:
+        fail(part)
     assert [(path.name, path.read_text(encoding="utf-8")) for path in tmp_path.iterdir()] == [("facts.json", "first")]
 
 
