@@ -20,9 +20,16 @@ let timer = 0;
 export async function call(method, path, body, signal) {
   // Every change is sent as JSON with a custom header, which no form of another site can send.
   const headers = method === "GET" ? {} : { "content-type": "application/json", "x-workbench": "1" };
-  const response = await answerOf(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal });
-  const text = await response.text();
-  const answer = parsed(text);
+  return answered(await answerOf(path, { method, headers, body: body === undefined ? undefined : JSON.stringify(body), signal }));
+}
+
+/** Sends a recording file; returns the response, or throws an Error with the reason. */
+export async function sendFile(path, file) {
+  return answered(await answerOf(path, { method: "POST", headers: { "content-type": "application/vnd.sqlite3", "x-workbench": "1" }, body: file }));
+}
+
+async function answered(response) {
+  const answer = parsed(await response.text());
   if (!response.ok) throw refusal(response, answer);
   return answer;
 }

@@ -126,10 +126,16 @@ export function isPresent(notice) {
 
 let ownNotices = 0;
 
-/** Shows the user a problem found by the page itself. */
-export function complain(text, level = "error") {
+/** Shows the user a problem found by the page itself, or something else; optionally with an action {text, work}, which can be taken once. */
+export function complain(text, level = "error", action = null) {
   ownNotices -= 1;
-  addNotices([{ number: ownNotices, level, text, file: null, line: null, detail: "" }]);
+  addNotices([{ number: ownNotices, level, text, file: null, line: null, detail: "", action }]);
+}
+
+/** Takes the action of a notice, which then no longer offers it. */
+export function takeAction(notice) {
+  notices.value = notices.value.map((one) => (one === notice ? { ...one, action: null } : one));
+  notice.action.work();
 }
 
 // -- what the user has seen or cleared

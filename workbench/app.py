@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import AsyncGenerator, Callable, Mapping
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -23,12 +23,12 @@ from workbench import experiment_routes, language_routes, recording_routes, rout
 from workbench.auth import Gate, Guard
 from workbench.built_manual import manual, no_manual
 from workbench.experiments import Experiments
-from workbench.files import ModelFolder
+from workbench.files import ModelFolder, empty_trash
 from workbench.language.language_server import LanguageServer
 from workbench.page_files import ROUTE, PageFiles
 from workbench.protocol import problem_of
 from workbench.recordings import Recordings
-from workbench.retention import Keeping
+from workbench.retention import Keeping, stands_alone
 from workbench.sessions import Sessions
 from workbench.viser_bridge import Bridge
 from workbench.worker.spawn import MEMORY, Zygote
@@ -64,7 +64,7 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
 
         app.state.later = later
         workers.begin()
-        tidying = asyncio.create_task(asyncio.to_thread(sessions.recordings.tidy, keeping or Keeping()))
+        tidying = asyncio.create_task(tidy(sessions, keeping or Keeping()))
         yield
         await leave()
         await asyncio.wait([tidying])
@@ -91,6 +91,17 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     app.add_exception_handler(Exception, _unexpected)
     app.add_middleware(Guard, gate=gate)
     return app
+
+
+async def tidy(sessions: Sessions, keeping: Keeping) -> None:
+    """Deletes recordings beyond the limits, unfinished files and old deleted files."""
+    recordings = sessions.recordings
+    for path in await asyncio.to_thread(recordings.all):
+        if not stands_alone(path):  # a killed process may have left it so, and then reading it completes the file
+            with suppress(Actr3dError, OSError):
+                await sessions.listing.one(path.stem)
+    await asyncio.to_thread(recordings.tidy, keeping)
+    await asyncio.to_thread(empty_trash, sessions.folder.root)
 
 
 async def _manual(scope: Scope, receive: Receive, send: Send) -> None:

@@ -19,7 +19,10 @@ HEADER = "x-workbench"
 SAFE = frozenset({"GET", "HEAD"})
 LARGEST = 2_000_000
 """Maximum size of a request's body [bytes]."""
-TOO_LARGE = f"the body of a request: must be <= {LARGEST:,} bytes"
+UPLOAD, UPLOAD_TYPE = "/api/recordings/import", "application/vnd.sqlite3"
+"""The path of the only request whose body is a file, which the application receives part by part, and the file's media type."""
+LARGEST_UPLOAD = 2_000_000_000
+"""Maximum size of that file [bytes]."""
 BODY_TIME = 30.0
 """Maximum time in which a request's body must arrive [s]."""
 LONGEST_PATH = 4_000
@@ -133,11 +136,11 @@ class Guard:
             else:
                 await self._app(_without_secrets(scope), receive, send)
             return
-        body = b""
-        if status == 200:
+        if status == 200 and not _is_upload(scope):
             body, status, reason = await _body(receive)
+            receive = _given(body, receive)
         if status == 200:
-            await self._app(_without_secrets(scope), _given(body, receive), _with_headers(send, self._gate))
+            await self._app(_without_secrets(scope), receive, _with_headers(send, self._gate))
         else:
             response = _redirect(scope, self._gate) if status == 303 else _refusal(status, reason)
             await response(scope, receive, send)
@@ -171,20 +174,36 @@ class Guard:
         if _one(headers, "sec-fetch-site") in ("cross-site", "same-site") and _one(headers, "sec-fetch-mode") != "navigate":
             return 403, "Origin: must be that of the workbench's own page"
         if not socket and method not in SAFE:
-            return _judge_change(headers)
+            return _judge_change(headers, upload=_is_upload(scope))
         return 200, ""
 
 
-def _judge_change(headers: Headers) -> tuple[int, str]:
-    """Checks a request that changes something: it must be JSON, have the workbench's header, and not be too large."""
-    if (_one(headers, "content-type") or "").partition(";")[0].strip().lower() != "application/json":
+def _is_upload(scope: Scope) -> bool:
+    """Returns whether the body of a request is a file that the application receives part by part."""
+    return scope["path"] == UPLOAD and _type(Headers(scope=scope)) == UPLOAD_TYPE
+
+
+def _type(headers: Headers) -> str:
+    """Returns the media type of a request's body."""
+    return (_one(headers, "content-type") or "").partition(";")[0].strip().lower()
+
+
+def _judge_change(headers: Headers, *, upload: bool) -> tuple[int, str]:
+    """Checks a request that changes something: it must be JSON or an upload, have the workbench's header, and not be too large."""
+    if not upload and _type(headers) != "application/json":
         return 415, "Content-Type: must be application/json for a request that changes something"
     if _one(headers, HEADER) is None:
         return 403, f"{HEADER}: this header is missing from a request that changes something"
     length = _one(headers, "content-length") or "0"
     if not (length.isascii() and length.isdigit()):
         return 400, "Content-Length: must be a number"
-    return (413, TOO_LARGE) if int(length) > LARGEST else (200, "")
+    most = LARGEST_UPLOAD if upload else LARGEST
+    return (413, too_large(most)) if int(length) > most else (200, "")
+
+
+def too_large(most: int) -> str:
+    """Returns the error for a body with more bytes than permitted."""
+    return f"the body of a request: must be <= {most:,} bytes"
 
 
 def _one(headers: Headers, name: str) -> str | None:
@@ -208,7 +227,7 @@ async def _body(receive: Receive) -> tuple[bytes, int, str]:
                 message = await receive()
                 body += message.get("body", b"")
                 if len(body) > LARGEST:
-                    return b"", 413, TOO_LARGE
+                    return b"", 413, too_large(LARGEST)
                 if message["type"] == "http.disconnect" or not message.get("more_body", False):
                     return bytes(body), 200, ""
     except TimeoutError:

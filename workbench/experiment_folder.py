@@ -12,8 +12,9 @@ from typing import Any, cast
 import msgspec
 
 from actr3d.recording.key import is_sealed, make_key, seal
+from actr3d.replacing import replace_file
 from workbench.experiment_command import ExperimentFacts, ExperimentRunError
-from workbench.files import file_stamp, is_writable, replace_file
+from workbench.files import file_stamp, is_writable
 
 SPECIFICATION, FACTS, TABLE, LOCK, NOTES = "experiment.json", "facts.json", "trials.sqlite", "lock", "workbench.json"
 """The files of an experiment's folder; the workbench writes only the last one."""

@@ -47,7 +47,7 @@ def counts(*paths: Path) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = []
     for path in paths:
         try:
-            with closing(opened(path)) as file:
+            with closing(_opened(path)) as file:
                 (done,) = file.execute("SELECT count(*) FROM trial").fetchone()
                 (failures,) = file.execute('SELECT count(*) FROM trial WHERE data LIKE \'%,"error":"%\'').fetchone()
                 columns = [name for (name,) in file.execute("SELECT name FROM column ORDER BY place, name LIMIT ?", (MAX_COLUMNS,))]
@@ -55,6 +55,27 @@ def counts(*paths: Path) -> list[dict[str, Any]]:
         except (Actr3dError, sqlite3.Error) as error:
             found.append({"done": 0, "failures": 0, "problem": f"its table cannot be read: {error}", "columns": []})
     return found
+
+
+def _opened(path: Path) -> sqlite3.Connection:
+    """Returns a connection to a table of trials.
+
+    A file from elsewhere may have a view in place of a table, and reading a view may never end; reading a table does.
+
+    Raises:
+        Actr3dError: If it cannot be opened, or is no table of trials.
+    """
+    file = opened(path)
+    try:
+        (tables,) = file.execute(
+            "SELECT count(*) FROM sqlite_schema WHERE name IN ('trial', 'column') AND type = 'table' AND sql LIKE 'CREATE TABLE%'"
+        ).fetchone()
+        if tables != 2:
+            raise TableError("it has other tables than an experiment")
+    except BaseException:
+        file.close()
+        raise
+    return file
 
 
 class Table:
@@ -68,8 +89,8 @@ class Table:
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = opened(path)
         try:
+            self._file = _opened(path)
             listed = self._file.execute(
                 "SELECT name, type, unit, meaning FROM column ORDER BY place, name LIMIT ?", (MAX_COLUMNS,)
             ).fetchall()

@@ -152,7 +152,6 @@ class Experiments:
         """Returns the summaries of all experiments, newest first.
 
         Raises:
-            Actr3dError: If their tables cannot be read.
             OSError: If no worker can be started.
         """
         return await self._summaries(await asyncio.to_thread(self._folders))
@@ -162,12 +161,11 @@ class Experiments:
 
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            Actr3dError: If its table cannot be read.
             OSError: If no worker can be started.
         """
         folder = self.folder(name)
         (summary,) = await self._summaries([folder])
-        return {**summary, "facts": as_values(self._facts(folder))}
+        return {**summary, "facts": as_values(await asyncio.to_thread(self._facts, folder))}
 
     def _folders(self) -> list[ExperimentFolder]:
         there = self._root.iterdir() if self._root.is_dir() else ()
@@ -175,12 +173,14 @@ class Experiments:
         return sorted(found, key=lambda folder: (begun(folder.path), folder.path.name), reverse=True)[:MAX_LISTED]
 
     async def _summaries(self, folders: Sequence[ExperimentFolder]) -> list[dict[str, Any]]:
+        running = self._running.copy()  # one that ends in the meantime is still shown as it was
         # Of one that runs, the command reports the numbers, but not the columns.
         counted = (folder.path.name for folder in folders if self._counts.get(folder.path.name, (None, _NOTHING))[1]["columns"])
-        await self._count([folder for folder in folders if folder.path.name not in {*self._running} & {*counted}])
-        return [self._summary(folder) for folder in folders]
+        await self._count([folder for folder in folders if folder.path.name not in {*running} & {*counted}])
+        # In a thread, because it reads several files of each.
+        return await asyncio.to_thread(lambda: [self._summary(folder, running.get(folder.path.name)) for folder in folders])
 
-    def _summary(self, folder: ExperimentFolder) -> dict[str, Any]:
+    def _summary(self, folder: ExperimentFolder, run: RunningExperiment | None) -> dict[str, Any]:
         name, notes, facts = folder.path.name, folder.notes, self._facts(folder)
         total = None if facts is None else facts.trials
         found: dict[str, Any] = {
@@ -195,27 +195,37 @@ class Experiments:
             "problem": None,
         }
         _, counted = self._counts.get(name, (None, _NOTHING))
-        if name in self._running:
-            return {**found, "columns": counted["columns"], **self._running[name].summary()}
+        if run is not None:
+            return {**found, "columns": counted["columns"], **run.summary()}
         problem = counted["problem"] or notes.problem
         complete = total is not None and counted["done"] >= total
         state = "finished" if complete else "elsewhere" if folder.is_locked else "failed" if problem else "stopped"
         return {**found, **counted, "state": state, "problem": problem, "workers": 0, "rate": None, "left": None}
 
     async def _count(self, folders: Sequence[ExperimentFolder]) -> None:
-        """Counts the trials of those experiments whose tables have changed; a worker reads them."""
+        """Counts the trials of those experiments whose tables have changed."""
+        stamps = await asyncio.to_thread(lambda: [(folder.path.name, folder.table_stamp, folder.table) for folder in folders])
         fresh: list[tuple[str, Any, Path]] = []
-        for folder in folders:
-            name, now, table = folder.path.name, folder.table_stamp, folder.table
+        for name, now, table in stamps:
             if table is None:
                 self._counts[name] = None, _NOTHING
             elif self._counts.get(name, (None,))[0] != now:
                 fresh.append((name, now, table))
-        if fresh:
-            with await self.readers.make("trial counts", *(table for _, _, table in fresh)) as made:
-                counted: list[dict[str, Any]] = json.loads(made.readall())
-            for (name, now, _), found in zip(fresh, counted, strict=True):
-                self._counts[name] = now, found
+        counted = await self._counted([table for _, _, table in fresh])
+        for (name, now, _), found in zip(fresh, counted, strict=True):
+            self._counts[name] = now, found
+
+    async def _counted(self, tables: Sequence[Path]) -> list[dict[str, Any]]:
+        """Returns the numbers of trials in tables, which a worker reads; if one table ends the worker, the others are still counted."""
+        if not tables:
+            return []
+        try:
+            with await self.readers.make("trial counts", *tables) as made:
+                return json.loads(made.read())
+        except Actr3dError as error:
+            if len(tables) == 1:
+                return [{**_NOTHING, "problem": f"its table cannot be read: {error}"}]
+            return [found for table in tables for found in await self._counted([table])]
 
     def _facts(self, folder: ExperimentFolder) -> ExperimentFacts | None:
         run = self._running.get(folder.path.name)

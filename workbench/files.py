@@ -7,7 +7,9 @@ import contextlib
 import hashlib
 import io
 import os
+import re
 import secrets
+import shutil
 import time
 import tokenize
 import unicodedata
@@ -18,6 +20,7 @@ from threading import Lock
 
 from actr3d.actr.loading.source_text import decode_source, read_bytes
 from actr3d.errors import Actr3dError
+from actr3d.replacing import replace_file
 
 LARGEST = 1_000_000
 """Maximum size of a model file [bytes]."""
@@ -25,6 +28,11 @@ MAX_FILES = 2_000
 """Maximum number of files that are listed."""
 OWN = ".workbench"
 """The folder inside the models folder in which the workbench keeps recordings and deleted files."""
+TRASH = "trash"
+"""The folder in `OWN` for deleted files. Each folder in it is named by the time of deletion."""
+TRASH_DAYS = 30
+"""How long deleted files are kept [days]."""
+_STAMP = "%Y%m%d-%H%M%S"
 
 
 class FileError(Actr3dError):
@@ -254,26 +262,25 @@ def file_stamp(*paths: Path) -> tuple[int, ...]:
     return tuple(numbers)
 
 
-def replace_file(target: Path, data: bytes) -> None:
-    """Writes a file atomically: completely or not at all."""
-    beside = target.with_name(f".{secrets.token_hex(8)}.tmp")
-    try:
-        with beside.open("xb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        if target.exists():
-            beside.chmod(target.stat().st_mode)
-        beside.replace(target)
-    finally:
-        beside.unlink(missing_ok=True)
+def move_to_trash(root: Path, path: Path, *companions: Path) -> str:
+    """Moves a file or folder, and the files that belong to it, to the trash folder of a models folder.
 
-
-def move_to_trash(root: Path, path: Path) -> str:
-    """Moves a file or folder to the trash folder of a models folder; returns its new path inside the models folder."""
-    trash = root / OWN / "trash" / time.strftime("%Y%m%d-%H%M%S")
+    Returns its new path inside the models folder; the companions lie beside it.
+    """
+    trash = root / OWN / TRASH / time.strftime(_STAMP)
     trash.mkdir(parents=True, exist_ok=True)
-    return path.rename(trash / f"{secrets.token_hex(2)}-{path.name}").relative_to(root).as_posix()
+    prefix = secrets.token_hex(2)
+    for each in (*companions, path):
+        shutil.move(each, trash / f"{prefix}-{each.name}")  # its folder may be a link to another disk
+    return (trash / f"{prefix}-{path.name}").relative_to(root).as_posix()
+
+
+def empty_trash(root: Path) -> None:
+    """Deletes what has been in the trash folder of a models folder for more than `TRASH_DAYS`."""
+    oldest = time.strftime(_STAMP, time.localtime(time.time() - TRASH_DAYS * 86_400))
+    for folder in (root / OWN / TRASH).glob("*"):
+        if re.fullmatch(r"\d{8}-\d{6}", folder.name) and folder.name < oldest:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def is_writable(where: Path) -> bool:

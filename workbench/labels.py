@@ -16,7 +16,7 @@ from typing import Any
 import msgspec
 
 from actr3d.errors import Actr3dError
-from workbench.files import replace_file
+from actr3d.replacing import replace_file
 
 FILE = "labels.json"
 ASIDE = "labels-damaged-{}.json"
@@ -111,14 +111,6 @@ class Labels:
             labels[recording] = label = msgspec.structs.replace(now, **changes)
             self._write(labels)
             return label
-
-    def move(self, recording: str, to: str) -> None:
-        """Moves a label with its renamed recording."""
-        with self._changing():
-            labels = self.all()
-            if recording in labels:
-                labels[to] = labels.pop(recording)
-                self._write(labels)
 
     def forget(self, recordings: Iterable[str]) -> None:
         """Removes the labels of deleted recordings."""

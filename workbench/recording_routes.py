@@ -1,4 +1,4 @@
-"""The REST interface for recordings: lists, downloads, compares, opens, replays, renames and deletes them."""
+"""The REST interface for recordings: lists, downloads, imports, compares, opens, replays, labels, deletes and restores them."""
 
 from __future__ import annotations
 
@@ -12,14 +12,17 @@ import msgspec
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
 from pydantic import Field
+from starlette.requests import ClientDisconnect
 
+from actr3d.errors import RecordingError
 from actr3d.values import escape_surrogates, to_json
+from workbench.auth import BODY_TIME, LARGEST_UPLOAD, UPLOAD_TYPE, too_large
 from workbench.labels import Label
 from workbench.listing import MAX_LISTED
-from workbench.open_file import OpenFile, while_wanted
+from workbench.open_file import DisconnectedError, OpenFile, while_wanted
 from workbench.page_commands import Name, PageMessage
 from workbench.recording_index import Summary
-from workbench.retention import stands_alone
+from workbench.retention import erase, stands_alone
 from workbench.routes import Id, sessions_of
 from workbench.sessions import SessionError, Sessions
 
@@ -36,10 +39,10 @@ KINDS: dict[File, str] = {
 """The file formats in which a recording can be downloaded, with their media types."""
 
 
-class Naming(PageMessage):
-    """A new name for a recording."""
+class UploadError(RecordingError):
+    """A file is too large to be received."""
 
-    to: Annotated[str, Field(min_length=1, max_length=150)]
+    status = 413
 
 
 class KnownLabel(PageMessage):
@@ -101,6 +104,58 @@ async def recordings(
     problem = await asyncio.to_thread(lambda: sessions.recordings.labels.problem)
     page = {"total": total, "recordings": [_listed(summary, writing, labels) for summary in found], "warning": problem}
     return Response(await asyncio.to_thread(to_json, page), media_type="application/json")
+
+
+@router.post(
+    "/recordings/import",
+    status_code=201,
+    openapi_extra={"requestBody": {"required": True, "content": {UPLOAD_TYPE: {"schema": {"type": "string", "format": "binary"}}}}},
+)
+async def import_recording(request: Request, name: Annotated[str, Query(min_length=1, max_length=100)]) -> Response:
+    """Adds a recording file, the body of the request, to the recordings, and returns its summary; 409 if it cannot be read as a recording.
+
+    Its code is not run. The `name`, that of the file, becomes its label, so that it is never deleted automatically.
+    """
+    sessions = sessions_of(request)
+    recordings = sessions.recordings
+    part = await asyncio.to_thread(recordings.unfinished)
+    try:
+        await _receive(request, part)
+        path = await asyncio.to_thread(recordings.add, part, name.removesuffix(".sqlite"))
+    finally:
+        await asyncio.to_thread(part.unlink, missing_ok=True)
+    summary = await sessions.listing.one(path.stem)
+    if summary.problem is not None:
+        await asyncio.to_thread(erase, path)
+        raise RecordingError(f"'{name}' cannot be added to the recordings: {summary.problem}")
+    await asyncio.to_thread(recordings.labels.change, path.stem, {"name": name.removesuffix(".sqlite")})
+    sessions.listings_changed()
+    return Response(to_json(await _recording(sessions, path.stem)), status_code=201, media_type="application/json")
+
+
+async def _receive(request: Request, to: Path) -> None:
+    """Writes the body of a request to a new file.
+
+    Raises:
+        UploadError: If the body is too large.
+        DisconnectedError: If the client disconnects before its end, or nothing of it arrives for `BODY_TIME`.
+        OSError: If the file cannot be written.
+    """
+    size, parts = 0, aiter(request.stream())
+    with await asyncio.to_thread(to.open, "xb") as file:
+        while True:
+            try:
+                part = await asyncio.wait_for(anext(parts), BODY_TIME)
+            except StopAsyncIteration:
+                return
+            except TimeoutError:
+                raise DisconnectedError(f"nothing of the file has arrived for {BODY_TIME:g} s") from None
+            except ClientDisconnect:
+                raise DisconnectedError("the client has disconnected before the end of the file") from None
+            size += len(part)
+            if size > LARGEST_UPLOAD:
+                raise UploadError(too_large(LARGEST_UPLOAD))
+            await asyncio.to_thread(file.write, part)
 
 
 @router.get("/recordings/{recording}")
@@ -193,15 +248,6 @@ async def replaying(request: Request, recording: Id) -> dict[str, Any]:
     return {"share": sessions.reruns.share(sessions.recordings.path(recording))}
 
 
-@router.post("/recordings/{recording}/rename")
-async def rename_recording(request: Request, recording: Id, body: Naming) -> dict[str, Any]:
-    """Renames a recording; a recording with a name given by a user is never deleted automatically."""
-    sessions = sessions_of(request)
-    await asyncio.to_thread(sessions.recordings.rename, recording, body.to)
-    sessions.listings_changed()
-    return {"renamed": body.to}
-
-
 @router.post("/recordings/{recording}/label")
 async def label_recording(request: Request, recording: Id, body: Labelling) -> dict[str, Any]:
     """Sets the name, the note or the tags of a recording, even of one that is being written; it is then never deleted automatically.
@@ -219,13 +265,22 @@ async def label_recording(request: Request, recording: Id, body: Labelling) -> d
 
 @router.post("/recordings/{recording}/delete")
 async def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
-    """Deletes a recording; 409 while a run is still writing it."""
+    """Moves a recording to the trash folder; 409 while a run is still writing it."""
     sessions = sessions_of(request)
     if recording in sessions.writing():
         raise SessionError("an open run still writes this recording; restart its model or close its session, then delete it")
     await asyncio.to_thread(sessions.recordings.delete, recording)
     sessions.listings_changed()
     return {"deleted": recording}
+
+
+@router.post("/recordings/{recording}/restore")
+async def restore_recording(request: Request, recording: Id) -> dict[str, Any]:
+    """Moves a deleted recording back from the trash folder, with its label; 409 if there is a recording of that name."""
+    sessions = sessions_of(request)
+    await asyncio.to_thread(sessions.recordings.restore, recording)
+    sessions.listings_changed()
+    return {"restored": recording}
 
 
 @router.post("/compare")

@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
+import secrets
+import shutil
+import time
 from collections.abc import Callable, Collection, Sequence
+from contextlib import suppress
 from io import FileIO
 from pathlib import Path
 
-from actr3d.errors import Actr3dError, RecordingError
-from workbench.files import OWN
-from workbench.labels import Labels
-from workbench.retention import Keeping, begun, erase, stamp, stands_alone, superfluous
+import msgspec
 
+from actr3d.errors import Actr3dError, RecordingError
+from actr3d.replacing import replace_file
+from workbench.files import OWN, TRASH, move_to_trash
+from workbench.labels import Label, Labels
+from workbench.retention import Keeping, begun, companions, erase, stamp, superfluous, written
+
+LABEL = ".label.json"
+"""The ending of the file in the trash folder with the label of a deleted recording."""
+LEFTOVER = 86_400.0
+"""The age from which an unfinished file is that of a process that was killed [s]."""
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
 
 
@@ -26,13 +38,14 @@ class NoSuchRecordingError(Actr3dError):
 
 
 class Recordings:
-    """Finds, renames and deletes the recordings of a models folder.
+    """Finds, deletes and restores the recordings of a models folder.
 
     Args:
         root: The models folder.
     """
 
     def __init__(self, root: Path) -> None:
+        self._root = root
         self._folder = root / OWN / "recordings"
         self.labels = Labels(self._folder)
         """What users have written about them."""
@@ -68,8 +81,11 @@ class Recordings:
     def tidy(self, keeping: Keeping) -> None:
         """Deletes the oldest recordings that no user has named or labelled, if the limits are exceeded; none while labels are missing.
 
-        A recording that another server may still write is kept.
+        A recording that another server may still write is kept. What a killed process has left of unfinished files is deleted, too.
         """
+        for path in (*self._folder.glob(".*.part*"), *self._folder.glob(".*.tmp")):
+            if written(path) < time.time() - LEFTOVER:
+                path.unlink(missing_ok=True)
         if self.labels.problem is not None:
             return
         erased = superfluous(self._files(), keeping, self.labels.all().keys())
@@ -82,32 +98,29 @@ class Recordings:
         if self.labels.problem is None and path.stem not in self.labels.all():
             erase(path)
 
-    def rename(self, name: str, to: str) -> None:
-        """Renames a recording with its label; a recording that a user has named is kept until a user deletes it.
+    def unfinished(self) -> Path:
+        """Returns a new file path for a recording that is being received; it is not listed."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+        return self._folder / f".{secrets.token_hex(8)}.part"
+
+    def add(self, file: Path, name: str) -> Path:
+        """Moves a received file to the recordings, and returns its path there.
+
+        Args:
+            file: The file, in the folder of recordings.
+            name: The name that it is to have, of any characters; a number is added if the name is taken.
 
         Raises:
-            NoSuchRecordingError: If there is no recording of that name.
-            RecordingError: If the new name is invalid or taken, or the recording is still being written; or if only the label could not
-                be moved.
+            OSError: If it cannot be moved.
         """
-        path, target = self.path(name), self._folder / f"{to}.sqlite"
-        if _NAME.fullmatch(to) is None:
-            raise RecordingError("the name of a recording: must be 1 to 150 letters, digits, '_', '.' or '-'")
-        if not stands_alone(path):
-            raise RecordingError("the recording is still being written: stop or restart its run first")
-        try:
-            os.link(path, target, follow_symlinks=False)  # unlike rename, this never replaces an existing file
-            path.unlink(missing_ok=True)
-        except FileExistsError:
-            raise RecordingError(f"there is a recording '{to}' already") from None
-        except FileNotFoundError:
-            raise NoSuchRecordingError from None
-        except OSError as error:
-            raise RecordingError(f"the recording cannot be renamed: {error.strerror}") from None
-        try:
-            self.labels.move(name, to)
-        except OSError as error:
-            raise RecordingError(f"the recording is now '{to}', but its label cannot be moved from '{name}': {error.strerror}") from None
+        stem = re.sub(r"[^A-Za-z0-9_.\-]", "_", name)[:100].lstrip(".-") or "recording"
+        for number in itertools.count(1):
+            path = self._folder / f"{stem if number == 1 else f'{stem}-{number}'}.sqlite"
+            with suppress(FileExistsError):
+                os.link(file, path)  # unlike rename, this never replaces an existing file
+                file.unlink()
+                return path
+        raise AssertionError
 
     def opened(self, name: str) -> FileIO:
         """Returns the file of a recording, opened for reading: it stays readable even if the recording is renamed or deleted.
@@ -122,10 +135,37 @@ class Recordings:
         return FileIO(descriptor, "rb")
 
     def delete(self, name: str) -> None:
-        """Deletes a recording.
+        """Moves a recording to the trash folder, with its label.
 
         Raises:
             NoSuchRecordingError: If there is no recording of that name.
+            OSError: If it cannot be moved.
         """
-        erase(self.path(name))
+        path, label = self.path(name), self.labels.all().get(name)
+        trash = self._root / move_to_trash(self._root, path, *(each for each in companions(path) if each.exists()))
+        if label is not None:
+            replace_file(trash.with_suffix(LABEL), msgspec.json.encode(label))
         self.labels.forget([name])
+
+    def restore(self, name: str) -> None:
+        """Moves a deleted recording back from the trash folder, with its label; of several of that name, the one deleted last.
+
+        Raises:
+            NoSuchRecordingError: If none of that name is in the trash folder.
+            RecordingError: If there is a recording of that name.
+            OSError: If it cannot be moved.
+        """
+        target = self._folder / f"{name}.sqlite"
+        found = sorted((self._root / OWN / TRASH).glob(f"*/????-{target.name}")) if _NAME.fullmatch(name) else []
+        if not found:
+            raise NoSuchRecordingError
+        if target.exists():
+            raise RecordingError(f"the recording cannot be restored: there is a recording '{name}' already")
+        trash = found[-1]
+        for each, to in zip((*companions(trash), trash), (*companions(target), target), strict=True):
+            if each.exists():
+                shutil.move(each, to)
+        label = trash.with_suffix(LABEL)
+        if label.is_file():
+            self.labels.change(name, msgspec.structs.asdict(msgspec.json.decode(label.read_bytes(), type=Label)))
+            label.unlink()

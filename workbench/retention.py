@@ -91,10 +91,15 @@ def is_unnamed(path: Path) -> bool:
     return _UNNAMED.fullmatch(path.stem) is not None
 
 
+def companions(path: Path) -> list[Path]:
+    """Returns the paths of the files that may lie beside a recording while it is written."""
+    return [path.with_name(path.name + end) for end in COMPANIONS]
+
+
 def size_of(path: Path) -> int:
     """Returns the size of a recording with its companion files (as during writing) [bytes]; 0 if it no longer exists."""
     size = 0
-    for each in (path, *(path.with_name(path.name + end) for end in COMPANIONS)):
+    for each in (path, *companions(path)):
         with suppress(OSError):
             size += each.stat().st_size
     return size
@@ -102,12 +107,12 @@ def size_of(path: Path) -> int:
 
 def stands_alone(path: Path) -> bool:
     """Returns whether a recording has no companion files, as after a run that has ended normally."""
-    return not any(path.with_name(path.name + end).exists() for end in COMPANIONS)
+    return not any(each.exists() for each in companions(path))
 
 
 def erase(path: Path) -> None:
     """Deletes a recording and its companion files."""
-    for each in (path, *(path.with_name(path.name + end) for end in COMPANIONS)):
+    for each in (path, *companions(path)):
         each.unlink(missing_ok=True)
 
 

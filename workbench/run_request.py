@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from actr3d.actr.kernel.run_limits import fresh_seed
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError
-from workbench.files import ModelFolder
+from workbench.files import ModelFolder, file_stamp
 from workbench.recorded_start import Beginning
 from workbench.worker.messages import Loaded, Start, digest_of
 from workbench.worker.workers import Worker
@@ -66,12 +67,17 @@ def is_there(path: Path) -> bool:
 
 
 def digest_of_file(path: Path) -> str | None:
-    """Returns the digest of the text that a file has now; None if it cannot be read."""
+    """Returns the digest of the text that a file has now; None if it cannot be read. It is read again only when it has changed."""
     try:
         # Reading something other than a regular file may never end.
-        return digest_of(read_source(path)) if path.is_file() else None
+        return _digest(path, file_stamp(path)) if path.is_file() else None
     except (Actr3dError, OSError):
         return None
+
+
+@lru_cache(maxsize=1024)
+def _digest(path: Path, _: tuple[int, ...]) -> str:
+    return digest_of(read_source(path))
 
 
 class LaunchedRun:

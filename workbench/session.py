@@ -62,7 +62,7 @@ class Session(Broadcast, Receiver):
         self.branched: Branched | None = None
         """What was kept when a user last changed something in the past of the current run."""
         self.listings: int = 0
-        """Counts how often a recording began, ended, or was labelled, renamed or deleted: then pages list recordings again."""
+        """Counts how often a recording began, ended, or was labelled or deleted: then pages list recordings again."""
         self._shown: LaunchedRun | None = None
         """The run on screen, even after its worker has ended."""
         self._loading: LaunchedRun | None = None

@@ -238,7 +238,7 @@ class Sessions:
         await asyncio.gather(*(self.close(name) for name in list(self._sessions)))
 
     def listings_changed(self) -> None:
-        """Informs all browsers that a recording began, ended, or was labelled, renamed or deleted."""
+        """Informs all browsers that a recording began, ended, or was labelled or deleted."""
         for session in self.all():
             session.listings += 1
             session.changed(facts=True)

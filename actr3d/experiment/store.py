@@ -18,6 +18,7 @@ from typing import Any, Self, cast
 from actr3d.errors import ExperimentError
 from actr3d.experiment.specification import Specification
 from actr3d.experiment.trial import Row
+from actr3d.replacing import replace_file
 from actr3d.values import to_json
 
 SPECIFICATION, FACTS, TRIALS, LOCK = "experiment.json", "facts.json", "trials.sqlite", "lock"
@@ -338,15 +339,13 @@ def only_process(folder: Path, what: str) -> Generator[None]:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Writes a text file: a reader finds either the earlier one or the new one, whole.
+    """Writes a text file; see `replace_file`.
 
     Raises:
         ExperimentError: If it cannot be written.
     """
-    part = path.with_name(f"{path.name}.part")
     try:
-        part.write_text(text, encoding="utf-8")
-        part.replace(path)
+        replace_file(path, text.encode())
     except OSError as error:
         raise ExperimentError(f"'{path}': cannot be written ({_why(error)})") from None
 

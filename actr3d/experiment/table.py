@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from itertools import islice
@@ -15,6 +14,7 @@ import numpy as np
 
 from actr3d.errors import ExperimentError
 from actr3d.experiment.store import CHUNK, Column, Store
+from actr3d.replacing import replacing
 
 CSV, PARQUET, COLUMNS = "trials.csv", "trials.parquet", "columns.csv"
 """The names of the exported files in the folder of an experiment."""
@@ -40,13 +40,8 @@ def export(store: Store) -> list[Path]:
 
 
 def _replaced(path: Path, write: Callable[[Path], None]) -> Path:
-    """Writes a file under a name of this process first: a reader finds either the old or the new one, whole, whoever else writes it."""
-    part = path.with_suffix(f"{path.suffix}.{os.getpid()}.part")
-    try:
+    with replacing(path) as part:
         write(part)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
     return path
 
 

@@ -7,6 +7,7 @@ import { literal } from "../parameters/values.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { Problem } from "../parts/problem.js";
+import { Inline, plain } from "../parts/prose.js";
 import { alive, complain, session, state } from "../store.js";
 import { computed, html, signal, useId, useRef, useState } from "../vendor/preact.js";
 
@@ -104,7 +105,7 @@ function Fields({ fields, values, choices }) {
         ? html`<select aria-describedby="help-${name}" onChange=${put}>${choices[name].map((one) => html`<option key=${one} value=${one} selected=${one === values[name]}>${one}</option>`)}</select>`
         : html`<input aria-describedby="help-${name}" inputmode=${field.takes.includes("number") ? "decimal" : "text"} required=${required} value=${values[name] ?? ""} onInput=${put} />`}
       </label>
-      <small class="quiet" id="help-${name}">${help}</small>
+      <small class="quiet" id="help-${name}"><${Inline} text=${help} /></small>
     </div>`;
   });
 }
@@ -117,7 +118,7 @@ export async function askAndMake(one, given = {}) {
   const choices = Object.fromEntries(fields.map((field) => [field.name, choicesOf(field)]));
   const problem = signal(null);
   let closed = false;
-  const Body = () => html`<p class="quiet">${one.help}</p><${Fields} fields=${fields} values=${values} choices=${choices} /><${Problem} text=${problem.value} />`;
+  const Body = () => html`<p class="quiet"><${Inline} text=${one.help} /></p><${Fields} fields=${fields} values=${values} choices=${choices} /><${Problem} text=${problem.value} />`;
   const check = async () => {
     const named = { ...given };
     for (const field of fields) {
@@ -147,7 +148,7 @@ export function ChangeButtons({ of, given, without = [] }) {
   if (list.length === 0) return null;
   const act = (one) => (needsMore(one, given) ? askAndMake(one, given) : send(one.word, given));
   return html`<span class="change-buttons">
-      ${list.map((one) => html`<button key=${one.word} disabled=${!alive.value} title=${one.help} onClick=${() => act(one)}>${one.title}</button>`)}
+      ${list.map((one) => html`<button key=${one.word} disabled=${!alive.value} title=${plain(one.help)} onClick=${() => act(one)}>${one.title}</button>`)}
     </span>
     <${Problem} text=${problem} />`;
 }
@@ -172,7 +173,7 @@ export function ChangeMenu({ of, given, label }) {
   };
   return html`<button class="bare change-more" popovertarget=${id} aria-label="Change ${label}" title="Change ${label}" disabled=${!alive.value} onClick=${place}><${Icon} name="more" /></button>
     <div id=${id} ref=${box} popover="auto" class="change-menu" role="group" aria-label="Change ${label}">
-      ${list.map((one) => html`<button key=${one.word} title=${one.help} onClick=${() => act(one)}>${one.title}</button>`)}
+      ${list.map((one) => html`<button key=${one.word} title=${plain(one.help)} onClick=${() => act(one)}>${one.title}</button>`)}
       <${Problem} text=${problem} />
     </div>`;
 }

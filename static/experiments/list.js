@@ -27,6 +27,10 @@ export const busy = signal(null);
 /** Whether an experiment runs. */
 export const isRunning = ({ state }) => state === "running" || state === "stopping";
 
+export const canStop = ({ state }) => state === "running";
+export const canResume = ({ state, done, total }) => (state === "stopped" || state === "failed") && (total === null || done < total);
+export const canMakeReport = (one) => one.done > 0 && !isRunning(one);
+
 let asked = 0;
 
 /** Reads the list. */
@@ -87,7 +91,8 @@ async function doing(text, work, cancel = null) {
   }
 }
 
-const pathOf = (id) => `/api/experiments/${encodeURIComponent(id)}`;
+/** Returns the address of an experiment on the server. */
+export const pathOf = (id) => `/api/experiments/${encodeURIComponent(id)}`;
 
 /** Starts an experiment and shows it, unless the user has left the form meanwhile; throws an Error with the reason if it cannot be run. */
 export async function startExperiment(wanted) {

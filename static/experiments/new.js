@@ -4,7 +4,7 @@ import { html, signal, useEffect, useLayoutEffect, useSignal } from "../vendor/p
 import { remembered } from "../local_storage.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
-import { Prose } from "../parts/prose.js";
+import { plain, Prose } from "../parts/prose.js";
 import { call } from "../server.js";
 import { session } from "../store.js";
 import { experiments, isRunning, shown, startExperiment } from "./list.js";
@@ -139,7 +139,7 @@ function Form({ design, facts }) {
         </tr>`;
       })}
       ${more.map((name) => html`<tr key=${name}>
-        <th scope="row" title=${facts.parameters.find((one) => one.name === name)?.help}>${name}</th>
+        <th scope="row" title=${plain(facts.parameters.find((one) => one.name === name)?.help ?? "")}>${name}</th>
         <td><${Field} wide label="Value of ${name}" value=${draft.values[name]} invalid=${readLevels(draft.values[name]).levels?.length !== 1} onInput=${(entered) => set(name, entered)} /></td>
         <td class="quiet"><button class="bare" aria-label="Remove ${name}" title="Remove" onClick=${() => unset(name)}><${Icon} name="close" /></button></td>
       </tr>`)}

@@ -1,26 +1,25 @@
 // One experiment: its state and progress, its figure, trials, facts and report.
 
-import { html, useSignal, useEffect } from "../vendor/preact.js";
+import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Prose } from "../parts/prose.js";
 import { whenInFull, whenText } from "../runs/wording.js";
-import { call } from "../server.js";
 import { useFresh } from "./answer.js";
 import { Figure } from "./figure.js";
-import { busy, deleteExperiment, experiments, isRunning, makeReport, part, problem, resumeExperiment, shown, stopExperiment } from "./list.js";
+import { busy, canMakeReport, canResume, canStop, deleteExperiment, experiments, isRunning, makeReport, part, pathOf, problem, resumeExperiment, shown, stopExperiment } from "./list.js";
 import { Parts } from "./parts.js";
 import { Trials } from "./trials.js";
 import { changedText, doneText, durationText, failuresText, levelsText, rateText, stateText } from "./wording.js";
 
 function Actions({ experiment }) {
-  const { state, done, total } = experiment;
+  const { state } = experiment;
   const waits = busy.value !== null;
   return html`
-    ${state === "running" || state === "stopping" ? html`<button disabled=${waits || state === "stopping"} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop</button>` : null}
-    ${(state === "stopped" || state === "failed") && (total === null || done < total) ? html`<button class="primary" disabled=${waits} title=${`Run the trials that are left, ${processesText(experiment)}`} onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume</button>` : null}
-    ${done > 0 && !isRunning(experiment) ? html`<button disabled=${waits} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report</button>` : null}
+    ${isRunning(experiment) ? html`<button disabled=${waits || !canStop(experiment)} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop</button>` : null}
+    ${canResume(experiment) ? html`<button class="primary" disabled=${waits} title=${`Run the trials that are left, ${processesText(experiment)}`} onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume</button>` : null}
+    ${canMakeReport(experiment) ? html`<button disabled=${waits} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report</button>` : null}
     ${isRunning(experiment) || state === "elsewhere" ? null : html`<button class="danger bare" aria-label="Delete" title="Delete" disabled=${waits} onClick=${() => deleteExperiment(experiment)}><${Icon} name="trash" /></button>`}
   `;
 }
@@ -66,23 +65,18 @@ function About({ experiment, facts }) {
   </div>`;
 }
 
-/** Reads the facts of an experiment, which do not change while it runs. */
+/** Reads the facts of an experiment, which do not change while it runs; returns {facts, error}, null for facts that are not known yet. */
 function useFacts(experiment) {
-  const found = useSignal({ id: null, facts: null });
-  useEffect(() => {
-    const leave = new AbortController();
-    call("GET", `/api/experiments/${encodeURIComponent(experiment.id)}`, undefined, leave.signal)
-      .then(({ facts }) => (found.value = { id: experiment.id, facts }))
-      .catch(() => null);
-    return () => leave.abort();
-  }, [experiment.id, experiment.state]);
-  return found.value.id === experiment.id ? found.value.facts : null;
+  const wanted = pathOf(experiment.id);
+  const { path, answer, error } = useFresh(wanted, experiment.state);
+  return path === wanted ? { facts: answer?.facts ?? null, error } : { facts: null, error: null };
 }
 
-function Contents({ experiment, facts }) {
-  const path = `/api/experiments/${encodeURIComponent(experiment.id)}`;
+function Contents({ experiment, facts, error }) {
+  const path = pathOf(experiment.id);
   const columns = useFresh(`${path}/rows?most=1`, experiment.done > 0 ? experiment.state : "").answer?.columns ?? [];
   const parts = html`<div class="menus"><${Parts} experiment=${experiment} /></div>`;
+  if (facts === null && error !== null) return html`${parts}<p class="problem bad" role="alert">The experiment cannot be read: ${error}</p>`;
   if (facts === null) return html`${parts}<p class="empty" role="status"><progress aria-label="Reading"></progress> Reading the experiment …</p>`;
   if (part.value === "about") return html`${parts}<${About} experiment=${experiment} facts=${facts} />`;
   if (part.value === "trials") return html`<${Trials} experiment=${experiment} facts=${facts} />`;
@@ -99,7 +93,7 @@ function Contents({ experiment, facts }) {
 
 export function Experiment() {
   const experiment = experiments.value?.find(({ id }) => id === shown.value);
-  const facts = useFacts(experiment);
+  const { facts, error } = useFacts(experiment);
   const back = () => (shown.value = "");
   return html`
     <div class="tools">
@@ -113,6 +107,6 @@ export function Experiment() {
     <${Progress} experiment=${experiment} />
     ${problem.value ? html`<p class="problem bad" role="alert">The state of the experiment is not known: ${problem.value}</p>` : null}
     ${experiment.problem ? html`<pre class="trouble" role="alert">${experiment.problem}</pre>` : null}
-    <div class="contents"><${Contents} key="${experiment.id}" experiment=${experiment} facts=${facts} /></div>
+    <div class="contents"><${Contents} key="${experiment.id}" experiment=${experiment} facts=${facts} error=${error} /></div>
   `;
 }

@@ -6,6 +6,7 @@ import { remembered } from "../local_storage.js";
 import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { match } from "./fuzzy.js";
 import { hasManual, noManual } from "../bar/models.js";
+import { readExperiments } from "./experiments.js";
 import { inManual, readManual } from "./manual_search.js";
 import { readRecordings } from "./recordings.js";
 
@@ -105,6 +106,7 @@ function Palette({ opening }) {
   useEffect(() => {
     readManual();
     readRecordings();
+    readExperiments();
   }, []);
 
   function press(event) {

@@ -5,7 +5,7 @@ import { hasMore } from "../editor/marks.js";
 import { counted } from "../parts/count.js";
 import { Place, Traceback } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
-import { isAhead, isPresent, isSettled, notices, settle } from "../store.js";
+import { isAhead, isPresent, isSettled, notices, settle, takeAction } from "../store.js";
 
 const LEVELS = { error: "Errors", warning: "Warnings", info: "Other" };
 const MAX_DRAWN = 300; // the maximum number drawn
@@ -44,10 +44,11 @@ function Filter() {
 }
 
 function Message({ notice }) {
-  const { level, text, file, line, detail } = notice;
+  const { level, text, file, line, detail, action } = notice;
   return html`<li class=${`${level} ${isPresent(notice) ? "" : "earlier"}`}>
     ${file ? html`<${Place} file=${file} line=${line} />` : null}
     <span class="text">${text}</span>
+    ${action ? html`<button class="bare" onClick=${() => takeAction(notice)}>${action.text}</button>` : null}
     ${hasMore({ message: text, detail }) ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
   </li>`;
 }

@@ -5,6 +5,7 @@ import { change } from "../bar/branch.js";
 import { seedProblem } from "../bar/seed.js";
 import { rangeOf, read, valuesText, written } from "../parameters/values.js";
 import { valueText } from "../parts/chunk.js";
+import { Inline } from "../parts/prose.js";
 import { call, isLeft, order } from "../server.js";
 import { runStatus } from "../run_status.js";
 import { complain, session, state } from "../store.js";
@@ -152,7 +153,7 @@ function Field({ parameter }) {
     <span class="control"><${Control} parameter=${parameter} id=${id} text=${text} problem=${problem} /><${Slider} parameter=${parameter} text=${text} />${unit ? html`<span class="quiet">${unit}</span>` : null}</span>
     <span class="mark">${live ? html`<span class="badge" title="Acts on the run that goes on, and is recorded">live</span>` : changed ? html`<span class="badge" title="Used from the next run on">next run</span>` : null}</span>
     <p id="${id}-help" class="help">
-      ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}${help} <span class="bounds">${valuesText(parameter)}</span>
+      ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}<${Inline} text=${help} /> <span class="bounds">${valuesText(parameter)}</span>
     </p>
   </div>`;
 }

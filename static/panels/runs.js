@@ -7,12 +7,14 @@ import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Chosen } from "../runs/chosen.js";
 import { openTab } from "../open_tab.js";
-import { deleteRuns, openRun } from "../runs/actions.js";
+import { addFiles, chooseFiles, deleteRuns, openRun } from "../runs/actions.js";
 import { follow, listRuns, loading, problem, runs as list, total, warning } from "../runs/list.js";
 import { chosen, sorted, Table } from "../runs/table.js";
 import { textOf } from "../runs/wording.js";
 
-command({ text: "Compare, rename or delete recordings: open their list", group: "Panels", work: () => (openTab.value = "runs") });
+command({ text: "Compare, name or delete recordings: open their list", group: "Panels", work: () => (openTab.value = "runs") });
+
+command({ text: "Open a recording file …", group: "Run", work: chooseFiles });
 
 /** Returns the recordings that contain every word of a search. */
 function found(all, search) {
@@ -48,10 +50,14 @@ function Runs() {
     event.preventDefault();
   }
 
-  return html`<div class="runs" onKeyDown=${press}>
+  const withFiles = (event) => event.dataTransfer.types.includes("Files") && event.preventDefault(); // otherwise the browser shows the file itself
+  const drop = (event) => (withFiles(event), addFiles([...event.dataTransfer.files]));
+
+  return html`<div class="runs" onKeyDown=${press} onDragOver=${withFiles} onDrop=${drop}>
     <div class="tools">
       <input type="search" aria-label="Search recordings" placeholder="Search: model, parameter, outcome …" value=${search.value} onInput=${(event) => (search.value = event.currentTarget.value)} />
       <span class="quiet number" role="status">${countText(shown.length, all.length, whole.length)}</span>
+      <button class="bare" title="Add recording files to the list: choose them, or drop them on it" onClick=${chooseFiles}>Open a file …</button>
       <button class="bare" title="Read the list again" aria-label="Read the list again" onClick=${listRuns}><${Icon} name="restart" /></button>
     </div>
     ${problem.value ? html`<p class="problem bad" role="alert">The recordings cannot be listed: ${problem.value} <button onClick=${listRuns}>Try again</button></p>` : null}

@@ -1,7 +1,7 @@
-// The latest problem, shown for a while over the page; all problems stay in the tab Messages.
+// The latest problem, or message that offers an action, shown for a while over the page; all problems stay in the tab Messages.
 
 import { html, signal, useEffect } from "../vendor/preact.js";
-import { isAhead, isPresent, isSettled, notices, settle } from "../store.js";
+import { isAhead, isPresent, isSettled, notices, settle, takeAction } from "../store.js";
 import { openTab } from "../open_tab.js";
 import { Place } from "./place.js";
 
@@ -13,7 +13,7 @@ export function Toasts() {
   const latest = list.at(-1);
   useEffect(() => {
     if (list.length === 0) return;
-    const fresh = list.filter((notice) => notice.level === "error" && isPresent(notice) && !isSettled(notice, "shown"));
+    const fresh = list.filter((notice) => (notice.level === "error" || notice.action) && isPresent(notice) && !isSettled(notice, "shown"));
     settle("shown", list);
     if (fresh.length > 0 && openTab.peek() !== "messages") toast.value = fresh.at(-1);
   }, [latest]);
@@ -29,10 +29,16 @@ export function Toasts() {
     openTab.value = "messages";
   }
 
+  function act() {
+    toast.value = null;
+    takeAction(shown);
+  }
+
   return html`<div class="toasts" aria-live="assertive">
     ${list.includes(shown) && isPresent(shown) && openTab.value !== "messages"
-      ? html`<div class="toast">
+      ? html`<div class="toast ${shown.level}">
           <span>${shown.file ? html`<${Place} file=${shown.file} line=${shown.line} /> ` : null}${shown.text}</span>
+          ${shown.action ? html`<button class="bare" onClick=${act}>${shown.action.text}</button>` : null}
           <button class="bare" onClick=${read}>Show</button>
           <button class="bare" aria-label="Close" onClick=${() => (toast.value = null)}>✕</button>
         </div>`

@@ -1,15 +1,15 @@
-// Actions on recordings: open, run again, delete; with their progress and results.
+// Actions on recordings: open, add, run again, delete; with their progress and results.
 
 import { chooseRecording } from "../bar/models.js";
 import { signal } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { confirmed } from "../parts/dialog.js";
-import { call, sinceNow } from "../server.js";
+import { call, sendFile, sinceNow } from "../server.js";
 import { complain, session } from "../store.js";
 import { forgetRun, listRuns } from "./list.js";
 import { chosen } from "./table.js";
 import { withTrust } from "./trust.js";
-import { nameOf, whenText } from "./wording.js";
+import { nameOf, sizeText, whenText } from "./wording.js";
 
 /** The results of replays by id: {since, share} while one is running, then {agrees, text}. */
 export const replays = signal({});
@@ -41,6 +41,35 @@ async function leaveOthers(wanted) {
   for (const { id } of left) {
     await call("POST", `/api/sessions/${id}/close`, {}).catch(() => null); // another page may have closed it
   }
+}
+
+const LARGEST = 2e9; // the largest file that the server takes [bytes]
+
+/** Adds recording files to the recordings, and chooses them in the list; a single one is also opened. */
+export async function addFiles(files) {
+  if (busy.value || files.length === 0) return;
+  const added = [];
+  for (const [n, file] of files.entries()) {
+    busy.value = { text: "Adding", done: n, of: files.length };
+    try {
+      if (file.size > LARGEST) throw new Error(`it is larger than ${sizeText(LARGEST)}`);
+      const name = file.name.slice(-100); // the end of a name differs most
+      added.push(await sendFile(`/api/recordings/import?name=${encodeURIComponent(name)}`, file));
+    } catch (error) {
+      complain(`${file.name} is not added to the recordings: ${error.message}`);
+    }
+  }
+  busy.value = null;
+  if (added.length > 0) chosen.value = new Set(added.map(({ id }) => id));
+  await listRuns();
+  if (files.length === 1 && added.length === 1) await openRun(added[0]);
+}
+
+/** Asks for recording files, and adds them. */
+export function chooseFiles() {
+  const field = Object.assign(document.createElement("input"), { type: "file", multiple: true, accept: ".sqlite" });
+  field.onchange = () => addFiles([...field.files]);
+  field.click();
 }
 
 function note(id, replay) {
@@ -82,13 +111,15 @@ export async function deleteRuns(all) {
   }
   if (list.length === 0) return;
   const one = list.length === 1 ? `the recording «${nameOf(list[0])}»` : counted(list.length, "recording");
-  if (!(await confirmed(`Delete ${one}?`, "It cannot be undone: recordings do not go to the trash folder.", "Delete"))) return;
+  if (!(await confirmed(`Delete ${one}?`, `${list.length === 1 ? "It goes" : "They go"} to the trash folder .workbench/trash.`, "Delete"))) return;
   const refused = [];
+  const deleted = [];
   for (const [n, run] of list.entries()) {
     busy.value = { text: "Deleting", done: n, of: list.length };
     try {
       await call("POST", `/api/recordings/${run.id}/delete`, {});
       forgetRun(run.id);
+      deleted.push(run.id);
     } catch (error) {
       if (error.status === 404) forgetRun(run.id);
       else refused.push(`${run.model}: ${error.message}`);
@@ -98,5 +129,21 @@ export async function deleteRuns(all) {
   const done = new Set(list.map(({ id }) => id));
   chosen.value = new Set([...chosen.value].filter((id) => !done.has(id))); // others may have been chosen meanwhile
   if (refused.length > 0) complain(`${refused.length} of ${list.length} not deleted. ${refused[0]}`);
+  if (deleted.length > 0) {
+    const what = deleted.length === 1 ? `The recording «${nameOf(list.find(({ id }) => id === deleted[0]))}» is` : `${counted(deleted.length, "recording")} are`;
+    complain(`${what} in the trash folder.`, "info", { text: "Restore", work: () => restoreRuns(deleted) });
+  }
+  await listRuns();
+}
+
+/** Moves deleted recordings back from the trash folder. */
+async function restoreRuns(ids) {
+  for (const id of ids) {
+    try {
+      await call("POST", `/api/recordings/${id}/restore`, {});
+    } catch (error) {
+      complain(`Not restored: ${id}: ${error.message}`);
+    }
+  }
   await listRuns();
 }

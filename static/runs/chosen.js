@@ -7,26 +7,16 @@ import { remembered } from "../local_storage.js";
 import { shownRecording } from "../store.js";
 import { compareRuns } from "../compare/compare.js";
 import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./actions.js";
-import { download, Downloads } from "./downloads.js";
+import { download, Downloads, formatsOf } from "./downloads.js";
 import { labelRun } from "./label.js";
 import { runs } from "./list.js";
 import { endedText, labelOf, measureText, originText, outcomeText, whenInFull } from "./wording.js";
 
-const FORMATS = [
-  ["sqlite", "SQLite", "The recording file, unchanged"],
-  ["replay.html", "HTML replay", "One file that plays its 3D scene beside its trace, without the workbench"],
-  ["events.csv", "CSV of events", "Time, source, kind and data of all events"],
-  ["states.csv", "CSV of states", "MuJoCo's state at the start and at the end of each tick; columns have the names of joints"],
-];
-/** The formats of recordings with a simulation. */
-const OF_STATES = ["replay.html", "states.csv"];
-
 function DownloadLinks({ run }) {
-  const formats = run.problem ? FORMATS.slice(0, 1) : FORMATS.filter(([format]) => run.states > 0 || !OF_STATES.includes(format));
   const get = (event, format, text) => (event.preventDefault(), download(run, format, text));
   return html`<span class="downloads">
     <${Icon} name="download" />
-    ${formats.map(([format, text, title]) => html`<a key=${format} href=${`/api/recordings/${run.id}/file?form=${format}`} download title=${title} onClick=${(event) => get(event, format, text)}>${text}</a>`)}
+    ${formatsOf(run).map(([format, text, title]) => html`<a key=${format} href=${`/api/recordings/${run.id}/file?form=${format}`} download title=${title} onClick=${(event) => get(event, format, text)}>${text}</a>`)}
   </span>`;
 }
 

@@ -6,6 +6,20 @@ import { fetchFile } from "../server.js";
 import { complain } from "../store.js";
 import { nameOf, sizeText } from "./wording.js";
 
+const FORMATS = [
+  ["sqlite", "SQLite", "The recording file, unchanged"],
+  ["replay.html", "HTML replay", "One file that plays its 3D scene beside its trace, without the workbench"],
+  ["events.csv", "CSV of events", "Time, source, kind and data of all events"],
+  ["states.csv", "CSV of states", "MuJoCo's state at the start and at the end of each tick; columns have the names of joints"],
+];
+/** The formats of recordings with a simulation. */
+const OF_STATES = ["replay.html", "states.csv"];
+
+/** Returns the formats in which a recording can be downloaded: [format, name, title]. */
+export function formatsOf(run) {
+  return run.problem ? FORMATS.slice(0, 1) : FORMATS.filter(([format]) => run.states > 0 || !OF_STATES.includes(format));
+}
+
 /** The active downloads: {key, text, since, come, all}, with the bytes received and their total, 0 while the file is being created. */
 const downloads = signal([]);
 const cancels = new Map();

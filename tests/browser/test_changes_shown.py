@@ -293,6 +293,8 @@ def test_a_form_stays_open_while_the_page_asks_whether_what_lies_ahead_may_be_lo
     page.keyboard.insert_text("set parameter")
     page.keyboard.press("Enter")
     form = page.get_by_role("dialog", name="Set parameter")
+    expect(form.locator("small code")).to_have_text("walker.memory.latency")
+    expect(form).not_to_contain_text("`")
     form.locator("input").first.fill("walker.speed")
     value = form.locator("input").last
     value.fill('"1')

@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import pytest
 from playwright.sync_api import Page, Route, expect
@@ -227,6 +228,16 @@ def test_a_figure_fills_in_although_its_means_take_long_and_stays_while_the_serv
     expect(page.get_by_text("The state of the experiment is not known")).to_have_count(0)
     workbench.post(f"/api/experiments/{name}/stop")
     expect(page.locator(".tools .state")).to_have_text("stopped")
+
+
+def test_an_experiment_that_cannot_be_read_says_why(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="experiments", refusals=True)
+    one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "stopped", "done": 0, "total": 8, "failures": 0}
+    one |= {"changed": {}, "model": "", "left": None}
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [one]}))
+    page.route("**/api/experiments/sums", lambda route: route.fulfill(status=409, json={"error": "facts.json is damaged"}))
+    page.locator("tr[data-experiment=sums]").click()
+    expect(page.get_by_role("alert")).to_have_text("The experiment cannot be read: facts.json is damaged")
 
 
 def test_of_trials_that_have_all_failed_there_is_no_figure(page: Page) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from typing import Any
 
 from playwright.sync_api import Locator, Page, expect
 
@@ -105,6 +106,39 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
         "Recording: doorway",
     ):
         assert any(name in one for one in names), name
+
+
+def test_the_palette_has_the_experiments_and_what_can_be_done_with_the_present_run(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    one: dict[str, Any] = {
+        "id": "sums-20200101-101010-abcd",
+        "name": "sums",
+        "made": 0,
+        "state": "stopped",
+        "done": 3,
+        "total": 8,
+        "failures": 0,
+    }
+    one |= {"changed": {}, "model": "", "left": None}
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [one]}))
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#time", "0.05 s")
+    search(page, "experiment sums")
+    for text in ("Experiment: sums", "Resume the experiment sums", "Make the report of the experiment sums"):
+        expect(options(page).filter(has_text=text)).to_have_count(1)
+    expect(options(page).filter(has_text="Stop the experiment")).to_have_count(0)
+    page.keyboard.press("Escape")
+    search(page, "new experiment")
+    page.keyboard.press("Enter")
+    expect(page.get_by_label("Design", exact=True)).to_be_visible()
+    for words in ("download events present run", "replay present run", "delete present run", "compare present run"):
+        search(page, words)
+        expect(options(page).first).to_contain_text("the present run")
+        page.keyboard.press("Escape")
+    search(page, "name note tags present run")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("dialog", name="Name of the run")).to_be_visible()
 
 
 def test_the_palette_opens_again_as_soon_as_it_is_closed(page: Page) -> None:

@@ -77,7 +77,8 @@ def test_the_page_fits_its_window_whatever_a_recording_is_called(pages: Pages, w
     name = "of-a-walker-" + "x" * 108
     (workbench.folder / "walks").mkdir()
     shutil.copy(workbench.folder / "doorway.py", workbench.folder / "walks")
-    assert workbench.post(f"/api/recordings/{recorded(workbench, 'walks/doorway.py')}/rename", {"to": name}).status_code == 200
+    recordings = workbench.folder / ".workbench" / "recordings"
+    (recordings / f"{recorded(workbench, 'walks/doorway.py')}.sqlite").rename(recordings / f"{name}.sqlite")
     model = workbench.folder / f"{'long_name_' * 6}.py"
     model.write_text((workbench.folder / "counting.py").read_text(encoding="utf-8"), encoding="utf-8")
     for model_shown in ("counting.py", model.name):  # as the way back; then both are open, in a list

@@ -164,6 +164,36 @@ def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, work
     page.get_by_role("dialog").get_by_role("button", name="Delete").click()
     expect(page.get_by_text("No recording has all these words.")).to_be_visible()
     assert not any((recordings / f"{name}.sqlite").exists() for name in spare)
+    expect(page.locator(".toast")).to_contain_text("2 recordings are in the trash folder.")
+    page.locator(".toast").get_by_role("button", name="Restore").click()
+    for name in spare:
+        expect(row(page, name)).to_be_visible()
+    assert all((recordings / f"{name}.sqlite").exists() for name in spare)
+
+
+@pytest.mark.slow
+def test_files_are_added_by_choosing_or_dropping_them(pages: Callable[..., Page], recordings: Path, two: list[str], tmp_path: Path) -> None:
+    page = pages("counting.py", refusals=True)
+    file = tmp_path / "of a colleague.sqlite"
+    shutil.copy(recordings / f"{two[0]}.sqlite", file)
+    open_tab(page, "Runs")
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Open a file …").click()
+    chooser.value.set_files(file)
+    expect(page.locator(".recording-banner")).to_contain_text("of a colleague")
+    expect(row(page, "of_a_colleague")).to_have_class(re.compile("chosen"))
+    expect(row(page, "of_a_colleague").locator("b").first).to_have_text("of a colleague")
+
+    transfer = page.evaluate_handle(
+        """() => {
+          const all = new DataTransfer();
+          for (const name of ["one.sqlite", "two.sqlite"]) all.items.add(new File(["no recording"], name));
+          return all;
+        }"""
+    )
+    page.locator(".runs").dispatch_event("drop", {"dataTransfer": transfer})
+    expect(page.locator(".toast")).to_contain_text("two.sqlite is not added to the recordings: ")
+    assert not list(recordings.glob("two*"))
 
 
 @pytest.mark.slow

@@ -32,6 +32,7 @@ from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
 from actr3d.experiment.versions import SOURCES, digest_of
+from actr3d.replacing import replacing
 from tests.helpers.experiments import COUNTER, SLOW_COUNTER, trial_processes, write_experiment
 from tests.helpers.reports import store_rows
 
@@ -554,7 +555,24 @@ def test_two_commands_may_write_the_table_at_once(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(table_of_trials, "_write_csv", write_after_another)
     with Store(folder) as store:
         assert all(file.exists() for file in export(store))
-    assert not [*folder.glob("*.part")]
+    assert not [*folder.glob("*.tmp")]
+
+
+def test_two_who_write_one_file_at_once_do_not_disturb_each_other(tmp_path: Path) -> None:
+    file = tmp_path / "facts.json"
+    with replacing(file) as first, replacing(file) as second:
+        first.write_text("first", encoding="utf-8")
+        second.write_text("second", encoding="utf-8")
+        assert not file.exists()
+    assert file.read_text(encoding="utf-8") == "first"  # which was complete last
+
+    def fail(part: Path) -> None:
+        part.write_text("half", encoding="utf-8")
+        raise KeyError
+
+    with pytest.raises(KeyError), replacing(file) as part:
+        fail(part)
+    assert [(path.name, path.read_text(encoding="utf-8")) for path in tmp_path.iterdir()] == [("facts.json", "first")]
 
 
 def test_other_versions_are_refused_unless_allowed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -19,7 +19,7 @@ from starlette.websockets import WebSocket
 from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, TOKEN, Answer, Header, ask, connect
 from workbench import cli
 from workbench.app import make_app
-from workbench.auth import LARGEST, Gate, Guard, Message, Receive, Scope, Send, Token
+from workbench.auth import LARGEST, LARGEST_UPLOAD, UPLOAD, Gate, Guard, Message, Receive, Scope, Send, Token
 from workbench.files import ModelFolder
 from workbench.viser_bridge import Bridge
 
@@ -213,6 +213,20 @@ def test_what_changes_something_has_our_header() -> None:
     assert post(JSON, OURS).status == 200
     for method in ("PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "post"):
         assert ask(guarded, "/x", HOST, ORIGIN, COOKIE, method=method).status in (403, 415)
+
+
+FILE = ("content-type", "application/vnd.sqlite3")
+
+
+def test_only_an_upload_may_be_larger_and_it_is_not_read_before_the_application_does() -> None:
+    def upload(path: str, *headers: Header, **more: Any) -> Answer:
+        return ask(guarded, path, HOST, ORIGIN, COOKIE, *headers, method="POST", **more)
+
+    assert upload(UPLOAD, FILE, OURS, parts=[b"x" * 600_000] * 4).status == 200
+    assert upload(UPLOAD, FILE, OURS, ("content-length", str(LARGEST_UPLOAD + 1))).status == 413
+    assert upload(UPLOAD, JSON, OURS, parts=[b"x" * 600_000] * 4).status == 413
+    assert upload("/x", FILE, OURS).status == 415
+    assert upload(UPLOAD, FILE).status == 403
 
 
 def test_no_request_is_too_large() -> None:

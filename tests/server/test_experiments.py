@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+import io
 import json
 import os
 import re
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +27,7 @@ from tests.helpers.workbench_server import Served, served
 from workbench.design_files import Checking, Starting
 from workbench.experiment_command import ExperimentCommand, ExperimentFacts, ExperimentRunError
 from workbench.experiments import Experiments
+from workbench.readers import ReadingError
 
 pytestmark = pytest.mark.long
 
@@ -515,6 +519,40 @@ def test_a_folder_with_damaged_files_is_listed_and_read_with_an_error(workbench:
     assert workbench.get("/api/experiments/damaged/code").status_code == 409
     assert workbench.post("/api/experiments/damaged/resume", {"trust": True}).status_code == 422
     shutil.rmtree(folder)
+
+
+@pytest.mark.parametrize("name", ["trial", "column"])
+def test_a_table_that_is_an_endless_view_is_not_read(workbench: Served, name: str) -> None:
+    folder = workbench.folder / ".workbench/experiments" / "endless"
+    folder.mkdir(parents=True)
+    (folder / "experiment.json").write_text("{}", "utf-8")
+    with closing(sqlite3.connect(folder / "trials.sqlite")) as file:
+        for table in {"trial", "column"} - {name}:
+            file.execute(f"CREATE TABLE {table} (number, data, name, place, type, unit, meaning)")
+        endless = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT x AS number, x AS name, x AS place FROM n"
+        file.execute(f"CREATE VIEW {name} AS {endless}")
+    now = state_of(workbench, "endless")
+    assert (now["state"], now["problem"]) == ("failed", "its table cannot be read: it has other tables than an experiment")
+    assert workbench.get("/api/experiments/endless/rows").status_code == 409
+    shutil.rmtree(folder)
+
+
+def test_a_table_that_ends_its_worker_does_not_hide_other_experiments(tmp_path: Path, desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    sessions = desk.sessions(tmp_path)
+    for name in ("good", "bad", "better"):
+        folder = tmp_path / ".workbench/experiments" / name
+        folder.mkdir(parents=True)
+        (folder / "experiment.json").write_text("{}", "utf-8")
+        (folder / "trials.sqlite").write_bytes(b"")
+
+    async def make(kind: str, *tables: Path) -> io.BytesIO:
+        if any(table.parent.name == "bad" for table in tables):
+            raise ReadingError("no progress for 120 s")
+        return io.BytesIO(json.dumps([{"done": 3, "failures": 0, "problem": None, "columns": []} for _ in tables]).encode())
+
+    monkeypatch.setattr(sessions.readers, "make", make)
+    found = {one["id"]: (one["done"], one["problem"]) for one in desk.do(Experiments(sessions).listing())}
+    assert found == {"good": (3, None), "better": (3, None), "bad": (0, "its table cannot be read: no progress for 120 s")}
 
 
 def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

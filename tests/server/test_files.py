@@ -11,11 +11,12 @@ from time import sleep
 import pytest
 
 from actr3d.actr.loading.source_text import read_source
-from workbench import files, loader
+from workbench import files, loader, run_request
 from workbench.files import LARGEST, ConflictError, FileError, ModelFolder, NoSuchFileError
 from workbench.loader import Outline, outline_of
-from workbench.run_request import RunOptions, start_of
+from workbench.run_request import RunOptions, digest_of_file, start_of
 from workbench.shipped import models_folder, shipped
+from workbench.worker.messages import digest_of
 
 
 @pytest.fixture
@@ -298,3 +299,22 @@ def test_the_description_of_a_file_in_a_list_is_read_again_only_after_a_change(t
         assert outline_of(file) == Outline()
     file.unlink()
     assert outline_of(file) == outline_of(tmp_path) == Outline()
+
+
+def test_the_digest_of_a_file_is_computed_again_only_when_the_file_has_changed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[Path] = []
+
+    def reading(path: Path) -> str:
+        read.append(path)
+        return read_source(path)
+
+    monkeypatch.setattr(run_request, "read_source", reading)
+    file = tmp_path / "model.py"
+    for text in ("a = 1", "a = 22", "a = 1"):
+        file.write_text(text, encoding="utf-8")
+        assert [digest_of_file(file) for _ in range(3)] == [digest_of(text)] * 3
+    assert len(read) == 3
+    file.write_bytes(b"\xff\xff")
+    assert digest_of_file(file) is None
+    file.unlink()
+    assert digest_of_file(file) is None

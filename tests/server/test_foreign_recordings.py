@@ -11,6 +11,7 @@ from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlencode
 
 import pytest
 
@@ -21,9 +22,10 @@ from tests.helpers.asgi_client import COOKIE, GATE, HOST, JSON, ORIGIN, OURS, An
 from tests.helpers.recording_forgery import forge
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from tests.server.test_runs import firing, written
-from workbench import listing
+from workbench import listing, recording_routes
 from workbench.app import make_app
 from workbench.readers import Readers, ReadingError
+from workbench.retention import Keeping
 from workbench.worker.messages import LONGEST
 
 ENDLESS = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n)"
@@ -178,8 +180,8 @@ def foreign(desk: Desk, tmp_path: Path) -> Callable[[], bool]:
     mark = tmp_path / "mark"
     talk = desk.begin(tmp_path, MARKING.format(mark=str(mark)), record=True, run=True, wait="ended")
     desk.do(talk.session.stop())
-    talk.sessions.recordings.rename(talk.facts["recording"], "far")
-    path = talk.sessions.recordings.path("far")
+    recording = talk.sessions.recordings.path(talk.facts["recording"])
+    path = recording.rename(recording.with_name("far.sqlite"))
     with Recorded(path) as recorded:
         assert recorded.made_here
     forge(path, key=b"another key")
@@ -210,6 +212,43 @@ def test_code_from_elsewhere_is_run_only_if_the_user_says_so(desk: Desk, tmp_pat
     assert json.loads(post(desk, app, "/recordings/far/replay", trust=True).body)["agrees"] is True
     assert foreign()
     assert post(desk, app, "/recordings/far/open", trust=True).status == 201
+
+
+def test_a_recording_file_is_added_and_kept_but_none_of_its_code_is_run(
+    desk: Desk, tmp_path: Path, foreign: Callable[[], bool], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    app = make_app(tmp_path, GATE)
+    app.state.sessions = sessions = desk.sessions(tmp_path)
+    recordings = sessions.recordings
+    data = recordings.path("far").read_bytes()
+
+    def add(name: str, parts: list[bytes]) -> Answer:
+        kind = ("content-type", "application/vnd.sqlite3")
+        sent = call(
+            app, "/api/recordings/import", HOST, COOKIE, ORIGIN, kind, OURS, method="POST", query=urlencode({"name": name}), parts=parts
+        )
+        return desk.do(sent)
+
+    answer = add("walker-20200101-101010-abcd.sqlite", [data[:1000], data[1000:]])
+    assert answer.status == 201, answer.body
+    added = json.loads(answer.body)
+    assert (added["id"], added["problem"], added["label"]["name"]) == ("walker-20200101-101010-abcd", None, "walker-20200101-101010-abcd")
+    assert recordings.path(added["id"]).read_bytes() == data
+    names = [json.loads(add(name, [data]).body)["id"] for name in ("far.sqlite", "../é b.sqlite", "..")]
+    assert names == ["far-2", "___b", "recording"]
+    recordings.tidy(Keeping(number=1))
+    assert {path.stem for path in recordings.all()} == {"far", added["id"], *names}
+    assert post(desk, app, f"/recordings/{added['id']}/open").status == 403
+    assert not foreign()
+
+    answer = add("text.sqlite", [b"no recording" * 100])
+    assert answer.status == 409
+    assert "'text.sqlite' cannot be added to the recordings: " in json.loads(answer.body)["error"]
+    assert str(tmp_path) not in answer.body.decode()
+    monkeypatch.setattr(recording_routes, "LARGEST_UPLOAD", 1000)
+    assert add("large.sqlite", [data]).status == 413
+    assert sorted(path.name for path in recordings.path("far").parent.glob(".*")) == [".labels.json.lock"]
+    assert len(recordings.all()) == 5
 
 
 def test_a_recording_of_this_installation_is_run_without_asking(desk: Desk, tmp_path: Path) -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import errno
 import os
+import shutil
 import sqlite3
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -14,10 +14,11 @@ import pytest
 
 from actr3d.errors import RecordingError
 from tests.helpers.sessions import Desk
-from workbench.files import OWN
-from workbench.labels import Labels
+from workbench import app
+from workbench.files import OWN, empty_trash
+from workbench.labels import Label, Labels
 from workbench.recordings import NoSuchRecordingError, Recordings
-from workbench.retention import Keeping, is_unnamed
+from workbench.retention import Keeping, is_unnamed, stands_alone
 
 
 @pytest.fixture
@@ -60,7 +61,7 @@ def test_the_largest_part_of_a_folder_goes_too(recordings: Recordings, tmp_path:
 
 def test_what_a_user_has_named_stays(recordings: Recordings, tmp_path: Path) -> None:
     oldest = min((tmp_path / OWN / "recordings").glob("*.sqlite"), key=lambda path: path.stat().st_mtime)
-    recordings.rename(oldest.stem, "kept")
+    oldest.rename(oldest.with_name("kept.sqlite"))
     recordings.tidy(Keeping(number=2, megabytes=0))
     assert models(tmp_path) == ["kept", "model9"]
 
@@ -72,17 +73,65 @@ def test_what_another_server_writes_stays(recordings: Recordings, tmp_path: Path
     assert models(tmp_path) == ["model0", "model9"]
 
 
-def test_a_recording_whose_label_cannot_be_moved_is_renamed_all_the_same(
-    recordings: Recordings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def full(*_: object) -> None:
-        raise FileNotFoundError(errno.ENOENT, "no such file")
+def test_a_deleted_recording_is_restored_with_its_label_and_its_log(recordings: Recordings, tmp_path: Path) -> None:
+    path = recordings.all()[0]
+    path.with_name(f"{path.name}-wal").write_bytes(b"log")
+    recordings.labels.change(path.stem, {"name": "mine", "tags": ("x",)})
+    recordings.delete(path.stem)
+    assert (path.exists(), recordings.labels.all()) == (False, {})
+    assert sorted(each.name[5:] for each in (tmp_path / OWN / "trash").glob("*/*")) == sorted(
+        (path.name, f"{path.name}-wal", f"{path.stem}.label.json")
+    )
+    recordings.restore(path.stem)
+    assert (path.read_bytes(), path.with_name(f"{path.name}-wal").read_bytes()) == (bytes(1000), b"log")
+    assert recordings.labels.all() == {path.stem: Label(name="mine", tags=("x",))}
+    assert list((tmp_path / OWN / "trash").glob("*/*")) == []
 
-    monkeypatch.setattr(recordings.labels, "move", full)
-    one = recordings.all()[0].stem
-    with pytest.raises(RecordingError, match="the recording is now 'kept', but its label cannot be moved"):
-        recordings.rename(one, "kept")
-    assert recordings.path("kept").stat().st_size == 1000
+
+def test_what_is_not_in_the_trash_or_would_replace_a_recording_is_not_restored(recordings: Recordings) -> None:
+    path = recordings.all()[0]
+    for name in (path.stem, "..", "*", "a/b"):
+        with pytest.raises(NoSuchRecordingError):
+            recordings.restore(name)
+    recordings.delete(path.stem)
+    path.write_bytes(b"another one")
+    with pytest.raises(RecordingError, match=r"there is a recording .* already"):
+        recordings.restore(path.stem)
+    assert path.read_bytes() == b"another one"
+
+
+def test_what_was_deleted_long_ago_is_removed_from_the_trash(tmp_path: Path) -> None:
+    trash = tmp_path / OWN / "trash"
+    for name in ("20200101-000000", "29990101-000000", "notes"):
+        (trash / name).mkdir(parents=True)
+        (trash / name / "ab12-model.py").touch()
+    empty_trash(tmp_path)
+    assert sorted(folder.name for folder in trash.iterdir()) == ["29990101-000000", "notes"]
+    empty_trash(tmp_path / "nothing")
+
+
+def test_unfinished_files_of_killed_processes_are_removed_the_next_day(recordings: Recordings, tmp_path: Path) -> None:
+    folder = tmp_path / OWN / "recordings"
+    recordings.labels.change("kept", {"note": "x"})
+    for name in (".old.sqlite.part", ".old.sqlite.part-journal", ".0123.tmp", ".new.sqlite.part"):
+        (folder / name).touch()
+        if "new" not in name:
+            os.utime(folder / name, (1000, 1000))
+    recordings.tidy(Keeping())
+    assert sorted(path.name for path in folder.glob(".*")) == [".labels.json.lock", ".new.sqlite.part"]
+    assert len(models(tmp_path)) == 10
+
+
+def test_a_recording_that_a_killed_process_has_left_is_completed_when_the_workbench_starts(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, "print('x')\n", record=True, run=True, wait="ended")
+    path = talk.sessions.recordings.path(talk.facts["recording"])
+    copy = path.with_name("model-20200101-000000-abcd.sqlite")
+    for end in ("", "-wal"):
+        shutil.copy(path.with_name(path.name + end), copy.with_name(copy.name + end))
+    desk.do(talk.session.stop())
+    assert not stands_alone(copy)
+    desk.do(app.tidy(talk.sessions, Keeping()))
+    assert {each.name for each in path.parent.glob("*.sqlite*")} == {path.name, copy.name}
 
 
 def test_labels_that_two_servers_change_at_once_are_all_kept(tmp_path: Path) -> None:
@@ -92,27 +141,6 @@ def test_labels_that_two_servers_change_at_once_are_all_kept(tmp_path: Path) -> 
     with ThreadPoolExecutor(8) as pool:
         list(pool.map(change, range(40)))
     assert len(Labels(tmp_path).all()) == 40
-
-
-def test_names_are_names_and_nothing_is_replaced(recordings: Recordings, tmp_path: Path) -> None:
-    one, other, *_ = [path.stem for path in (tmp_path / OWN / "recordings").glob("*.sqlite")]
-    for name in ("", "..", "../x", "a/b", "x" * 200, ".hidden", "a b"):
-        with pytest.raises(RecordingError, match="the name of a recording: must be"):
-            recordings.rename(one, name)
-    with pytest.raises(RecordingError, match="there is a recording"):
-        recordings.rename(one, other)
-    with pytest.raises(NoSuchRecordingError):
-        recordings.rename("none", "x")
-
-
-def test_a_recording_that_is_being_written_keeps_its_name(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, "print('x')\n", record=True)
-    name = talk.facts["recording"]
-    with pytest.raises(RecordingError, match="still being written"):
-        talk.sessions.recordings.rename(name, "mine")
-    talk.say("stop")
-    talk.sessions.recordings.rename(name, "mine")
-    assert talk.summary("mine").model == "model.py"
 
 
 def test_what_cannot_be_opened_is_listed_with_the_reason(desk: Desk, tmp_path: Path) -> None:

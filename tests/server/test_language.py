@@ -23,6 +23,7 @@ from workbench.app import make_app
 from workbench.language import language_server
 from workbench.language.answers import LanguageError
 from workbench.language.explicit_names import ExplicitText
+from workbench.language.field_texts import text_at
 from workbench.language.language_server import LONGEST_TEXT, MAX_WAITING, LanguageServer, TooManyQuestionsError
 from workbench.language.language_worker import safe_path
 from workbench.language.model_text import ModelText
@@ -245,6 +246,14 @@ def test_what_is_known_of_a_name(ask: Asked, text: str, title: str, said: str) -
     assert found["title"].startswith(title)
     assert said in found["text"]
     assert found["start"] <= text.index("|") <= found["end"]
+
+
+def test_what_is_known_of_a_field_is_what_its_file_says_now(tmp_path: Path) -> None:
+    file = tmp_path / "helper.py"
+    file.write_text('width = 1\n"""The width."""\n', encoding="utf-8")
+    assert text_at(file, 1) == "The width."
+    file.write_text('height = 2\n"""The height."""\nwidth = 1\n"""The width [m]."""\n', encoding="utf-8")
+    assert (text_at(file, 1), text_at(file, 3)) == ("The height.", "The width [m].")
 
 
 def test_nothing_is_known_where_there_is_nothing(ask: Asked) -> None:

@@ -62,6 +62,10 @@ for width in (0.6, 0.9):
     Simulation(Scene(parts=parts), {"walker": Walker}).run(0.4)
 """
 )
+MANY = """
+for _ in range(6):
+    Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": Walker}).run(0.04)
+"""
 UNSTEPPED = TRIALS.replace("Silent().run(0.1)", "Simulation(Scene(parts=(Floor(), Mannequin(name='walker'))), {'walker': Walker}).run(0)")
 KINDS = ("frustum", "edges", "features", "path", "posture")
 
@@ -213,6 +217,23 @@ def test_of_several_simulations_the_latest_is_shown_and_the_scene_changes_with_t
         now = told(talk)
         assert [name for name in now if now[name] != seen[time][name]] == [], f"at {time} s"
         assert talk.say("curves", most=5_000) == curves  # of all simulations, also of those that are not there yet
+
+
+def test_of_more_simulations_than_are_kept_those_near_the_present_keep_their_past_and_future(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, EXAMPLE + MANY)
+    talk.say("run")
+    talk.until("ended", time=0.24)
+
+    def third() -> dict[float, float | None]:
+        curves = talk.say("curves", most=5_000)
+        return {time: x for time, x in zip(curves["times"], curves["curves"]["walker x"], strict=True) if 0.081 < time < 0.119}
+
+    before = third()
+    assert len(before) >= 3
+    assert None not in before.values()
+    talk.say("seek", time=0.09)
+    talk.until("paused", time=0.09)
+    assert third() == before
 
 
 def test_a_command_to_a_program_is_refused_in_words(desk: Desk, tmp_path: Path) -> None:

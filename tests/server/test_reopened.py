@@ -16,6 +16,7 @@ from actr3d.runner.replay import replay
 from tests.helpers.recording_forgery import forge
 from tests.helpers.sessions import Desk, Talk
 from tests.helpers.workbench_server import MODELS
+from workbench.files import OWN
 
 BUILT = """
 from actr3d.actr import *
@@ -257,7 +258,8 @@ def test_a_renamed_recording_is_known_to_its_branches_by_its_first_name(desk: De
         talk.say("command", word="aperture", values=[0.5])
     kept = talk.facts["branched"]["recording"] if source == BUILT else None
     desk.do(talk.sessions.close(talk.session.name))
-    talk.sessions.recordings.rename(first, "renamed")
+    recordings = tmp_path / OWN / "recordings"
+    (recordings / f"{first}.sqlite").rename(recordings / "renamed.sqlite")
     again = Talk(desk, desk.do(talk.sessions.reopen("renamed")), talk.sessions)
     again.say("until", time=0.5)
     again.until("paused", time=0.5)
@@ -265,7 +267,7 @@ def test_a_renamed_recording_is_known_to_its_branches_by_its_first_name(desk: De
     assert (talk.summary("renamed").named, branch.origin, branch.named) == (first, first, branch.id)
     if kept is not None:
         before = talk.summary(kept)
-        talk.sessions.recordings.rename(kept, "kept")
+        (recordings / f"{kept}.sqlite").rename(recordings / "kept.sqlite")
         renamed = talk.summary("kept")
         assert (renamed.named, renamed.origin, renamed.kept) == (kept, first, before.kept)
     with Recorded(talk.sessions.recordings.path("renamed")) as recorded:

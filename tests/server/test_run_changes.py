@@ -257,13 +257,11 @@ def test_recordings_have_names_notes_and_tags(desk: Desk, tmp_path: Path) -> Non
     recordings.tidy(Keeping(number=0, megabytes=0))
     recordings.tidy(Keeping(number=1))
     assert name in recordings.labels.all()
-    recordings.rename(name, "other")
-    assert set(recordings.labels.all()) == {"other"}
-    recordings.delete("other")
+    recordings.delete(name)
     assert recordings.labels.all() == {}
 
 
-def test_all_browsers_hear_that_a_recording_was_labelled_renamed_or_deleted(desk: Desk, tmp_path: Path) -> None:
+def test_all_browsers_hear_that_a_recording_was_labelled_or_deleted(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, BUILT, record=True)
     there(talk, 0.1)
     name = recording(talk).stem
@@ -275,7 +273,7 @@ def test_all_browsers_hear_that_a_recording_was_labelled_renamed_or_deleted(desk
         sent = json.dumps(body).encode()
         return desk.do(call(app, f"/api/recordings/{path}", HOST, COOKIE, ORIGIN, JSON, OURS, method="POST", body=sent)).status
 
-    for path, body in ((f"{name}/label", {"name": "x"}), (f"{name}/rename", {"to": "other"}), ("other/delete", {})):
+    for path, body in ((f"{name}/label", {"name": "x"}), (f"{name}/delete", {})):
         before, heard = talk.session.facts_version, talk.facts["listings"]
         assert post(path, body) == 200
         assert talk.session.facts_version > before

@@ -125,11 +125,10 @@ class Storm:
         file = self._random.choice(self._report)
         names = {"recording": self._random.choice(RECORDINGS), "experiment": self._random.choice(EXPERIMENTS)}
         place = path.format(**names, session=session, folder=file.parent, file=file.name)
-        body: Any = None
-        if "requestBody" in operation:
-            body = self._body(path, operation["requestBody"]["content"]["application/json"]["schema"])
-        elif method != "get":
-            body = {}
+        body: Any = None if method == "get" else {}
+        content = operation.get("requestBody", {}).get("content", {})
+        if "application/json" in content:
+            body = self._body(path, content["application/json"]["schema"])
         try:
             answer = self._client.request(method, place, params=query, json=body)
         except httpx.HTTPError as error:
@@ -176,8 +175,7 @@ class Storm:
     def _body(self, path: str, schema: dict[str, Any]) -> Any:
         schema = resolved(schema)
         required = {name: json.loads(valid(schema["properties"][name])) for name in schema.get("required", [])}
-        own = {"path": MODELS, "model": (*MODELS, SOURCE), "first": RECORDINGS, "second": RECORDINGS}
-        own["to"] = MODELS if path.startswith("/api/model/") else RECORDINGS
+        own = {"path": MODELS, "model": (*MODELS, SOURCE), "to": MODELS, "first": RECORDINGS, "second": RECORDINGS}
         chosen = {name: self._random.choice(values) for name, values in own.items() if name in required}
         return {**required, **chosen, **({"text": "x = 1\n"} if "text" in required else {})}
 

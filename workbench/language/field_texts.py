@@ -34,12 +34,20 @@ def texts_of(kind: type) -> dict[str, str]:
     return found
 
 
-@lru_cache(maxsize=64)
 def _texts(path: Path) -> tuple[tuple[str, int, str], ...]:
     """Returns the name, the line and the text of each assignment in a file that has a text below it."""
     try:
-        return tuple(_texts_in(ast.parse(path.read_text(encoding="utf-8"))))
-    except (OSError, ValueError, SyntaxError, RecursionError, MemoryError):
+        return _texts_of(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return ()
+
+
+@lru_cache(maxsize=64)
+def _texts_of(source: str) -> tuple[tuple[str, int, str], ...]:
+    """As `_texts`, of the present text of a file."""
+    try:
+        return tuple(_texts_in(ast.parse(source)))
+    except (ValueError, SyntaxError, RecursionError, MemoryError):
         return ()
 
 

@@ -39,7 +39,7 @@ from workbench.worker.messages import ENDED, Facts
 from workbench.worker.names import Names, Top, names_of_program
 from workbench.worker.program_times import ProgramTimes
 from workbench.worker.run_controller import Leaving, RunController
-from workbench.worker.shown import Kept, Shown
+from workbench.worker.shown import Shown
 from workbench.worker.state_history import MAX_SIMULATIONS, Past
 
 PERIOD = 10_000
@@ -156,7 +156,8 @@ class ProgramRun(ControlledRun):
         self._begun = 0
         """The number of simulations that have begun."""
         self._simulations: dict[int, tuple[Shown, int]] = {}
-        """The latest of them by number, and when each began [us]. After going back, those that have not begun again are included."""
+        """Those nearest to the present by number, and when each began [us]. They outlive that the program is run again: what is kept of a
+        simulation's past is passed on to the one that begins in its place."""
         self._held: deque[tuple[int, Run, Any]] = deque(maxlen=MAX_RUNS)
         """The numbers of the latest runs, these, and their models."""
         self._runs = 0
@@ -167,8 +168,6 @@ class ProgramRun(ControlledRun):
         """The compiled scene and the world that the server knows."""
         self._scene_of: Shown | None = None
         """The simulation that was shown last."""
-        self._kept: dict[int, Kept] = {}
-        """What is kept of the past of simulations, by number; it outlives that the program is run again."""
         self._ahead: dict[int, Past] = {}
         """By its number among all runs, the states of a simulation that has not begun yet in the recording that is run again."""
         self._commands = [RecordedCommand(*command) for command in start.commands]
@@ -471,11 +470,9 @@ class ProgramRun(ControlledRun):
             with suppress(SimulationError):  # it has begun already; its past cannot be explained then
                 simulation.traced()
             self._begun += 1
-            self._shown = shown = Shown(simulation, self._kept.get(self._begun))
+            earlier = self._simulations.get(self._begun)
+            self._shown = shown = Shown(simulation, None if earlier is None else earlier[0].kept)
             self._take_ahead(shown)
-            self._kept[self._begun] = shown.kept
-            if len(self._kept) > MAX_SIMULATIONS:
-                self._kept.pop(next(number for number in self._kept if number != self._begun))
             self._simulations[self._begun] = shown, self._clock
             if len(self._simulations) > MAX_SIMULATIONS:
                 del self._simulations[max(self._simulations, key=lambda number: abs(number - self._begun))]
@@ -587,9 +584,8 @@ class ProgramRun(ControlledRun):
     def forget_ahead(self) -> None:
         self._furthest = self._clock
         self._ahead.clear()
-        for number in [number for number in self._kept if number > self._begun]:
-            del self._kept[number]
-            self._simulations.pop(number, None)
+        for number in [number for number in self._simulations if number > self._begun]:
+            del self._simulations[number]
         if self._shown is not None:
             self._shown.kept.cut(self._shown.simulation.ticks)
 

@@ -1,0 +1,31 @@
+// The experiments, and what can be done with them, as commands; they are listed when the palette is opened.
+
+import { command, commandsOf } from "../commands.js";
+import { canMakeReport, canResume, canStop, experiments, listExperiments, makeReport, resumeExperiment, showExperiment, stopExperiment } from "../experiments/list.js";
+import { openTab } from "../open_tab.js";
+import { whenText } from "../runs/wording.js";
+
+/** Reads the list of experiments. */
+export const readExperiments = () => void listExperiments();
+
+/** Shows an experiment; "new" for the form of a new one. */
+function show(id) {
+  openTab.value = "experiments";
+  showExperiment(id);
+}
+
+command({ text: "New experiment …", group: "Run", work: () => show("new") });
+
+const ACTIONS = [
+  ["Stop", canStop, stopExperiment],
+  ["Resume", canResume, resumeExperiment],
+  ["Make the report of", canMakeReport, makeReport],
+];
+
+commandsOf(() =>
+  (experiments.value ?? []).flatMap((one) => {
+    const name = `${one.name} ${whenText(one.made)}`;
+    const actions = ACTIONS.filter(([, can]) => can(one)).map(([text, , work]) => ({ text: `${text} the experiment ${name}`, group: one.id, work: () => (show(one.id), work(one)) }));
+    return [{ text: `Experiment: ${name}`, group: one.id, work: () => show(one.id) }, ...actions];
+  }),
+);
