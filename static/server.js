@@ -155,7 +155,8 @@ export async function showRecording(id, { trust = false, run = false } = {}) {
 
 function attach() {
   const { first, list } = events.value;
-  socket.send(JSON.stringify({ type: "attach", session: shown, run: known.run, epoch: known.epoch, events: first + list.length, page }));
+  const { born } = session.peek() ?? {}; // a workbench that was started again has other sessions with the same names
+  socket.send(JSON.stringify({ type: "attach", session: shown, born, run: known.run, epoch: known.epoch, events: first + list.length, page }));
 }
 
 /** Opens the websocket, unless it is open; a connection that is lost is opened again. */

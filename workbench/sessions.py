@@ -70,15 +70,20 @@ class Sessions:
         """Returns all sessions, oldest first."""
         return list(self._sessions.values())
 
-    def get(self, name: str) -> Session:
+    def get(self, name: str, born: float | None = None) -> Session:
         """Returns a session.
 
+        Args:
+            name: Its name.
+            born: When it began [s since 1970]; None for any session of that name: an earlier server has given the same names.
+
         Raises:
-            NoSuchSessionError: If there is no session of that name.
+            NoSuchSessionError: If there is no such session.
         """
-        if name not in self._sessions:
+        session = self._sessions.get(name)
+        if session is None or born not in (None, session.born):
             raise NoSuchSessionError("there is no such session")
-        return self._sessions[name]
+        return session
 
     def writing(self) -> dict[str, str]:
         """Returns the recordings that runs are still writing, with the names of their sessions."""
