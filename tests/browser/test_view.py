@@ -563,7 +563,7 @@ def test_a_body_is_dragged_elsewhere_by_its_handle(pages: Callable[..., Page], v
 
     if view == "top":  # where the wall is in view
         before = handle()
-        drag(at(0.25, 0.25), at(4.25, 1.25))  # the square between the arrows, into the wall beside the doorway
+        drag(at(0.25, 0.25), at(7.25, 1.25))  # the square between the arrows, into the wall beside the doorway
         expect(page.locator(".toast")).to_contain_text("it would be inside")
         until(page, lambda: handle() == pytest.approx(before, abs=1e-4))
     drag(at(0.25, 0.25), at(0.25, 1.0))
