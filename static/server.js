@@ -138,8 +138,7 @@ export async function showModel(model, { run = false } = {}) {
  * Returns whether it is shown: the user may have chosen something else meanwhile. */
 export async function showRecording(id, { trust = false, run = false } = {}) {
   const wanted = wish();
-  const waits = opening.peek() === null && session.peek() === null;
-  if (waits) opening.value = { text: `The recording ${id} is being opened …`, slow: false };
+  if (session.peek() === null) opening.value = { text: `The recording ${id} is being opened …`, slow: false };
   try {
     const found = await call("POST", `/api/recordings/${encodeURIComponent(id)}/open`, { real_time: true, trust });
     if (!wanted()) return false;
@@ -148,7 +147,7 @@ export async function showRecording(id, { trust = false, run = false } = {}) {
     return true;
   } catch (error) {
     if (!wanted()) return false;
-    if (waits) opening.value = null;
+    opening.value = null;
     throw error;
   }
 }
