@@ -86,6 +86,8 @@ class Session(Broadcast, Receiver):
         self.speed: float | None = None
         self.real_time = False
         """Whether runs with a body go in real time; until a user chooses a speed."""
+        self.speed_chosen = False
+        """Whether a user has chosen the speed."""
         self._workers = workers
         self._recordings = recordings
         self._lists_changed = lists_changed
@@ -380,13 +382,22 @@ class Session(Broadcast, Receiver):
 
     def set_speed(self, factor: float | None) -> None:
         """Stores the speed for this and later runs, as a multiple of real time; None for as fast as possible."""
-        self.speed, self.real_time = factor, False
+        self.speed, self.real_time, self.speed_chosen = factor, False, True
         self.changed(facts=True)
 
     def set_breakpoints(self, productions: tuple[str, ...]) -> None:
         """Stores the breakpoints for this and later runs."""
         self.breakpoints = productions
         self.changed(facts=True)
+
+    def take_choices(self, other: Session) -> None:
+        """Takes over what users have chosen in another session: overlays and speed, and the breakpoints if it has the same model file."""
+        self.look = other.look
+        self._notify_watchers(self.look)
+        if other.speed_chosen:
+            self.set_speed(other.speed)
+        if other.path == self.path:
+            self.set_breakpoints(other.breakpoints)
 
     def show_overlay(self, name: str, shown: bool) -> None:
         """Shows or hides an overlay of the 3D view."""
