@@ -5,7 +5,8 @@ import { frameBudget } from "./frame_budget.js";
 import { complain, connected, events, forget, hurried, known, opening, restarted, session, take } from "./store.js";
 
 const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation the eye is compiled, too, which takes up to a minute.";
-const AGAIN = 1000; // the delay before a new connection [ms]
+/** The delay before a new attempt to reach the workbench [ms]. */
+export const AGAIN = 1000;
 
 let socket = null;
 let shown = null;
