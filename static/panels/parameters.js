@@ -3,6 +3,7 @@
 import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { change } from "../bar/branch.js";
 import { seedProblem } from "../bar/seed.js";
+import { isMac, keyText, noteKey } from "../keys.js";
 import { rangeOf, read, valuesText, written } from "../parameters/values.js";
 import { valueText } from "../parts/chunk.js";
 import { call, isLeft, order } from "../server.js";
@@ -100,6 +101,7 @@ function drop(name) {
   drafts.value = others;
 }
 
+/** Starts a new run with the values of the form; it goes on at once if the button that sends the form has the value "run". */
 function restart(event) {
   event.preventDefault();
   if (problems()) return;
@@ -109,8 +111,17 @@ function restart(event) {
     if (value !== parameter.default) settings[parameter.name] = value;
   }
   const wanted = seed.value.trim();
-  order({ type: "restart", settings, ...(wanted ? { seed: wanted } : {}) });
+  order({ type: "restart", settings, run: event.submitter?.value === "run", ...(wanted ? { seed: wanted } : {}) });
 }
+
+/** Presses «Run with these» for Mod+Enter. */
+function press(event) {
+  if (event.key !== "Enter" || !(isMac ? event.metaKey : event.ctrlKey)) return;
+  event.preventDefault();
+  event.currentTarget.querySelector("[value=run]").click();
+}
+
+noteKey("Mod+Enter", "Run with the values of the form, in the tab Parameters", "Panels");
 
 function reset() {
   drafts.value = Object.fromEntries(known().map((parameter) => [parameter.name, written(parameter.default)]));
@@ -128,7 +139,7 @@ function Control({ parameter, id, text, problem }) {
     </select>`;
   }
   // Enter sends the form, which restarts the run; the value of a live parameter takes effect without that.
-  const enter = (event) => parameter.live && session.value?.alive && event.key === "Enter" && (event.preventDefault(), change(event));
+  const enter = (event) => parameter.live && session.value?.alive && event.key === "Enter" && !event.defaultPrevented && (event.preventDefault(), change(event));
   return html`<input ...${shared} onKeyDown=${enter} value=${text} placeholder=${optional ? "as the model says" : ""} inputmode=${takes === "text" ? "text" : "decimal"} spellcheck=${false} autocomplete="off" onInput=${(event) => write(parameter, event.currentTarget.value, false)} onChange=${change} />`;
 }
 
@@ -180,7 +191,8 @@ function Parameters() {
   const former = forgotten();
   const stale = isStale();
   const problem = seed.value.trim() === "" ? null : seedProblem(seed.value);
-  return html`<form class="parameters" onSubmit=${restart}>
+  const refused = shown.gone || problems() || Boolean(problem) || (shown.loading && state.value === null);
+  return html`<form class="parameters" onSubmit=${restart} onKeyDownCapture=${press}>
     ${shown.gone ? html`<p class="note">${GONE}</p>` : null}
     ${stale ? html`<p class="note">The model's text has changed since this run began; the next run has the new one.</p>` : null}
     ${stale && former.length
@@ -196,7 +208,8 @@ function Parameters() {
       <p class="help">${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}The seed of all random choices; empty: that of the present run.</p>
     </div>
     <footer>
-      <button class="primary" disabled=${shown.gone || problems() || Boolean(problem) || (shown.loading && state.value === null)}>Restart with these</button>
+      <button class="primary" disabled=${refused}>Restart with these</button>
+      <button value="run" title="Restart with these, and go on at once (${keyText("Mod+Enter")})" disabled=${refused}>Run with these</button>
       <button type="button" onClick=${reset} disabled=${fields.length === 0}>Defaults</button>
       <button type="button" onClick=${() => ((drafts.value = {}), (seed.value = ""))} disabled=${Object.keys(drafts.value).length === 0 && !seed.value}>Undo</button>
     </footer>
