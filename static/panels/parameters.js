@@ -10,17 +10,20 @@ import { call, isLeft, order } from "../server.js";
 import { runStatus } from "../run_status.js";
 import { complain, session, state } from "../store.js";
 
-const listing = signal(null); // the declarations in the model's text
+/** The declarations in the text that the form is for: that of a recording, or else that of the model's file. */
+const listing = signal(null);
+/** The declarations in the model's file, by name: the next run begins with these. */
+const present = signal(new Map());
 const drafts = signal({}); // entered values that are not yet in effect, by name
 const seed = signal("");
 let of = {};
 
 /** Reads the model's parameters again if the model, the run or the text has changed. Entered values stay, except those
  * that are now in effect. */
-async function follow({ id, model, run, digest, gone }) {
-  if (of.id === id && of.run === run && of.digest === digest) return;
+async function follow({ id, model, run, digest, gone, recorded }) {
+  if (of.id === id && of.run === run && of.digest === digest && of.recorded === recorded) return;
   const other = of.id !== id;
-  const asked = { id, run, digest };
+  const asked = { id, run, digest, recorded };
   of = asked;
   if (other) {
     listing.value = null;
@@ -31,8 +34,11 @@ async function follow({ id, model, run, digest, gone }) {
   }
   if (gone) return;
   try {
-    const answer = await call("GET", `/api/model?path=${encodeURIComponent(model)}`);
-    if (of === asked) listing.value = answer.listing;
+    const file = call("GET", `/api/model?path=${encodeURIComponent(model)}`).then(({ listing }) => listing);
+    const [now, shown] = await Promise.all([file, recorded === null ? file : call("GET", `/api/sessions/${id}/about`)]);
+    if (of !== asked) return;
+    present.value = new Map(now.parameters.map((parameter) => [parameter.name, parameter]));
+    listing.value = shown;
   } catch (error) {
     if (of !== asked) return;
     listing.value ??= { parameters: [] };
@@ -61,8 +67,8 @@ function isStale() {
 
 /** The initial values of the run's parameters that no longer exist in the text. */
 function forgotten() {
-  const names = new Set(known().map(({ name }) => name));
-  return Object.keys(session.value?.settings ?? {}).filter((name) => !names.has(name));
+  const names = new Set([...known().map(({ name }) => name), ...Object.keys(session.value?.settings ?? {})]);
+  return [...names].filter((name) => !present.value.get(name)?.known);
 }
 
 function problems() {
@@ -107,8 +113,9 @@ function restart(event) {
   if (problems()) return;
   const settings = {};
   for (const parameter of known()) {
-    const value = parameter.name in drafts.value ? read(parameter, drafts.value[parameter.name]).value : inForce(parameter);
-    if (value !== parameter.default) settings[parameter.name] = value;
+    const { name } = parameter;
+    const value = name in drafts.value ? read(parameter, drafts.value[name]).value : inForce(parameter);
+    if (present.value.get(name)?.known && value !== present.value.get(name).default) settings[name] = value;
   }
   const wanted = seed.value.trim();
   order({ type: "restart", settings, run: event.submitter?.value === "run", ...(wanted ? { seed: wanted } : {}) });
