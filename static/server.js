@@ -5,7 +5,8 @@ import { frameBudget } from "./frame_budget.js";
 import { complain, connected, events, forget, hurried, known, opening, restarted, session, take } from "./store.js";
 
 const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation the eye is compiled, too, which takes up to a minute.";
-const AGAIN = 1000; // the delay before a new connection [ms]
+/** The delay before a new attempt to reach the workbench [ms]. */
+export const AGAIN = 1000;
 
 let socket = null;
 let shown = null;
@@ -145,8 +146,7 @@ export async function showModel(model, { run = false } = {}) {
  * Returns whether it is shown: the user may have chosen something else meanwhile. */
 export async function showRecording(id, { trust = false, run = false } = {}) {
   const wanted = wish();
-  const waits = opening.peek() === null && session.peek() === null;
-  if (waits) opening.value = { text: `The recording ${id} is being opened …`, slow: false };
+  if (session.peek() === null) opening.value = { text: `The recording ${id} is being opened …`, slow: false };
   try {
     const found = await call("POST", `/api/recordings/${encodeURIComponent(id)}/open`, { real_time: true, trust });
     if (!wanted()) return false;
@@ -155,14 +155,15 @@ export async function showRecording(id, { trust = false, run = false } = {}) {
     return true;
   } catch (error) {
     if (!wanted()) return false;
-    if (waits) opening.value = null;
+    opening.value = null;
     throw error;
   }
 }
 
 function attach() {
   const { first, list } = events.value;
-  socket.send(JSON.stringify({ type: "attach", session: shown, run: known.run, epoch: known.epoch, events: first + list.length, page }));
+  const { born } = session.peek() ?? {}; // a workbench that was started again has other sessions with the same names
+  socket.send(JSON.stringify({ type: "attach", session: shown, born, run: known.run, epoch: known.epoch, events: first + list.length, page }));
 }
 
 /** Opens the websocket, unless it is open; a connection that is lost is opened again. */

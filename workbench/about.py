@@ -42,7 +42,8 @@ def about_of(source: str, filename: str) -> dict[str, Any]:
 
     Returns:
         `title`, the first line as elements; `nodes`, the rest; `cut`, whether the text was too long and is cut; `readable`, whether the
-        text could be parsed as Python; `agents`, with their productions and parts, as far as the text says what they have.
+        text could be parsed as Python; `agents`, with their productions and parts, as far as the text says what they have; `parameters`,
+        as in a listing.
     """
     listing = listing_of(source, filename)
     text = listing.text[:LONGEST]
@@ -53,6 +54,7 @@ def about_of(source: str, filename: str) -> dict[str, Any]:
         "nodes": list(_nodes(_tree(rest), listing)),
         "cut": len(listing.text) > LONGEST,
         "agents": [asdict(agent) for agent in listing.agents],
+        "parameters": [asdict(parameter) for parameter in listing.parameters],
         "readable": bool(listing.text) or not any(problem.level == "error" for problem in listing.problems),
     }
 

@@ -11,6 +11,7 @@ import tempfile
 import threading
 import time
 import webbrowser
+import zlib
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -23,6 +24,8 @@ from workbench.worker.spawn import MEMORY, spawn
 
 READ_TIME = 20.0
 """How long a browser may take to start and to read the file that redirects it here [s]."""
+PORTS = range(20_000, 32_000)
+"""The default ports of models folders: below those that operating systems give to other connections."""
 
 
 def _count(text: str) -> int:
@@ -44,7 +47,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("models", nargs="?", type=Path, metavar="MODELS_FOLDER", help="the models (default: ./models, or a folder at home)")
     parser.add_argument("--host", default="127.0.0.1", help="where to listen; anything but loopback lets others reach it")
-    parser.add_argument("--port", type=_port, default=0, help="the port (default 0: any free one)")
+    parser.add_argument("--port", type=_port, help="the port (default: always the same for a models folder, if it is free; 0: any free one)")
     parser.add_argument("--name", action="append", default=[], metavar="NAME", help="another name by which browsers may call this server")
     parser.add_argument("--no-browser", action="store_true", help="do not open the browser")
     parser.add_argument(
@@ -76,10 +79,33 @@ def listen(host: str, port: int) -> socket.socket:
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     # asyncio sends at once (TCP_NODELAY) only on sockets that name their protocol; else each answer waits 40 ms for the one before.
     listening = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
-    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    listening.bind((host.strip("[]"), port))
-    listening.listen(128)
+    try:
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind((host.strip("[]"), port))
+        listening.listen(128)
+    except OSError:
+        listening.close()
+        raise
     return listening
+
+
+def port_of(folder: Path) -> int:
+    """Returns the default port of a models folder: browsers keep sizes and unsaved texts for each port, and links contain it."""
+    return PORTS[zlib.crc32(bytes(folder.resolve())) % len(PORTS)]
+
+
+def listen_for(folder: Path, host: str, port: int | None) -> socket.socket:
+    """Returns a listening socket at a port; without one, at the port of the models folder, or at any free one if that is taken.
+
+    Raises:
+        OSError: If the address is not available.
+    """
+    if port is not None:
+        return listen(host, port)
+    try:
+        return listen(host, port_of(folder))
+    except OSError:
+        return listen(host, 0)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -94,7 +120,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     signal.signal(signal.SIGINT, interrupt)
     try:
         folder = models_folder(options.models, Path.cwd(), Path.home())
-        listening = listen(options.host, options.port)
+        listening = listen_for(folder, options.host, options.port)
     except OSError as error:
         print(f"error: {_reason(error, options)}", file=sys.stderr)
         return 1
@@ -124,7 +150,8 @@ def _reason(error: OSError, options: argparse.Namespace) -> str:
     """Returns why the server cannot start: which folder or address is not available."""
     reason = error.strerror or str(error)
     if error.filename is None:
-        return f"cannot listen at {options.host}, port {options.port}: {reason}"
+        port = "" if options.port is None else f", port {options.port}"
+        return f"cannot listen at {options.host}{port}: {reason}"
     where = Path(error.filename)
     return f"the models folder '{where}' cannot be used: {'it is a file' if where.is_file() else reason}"
 

@@ -23,6 +23,8 @@ class Attach(PageMessage):
 
     type: Literal["attach"] = "attach"
     session: Name
+    born: float | None = None
+    """When the session began that the page has shown before, as its facts say it; None if it has shown none."""
     run: int = Field(default=0, ge=0)
     """The number of the run whose events the page knows."""
     epoch: int = Field(default=0, ge=0)

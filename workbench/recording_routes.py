@@ -77,7 +77,7 @@ class Opening(Trusting):
     """Options for opening a recording."""
 
     real_time: bool = False
-    """Whether a run with a body goes in real time until a speed is chosen."""
+    """As for a model."""
 
 
 class Pair(PageMessage):

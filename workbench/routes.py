@@ -71,7 +71,8 @@ class Open(PageMessage):
     record: bool = True
     run: bool = False
     real_time: bool = False
-    """Whether a run with a body goes in real time until a speed is chosen; otherwise every run goes as fast as possible."""
+    """Whether a run with a body goes in real time until a speed is chosen, and overlays, a chosen speed, and for the same model the
+    breakpoints are those of the session shown last; otherwise every run goes as fast as possible."""
 
 
 class CommandRequest(PageMessage):

@@ -190,9 +190,18 @@ class SceneView:
         """Sends a command from the panel or an overlay to the session, which runs in another thread."""
 
         def notify() -> None:
-            self._session.run_task(command.submit(self._session, "3D view"))
+            self._session.run_task(self._submit(command))
 
         self._loop.call_soon_threadsafe(notify)
+
+    async def _submit(self, command: PageCommand) -> None:
+        """Submits a command; if it is refused, reports the reason and shows the state of the run again, as handles and sliders differ."""
+        reply = await command.submit(self._session)
+        if reply.error is None:
+            return
+        self._session.add_notice(notice("error", reply.error))
+        if self._session.state is not None:
+            self._watch(self._session.state)
 
 
 class _Drawn:

@@ -83,10 +83,11 @@ class Session(Broadcast, Receiver):
         self._ending = ""
         self._after_end = "the worker has ended"
         """What pages say once the worker has ended normally."""
-        self._stuck: dict[str, Any] | None = None
         self.speed: float | None = None
         self.real_time = False
         """Whether runs with a body go in real time; until a user chooses a speed."""
+        self.speed_chosen = False
+        """Whether a user has chosen the speed."""
         self._workers = workers
         self._recordings = recordings
         self._lists_changed = lists_changed
@@ -187,7 +188,7 @@ class Session(Broadcast, Receiver):
                 self._notify_watchers(message)
                 self.changed(facts=True)
             case State() if shown:
-                self._take_state(message)
+                self._take_state(launched, message)
             case News() if shown:
                 self.log.add(message.first, message.events)
             case Cut() if shown:
@@ -207,7 +208,7 @@ class Session(Broadcast, Receiver):
             case Notice() if not shown or not self._was_given(message):
                 self.add_notice(message, start)
             case At():
-                self._stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
+                launched.stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
                 self.changed(facts=True)
             case _:
                 pass
@@ -223,9 +224,9 @@ class Session(Broadcast, Receiver):
             del self._given[next(iter(self._given))]
         return False
 
-    def _take_state(self, state: State) -> None:
-        if self._stuck is not None:
-            self._stuck = None
+    def _take_state(self, launched: LaunchedRun, state: State) -> None:
+        if launched.stuck is not None:
+            launched.stuck = None
             self.changed(facts=True)
         self.state = state
         self.state_version += 1
@@ -246,7 +247,7 @@ class Session(Broadcast, Receiver):
         self.run += 1
         self.epoch += 1
         self.log = EventLog()
-        self.facts, self.state, self._stuck, self.branched = facts, None, None, None
+        self.facts, self.state, self.branched, launched.stuck = facts, None, None, None
         self._cuts.clear()
         self._given.clear()
         if self._drawn:
@@ -262,7 +263,8 @@ class Session(Broadcast, Receiver):
         if launched is None or launched.over.is_set():
             return
         self._ending = "stopped" if asked else ending
-        where = f" at {self._stuck['file']}:{self._stuck['line']}" if self._stuck and self._stuck["file"] else ""
+        stuck, launched.stuck = launched.stuck, None
+        where = f" at {stuck['file']}:{stuck['line']}" if stuck and stuck["file"] else ""
         if ending and not asked:
             self.add_notice(Notice(level="error", text=f"{self._ending}{where}"))
         elif asked and where:
@@ -271,7 +273,6 @@ class Session(Broadcast, Receiver):
         if launched is self._loading:
             self._loading = None
         else:
-            self._stuck = None
             if self.state is not None and self.state.status not in ENDED:
                 status_now = "failed" if self._ending != "stopped" else "ended"
                 reason = self._ending or self._after_end
@@ -297,9 +298,10 @@ class Session(Broadcast, Receiver):
         return not self.alive and not self.is_loading
 
     def halt(self, worker: Worker, name: str) -> None:
-        if self._run_of(worker) is None:
+        launched = self._run_of(worker)
+        if launched is None:
             return
-        self._stuck = {"file": None, "line": None, "function": "", "signal": name} if name else None
+        launched.stuck = {"file": None, "line": None, "function": "", "signal": name} if name else None
         if name:
             text = f"the model's process was stopped by {name}: SIGCONT to process {worker.pid} continues it, Stop ends it"
             self.add_notice(Notice(level="warning", text=text))
@@ -380,13 +382,22 @@ class Session(Broadcast, Receiver):
 
     def set_speed(self, factor: float | None) -> None:
         """Stores the speed for this and later runs, as a multiple of real time; None for as fast as possible."""
-        self.speed, self.real_time = factor, False
+        self.speed, self.real_time, self.speed_chosen = factor, False, True
         self.changed(facts=True)
 
     def set_breakpoints(self, productions: tuple[str, ...]) -> None:
         """Stores the breakpoints for this and later runs."""
         self.breakpoints = productions
         self.changed(facts=True)
+
+    def take_choices(self, other: Session) -> None:
+        """Takes over what users have chosen in another session: overlays and speed, and the breakpoints if it has the same model file."""
+        self.look = other.look
+        self._notify_watchers(self.look)
+        if other.speed_chosen:
+            self.set_speed(other.speed)
+        if other.path == self.path:
+            self.set_breakpoints(other.breakpoints)
 
     def show_overlay(self, name: str, shown: bool) -> None:
         """Shows or hides an overlay of the 3D view."""
@@ -496,7 +507,7 @@ class Session(Broadcast, Receiver):
         facts, start, digest = self.facts, self.start, digest_of_file(self.path)
         facts_of_session: dict[str, Any] = {
             **self.summary(),
-            "stuck": self._stuck,
+            "stuck": None if self._newest is None else self._newest.stuck,
             "branched": self._branched_json(),
             "listings": self.listings,
             **self.look.as_dict(),

@@ -70,15 +70,20 @@ class Sessions:
         """Returns all sessions, oldest first."""
         return list(self._sessions.values())
 
-    def get(self, name: str) -> Session:
+    def get(self, name: str, born: float | None = None) -> Session:
         """Returns a session.
 
+        Args:
+            name: Its name.
+            born: When it began [s since 1970]; None for any session of that name: an earlier server has given the same names.
+
         Raises:
-            NoSuchSessionError: If there is no session of that name.
+            NoSuchSessionError: If there is no such session.
         """
-        if name not in self._sessions:
+        session = self._sessions.get(name)
+        if session is None or born not in (None, session.born):
             raise NoSuchSessionError("there is no such session")
-        return self._sessions[name]
+        return session
 
     def writing(self) -> dict[str, str]:
         """Returns the recordings that runs are still writing, with the names of their sessions."""
@@ -100,7 +105,9 @@ class Sessions:
             seed: None for a new random seed.
             record: Whether the run is recorded.
             run: Whether the run starts going at once, instead of paused.
-            real_time: Whether a run with a body goes in real time until a speed is chosen; otherwise it goes as fast as possible.
+            real_time: Whether the session begins as users expect who watch it: a run with a body goes in real time until a speed is
+                chosen, and overlays, a chosen speed, and for the same model the breakpoints are those of the session that a page shows, or
+                else of the newest. Otherwise it goes as fast as possible.
 
         Raises:
             Actr3dError: If there is no such file, or there are too many sessions.
@@ -186,8 +193,11 @@ class Sessions:
     async def _begun(self, path: Path, model: str, options: RunOptions, *, real_time: bool = False) -> Session:
         """Returns a new session that has started a run; if the run cannot be started, the session is closed again."""
         async with self._opening:  # making room takes a moment, in which no other session may take it
+            present = max(reversed(self.all()), key=lambda one: bool(one.feeds), default=None)
             session = await self._new(path, model)
         session.real_time = real_time
+        if real_time and present is not None:
+            session.take_choices(present)
         try:
             await session.begin(options)
         except BaseException:

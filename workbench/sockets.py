@@ -124,7 +124,7 @@ class _Page:
                         sending.cancel()
                         await asyncio.gather(sending, return_exceptions=True)
                     try:
-                        session = self._sessions.get(attach.session)
+                        session = self._sessions.get(attach.session, attach.born)
                     except Actr3dError as error:
                         await self._refuse(str(error), session=attach.session)
                         continue

@@ -3,7 +3,7 @@
 import { computed, effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
-import { call, connect, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
+import { AGAIN, call, connect, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
 import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
@@ -177,18 +177,14 @@ effect(() => {
 
 commandsOf(() => models.value.map(({ path, title }) => ({ text: `Model: ${path}`, group: title, work: () => choose(path) })));
 
-/** Shows what the address names, or the model shown last, when the page is opened. */
+/** Shows what the address names, or the model shown last, when the page is opened; if the workbench does not answer, as soon as it does. */
 export async function begin() {
   connect();
   try {
     await listModels();
   } catch (error) {
-    complain(error.message);
-    return;
-  }
-  const paths = models.value.map(({ path }) => path);
-  if (paths.length === 0) {
-    complain(NO_MODELS, "info");
+    if (error.status === 0) setTimeout(begin, AGAIN); // the status line shows that there is no connection
+    else complain(error.message);
     return;
   }
   if (model.value !== null) return; // the user has already chosen one
@@ -200,6 +196,12 @@ export async function begin() {
     } catch (error) {
       problem = `The recording «${run}» cannot be opened: ${error.message}`;
     }
+  }
+  const paths = models.value.map(({ path }) => path);
+  if (paths.length === 0) {
+    complain(NO_MODELS, "info");
+    if (problem !== null) complain(problem);
+    return;
   }
   const asked = addressed("model");
   if (asked !== null && !paths.includes(asked)) problem ??= `There is no model «${asked}» in this folder; this is another one.`;

@@ -75,8 +75,9 @@ function read(field, text) {
 
 const pathsOf = (kind) => Object.entries(state.value?.parts ?? {}).flatMap(([path, { is }]) => (is === kind ? [path] : []));
 
-/** The values among which a field is chosen, by its name. */
+/** The values among which a field is chosen, by its name; a field `name` has the name of what the change is of. */
 const CHOICES = {
+  aperture: () => Object.keys(session.value?.world?.widths ?? {}),
   object: () => session.value?.world?.objects ?? [],
   buffer: () => pathsOf("buffer"),
   memory: () => pathsOf("memory"),
@@ -84,12 +85,11 @@ const CHOICES = {
   production: () => [...new Set(systemsOf(state.value?.parts).flatMap((system) => state.value.parts[system].productions))],
 };
 
-const choicesOf = ({ name }) => CHOICES[name]?.() ?? [];
+const choicesOf = ({ name }, of) => CHOICES[name === "name" ? of : name]?.() ?? [];
 
 /** Returns the text with which the form of a field begins. */
-function firstOf(field) {
-  const [first] = choicesOf(field);
-  if (first !== undefined) return first;
+function firstOf(field, choices) {
+  if (choices.length > 0) return choices.includes(field.default) ? field.default : choices[0];
   return typeof field.default === "number" ? field.default * unitOf(field)[1] : (field.default ?? "");
 }
 
@@ -114,8 +114,8 @@ function Fields({ fields, values, choices }) {
  * messages if the user has closed it. */
 export async function askAndMake(one, given = {}) {
   const fields = one.fields.filter(({ name }) => !(name in given));
-  const values = Object.fromEntries(fields.map((field) => [field.name, firstOf(field)]));
-  const choices = Object.fromEntries(fields.map((field) => [field.name, choicesOf(field)]));
+  const choices = Object.fromEntries(fields.map((field) => [field.name, choicesOf(field, one.of)]));
+  const values = Object.fromEntries(fields.map((field) => [field.name, firstOf(field, choices[field.name])]));
   const problem = signal(null);
   let closed = false;
   const Body = () => html`<p class="quiet"><${Inline} text=${one.help} /></p><${Fields} fields=${fields} values=${values} choices=${choices} /><${Problem} text=${problem.value} />`;

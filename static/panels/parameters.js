@@ -3,6 +3,7 @@
 import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { change } from "../bar/branch.js";
 import { seedProblem } from "../bar/seed.js";
+import { isMac, keyText, noteKey } from "../keys.js";
 import { rangeOf, read, valuesText, written } from "../parameters/values.js";
 import { valueText } from "../parts/chunk.js";
 import { Inline } from "../parts/prose.js";
@@ -10,17 +11,20 @@ import { call, isLeft, order } from "../server.js";
 import { runStatus } from "../run_status.js";
 import { complain, session, state } from "../store.js";
 
-const listing = signal(null); // the declarations in the model's text
+/** The declarations in the text that the form is for: that of a recording, or else that of the model's file. */
+const listing = signal(null);
+/** The declarations in the model's file, by name: the next run begins with these. */
+const present = signal(new Map());
 const drafts = signal({}); // entered values that are not yet in effect, by name
 const seed = signal("");
 let of = {};
 
 /** Reads the model's parameters again if the model, the run or the text has changed. Entered values stay, except those
  * that are now in effect. */
-async function follow({ id, model, run, digest, gone }) {
-  if (of.id === id && of.run === run && of.digest === digest) return;
+async function follow({ id, model, run, digest, gone, recorded }) {
+  if (of.id === id && of.run === run && of.digest === digest && of.recorded === recorded) return;
   const other = of.id !== id;
-  const asked = { id, run, digest };
+  const asked = { id, run, digest, recorded };
   of = asked;
   if (other) {
     listing.value = null;
@@ -31,8 +35,11 @@ async function follow({ id, model, run, digest, gone }) {
   }
   if (gone) return;
   try {
-    const answer = await call("GET", `/api/model?path=${encodeURIComponent(model)}`);
-    if (of === asked) listing.value = answer.listing;
+    const file = call("GET", `/api/model?path=${encodeURIComponent(model)}`).then(({ listing }) => listing);
+    const [now, shown] = await Promise.all([file, recorded === null ? file : call("GET", `/api/sessions/${id}/about`)]);
+    if (of !== asked) return;
+    present.value = new Map(now.parameters.map((parameter) => [parameter.name, parameter]));
+    listing.value = shown;
   } catch (error) {
     if (of !== asked) return;
     listing.value ??= { parameters: [] };
@@ -61,8 +68,8 @@ function isStale() {
 
 /** The initial values of the run's parameters that no longer exist in the text. */
 function forgotten() {
-  const names = new Set(known().map(({ name }) => name));
-  return Object.keys(session.value?.settings ?? {}).filter((name) => !names.has(name));
+  const names = new Set([...known().map(({ name }) => name), ...Object.keys(session.value?.settings ?? {})]);
+  return [...names].filter((name) => !present.value.get(name)?.known);
 }
 
 function problems() {
@@ -101,17 +108,28 @@ function drop(name) {
   drafts.value = others;
 }
 
+/** Starts a new run with the values of the form; it goes on at once if the button that sends the form has the value "run". */
 function restart(event) {
   event.preventDefault();
   if (problems()) return;
   const settings = {};
   for (const parameter of known()) {
-    const value = parameter.name in drafts.value ? read(parameter, drafts.value[parameter.name]).value : inForce(parameter);
-    if (value !== parameter.default) settings[parameter.name] = value;
+    const { name } = parameter;
+    const value = name in drafts.value ? read(parameter, drafts.value[name]).value : inForce(parameter);
+    if (present.value.get(name)?.known && value !== present.value.get(name).default) settings[name] = value;
   }
   const wanted = seed.value.trim();
-  order({ type: "restart", settings, ...(wanted ? { seed: wanted } : {}) });
+  order({ type: "restart", settings, run: event.submitter?.value === "run", ...(wanted ? { seed: wanted } : {}) });
 }
+
+/** Presses «Run with these» for Mod+Enter. */
+function press(event) {
+  if (event.key !== "Enter" || !(isMac ? event.metaKey : event.ctrlKey)) return;
+  event.preventDefault();
+  event.currentTarget.querySelector("[value=run]").click();
+}
+
+noteKey("Mod+Enter", "Run with the values of the form, in the tab Parameters", "Panels");
 
 function reset() {
   drafts.value = Object.fromEntries(known().map((parameter) => [parameter.name, written(parameter.default)]));
@@ -129,7 +147,7 @@ function Control({ parameter, id, text, problem }) {
     </select>`;
   }
   // Enter sends the form, which restarts the run; the value of a live parameter takes effect without that.
-  const enter = (event) => parameter.live && session.value?.alive && event.key === "Enter" && (event.preventDefault(), change(event));
+  const enter = (event) => parameter.live && session.value?.alive && event.key === "Enter" && !event.defaultPrevented && (event.preventDefault(), change(event));
   return html`<input ...${shared} onKeyDown=${enter} value=${text} placeholder=${optional ? "as the model says" : ""} inputmode=${takes === "text" ? "text" : "decimal"} spellcheck=${false} autocomplete="off" onInput=${(event) => write(parameter, event.currentTarget.value, false)} onChange=${change} />`;
 }
 
@@ -181,7 +199,8 @@ function Parameters() {
   const former = forgotten();
   const stale = isStale();
   const problem = seed.value.trim() === "" ? null : seedProblem(seed.value);
-  return html`<form class="parameters" onSubmit=${restart}>
+  const refused = shown.gone || problems() || Boolean(problem) || (shown.loading && state.value === null);
+  return html`<form class="parameters" onSubmit=${restart} onKeyDownCapture=${press}>
     ${shown.gone ? html`<p class="note">${GONE}</p>` : null}
     ${stale ? html`<p class="note">The model's text has changed since this run began; the next run has the new one.</p>` : null}
     ${stale && former.length
@@ -197,7 +216,8 @@ function Parameters() {
       <p class="help">${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}The seed of all random choices; empty: that of the present run.</p>
     </div>
     <footer>
-      <button class="primary" disabled=${shown.gone || problems() || Boolean(problem) || (shown.loading && state.value === null)}>Restart with these</button>
+      <button class="primary" disabled=${refused}>Restart with these</button>
+      <button value="run" title="Restart with these, and go on at once (${keyText("Mod+Enter")})" disabled=${refused}>Run with these</button>
       <button type="button" onClick=${reset} disabled=${fields.length === 0}>Defaults</button>
       <button type="button" onClick=${() => ((drafts.value = {}), (seed.value = ""))} disabled=${Object.keys(drafts.value).length === 0 && !seed.value}>Undo</button>
     </footer>

@@ -263,6 +263,35 @@ def test_things_in_the_scene_are_moved_and_pushed_by_numbers(pages: Callable[...
     assert commands(page) == ["move walker to (1, 1.5) m, 90°", "move walker to (2, 1) m, 29°", "aperture 50 -> 40 cm"]
 
 
+def test_each_doorway_is_changed_in_the_bar_and_in_the_palette(pages: Callable[..., Page], workbench: Served) -> None:
+    parts = "Floor(), Aperture(name='near'), Aperture(name='far', position=(5, 0))"
+    source = "from actr3d.simulation import Simulation\nfrom actr3d.world import Aperture, Floor, Scene\n"
+    source += f"def build() -> Simulation:\n    return Simulation(Scene(parts=({parts})))\n"
+    (workbench.folder / "doorways.py").write_text(source, encoding="utf-8")
+    page = pages("doorways.py")
+    shows(page, "#status", "at its start")
+    shown, slider = page.get_by_label("Aperture", exact=True), page.locator("#aperture")
+    expect(shown.locator("option")).to_have_text(["near", "far"])
+    slider.fill("90")
+    shows(page, "#width", "90 cm")
+    shown.select_option("far")
+    expect(slider).to_have_accessible_name("far")
+    expect(page.locator("#width")).not_to_contain_text("90 cm")
+    slider.fill("70")
+    shows(page, "#width", "70 cm")
+    page.keyboard.press("Control+k")
+    page.get_by_role("combobox", name="Search").fill("Set the width")
+    page.keyboard.press("Enter")
+    form = page.get_by_role("dialog")
+    form.get_by_label("width").fill("0.6")
+    form.get_by_label("name").select_option("far")
+    form.get_by_role("button", name="Set the width").click()
+    shows(page, "#width", "60 cm")
+    widths = page.evaluate("async () => (await part('store.js')).state.value.apertures")
+    assert widths == {"near": pytest.approx(0.9), "far": pytest.approx(0.6)}
+    (workbench.folder / "doorways.py").unlink()
+
+
 def test_a_form_stays_open_while_the_page_asks_whether_what_lies_ahead_may_be_lost(pages: Callable[..., Page]) -> None:
     page = pages(refusals=True)
     shows(page, "#status", "at its start")

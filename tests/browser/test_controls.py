@@ -150,6 +150,15 @@ def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..
     page.get_by_label("seed", exact=True).fill("7")
     page.get_by_role("button", name="Restart with these").click()
     expect(page.get_by_text("seed 7", exact=True)).to_be_visible()
+    shows(page, "#status", "at its start")
+    width.fill("0.7")
+    width.press("Control+Enter")
+    shows(page, "#status", "ended")
+    shows(page, "#width", "70 cm")
+    page.get_by_label("seed", exact=True).fill("8")
+    page.get_by_role("button", name="Run with these").click()
+    expect(page.get_by_text("seed 8", exact=True)).to_be_visible()
+    shows(page, "#status", "ended")
 
 
 @pytest.mark.slow

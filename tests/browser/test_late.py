@@ -304,6 +304,22 @@ def test_an_experiment_or_trial_that_is_ready_late_does_not_replace_what_is_show
     assert page.evaluate("async () => (await part('experiments/list.js')).shown.value") == ""
 
 
+def test_a_recording_that_cannot_be_opened_does_not_leave_the_page_waiting_for_the_model_chosen_before(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", refusals=True)
+    shows(page, "#status", "at its start")
+    opening = "async () => (await part('store.js')).opening.value?.text"
+    with holding(page, "**/api/sessions", lambda request: request.method == "POST") as held:
+        page.get_by_label("Model", exact=True).select_option("doorway.py")
+        until(page, lambda: bool(held))
+        assert page.evaluate(opening) == "doorway.py is being loaded …"
+        with holding(page, "**/open", lambda _: True) as asked:
+            page.evaluate("() => void part('server.js').then(({ showRecording }) => showRecording('none')).catch(() => {})")
+            until(page, lambda: bool(asked))
+            assert page.evaluate(opening) == "The recording none is being opened …"
+        until(page, lambda: page.evaluate(opening) is None)
+    expect(page.locator("#status")).not_to_contain_text("loading")
+
+
 def test_a_model_chosen_while_a_recording_is_opened_stays_chosen(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("counting.py", refusals=True)
     shows(page, "#status", "at its start")

@@ -319,6 +319,26 @@ def test_a_recording_of_a_model_that_is_gone_shows_the_parameters_of_its_run(pag
     expect(page.locator(".toast")).to_have_count(0)
 
 
+def test_the_parameters_of_a_recording_are_those_of_its_text(pages: Pages, workbench: Served) -> None:
+    file = workbench.folder / "sized.py"
+    file.write_text("size = 3\nspeed = 2\nprint(size, speed)\n", encoding="utf-8")
+    name = recorded(workbench, "sized.py", size=4, speed=5)
+    file.write_text("speed = 1\ncolour = 'red'\nprint(speed, colour)\n", encoding="utf-8")
+    page = pages("counting.py", tab="parameters")
+    shows(page, "#status", "at its start")
+    page.goto(f"{workbench.url}/?run={name}")
+    expect(page.locator(".recording-banner")).to_contain_text(name)
+    expect(page.get_by_label("size", exact=True)).to_have_value("4")
+    expect(page.get_by_label("speed", exact=True)).to_have_value("5")
+    expect(page.get_by_label("colour", exact=True)).to_have_count(0)
+    expect(page.get_by_text("The text has no parameter size any more")).to_be_visible()
+    page.get_by_role("button", name="Restart with these").click()  # with the text of now, which knows one of them
+    expect(page.get_by_label("colour", exact=True)).to_have_value("red")
+    expect(page.get_by_label("speed", exact=True)).to_have_value("5")
+    expect(page.get_by_label("size", exact=True)).to_have_count(0)
+    file.unlink()
+
+
 @pytest.mark.slow
 def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_deleted_without_the_other(
     pages: Pages, workbench: Served

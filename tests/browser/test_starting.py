@@ -7,7 +7,9 @@ from collections.abc import Callable
 
 from playwright.sync_api import Page, Route, expect
 
+from tests.browser.test_runs_panel import recorded
 from tests.helpers.page import open_tab, shows
+from tests.helpers.workbench_server import Served
 
 
 def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> None:
@@ -31,10 +33,41 @@ def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> N
     expect(page.locator("#scene progress")).to_have_count(0)
 
 
+NO_MODELS = {"folder": "/empty", "models": [], "manual": False, "no_manual": None}
+
+
+def test_a_recording_is_shown_though_the_folder_has_no_models(pages: Callable[..., Page], workbench: Served) -> None:
+    name = recorded(workbench, "counting.py")
+    page = pages("doorway.py", refusals=True)
+    shows(page, "#status", "paused")
+    page.route("**/api/models", lambda route: route.fulfill(json=NO_MODELS))
+    page.goto(f"{workbench.url}/?run={name}")
+    expect(page.locator(".recording-banner")).to_contain_text(name)
+    page.goto(f"{workbench.url}/?run=none")
+    shows(page, ".toast", "The recording «none» cannot be opened: there is no such recording")
+    expect(page.locator("#scene")).to_contain_text("There is no model in the folder yet")
+
+
+def test_what_the_address_names_is_shown_as_soon_as_the_workbench_answers(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    shows(page, "#status", "paused")
+    page.add_init_script(
+        """const { fetch } = window;
+        window.fetch = (path, ...more) => {
+          if (path !== "/api/models" || window.isLost) return fetch(path, ...more);
+          window.isLost = true;
+          return Promise.reject(new TypeError("there is no network"));
+        }"""
+    )
+    page.reload()
+    shows(page, "#status", "paused")
+    assert page.evaluate("() => window.isLost")
+
+
 def test_a_folder_without_models_is_said_to_have_none(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py", refusals=True)
     shows(page, "#status", "paused")
-    page.route("**/api/models", lambda route: route.fulfill(json={"folder": "/empty", "models": [], "manual": False, "no_manual": None}))
+    page.route("**/api/models", lambda route: route.fulfill(json=NO_MODELS))
     page.reload()
     expect(page.locator("#connection")).to_have_text("connected")
     expect(page.locator("#scene")).to_contain_text(

@@ -574,14 +574,24 @@ def test_a_body_is_dragged_elsewhere_by_its_handle(pages: Callable[..., Page], v
         place = frame.evaluate("(place) => window.scene.camera.at(place)", [x, y, 0.02])
         return box["x"] + place["x"] * box["width"], box["y"] + place["y"] * box["height"]
 
-    begin, end = at(0.25, 0.25), at(0.25, 1.0)  # the square between the arrows
-    page.mouse.move(*begin)
-    drawn(page)
-    page.mouse.down()
-    for part in (0.3, 0.6, 1):
-        page.mouse.move(*(one + part * (other - one) for one, other in zip(begin, end, strict=True)))
+    def drag(begin: tuple[float, float], end: tuple[float, float]) -> None:
+        page.mouse.move(*begin)
         drawn(page)
-    page.mouse.up()
+        page.mouse.down()
+        for part in (0.3, 0.6, 1):
+            page.mouse.move(*(one + part * (other - one) for one, other in zip(begin, end, strict=True)))
+            drawn(page)
+        page.mouse.up()
+
+    def handle() -> list[float]:
+        return frame.evaluate("() => [...window.__viserMutable.nodeRefFromName['/overlays/handles/0'].position]")
+
+    if view == "top":  # where the wall is in view
+        before = handle()
+        drag(at(0.25, 0.25), at(7.25, 1.25))  # the square between the arrows, into the wall beside the doorway
+        expect(page.locator(".toast")).to_contain_text("it would be inside")
+        until(page, lambda: handle() == pytest.approx(before, abs=1e-4))
+    drag(at(0.25, 0.25), at(0.25, 1.0))
     until(page, lambda: abs(frame.evaluate("() => window.scene.facts.now.body[1]") - 0.75) < 0.1)
     commands = """async () => {
       const { events } = await part("store.js");

@@ -87,7 +87,9 @@ def test_a_docstring_of_any_length_is_shown_in_part(part: str) -> None:
 
 
 def test_a_model_without_a_description_and_a_text_that_is_no_python_say_so() -> None:
-    assert about_of("x = 1\n", "model.py") == {"model": "model.py", "title": [], "nodes": [], "cut": False, "agents": [], "readable": True}
+    told = about_of("x = 1\n", "model.py")
+    assert [parameter["name"] for parameter in told.pop("parameters")] == ["x"]
+    assert told == {"model": "model.py", "title": [], "nodes": [], "cut": False, "agents": [], "readable": True}
     assert not about_of("x = = 1\n", "model.py")["readable"]
 
 

@@ -23,7 +23,7 @@ from websockets.typing import Subprotocol
 
 from tests.helpers.workbench_server import Served, served
 from tests.server.test_bad_input import APP, DESCRIPTION, OPERATIONS
-from workbench.cli import listen
+from workbench.cli import listen, listen_for, port_of
 from workbench.page_commands import COMMANDS
 
 # -- the command
@@ -75,6 +75,30 @@ def test_a_port_in_use_is_reported(server: Served) -> None:
     done = subprocess.run([sys.executable, "-m", "workbench", "--port", str(server.port)], capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == f"error: cannot listen at 127.0.0.1, port {server.port}: Address already in use\n"
+
+
+def test_a_models_folder_has_the_same_port_each_time_and_another_one_only_if_that_is_taken(tmp_path: Path) -> None:
+    (tmp_path / "same").symlink_to(tmp_path)
+    assert port_of(tmp_path) == port_of(tmp_path / "same") != port_of(tmp_path / "other")
+    folder = next(folder for n in range(100) if _is_free(port_of(folder := tmp_path / str(n))))
+    for _ in range(2):
+        with listen_for(folder, "127.0.0.1", None) as first, listen_for(folder, "127.0.0.1", None) as second:
+            assert first.getsockname()[1] == port_of(folder) != second.getsockname()[1]
+
+
+def _is_free(port: int) -> bool:
+    try:
+        listen("127.0.0.1", port).close()
+    except OSError:
+        return False
+    return True
+
+
+def test_a_host_that_cannot_be_listened_at_is_reported(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "workbench", str(tmp_path), "--host", "203.0.113.1"]  # an address for documentation
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == "error: cannot listen at 203.0.113.1: Cannot assign requested address\n"
 
 
 @pytest.mark.parametrize(
@@ -283,7 +307,7 @@ def test_the_description_names_every_command(server: Served) -> None:
 # -- websockets
 
 
-async def attached(server: Served, session: str, queue: int | None = None, **known: int) -> Any:
+async def attached(server: Served, session: str, queue: int | None = None, **known: float) -> Any:
     """Returns a websocket that shows a session; where it may queue no more than so many messages, whoever does not read it is frozen."""
     bearer = {"authorization": f"Bearer {server.token}"}
     more: dict[str, Any] = {"max_size": 5_000_000, "max_queue": queue, "close_timeout": 1}

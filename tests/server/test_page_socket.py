@@ -63,6 +63,19 @@ def test_errors_are_reported(server: Served, session: str, text: str | bytes) ->
     asyncio.run(talk())
 
 
+def test_a_page_is_not_shown_the_session_of_the_same_name_of_another_server(server: Served, session: str) -> None:
+    async def first(**known: float) -> Any:
+        async with await attached(server, session, **known) as socket:
+            return await heard(socket, lambda _: True)
+
+    async def talk() -> None:
+        born = (await first())["session"]["born"]
+        assert (await first(born=born))["session"]["born"] == born
+        assert await first(born=born - 3600) == {"type": "refused", "error": "there is no such session", "session": session}
+
+    asyncio.run(talk())
+
+
 NONSENSE: list[Any] = [None, True, -1, 0.5, 10**30, "\ud800", "x" * 20_000, "<img src=x>", [], [[]], [None] * 300, {}, {"x": {}}]
 LEFT_OUT = (Restart, Stop)
 """What ends the run that is spoken to."""

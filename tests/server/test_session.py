@@ -18,6 +18,7 @@ from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.trace import Trace
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.files import ModelFile, ModelFolder, NoSuchFileError
+from workbench.overlays import OVERLAYS
 from workbench.routes import router
 from workbench.session import Session
 from workbench.worker.messages import FromWorker
@@ -181,6 +182,39 @@ def test_speed_and_breakpoints_without_a_run_are_those_of_the_next_run(desk: Des
     talk.say("restart", run=True)
     talk.wait(lambda: talk.state["reason"] == "breakpoint: turn fired")
     assert talk.state["wanted"] == 20
+
+
+def test_overlays_speed_and_breakpoints_are_those_of_the_session_that_is_shown(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, DOORWAY, real_time=True, record=True)
+    shown = next(name for name, overlay in OVERLAYS.items() if not overlay.shown_at_first)
+    talk.say("overlay", name=shown, shown=True)
+    talk.say("breakpoints", productions=["turn"])
+    talk.say("step", ticks=2)
+    talk.until("paused", tick=2)
+    (tmp_path / "other.py").write_text(COUNTING, encoding="utf-8")
+
+    def of(session: Session) -> tuple[bool, float | None, bool, tuple[str, ...]]:
+        return shown in session.look.shown, session.speed, session.real_time, session.breakpoints
+
+    def opened(model: str, **options: Any) -> Session:
+        return desk.do(talk.sessions.open(model, {}, seed=1, record=False, run=False, **options))
+
+    assert of(opened("other.py", real_time=True)) == (True, None, True, ())
+    desk.do(joined(talk.session))  # a page shows it, so it counts, though there are newer ones
+    talk.say("speed", factor=5)
+    assert of(opened("other.py", real_time=True)) == (True, 5, False, ())
+    assert of(opened("model.py", real_time=True)) == (True, 5, False, ("turn",))
+    assert of(opened("model.py")) == (False, None, False, ())  # as programs open it
+    name = talk.facts["recording"]
+    desk.do(talk.session.stop())
+    again = Talk(desk, desk.do(talk.sessions.reopen(name, real_time=True)), talk.sessions)
+    again.say("run")
+    again.wait(lambda: again.state["reason"] == "breakpoint: turn fired")
+    assert again.state["wanted"] == 5
+
+
+async def joined(session: Session) -> None:
+    session.join("page")
 
 
 def test_a_user_makes_the_run_go_another_way(desk: Desk, tmp_path: Path) -> None:

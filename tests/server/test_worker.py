@@ -324,6 +324,21 @@ def test_a_server_that_leaves_before_workers_can_be_started_leaves_nothing_behin
     assert (done.returncode, done.stderr) == (0, "")
 
 
+def test_a_run_that_is_busy_while_it_is_built_does_not_make_the_shown_run_busy(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, WALKER)
+    go_on = tmp_path / "go on"
+    busy = f"    import os\n    while not os.path.exists({str(go_on)!r}):\n        pass\n    os._exit(3)\n"
+    (tmp_path / "model.py").write_text(f"{WALKER.partition('    return')[0]}{busy}", encoding="utf-8")
+    talk.say("restart")
+    talk.wait(lambda: talk.facts["stuck"])
+    go_on.touch()
+    talk.wait(lambda: not talk.facts["loading"])
+    assert talk.facts["alive"]
+    assert talk.facts["stuck"] is None
+    talk.say("step")
+    talk.until("paused", tick=1)
+
+
 def test_a_process_that_a_signal_has_stopped_is_said_to_stand_still(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, of("os.kill(os.getpid(), signal.SIGSTOP); goal.set('done')"), run=True, wait=None)
     talk.wait_for_notice("was stopped by SIGSTOP: SIGCONT")
