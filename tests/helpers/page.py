@@ -65,8 +65,8 @@ NO_SCENE = """{
 """Leaves the 3D view empty where a test is about something else: to draw it without a graphics card takes seconds of two processors."""
 
 
-LASTING = ("on", "once", "add_init_script", "expose_binding", "expose_function")
-"""Methods of a page whose effect lasts, and cannot be undone here."""
+LASTING = ("once", "add_init_script", "expose_binding", "expose_function")
+"""Methods of a page whose effect lasts and is not undone here; listeners of `on` are removed."""
 
 
 class Users:
@@ -84,6 +84,7 @@ class Users:
         self._taken: list[tuple[bool, Page]] = []
         self._changed: set[Page] = set()
         self._hear: dict[Page, Callable[[str], object]] = {}
+        self._listeners: dict[Page, list[tuple[Any, ...]]] = {}
 
     def new(self, scene: bool, hear: Callable[[str], object] | None = None) -> Page:
         """Returns the page of a user who has not been here before, and who sees the 3D view or not.
@@ -131,18 +132,23 @@ class Users:
         page.on("console", hear_console)
         page.on("pageerror", hear_error)
         page.goto(self._elsewhere)
-        for method in LASTING:
-            setattr(page, method, self._noted(page, getattr(page, method)))
+        for name in ("on", *LASTING):
+            setattr(page, name, self._noted(page, name, getattr(page, name)))
         return page
 
-    def _noted(self, page: Page, method: Callable[..., Any]) -> Callable[..., Any]:
+    def _noted(self, page: Page, name: str, method: Callable[..., Any]) -> Callable[..., Any]:
         def called(*given: Any, **named: Any) -> Any:
-            self._changed.add(page)
+            if name == "on":
+                self._listeners.setdefault(page, []).append(given)
+            else:
+                self._changed.add(page)
             return method(*given, **named)
 
         return called
 
     def _forget(self, page: Page) -> None:
+        for event, listener in self._listeners.pop(page, ()):
+            page.remove_listener(event, listener)
         page.unroute_all()
         page.context.unroute_all()
         self._hear.pop(page, None)
