@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from playwright.sync_api import Page, Route, expect
 
-from tests.helpers.page import open_tab, shows
+from tests.helpers.page import answers, open_tab, shows
 
 
 def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> None:
@@ -32,15 +32,15 @@ def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> N
 
 
 def test_a_folder_without_models_is_said_to_have_none(pages: Callable[..., Page]) -> None:
-    page = pages("doorway.py", refusals=True)
+    page = pages("doorway.py")
     shows(page, "#status", "paused")
-    page.route("**/api/models", lambda route: route.fulfill(json={"folder": "/empty", "models": [], "manual": False, "no_manual": None}))
+    answers(page, "/api/models", {"folder": "/empty", "models": [], "manual": False, "no_manual": None})
     page.reload()
     expect(page.locator("#connection")).to_have_text("connected")
     expect(page.locator("#scene")).to_contain_text(
         "There is no model in the folder yet: make one in the tab Editor, or put a Python file there."
     )
-    page.route("**/api/models", lambda route: route.fulfill(status=422, json={"error": "the folder cannot be read"}))
+    answers(page, "/api/models", {"error": "the folder cannot be read"}, status=422)
     page.reload()
     expect(page.locator("#connection")).to_have_text("connected")
     shows(page, ".toast", "the folder cannot be read")

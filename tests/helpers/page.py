@@ -54,6 +54,16 @@ def chromium() -> Generator[Browser]:
 PART = "window.part = (path) => import(new URL(path, document.querySelector('script[type=module]').src))"
 """Defines `part("store.js")`, the module of the page with which a test looks inside."""
 
+ANSWERS = """{
+  const asked = window.fetch;
+  window.fetch = (what, options) => {
+    const answers = JSON.parse(sessionStorage.getItem("answers") ?? "{}");
+    const answer = answers[new URL(what, location).pathname];
+    return answer ? Promise.resolve(Response.json(answer.json, { status: answer.status })) : asked(what, options);
+  };
+}"""
+"""Gives the page what `answers` has put into its session storage."""
+
 NO_SCENE = """{
   const kind = HTMLIFrameElement.prototype;
   const { get, set } = Object.getOwnPropertyDescriptor(kind, "src");
@@ -113,6 +123,7 @@ class Users:
     def _opened(self, scene: bool) -> Page:
         context = self._browser.new_context()
         context.add_init_script(PART)
+        context.add_init_script(ANSWERS)
         if not scene:
             context.add_init_script(NO_SCENE)
         page = context.new_page()
@@ -185,6 +196,20 @@ def answer_to(route: Route) -> APIResponse:
     the request again on a new connection; Playwright must be told to.
     """
     return route.fetch(max_retries=1)
+
+
+def answers(page: Page, path: str, json: dict[str, Any], status: int = 200) -> None:
+    """Answers requests of the page for a path from now on, after reloads, too, without the server.
+
+    While Playwright has a route, the browser has no cache: a page that is loaded then fetches all of its modules again, for two seconds.
+    """
+    page.evaluate(
+        """([path, answer]) => {
+          const answers = JSON.parse(sessionStorage.getItem("answers") ?? "{}");
+          sessionStorage.setItem("answers", JSON.stringify({ ...answers, [path]: answer }));
+        }""",
+        [path, {"json": json, "status": status}],
+    )
 
 
 @contextmanager
