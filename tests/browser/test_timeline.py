@@ -40,7 +40,7 @@ def at(page: Page, share: float, y: float = 30) -> tuple[float, float]:
 def told(page: Page, share: float) -> Iterator[str]:
     """Gives what is told of each row at a place of the axis, from the top on."""
     before = ""
-    for y in range(30, int(box(page)["height"]), LANE // 2):
+    for y in range(30, int(box(page)["height"]), LANE):
         page.mouse.move(*at(page, share, y))
         drawn(page)
         tip = page.get_by_role("tooltip")
