@@ -23,6 +23,13 @@ def session(server: Served) -> str:
 
 
 WRONG: list[Any] = [
+    "",
+    "{",
+    "[]",
+    "\0",
+    '{"id": 1}',
+    '{"id": 1, "command": {"type": "fly"}}',
+    '{"id": -1, "command": {"type": "run"}}',
     b"\x00\xff",
     b'{"id": 1, "command": {"type": "run"}}',
     "null",
@@ -58,6 +65,16 @@ def test_errors_are_reported(server: Served, session: str, text: str | bytes) ->
         assert ("not binary data" in error) == isinstance(text, bytes)
         await socket.send(json.dumps({"id": 7, "command": {"type": "events", "most": 1}}))  # and it goes on
         assert (await heard(socket, lambda message: "replies" in message))["replies"][-1]["error"] is None
+        await socket.close()
+
+    asyncio.run(talk())
+
+
+def test_a_session_that_does_not_exist_is_refused(server: Served, session: str) -> None:
+    async def talk() -> None:
+        socket = await attached(server, session)
+        await socket.send(json.dumps({"type": "attach", "session": "none"}))
+        assert (await heard(socket, lambda message: message["type"] == "refused"))["error"] == "there is no such session"
         await socket.close()
 
     asyncio.run(talk())
