@@ -70,28 +70,11 @@ class Deciding:
             pace: The speed at which they remember passages [m/s]; None for the same.
             seed: The seed of their memories and of all noise.
         """
-        known = experiences(walks=self.walks)
-        fast, energy = (np.array([one[slot] for one in known]) for slot in ("speed", "energy"))
-        passages = [np.array([one[slot] for one in known]) for slot in ("seen", "felt", "shoulders")]
-        choice, noise = random.Random(seed), np.random.default_rng(seed)
-        time = self.turning / Gait().steps_per_second(speed)
-        widths = [shoulders * hypot(cos(radians(turn)), MODEL.CHEST * sin(radians(turn))) for turn in self.turns]
-        efforts = [MODEL.work(turn, speed, time, self.inertia) for turn in self.turns]
-        chosen: list[NDArray[Any]] = []
-        for _ in range(WALKERS):
-            of = choice.sample(range(len(known)), min(self.memories, len(known)))
-            costs: list[NDArray[Any]] = []
-            for width, effort in zip(widths, efforts, strict=True):
-                now = self._compared(ratios[:, None] * shoulders, width, shoulders)
-                apart = sum(np.abs(there[of] - here) for there, here in zip(self._compared(*passages), now, strict=True))
-                far = apart / self.room + np.abs(fast[of] - (pace or speed)) / self.pace
-                activation = noise.logistic(0, self.noise, far.shape) - far if self.noise else -far
-                weights = np.exp((activation - activation.max(axis=1, keepdims=True)) / self.temperature)
-                costs.append(effort + self.contact_cost * (weights @ energy[of]) / weights.sum(axis=1))
-            chosen.append(np.array(self.turns)[np.argmin(costs, axis=0)])
-        return np.array(chosen)
+        by = replace(self, contact_cost=0.0)  # so that all costs share one result
+        efforts, impacts = expected(by, shoulders, tuple(ratios), speed=speed, pace=pace or speed, seed=seed)
+        return np.array(self.turns)[np.argmin(efforts[:, None] + self.contact_cost * impacts, axis=1)]
 
-    def _compared(self, seen: Any, felt: Any, shoulders: Any) -> tuple[Any, ...]:
+    def compared(self, seen: Any, felt: Any, shoulders: Any) -> tuple[Any, ...]:
         """Returns what is compared of passages [m], from their seen and felt widths and the walkers' shoulders [m].
 
         Shoulder widths are multiplied by that of a body for which rooms are as similar as in metres.
@@ -109,6 +92,35 @@ class Deciding:
         """Returns the least ratio from which on fewer than half of the walkers turn."""
         turned = (self.turns_before(shoulders, RATIOS, speed=speed) > 0).mean(axis=0)
         return float(RATIOS[np.flatnonzero(turned >= 0.5)[-1] + 1])
+
+
+@cache
+def expected(
+    by: Deciding, shoulders: float, ratios: tuple[float, ...], *, speed: float, pace: float, seed: int
+) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Returns the effort of each turn `(turns,)`, and the impact that walkers expect of it `(WALKERS, turns, doorways)`.
+
+    Neither depends on the cost of contacts.
+    """
+    known = experiences(walks=by.walks)
+    fast, energy = (np.array([one[slot] for one in known]) for slot in ("speed", "energy"))
+    passages = [np.array([one[slot] for one in known]) for slot in ("seen", "felt", "shoulders")]
+    choice, noise = random.Random(seed), np.random.default_rng(seed)
+    time = by.turning / Gait().steps_per_second(speed)
+    widths = [shoulders * hypot(cos(radians(turn)), MODEL.CHEST * sin(radians(turn))) for turn in by.turns]
+    efforts = [MODEL.work(turn, speed, time, by.inertia) for turn in by.turns]
+    impacts: list[list[NDArray[Any]]] = []
+    for _ in range(WALKERS):
+        some = choice.sample(range(len(known)), min(by.memories, len(known)))
+        impacts.append([])
+        for width in widths:
+            now = by.compared(np.array(ratios)[:, None] * shoulders, width, shoulders)
+            apart = sum(np.abs(there[some] - here) for there, here in zip(by.compared(*passages), now, strict=True))
+            far = apart / by.room + np.abs(fast[some] - pace) / by.pace
+            activation = noise.logistic(0, by.noise, far.shape) - far if by.noise else -far
+            weights = np.exp((activation - activation.max(axis=1, keepdims=True)) / by.temperature)
+            impacts[-1].append((weights @ energy[some]) / weights.sum(axis=1))
+    return np.array(efforts), np.array(impacts)
 
 
 def effect_of_speed(shoulders: float, normal: float, fast: float) -> tuple[float, float, float]:

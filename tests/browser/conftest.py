@@ -114,3 +114,14 @@ def pages(users: Users, workbench: Served, request: pytest.FixtureRequest) -> It
 def page(pages: Callable[..., Page]) -> Page:
     """One such page."""
     return pages()
+
+
+@pytest.fixture
+def blank(users: Users, workbench: Served) -> Iterator[Page]:
+    """A page that imports the modules, and shows nothing."""
+    complaints: list[str] = []
+    page = users.new(scene=False, hear=complaints.append)
+    page.goto(workbench.address)
+    yield page
+    users.leave()
+    assert complaints == []

@@ -240,8 +240,8 @@ def test_an_experiment_that_cannot_be_read_says_why(pages: Callable[..., Page]) 
     expect(page.get_by_role("alert")).to_have_text("The experiment cannot be read: facts.json is damaged")
 
 
-def test_of_trials_that_have_all_failed_there_is_no_figure(page: Page) -> None:
-    page.evaluate("""async () => {
+def test_of_trials_that_have_all_failed_there_is_no_figure(blank: Page) -> None:
+    blank.evaluate("""async () => {
         const { html, render } = await part("vendor/preact.js");
         const { Figure } = await part("experiments/figure.js");
         const column = (name, role, type) => ({ name, role, type, unit: null, meaning: "" });
@@ -250,7 +250,7 @@ def test_of_trials_that_have_all_failed_there_is_no_figure(page: Page) -> None:
         const place = document.body.appendChild(Object.assign(document.createElement("div"), { id: "drawn" }));
         render(html`<${Figure} experiment=${experiment} facts=${{ factors: { width: [0.5, 0.8] } }} columns=${columns} />`, place);
     }""")
-    expect(page.locator("#drawn [role=status]")).to_have_text(
+    expect(blank.locator("#drawn [role=status]")).to_have_text(
         "All 4 finished trials have failed: there is nothing to draw. The table of trials has the errors."
     )
-    expect(page.locator("#drawn canvas")).to_have_count(0)
+    expect(blank.locator("#drawn canvas")).to_have_count(0)

@@ -8,7 +8,8 @@ from typing import Any
 
 from playwright.sync_api import Locator, Page, expect
 
-from tests.helpers.page import answer_to, shows
+from tests.helpers.page import answers, shows
+from tests.helpers.workbench_server import Served
 
 INDEX = {
     "docs": [
@@ -157,13 +158,12 @@ def test_the_palette_opens_again_as_soon_as_it_is_closed(page: Page) -> None:
     expect(page.get_by_role("dialog")).to_have_count(0)
 
 
-def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Callable[..., Page]) -> None:
-    built: list[bool] = []
+def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")
     missing = "The manual has not been built. In a copy of the repository: uv run mkdocs build"
-    listing = {False: {"manual": False, "no_manual": missing}, True: {"manual": True, "no_manual": None}}
-    page.context.route("**/api/models", lambda route: route.fulfill(json={**answer_to(route).json(), **listing[bool(built)]}))
+    listing = workbench.get("/api/models").json()
+    answers(page, "/api/models", {**listing, "manual": False, "no_manual": missing})
     page.reload()
     shows(page, "#status", "at its start")
     search(page, "time chunk")
@@ -171,7 +171,7 @@ def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Cal
     expect(page.get_by_role("group", name="Manual")).to_have_count(0)
     page.keyboard.press("Escape")
     page.context.route("**/manual/**", lambda route: route.fulfill(body=json.dumps(INDEX), content_type="application/json"))
-    built.append(True)  # while the page is open
+    answers(page, "/api/models", {**listing, "manual": True, "no_manual": None})  # while the page is open
     search(page, "time chunk")
     found = page.get_by_role("group", name="Manual").get_by_role("option")
     expect(found).to_have_text(["ChunksMemory: alert(1) Time and chunks."])

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from playwright.sync_api import Page, Route, expect
 
 from tests.browser.test_runs_panel import recorded
-from tests.helpers.page import open_tab, shows
+from tests.helpers.page import answers, open_tab, shows
 from tests.helpers.workbench_server import Served
 
 
@@ -65,15 +65,15 @@ def test_what_the_address_names_is_shown_as_soon_as_the_workbench_answers(pages:
 
 
 def test_a_folder_without_models_is_said_to_have_none(pages: Callable[..., Page]) -> None:
-    page = pages("doorway.py", refusals=True)
+    page = pages("doorway.py")
     shows(page, "#status", "paused")
-    page.route("**/api/models", lambda route: route.fulfill(json=NO_MODELS))
+    answers(page, "/api/models", NO_MODELS)
     page.reload()
     expect(page.locator("#connection")).to_have_text("connected")
     expect(page.locator("#scene")).to_contain_text(
         "There is no model in the folder yet: make one in the tab Editor, or put a Python file there."
     )
-    page.route("**/api/models", lambda route: route.fulfill(status=422, json={"error": "the folder cannot be read"}))
+    answers(page, "/api/models", {"error": "the folder cannot be read"}, status=422)
     page.reload()
     expect(page.locator("#connection")).to_have_text("connected")
     shows(page, ".toast", "the folder cannot be read")

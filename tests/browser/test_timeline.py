@@ -40,7 +40,7 @@ def at(page: Page, share: float, y: float = 30) -> tuple[float, float]:
 def told(page: Page, share: float) -> Iterator[str]:
     """Gives what is told of each row at a place of the axis, from the top on."""
     before = ""
-    for y in range(30, int(box(page)["height"]), LANE // 2):
+    for y in range(30, int(box(page)["height"]), LANE):
         page.mouse.move(*at(page, share, y))
         drawn(page)
         tip = page.get_by_role("tooltip")
@@ -337,9 +337,8 @@ def test_what_a_model_says_is_text(pages: Callable[..., Page], workbench: Served
     when(page, "0.00")
 
 
-def test_a_request_that_fails_at_the_end_of_a_run_looks_like_one(pages: Callable[..., Page]) -> None:
-    page = pages("counting.py")
-    bands: Any = page.evaluate(
+def test_a_request_that_fails_at_the_end_of_a_run_looks_like_one(blank: Page) -> None:
+    bands: Any = blank.evaluate(
         """async () => {
           const { Lanes } = await part("timeline/lanes.js");
           const lanes = new Lanes();
@@ -355,10 +354,9 @@ def test_a_request_that_fails_at_the_end_of_a_run_looks_like_one(pages: Callable
     assert bands[0][1:] == ["bad", 0.05, "failed"], "not like one that succeeded"
 
 
-def test_many_events_are_taken_in_one_by_one(pages: Callable[..., Page]) -> None:
+def test_many_events_are_taken_in_one_by_one(blank: Page) -> None:
     """Whatever has happened before, more events cost what they are, and what is drawn is no more than the page is wide."""
-    page = pages("counting.py")
-    counts: dict[str, Any] = page.evaluate(
+    counts: dict[str, Any] = blank.evaluate(
         """async () => {
           const { Lanes } = await part("timeline/lanes.js");
           const { drawTimeline } = await part("timeline/draw.js");
@@ -389,10 +387,9 @@ AXIS = """async ([end, width]) => {
 }"""
 
 
-def test_no_text_of_the_axis_is_cut(page: Page) -> None:
-    shows(page, "#time", "t =")
+def test_no_text_of_the_axis_is_cut(blank: Page) -> None:
     for end, width in ((1, 400), (12.5, 1100), (3, 1700), (0.02, 900)):
-        drawn = page.evaluate(AXIS, [end, width])
+        drawn = blank.evaluate(AXIS, [end, width])
         assert len(drawn) > 2
         assert drawn[0][0] >= 4
         assert drawn[-1][1] <= width - 4
@@ -464,8 +461,8 @@ RUNS = """async () => {
 }"""
 
 
-def test_what_a_buffer_holds_is_drawn_while_its_run_goes_on(page: Page) -> None:
-    assert page.evaluate(RUNS) == [[[0, 4], [6, None]], [[4, 6]]]
+def test_what_a_buffer_holds_is_drawn_while_its_run_goes_on(blank: Page) -> None:
+    assert blank.evaluate(RUNS) == [[[0, 4], [6, None]], [[4, 6]]]
 
 
 TRIALS = """
@@ -655,8 +652,8 @@ LINES = """async () => {
 """Values of curves at -0.5, 0, 0.5, 1, 1.5, 2, 3 and 5 s, and those curves as CSV."""
 
 
-def test_the_value_of_a_curve_is_where_its_line_is_and_nowhere_else(page: Page) -> None:
-    found = page.evaluate(LINES)
+def test_the_value_of_a_curve_is_where_its_line_is_and_nowhere_else(blank: Page) -> None:
+    found = blank.evaluate(LINES)
     assert found["values"] == {
         "long": [None, 0, 5, 10, None, None, None, None],
         "short": [None, 5, 5.5, 6, None, None, None, None],

@@ -44,7 +44,7 @@ DECODED = """async ([video, picture, count]) => {
 
 
 def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[..., Page], users: Users, tmp_path: Path) -> None:
-    page = pages(width=800, height=480)
+    page = pages(width=560, height=400)
     element = page.wait_for_selector("iframe[title='3D view'][src^='/viser/']", state="attached", timeout=PATIENCE)
     frame = element.content_frame() if element is not None else None
     assert frame is not None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from io import BytesIO
 from itertools import combinations
 from pathlib import Path
@@ -19,8 +19,7 @@ from playwright.sync_api import Frame, Page, expect
 
 from actr3d.world import Aperture, Floor, Mannequin, Scene, Wall
 from actr3d.world.world import World
-from tests.helpers.page import PATIENCE, Users, drawn, shows, until
-from tests.helpers.workbench_server import Served
+from tests.helpers.page import PATIENCE, drawn, shows, until
 from workbench.scene_framing import SceneFraming
 
 pytestmark = pytest.mark.scene
@@ -87,15 +86,6 @@ class Standing:
         hit = np.zeros(1, dtype=np.int32)
         mujoco.mj_ray(self.model, self.data, self.position, way, None, 1, -1, hit, None)
         return self.model.body(self.model.geom_bodyid[hit[0]]).name.startswith("walker")
-
-
-@pytest.fixture
-def blank(users: Users, workbench: Served) -> Iterator[Page]:
-    """A page that imports the modules, and shows nothing."""
-    page = users.new(scene=False)
-    page.goto(workbench.address)
-    yield page
-    users.leave()
 
 
 @pytest.mark.daily(1)

@@ -54,6 +54,16 @@ def chromium() -> Generator[Browser]:
 PART = "window.part = (path) => import(new URL(path, document.querySelector('script[type=module]').src))"
 """Defines `part("store.js")`, the module of the page with which a test looks inside."""
 
+ANSWERS = """{
+  const asked = window.fetch;
+  window.fetch = (what, options) => {
+    const answers = JSON.parse(sessionStorage.getItem("answers") ?? "{}");
+    const answer = answers[new URL(what, location).pathname];
+    return answer ? Promise.resolve(Response.json(answer.json, { status: answer.status })) : asked(what, options);
+  };
+}"""
+"""Gives the page what `answers` has put into its session storage."""
+
 NO_SCENE = """{
   const kind = HTMLIFrameElement.prototype;
   const { get, set } = Object.getOwnPropertyDescriptor(kind, "src");
@@ -65,8 +75,8 @@ NO_SCENE = """{
 """Leaves the 3D view empty where a test is about something else: to draw it without a graphics card takes seconds of two processors."""
 
 
-LASTING = ("on", "once", "add_init_script", "expose_binding", "expose_function")
-"""Methods of a page whose effect lasts, and cannot be undone here."""
+LASTING = ("once", "add_init_script", "expose_binding", "expose_function")
+"""Methods of a page whose effect lasts and is not undone here; listeners of `on` are removed."""
 
 
 class Users:
@@ -84,6 +94,7 @@ class Users:
         self._taken: list[tuple[bool, Page]] = []
         self._changed: set[Page] = set()
         self._hear: dict[Page, Callable[[str], object]] = {}
+        self._listeners: dict[Page, list[tuple[Any, ...]]] = {}
 
     def new(self, scene: bool, hear: Callable[[str], object] | None = None) -> Page:
         """Returns the page of a user who has not been here before, and who sees the 3D view or not.
@@ -112,6 +123,7 @@ class Users:
     def _opened(self, scene: bool) -> Page:
         context = self._browser.new_context()
         context.add_init_script(PART)
+        context.add_init_script(ANSWERS)
         if not scene:
             context.add_init_script(NO_SCENE)
         page = context.new_page()
@@ -131,18 +143,23 @@ class Users:
         page.on("console", hear_console)
         page.on("pageerror", hear_error)
         page.goto(self._elsewhere)
-        for method in LASTING:
-            setattr(page, method, self._noted(page, getattr(page, method)))
+        for name in ("on", *LASTING):
+            setattr(page, name, self._noted(page, name, getattr(page, name)))
         return page
 
-    def _noted(self, page: Page, method: Callable[..., Any]) -> Callable[..., Any]:
+    def _noted(self, page: Page, name: str, method: Callable[..., Any]) -> Callable[..., Any]:
         def called(*given: Any, **named: Any) -> Any:
-            self._changed.add(page)
+            if name == "on":
+                self._listeners.setdefault(page, []).append(given)
+            else:
+                self._changed.add(page)
             return method(*given, **named)
 
         return called
 
     def _forget(self, page: Page) -> None:
+        for event, listener in self._listeners.pop(page, ()):
+            page.remove_listener(event, listener)
         page.unroute_all()
         page.context.unroute_all()
         self._hear.pop(page, None)
@@ -179,6 +196,20 @@ def answer_to(route: Route) -> APIResponse:
     the request again on a new connection; Playwright must be told to.
     """
     return route.fetch(max_retries=1)
+
+
+def answers(page: Page, path: str, json: dict[str, Any], status: int = 200) -> None:
+    """Answers requests of the page for a path from now on, after reloads, too, without the server.
+
+    While Playwright has a route, the browser has no cache: a page that is loaded then fetches all of its modules again, for two seconds.
+    """
+    page.evaluate(
+        """([path, answer]) => {
+          const answers = JSON.parse(sessionStorage.getItem("answers") ?? "{}");
+          sessionStorage.setItem("answers", JSON.stringify({ ...answers, [path]: answer }));
+        }""",
+        [path, {"json": json, "status": status}],
+    )
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from actr3d.recording import Recorded
 from actr3d.world.contacts import Touch
 from tests.helpers.sessions import Desk, Talk
 from tests.helpers.walkers import STRUCK
-from tests.server.test_recorded_runs import APERTURE, ended, recording
+from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
 from workbench.curves import NOTHING
 from workbench.exports import curves_of
 from workbench.worker.state_history import Past
@@ -103,9 +103,13 @@ def test_contacts_within_ticks_are_the_same_live_recorded_and_opened(desk: Desk,
 
 
 @pytest.mark.slow
-def test_curves_of_a_passage_agree_with_its_result_live_and_recorded(desk: Desk, tmp_path: Path) -> None:
+def test_a_passage_is_measured_and_replayed_and_its_curves_agree_with_its_result_live_and_recorded(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.45})
+    assert talk.state["result"] is None
     result = ended(talk)["result"]
+    assert (result["outcome"], result["contacts"]) == ("passed", 0)
+    assert 20 < result["peak_angle_deg"] < 80
+    assert [data for _, _, kind, data in talk.events if kind == "result"] == [result]
     told = talk.say("curves", most=5000)
     groups = {(one["name"], one["unit"], one["group"]) for one in told["names"]}
     assert groups >= {
@@ -127,6 +131,7 @@ def test_curves_of_a_passage_agree_with_its_result_live_and_recorded(desk: Desk,
     assert way == pytest.approx(0.01 * sum(of["walker speed"]), rel=0.02)
     assert set(of["walker contact force"]) == {0.0}
     path = recording(desk, talk)
+    assert agrees(path)
     assert curves_of(path, names=None, first=0.0, most=5000) == told
     part = curves_of(path, names=["walker speed"], first=0.995, most=5000, last=1.234)
     assert part["times"] == told["times"][100:124]

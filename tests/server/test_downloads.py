@@ -24,7 +24,7 @@ import pytest
 from actr3d.recording import Recorded, Recording
 from tests.helpers.asgi_client import COOKIE, GATE, HOST, Answer, call
 from tests.helpers.sessions import Desk
-from tests.server.test_recorded_runs import APERTURE, ended
+from tests.server.test_recorded_runs import APERTURE, HELPED, ended
 from tests.server.test_runs import firing, written
 from workbench.app import make_app
 from workbench.csv_files import state_columns
@@ -60,7 +60,7 @@ def taken(desk: Desk, folder: Path, name: str) -> Path:
 
 @pytest.mark.slow
 def test_what_is_taken_of_a_run_that_has_ended_is_replayed_while_its_session_is_open(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.3})
+    talk = desk.begin(tmp_path, HELPED.replace("from helper import WORD", 'WORD = "go"'), record=True)
     events = ended(talk)["events"]
     name = talk.facts["recording"]
     assert not stands_alone(talk.sessions.recordings.path(name))

@@ -362,25 +362,6 @@ def test_two_pages_see_the_same_and_show_which_one_controls(server: Served) -> N
     server.post(f"/api/sessions/{name}/close")
 
 
-def test_nonsense_on_the_websocket_is_reported_and_does_no_harm(server: Served) -> None:
-    name = opened(server, "counting.py")
-
-    async def talk() -> None:
-        socket = await attached(server, name)
-        for text in ("", "{", "[]", "\0", '{"id": 1}', '{"id": 1, "command": {"type": "fly"}}', '{"id": -1, "command": {"type": "run"}}'):
-            await socket.send(text)
-            told = await heard(socket, lambda message: "replies" in message)
-            assert told["replies"][0]["error"]
-        await socket.send(json.dumps({"type": "attach", "session": "none"}))
-        assert (await heard(socket, lambda message: message["type"] == "refused"))["error"] == "there is no such session"
-        await socket.send("x" * 200_000)
-        with pytest.raises(websockets.ConnectionClosed):
-            await heard(socket, lambda _: False)
-
-    asyncio.run(talk())
-    server.post(f"/api/sessions/{name}/close")
-
-
 @pytest.mark.slow
 def test_a_frozen_browser_delays_no_other(server: Served) -> None:
     (server.folder / "busy.py").write_text(

@@ -23,6 +23,13 @@ def session(server: Served) -> str:
 
 
 WRONG: list[Any] = [
+    "",
+    "{",
+    "[]",
+    "\0",
+    '{"id": 1}',
+    '{"id": 1, "command": {"type": "fly"}}',
+    '{"id": -1, "command": {"type": "run"}}',
     b"\x00\xff",
     b'{"id": 1, "command": {"type": "run"}}',
     "null",
@@ -72,6 +79,16 @@ def test_a_page_is_not_shown_the_session_of_the_same_name_of_another_server(serv
         born = (await first())["session"]["born"]
         assert (await first(born=born))["session"]["born"] == born
         assert await first(born=born - 3600) == {"type": "refused", "error": "there is no such session", "session": session}
+
+    asyncio.run(talk())
+
+
+def test_a_session_that_does_not_exist_is_refused(server: Served, session: str) -> None:
+    async def talk() -> None:
+        socket = await attached(server, session)
+        await socket.send(json.dumps({"type": "attach", "session": "none"}))
+        assert (await heard(socket, lambda message: message["type"] == "refused"))["error"] == "there is no such session"
+        await socket.close()
 
     asyncio.run(talk())
 

@@ -53,18 +53,6 @@ def agrees(path: Path) -> bool:
         return replay(recorded).difference is None
 
 
-@pytest.mark.slow
-def test_the_passage_of_an_aperture_is_measured_recorded_and_replayed(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.45})
-    assert talk.state["result"] is None
-    result = ended(talk)["result"]
-    assert (result["outcome"], result["contacts"]) == ("passed", 0)
-    assert 20 < result["peak_angle_deg"] < 80
-    assert [data for _, _, kind, data in talk.events if kind == "result"] == [result]
-    path = recording(desk, talk)
-    assert agrees(path)
-
-
 def test_the_aperture_of_the_model_changes_while_it_runs(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.8})
     talk.say("step", ticks=100)

@@ -24,9 +24,12 @@ from typing import Any
 import httpx
 import pytest
 
+from actr3d.experiment.report.command import write_report
 from tests.helpers.experiments import write_experiment
+from tests.helpers.reports import store_rows
 from tests.helpers.workbench_server import Served, served
 from tests.server.test_bad_input import DESCRIPTION, OPERATIONS, resolved, valid
+from workbench.experiment_folder import ExperimentFolder
 
 pytestmark = pytest.mark.long
 
@@ -64,11 +67,12 @@ def whole(server: Served) -> Path:
 @pytest.fixture(scope="module")
 def experiment(server: Served) -> Path:
     """A small experiment with its report, from which all others are copied."""
-    name = server.post("/api/experiments", {"design": "counting_design.py:counting", "workers": 1}).json()["id"]
-    while server.get(f"/api/experiments/{name}").json()["state"] != "finished":
-        time.sleep(0.1)
-    assert server.post(f"/api/experiments/{name}/report", {}).status_code == 200
-    return (server.folder / ".workbench" / "experiments" / name).rename(server.folder.parent / "experiment")
+    design = f"{server.folder / 'counting_design.py'}:counting"
+    folder = store_rows(server.folder.parent / "experiment", design, lambda trial: {"rt": 0.1 * trial.number, "luck": 0.5})
+    write_report(folder)
+    ExperimentFolder(folder).seal()
+    assert ExperimentFolder(folder).made_here
+    return folder
 
 
 class Storm:
