@@ -88,12 +88,12 @@ def replay(
 
 
 def _built(recorded: Recorded, helpers: HelperTexts) -> tuple[Simulation, dict[str, Any]]:
-    from actr3d.runner.model_factory import build  # a program does without the world that this loads
+    from actr3d.runner.model_factory import Blueprint  # a program does without the world that this loads
 
     facts = recorded.facts
     file = facts["file"]
     try:
-        return build(facts["sources"][file], file, facts["parameters"], Path(file).parent, helpers)
+        return Blueprint(facts["sources"][file], file, Path(file).parent, helpers).build(facts["parameters"])
     except (Actr3dError, KeyboardInterrupt):
         raise
     except BaseException as error:  # it did build something when it was recorded
