@@ -29,12 +29,16 @@ def signal_name(number: int) -> str:
     return signal.Signals(number).name if number in set(signal.Signals) else f"signal {number}"
 
 
+def _kills(process: int, number: int) -> bool:
+    return process == os.getpid() and _raises(number)
+
+
 _ENDS: tuple[tuple[Any, str, Callable[..., bool | None]], ...] = (
     (os, "_exit", lambda *_, **__: True),
     (os, "abort", lambda *_, **__: True),
     (os, "execv", _starts_another),
     (os, "execve", _starts_another),
-    (os, "kill", lambda process, number: process == os.getpid() and _raises(number)),
+    (os, "kill", _kills),
     (os, "killpg", lambda *_, **__: False),
     (signal, "raise_signal", _raises),
     (signal, "pthread_kill", lambda *_, **__: False),

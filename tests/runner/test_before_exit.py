@@ -59,8 +59,11 @@ def test_a_model_that_ends_its_process_loses_nothing(text: str, end: str, code: 
 
 
 def test_what_was_done_is_also_kept_if_the_arguments_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(os, "_exit", lambda status: None)
-    monkeypatch.setattr(os, "execve", lambda path, argv, env: None)
+    def do_nothing(**_: object) -> None:
+        pass
+
+    monkeypatch.setattr(os, "_exit", do_nothing)
+    monkeypatch.setattr(os, "execve", do_nothing)
     kept: list[bool] = []
     with before_the_end(kept.append):
         os._exit(status=3)
