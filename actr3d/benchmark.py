@@ -13,26 +13,6 @@ from typing import Literal, TypeVar
 
 from actr3d.registry import Registry
 
-B = TypeVar("B", bound=Callable[..., int])
-
-
-BENCHMARKS: Registry[Callable[..., int]] = Registry("benchmark")
-"""By name, the functions that measure, print and return the exit code. They take `json_output`."""
-
-
-def benchmark(name: str) -> Callable[[B], B]:
-    """Registers a benchmark under its name for `actr3d bench`.
-
-    Raises:
-        ValueError: If there is a benchmark of this name already.
-    """
-
-    def register(function: B) -> B:
-        BENCHMARKS.add(name, function)
-        return function
-
-    return register
-
 
 @dataclass(frozen=True, kw_only=True)
 class Figure:
@@ -49,6 +29,27 @@ class Figure:
     def is_met(self) -> bool:
         """Whether the figure meets its limit."""
         return self.value >= self.limit if self.sense == "at least" else self.value <= self.limit
+
+
+Benchmark = Callable[[], list[Figure]]
+"""Measures figures."""
+B = TypeVar("B", bound=Benchmark)
+BENCHMARKS: Registry[Benchmark] = Registry("benchmark")
+"""All benchmarks by name."""
+
+
+def benchmark(name: str) -> Callable[[B], B]:
+    """Registers a benchmark under its name for `actr3d bench`.
+
+    Raises:
+        ValueError: If there is a benchmark of this name already.
+    """
+
+    def register(function: B) -> B:
+        BENCHMARKS.add(name, function)
+        return function
+
+    return register
 
 
 def seconds_of(work: Callable[[], object], clock: Callable[[], float] = time.perf_counter) -> float:

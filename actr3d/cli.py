@@ -198,7 +198,7 @@ def _count(text: str) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="actr3d", description="Runs cognitive models in bodies, in exact lockstep.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (_add_run, _add_replay, _add_bench, _add_experiment, _add_fit, _add_report, _add_soak):
+    for add in (_add_run, _add_replay, _add_bench, _add_experiment, _add_fit, _add_report):
         add(commands)
     return parser
 
@@ -335,18 +335,9 @@ def _add_report(commands: Any) -> None:
     report.set_defaults(function=_report)
 
 
-def _add_soak(commands: Any) -> None:
-    soak = commands.add_parser(
-        "soak",
-        help="run a million ticks",
-        description="Runs a million ticks, and checks for drift between the clocks and for growth in memory.",
-    )
-    soak.add_argument("--json", action="store_true", help="print one JSON object")
-    soak.set_defaults(function=_soak)
-
-
 def _bench(options: argparse.Namespace) -> int:
     from actr3d.bench import find_benchmarks  # benchmarks are slow to import
+    from actr3d.benchmark import report
 
     known = find_benchmarks()
     if options.name is None:
@@ -357,7 +348,11 @@ def _bench(options: argparse.Namespace) -> int:
     if options.name not in known:
         print(f"actr3d bench: no benchmark '{options.name}'{alternatives(options.name, sorted(known))}", file=sys.stderr)
         return 2
-    return known[options.name](json_output=options.json)
+    try:
+        return report(known[options.name](), json_output=options.json)
+    except ModuleNotFoundError as error:
+        print(error, file=sys.stderr)
+        return 2
 
 
 def _with_packages(work: Callable[[argparse.Namespace], int]) -> Callable[[argparse.Namespace], int]:
@@ -435,12 +430,6 @@ BESIDE_CHECK = ("workers", "scheduler", "out", "resume", "any_version")
 def _numbers(options: argparse.Namespace) -> dict[str, Any]:
     """Returns the options that change a design."""
     return {"values": read_settings(options.set, ()), "participants": options.participants, "trials": options.trials}
-
-
-def _soak(options: argparse.Namespace) -> int:
-    from actr3d.bench import soak
-
-    return soak.main(json_output=options.json)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

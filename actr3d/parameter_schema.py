@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import lru_cache
+from itertools import zip_longest
 from operator import ge, gt, le, lt
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, cast, get_args, get_origin, get_type_hints
@@ -27,6 +28,9 @@ from actr3d.values import escape_surrogates
 _UNIT = re.compile(r"\[([^\]]+)\]")
 _TAKES = {"float": "number", "int": "whole number", "str": "text", "bool": "switch"}
 _BOUNDS = {"Gt": "above", "Ge": "least", "Lt": "below", "Le": "most"}
+"""The bounds of `annotated_types`, by class, and the fields of a `Parameter` that hold them."""
+_NOT_LITERAL = (ValueError, SyntaxError, TypeError, MemoryError, RecursionError)
+"""What `ast.literal_eval` raises for a text that is not a literal."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,7 +128,7 @@ def literal(text: str) -> Any:
     """
     try:
         return ast.literal_eval(text.capitalize() if text in ("true", "false") else text)
-    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):  # see `ast.literal_eval`
+    except _NOT_LITERAL:
         return text
 
 
@@ -170,19 +174,11 @@ def _name_of(declared: Any) -> str:
 
 
 def _with_mark(found: Parameter, mark: object) -> Parameter:
-    match mark:
-        case annotated_types.Gt(gt=limit):
-            return replace(found, above=cast("float", limit))
-        case annotated_types.Ge(ge=limit):
-            return replace(found, least=cast("float", limit))
-        case annotated_types.Lt(lt=limit):
-            return replace(found, below=cast("float", limit))
-        case annotated_types.Le(le=limit):
-            return replace(found, most=cast("float", limit))
-        case Live():
-            return replace(found, live=LiveCommand(word=mark.word, before=mark.before, body=mark.body))
-        case _:
-            return found
+    if isinstance(mark, Live):
+        return replace(found, live=LiveCommand(word=mark.word, before=mark.before, body=mark.body))
+    name = type(mark).__name__
+    is_bound = isinstance(mark, annotated_types.BaseMetadata) and name in _BOUNDS
+    return replace(found, **{_BOUNDS[name]: getattr(mark, name.lower())}) if is_bound else found
 
 
 def _docstrings(kind: type[Any]) -> Mapping[str, str]:
@@ -204,7 +200,7 @@ def _docstrings_in(text: str) -> Mapping[str, Sequence[tuple[str, str | None]]]:
 
     def collect(node: ast.AST, path: str) -> None:
         if isinstance(node, ast.ClassDef):
-            found.setdefault(path + node.name, tuple(_fields_in(node)))
+            found.setdefault(path + node.name, tuple((name, below) for name, _, below in _fields_in(node)))
         if isinstance(node, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
             path += f"{node.name}." if isinstance(node, ast.ClassDef) else f"{node.name}.<locals>."
         for child in ast.iter_child_nodes(node):
@@ -215,14 +211,15 @@ def _docstrings_in(text: str) -> Mapping[str, Sequence[tuple[str, str | None]]]:
     return found
 
 
-def _fields_in(node: ast.ClassDef) -> Iterator[tuple[str, str | None]]:
-    for field, below in zip(node.body, node.body[1:], strict=False):
+def _fields_in(node: ast.ClassDef) -> Iterator[tuple[str, ast.AnnAssign, str | None]]:
+    """Yields the name and definition of each field of a class, with the docstring below it in one line; None for none."""
+    for field, below in zip_longest(node.body, node.body[1:]):
         if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name):
             match below:
                 case ast.Expr(value=ast.Constant(value=str(text))):
-                    yield field.target.id, " ".join(inspect.cleandoc(text).split())
+                    yield field.target.id, field, " ".join(escape_surrogates(inspect.cleandoc(text)).split())
                 case _:
-                    yield field.target.id, None
+                    yield field.target.id, field, None
 
 
 # -- from a text
@@ -241,14 +238,11 @@ def parameters_in(tree: ast.Module, build: ast.FunctionDef | None) -> Iterator[P
     classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
     kind = classes.get(ast.unparse(argument.annotation).strip("'\""))
     constants = dict(_constants(tree))
-    for node, below in zip(kind.body, [*kind.body[1:], ast.Pass()], strict=True) if kind is not None else ():
-        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-            words = below.value.value if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant) else ""
-            text = " ".join(escape_surrogates(inspect.cleandoc(words)).split()) if isinstance(words, str) else ""
-            unit = _UNIT.search(text)
-            declared = _declared(Parameter(name=node.target.id, takes=""), node.annotation, constants)
-            default = default_of(node.value, constants)
-            yield replace(declared, **default, help=text, unit=unit and unit[1], line=node.lineno)
+    for name, node, words in _fields_in(kind) if kind is not None else ():
+        unit = _UNIT.search(words or "")
+        declared = _declared(Parameter(name=name, takes=""), node.annotation, constants)
+        default = default_of(node.value, constants)
+        yield replace(declared, **default, help=words or "", unit=unit and unit[1], line=node.lineno)
 
 
 def _declared(parameter: Parameter, annotation: ast.expr, constants: Mapping[str, Any]) -> Parameter:
@@ -304,7 +298,7 @@ def _constants(tree: ast.Module) -> Iterator[tuple[str, Any]]:
         if isinstance(node, ast.Assign) and len(node.targets) == 1 and isinstance(node.targets[0], ast.Name):
             try:
                 yield node.targets[0].id, ast.literal_eval(node.value)
-            except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
+            except _NOT_LITERAL:
                 continue
 
 
@@ -328,7 +322,7 @@ def _value(node: ast.expr, constants: Mapping[str, Any]) -> Any:
         return constants[node.id]
     try:
         value = ast.literal_eval(node)
-    except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
+    except _NOT_LITERAL:
         raise ValueError(ast.unparse(node)) from None
     if not _fits_json(value):
         raise ValueError(ast.unparse(node))

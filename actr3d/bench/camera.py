@@ -9,7 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from actr3d.benchmark import Figure, benchmark, little_garbage, ratio, report, seconds_of
+from actr3d.benchmark import Figure, benchmark, little_garbage, ratio, seconds_of
 from actr3d.camera import GeometricCamera
 
 RAYS = 10_000
@@ -104,6 +104,7 @@ def _more(many: list[tuple[Any, Any]], few: list[tuple[Any, Any]]) -> float:
     return median(ratio(_view_cost(*large), _view_cost(*small)) for large, small in zip(many, few, strict=True))
 
 
+@benchmark("camera")
 def measure() -> list[Figure]:
     """Measures all figures."""
     few, many = ([_scene(APERTURE + _loose(count, seed)) for seed in range(SCENES)] for count in (10, 100))
@@ -121,9 +122,3 @@ def measure() -> list[Figure]:
             Figure(name="100 objects", value=_more(many, few), sense="at most", limit=3, what=more),
             Figure(name="100 objects without walls", value=_more(open_many, open_few), sense="at most", limit=3, what=more),
         ]
-
-
-@benchmark("camera")
-def main(*, json_output: bool) -> int:
-    """Measures and prints; returns the exit code."""
-    return report(measure(), json_output=json_output)

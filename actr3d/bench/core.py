@@ -18,7 +18,7 @@ from typing import Any
 
 from actr3d.actr import ACTR, Buffer, Memory
 from actr3d.actr.loading import load_text
-from actr3d.benchmark import Figure, benchmark, ratio, report, seconds_of
+from actr3d.benchmark import Figure, benchmark, ratio, seconds_of
 
 THREE = """
 from python_actr import *
@@ -65,32 +65,38 @@ class Agent(ACTR):
 """Counts up through SIZE chunks."""
 
 
-class Peer:
-    """Loads models for the original python_actr: from files, because it reads their source."""
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        # It would print a last line when the program ends, in the middle of the bench's output.
-        atexit.unregister(importlib.import_module("python_actr.logger").finished)
-
-    def load(self, source: str, name: str) -> ModuleType:
-        """Returns a model's module."""
-        path = self._folder / f"{name}.py"
-        path.write_text(source, encoding="utf-8")
-        spec = importlib.util.spec_from_file_location(f"peer_{name}", path)
-        assert spec is not None
-        assert spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[module.__name__] = module
-        spec.loader.exec_module(module)
-        return module
+Loader = Callable[[str, str], ModuleType]
+"""Returns the module of a model, from its source and its name."""
 
 
 @contextmanager
-def _peer() -> Generator[Peer]:
+def _peer() -> Generator[Loader]:
+    """Provides a function that loads models for the original python_actr: from files, because it reads their source.
+
+    Raises:
+        ModuleNotFoundError: If python_actr is not installed.
+    """
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings(), redirect_stdout(StringIO()):
         warnings.simplefilter("ignore")
-        yield Peer(Path(folder))
+        try:
+            logger = importlib.import_module("python_actr.logger")
+        except ModuleNotFoundError as error:
+            reason = f"the benchmark compares with another library, which is not installed ({error})"
+            raise ModuleNotFoundError(f"{reason}; use: uv run --group bench actr3d bench core") from None
+        atexit.unregister(logger.finished)  # it would print a last line when the program ends, in the middle of the bench's output
+
+        def load(source: str, name: str) -> ModuleType:
+            path = Path(folder) / f"{name}.py"
+            path.write_text(source, encoding="utf-8")
+            spec = importlib.util.spec_from_file_location(f"peer_{name}", path)
+            assert spec is not None
+            assert spec.loader is not None
+            module = importlib.util.module_from_spec(spec)
+            sys.modules[module.__name__] = module
+            spec.loader.exec_module(module)
+            return module
+
+        yield load
 
 
 def _cost(module: ModuleType, before: float, length: float) -> float:
@@ -100,16 +106,16 @@ def _cost(module: ModuleType, before: float, length: float) -> float:
     return seconds_of(lambda: agent.run(length)) / length
 
 
-def _against_peer(peer: Peer, source: str, name: str, before: float, own_time: float, peer_time: float) -> float:
+def _against_peer(load: Loader, source: str, name: str, before: float, own_time: float, peer_time: float) -> float:
     """Returns the time that python_actr takes for the same simulated time, relative to this library."""
-    own, other = load_text(source, f"{name}.py"), peer.load(source, name)
+    own, other = load_text(source, f"{name}.py"), load(source, name)
     return ratio(lambda: _cost(other, before, peer_time), lambda: _cost(own, before, own_time))
 
 
-def _counting(peer: Peer) -> tuple[float, float]:
+def _counting(load: Loader) -> tuple[float, float]:
     """Returns python_actr's relative time to learn 2,000 facts and count to 200, and for the counting alone."""
     source = COUNTING.replace("SIZE", "2000")
-    own, other = load_text(source, "many.py"), peer.load(source, "many")
+    own, other = load_text(source, "many.py"), load(source, "many")
 
     def cost(module: ModuleType) -> tuple[float, float]:
         agent: Any = module.Agent()
@@ -177,16 +183,17 @@ def _traced_ratio() -> float:
     return ratio(lambda: run("all"), lambda: run(None), rounds=9)
 
 
+@benchmark("core")
 def measure() -> list[Figure]:
     """Measures all figures.
 
     Raises:
         ModuleNotFoundError: If python_actr is not installed.
     """
-    with _peer() as peer:
-        three = _against_peer(peer, THREE, "three", 1, 400, 400)
-        hundreds = _against_peer(peer, HUNDREDS, "hundreds", 16, 200, 20)
-        counting, each_count = _counting(peer)
+    with _peer() as load:
+        three = _against_peer(load, THREE, "three", 1, 400, 400)
+        hundreds = _against_peer(load, HUNDREDS, "hundreds", 16, 200, 20)
+        counting, each_count = _counting(load)
     small, large = _request_cost(1_000), _request_cost(100_000)
     speed = "times python_actr's speed"
     return [
@@ -198,14 +205,3 @@ def measure() -> list[Figure]:
         Figure(name="idle tick", value=_idle_tick(), sense="at most", limit=3, what="us more than an empty loop"),
         Figure(name="full tracing", value=_traced_ratio(), sense="at most", limit=2, what="times the untraced counting model"),
     ]
-
-
-@benchmark("core")
-def main(*, json_output: bool) -> int:
-    """Measures and prints; returns the exit code."""
-    try:
-        return report(measure(), json_output=json_output)
-    except ModuleNotFoundError as error:
-        reason = f"the benchmark compares with another library, which is not installed ({error})"
-        print(f"{reason}; use: uv run --group bench actr3d bench core", file=sys.stderr)
-        return 2

@@ -17,7 +17,7 @@ import mujoco
 
 from actr3d.actr.loading import load_text
 from actr3d.bench import camera
-from actr3d.benchmark import Figure, benchmark, processor_time_of, report
+from actr3d.benchmark import Figure, benchmark, processor_time_of
 from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, WorldState
 
@@ -177,6 +177,7 @@ def _bare_cost(make: Callable[[], Simulation], warm: int = WARM, ticks: int = TI
     return spent / len(states)
 
 
+@benchmark("lockstep")
 def measure() -> list[Figure]:
     """Measures all figures."""
     times = "times the bare physics"
@@ -209,9 +210,3 @@ def _best(make: Callable[[], Simulation]) -> tuple[float, float, float]:
     rounds = [(_cost(make), _bare_cost(make), _recorded_cost(make)) for _ in range(ROUNDS)]
     plain, bare, recorded = (min(costs) for costs in zip(*rounds, strict=True))
     return plain, bare, recorded
-
-
-@benchmark("lockstep")
-def main(*, json_output: bool) -> int:
-    """Measures and prints; returns the exit code."""
-    return report(measure(), json_output=json_output)

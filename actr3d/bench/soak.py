@@ -1,4 +1,4 @@
-"""`actr3d soak`: runs a million ticks, and checks for drift and for growth in memory."""
+"""`actr3d bench soak`: runs a million ticks, and checks for drift and for growth in memory."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 
 from actr3d.bench.lockstep import typical
-from actr3d.benchmark import Figure, benchmark, report, seconds_of
+from actr3d.benchmark import Figure, benchmark, seconds_of
 
 TICKS = 1_000_000
 """The number of ticks: 10,000 s of simulated time."""
@@ -26,6 +26,7 @@ def resident() -> float:
     return int(kilobytes) / 1024
 
 
+@benchmark("soak")
 def measure(ticks: int = TICKS) -> list[Figure]:
     """Runs the typical agent, and measures drift and memory."""
     resident()  # where it cannot be measured, this is known before the run
@@ -51,9 +52,3 @@ def measure(ticks: int = TICKS) -> list[Figure]:
         ),
         Figure(name="time", value=spent / ticks * 1e6, sense="at most", limit=1000, what=f"us a tick ({spent:.0f} s in all)"),
     ]
-
-
-@benchmark("soak")
-def main(*, json_output: bool) -> int:
-    """Measures and prints; returns the exit code."""
-    return report(measure(), json_output=json_output)

@@ -21,7 +21,7 @@ from unittest.mock import patch
 import mujoco
 
 from actr3d.actr.loading.helper_modules import HelperTexts
-from actr3d.benchmark import Figure, benchmark, processor_time_of, report
+from actr3d.benchmark import Figure, benchmark, processor_time_of
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.trial import record_trial, run_trial
@@ -220,9 +220,8 @@ def _workers(folder: Path) -> list[Figure]:
 
 
 @benchmark("experiment")
-def main(*, json_output: bool) -> int:
-    """Measures and prints; returns the exit code."""
+def measure() -> list[Figure]:
+    """Measures all figures."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        figures = [*_aperture(folder), *_small(folder), *_rows(folder), *_workers(folder)]
-    return report(figures, json_output=json_output)
+        return [*_aperture(folder), *_small(folder), *_rows(folder), *_workers(folder)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import sys
@@ -198,7 +199,7 @@ def fit(
         Exception: Any error that the files of the design and of the model themselves raise.
     """
     from actr3d.experiment.cluster import existing_cluster, local_cluster
-    from actr3d.experiment.fit import Fit, Range, TargetMean, check_measure, load_target, to_json
+    from actr3d.experiment.fit import Fit, Range, TargetMean, check_measure, load_target
 
     def means(experiment: Experiment, data: str | None, give: str) -> tuple[TargetMean, ...]:
         data = data or experiment.design.human
@@ -226,7 +227,7 @@ def fit(
     ):
         running = Fit(name, searched, wanted, path, client, options=options, progress=partial(_progress, out))
         result = running.run(candidates, hold_out=held_out, ablate=ablate, recover=recover)
-        write_whole(path / "fit.json", to_json(result))
+        write_whole(path / "fit.json", json.dumps(asdict(result), indent=1, ensure_ascii=False))
     out.event("fit", asdict(result))
     out.line(("\nfitted", "bold"), f" to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
     few = result.fit.cells <= len(result.parameters)

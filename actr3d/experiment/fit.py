@@ -24,7 +24,7 @@ import warnings
 from collections import defaultdict
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
 from statistics import fmean
@@ -761,11 +761,6 @@ def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agre
 
 def _agreement_of(found: _Simulated, target: Mapping[Cell, float]) -> Agreement:
     return replace(agreement(found.means, target), failed=found.failed, trials=found.trials)
-
-
-def to_json(result: FitResult) -> str:
-    """Returns the result as JSON."""
-    return json.dumps(asdict(result), indent=1, ensure_ascii=False)
 
 
 def _fitted(one: Range, value: float, low: float | None, high: float | None) -> Fitted:

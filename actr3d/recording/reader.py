@@ -7,8 +7,8 @@ import json
 import sqlite3
 from array import array
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
-from contextlib import closing
+from collections.abc import Generator, Iterator, Mapping
+from contextlib import closing, contextmanager
 from math import isfinite
 from pathlib import Path
 from types import TracebackType
@@ -140,6 +140,11 @@ class Recorded:
         return ended is not None and ended["by"] != LEFT
 
     @property
+    def failed(self) -> bool:
+        """Whether the run failed; the recording then holds everything until that."""
+        return self.facts.get("failed") is not None
+
+    @property
     def closed(self) -> bool:
         """Whether the recording ends with the end of the run or between two ticks; False if the run failed or was killed within a tick."""
         return self.facts.get("ended") is not None or bool(self.facts.get("whole"))
@@ -232,8 +237,13 @@ class Recorded:
             due = first + count
             yield tuple(values)
 
-    def _reading(self) -> _Reading:
-        return _Reading(self.path)
+    @contextmanager
+    def _reading(self) -> Generator[None]:
+        """Raises every error that occurs in the block while the file is read as a `RecordingError`."""
+        try:
+            yield
+        except (sqlite3.Error, ValueError, TypeError, KeyError, IndexError, OverflowError, RecursionError) as error:
+            raise RecordingError(f"the recording '{self.path}' is damaged: {_words(error)}") from None
 
     def copy_to(self, path: Path) -> None:
         """Writes a copy to a new file.
@@ -271,20 +281,6 @@ class Recorded:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
         self.close()
-
-
-class _Reading:
-    """Raises every error that occurs in the block while the file is read as a `RecordingError`."""
-
-    def __init__(self, path: Path) -> None:
-        self._path = path
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None) -> None:
-        if isinstance(error, (sqlite3.Error, ValueError, TypeError, KeyError, IndexError, OverflowError, RecursionError)):
-            raise RecordingError(f"the recording '{self._path}' is damaged: {_words(error)}") from None
 
 
 def _parsed(text: str) -> Any:

@@ -142,8 +142,7 @@ class Recording:
         writer.states.append(State(run, tick, data, self.events, contacts))
         if tick * self._period != self._time:
             self._pass(tick * self._period)
-        if len(writer.states) > MAX_WAITING or len(writer.events) > MAX_WAITING or writer.failure is not None:
-            self.check()
+        self.check()
 
     def check(self) -> None:
         """Waits for the disk if too many items are in memory.

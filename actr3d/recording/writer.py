@@ -18,6 +18,7 @@ from actr3d.actr.modules.answers import plain_answer
 from actr3d.errors import RecordingError
 from actr3d.recording.checksums import Checksums
 from actr3d.recording.key import make_key, seal
+from actr3d.recording.opening import COMPANIONS
 from actr3d.recording.schema import COLUMNS, LEFT, SCHEMA
 from actr3d.trace import TraceEvent
 from actr3d.values import escape_surrogates, plain_to_json
@@ -136,7 +137,7 @@ class Writer:
     def cut(self, ticks: int, events: int, answers: int, commands: int) -> None:
         """Removes all but the first items of each sort: the run goes back to that point."""
         self.flush()
-        self._attempt(self._cut, {"states": ticks + 1, "events": events, "answers": answers, "commands": commands})
+        self._attempt(self._transact, self._delete_all, {"states": ticks + 1, "events": events, "answers": answers, "commands": commands})
 
     def copy_to(self, path: Path, facts: Sequence[tuple[str, str]] = ()) -> None:
         """Writes all items that it has received, and a closed copy of everything to a new file.
@@ -288,9 +289,6 @@ class Writer:
                 self._file.execute("ROLLBACK")
             raise
 
-    def _cut(self, kept: dict[str, int]) -> None:
-        self._transact(self._delete_all, kept)
-
     def _delete_all(self, kept: dict[str, int]) -> None:
         for table in ("events", "answers"):
             last = self._delete(table, kept[table])
@@ -350,7 +348,7 @@ def _insert_facts(file: sqlite3.Connection, checksums: Checksums, facts: Sequenc
 
 def _remove(path: Path) -> None:
     """Removes a file and the companion files of SQLite."""
-    for suffix in ("", "-journal", "-wal", "-shm"):
+    for suffix in ("", *COMPANIONS):
         with suppress(OSError, ValueError):
             path.with_name(f"{path.name}{suffix}").unlink(missing_ok=True)
 

@@ -13,15 +13,7 @@ _NOT_FATAL = {"SIGCHLD", "SIGURG", "SIGWINCH", "SIGCONT", "SIGSTOP", "SIGTSTP", 
 """The signals that do not end a process which does not handle them."""
 
 
-def _ends_at_once(*_: Any) -> bool:
-    return True
-
-
-def _may_end(*_: Any) -> bool:
-    return False
-
-
-def _starts_another(path: Any, *_: Any) -> bool | None:
+def _starts_another(path: Any, *_: Any, **__: Any) -> bool | None:
     """Returns whether `exec` ends the program; None if it fails, because there is no such program."""
     return True if os.path.isfile(path) and os.access(path, os.X_OK) else None  # noqa: PTH113 - the path may be bytes or a number
 
@@ -42,15 +34,15 @@ def _kills(process: int, number: int) -> bool:
 
 
 _ENDS: tuple[tuple[Any, str, Callable[..., bool | None]], ...] = (
-    (os, "_exit", _ends_at_once),
-    (os, "abort", _ends_at_once),
+    (os, "_exit", lambda *_, **__: True),
+    (os, "abort", lambda *_, **__: True),
     (os, "execv", _starts_another),
     (os, "execve", _starts_another),
     (os, "kill", _kills),
-    (os, "killpg", _may_end),
+    (os, "killpg", lambda *_, **__: False),
     (signal, "raise_signal", _raises),
-    (signal, "pthread_kill", _may_end),
-    (os, "closerange", _may_end),
+    (signal, "pthread_kill", lambda *_, **__: False),
+    (os, "closerange", lambda *_, **__: False),
 )
 """The functions with which a model ends its process, or closes what it is recorded with; and for each, whether a call surely ends it."""
 end_at_once: Final = os._exit

@@ -87,16 +87,3 @@ class Blueprint:
             raise SettingError(str(error)) from None
         except TypeError as error:
             raise SettingError(f"{kind.__name__}: {error}") from None
-
-
-def build(
-    source: str, filename: str, settings: Mapping[str, Any], folder: Path | None = None, helpers: HelperTexts | None = None
-) -> tuple[Simulation, dict[str, Any]]:
-    """Loads a model's source and builds its simulation, as `Blueprint` does.
-
-    Raises:
-        ModelFileError: If the source is not Python 3, or its `build` is not valid.
-        SettingError: If a parameter does not exist, or its value is not valid.
-        Exception: Any error that the model itself raises.
-    """
-    return Blueprint(source, filename, folder, helpers).build(settings)

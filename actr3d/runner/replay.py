@@ -88,15 +88,13 @@ def replay(
 
 
 def _built(recorded: Recorded, helpers: HelperTexts) -> tuple[Simulation, dict[str, Any]]:
-    from actr3d.runner.model_factory import build  # a program does without the world that this loads
+    from actr3d.runner.model_factory import Blueprint  # a program does without the world that this loads
 
     facts = recorded.facts
     file = facts["file"]
     try:
-        return build(facts["sources"][file], file, facts["parameters"], Path(file).parent, helpers)
-    except Actr3dError:
-        raise
-    except KeyboardInterrupt:
+        return Blueprint(facts["sources"][file], file, Path(file).parent, helpers).build(facts["parameters"])
+    except (Actr3dError, KeyboardInterrupt):
         raise
     except BaseException as error:  # it did build something when it was recorded
         raise RecordingError(f"what '{recorded.path}' holds cannot be built here: {failure(error)}") from error
@@ -112,7 +110,7 @@ def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress
     """Replays a program until it ends. If the recorded run did not end by itself, the replay ends when it does more than was recorded."""
     facts = recorded.facts
     file, source = facts["file"], facts["sources"][facts["file"]]
-    comparator = Comparator(recorded, open_end=not (recorded.over or _failed(recorded)))
+    comparator = Comparator(recorded, open_end=not (recorded.over or recorded.failed))
     comparator.facts |= program_facts(file, source, facts["seed"], facts["until"])
     trace = Trace("all", keep=False)
     count = max(1, recorded.event_count)
@@ -170,7 +168,7 @@ def _replay_simulation(
             ended = None
         if ended is not None:
             comparator.fact("ended", {"by": ended})
-        if recorded.over or _failed(recorded) or recorded.facts.get("whole"):
+        if recorded.over or recorded.failed or recorded.facts.get("whole"):
             log.end_recording(whole=simulation.timeline.begun and not simulation.timeline.lockstep.broken)
         log.check()
         for command in commands[: simulation.timeline.lockstep.commands]:
@@ -195,17 +193,12 @@ def _end(recorded: Recorded, simulation: Simulation, ended: str | None) -> None:
     Raises:
         BaseException: What the model raises.
     """
-    if _failed(recorded) and ended is None:
+    if recorded.failed and ended is None:
         simulation.step()
         return
     simulation.timeline.repeat_commands()
-    if recorded.over or _failed(recorded):
+    if recorded.over or recorded.failed:
         simulation.conclude()
-
-
-def _failed(recorded: Recorded) -> bool:
-    """Returns whether the recorded run failed: then it holds all until that."""
-    return recorded.facts.get("failed") is not None
 
 
 def _compared(recorded: Recorded, comparator: Comparator, trouble: str) -> Comparison:
@@ -217,7 +210,7 @@ def _compared(recorded: Recorded, comparator: Comparator, trouble: str) -> Compa
         trouble: Says that the run has ended, where the recorded one went on.
     """
     left, difference, unfinished = comparator.rest(), comparator.difference, 0
-    if not (recorded.closed or _failed(recorded)):
+    if not (recorded.closed or recorded.failed):
         unfinished = left.pop("event", 0)
         left = {kind: count for kind, count in left.items() if kind == "state"}  # the rest may be of the tick that did not end
     if difference is None and left:
@@ -251,7 +244,7 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
     if not from_code:  # `make` has other code, and what its program has recorded is unknown
         named |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})
     said: dict[str, Any] = then.get("ended") or {}
-    if not (recorded.over or _failed(recorded)):
+    if not (recorded.over or recorded.failed):
         # The recorded run did not end by itself, so an end of the replay is a difference.
         goes_on = then["kind"] == "program" or now.get("ended") is None or (recorded.ticks == 0 and now["ended"] != {"by": "limits"})
         silent |= {"failed", "whole"} | ({"ended"} if goes_on or not from_code else set())
@@ -259,7 +252,7 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
     elif not from_code and said.get("by") not in ("stop", "done", None):
         named.add("ended")  # it was not run to its end by this library, but by a program that says so
     helpers, used = then.get("helpers", {}), now.get("helpers", {})
-    early = comparator.commands > 0 or not (recorded.over or _failed(recorded))
+    early = comparator.commands > 0 or not (recorded.over or recorded.failed)
     if early and {name: helpers[name] for name in used if name in helpers} == used:
         # A run that went back and continued differently, or was interrupted, may have loaded more than its recording needs.
         (named if len(used) < len(helpers) else silent).add("helpers")
@@ -278,7 +271,7 @@ def _recorded_end(recorded: Recorded) -> str | None:
         for event in recorded.events():
             last = event.time_us
     at = facts.get(REACHED, seconds(last)) if period is None else seconds(recorded.ticks * period)
-    if _failed(recorded):
+    if recorded.failed:
         return f"the run failed after {at:g} s ({facts['failed']})"
     if facts.get("ended") is None and facts.get("whole") and not facts.get("built"):
         return None  # the end of a run that a program makes is not recorded

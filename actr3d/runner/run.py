@@ -30,15 +30,7 @@ if TYPE_CHECKING:
     from actr3d.simulation.real_time import SimulationEnding
 
 
-class FactRecorder(Protocol):
-    """Receives the facts that become known during a run."""
-
-    def fact(self, name: str, value: Any) -> None:
-        """Receives a fact."""
-        ...
-
-
-class ProgramRecorder(Recorder, FactRecorder, Protocol):
+class ProgramRecorder(Recorder, Protocol):
     """Receives everything that a program does: a recording, or a comparison with one."""
 
     def event_alone(self, event: TraceEvent) -> None:
@@ -223,7 +215,7 @@ def _keep_all(recording: Recording, output: TeeOutput, ends: bool) -> None:
 
 
 @contextmanager
-def recorded_failure(recording: FactRecorder) -> Generator[None]:
+def recorded_failure(recording: Recorder) -> Generator[None]:
     """Records the error of a failed run, and raises it."""
     try:
         yield

@@ -113,11 +113,6 @@ class Agents:
         # `_take` is private because productions see every public name of a model.
         self._sch.call_after(0, request.port._take, (request, answer))  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
-    def trace_event(self, trace: Trace, kind: str, data: dict[str, Any]) -> None:
-        """Traces an event of the whole run."""
-        if trace.production:
-            trace.emit(self._sch.now_us, "top", kind, data)
-
     @property
     def parts(self) -> Parts:
         """The parts of all agents, which a user can change."""

@@ -6,9 +6,43 @@ import random
 from collections.abc import Generator
 from contextlib import contextmanager
 from types import TracebackType
-from typing import Any
+from typing import Any, NamedTuple
 
-from actr3d.simulation.numpy_random import Numbers, own_numbers, present_numbers, put_in_place
+import numpy.random
+from numpy.random import BitGenerator
+
+NUMPY: Any = numpy.random
+
+
+class MT19937(numpy.random.MT19937):
+    """numpy's bit generator, whose state can stay in place while another one is active.
+
+    numpy stores half a pair of normal numbers beside the generator, and returns it only with the generator's whole state,
+    copied number by number, which takes 25 us. The class has the name of numpy's, by which numpy identifies a state.
+    """
+
+    apart = False
+    """Whether its state is left out when numpy gets and sets states."""
+
+    @property
+    def state(self) -> Any:
+        """The state in numpy's format."""
+        if self.apart:
+            return {"bit_generator": "MT19937", "state": None}
+        return NUMPY.MT19937.state.__get__(self)
+
+    @state.setter
+    def state(self, value: Any) -> None:
+        if not self.apart:
+            NUMPY.MT19937.state.__set__(self, value)
+
+
+class Numbers(NamedTuple):
+    """The source of numpy's global random numbers."""
+
+    bits: BitGenerator
+    rest: Any
+    """The state beside the generator; for another kind of generator, all of its state."""
 
 
 class GlobalRandom:
@@ -21,7 +55,7 @@ class GlobalRandom:
     __slots__ = ("_depth", "_others", "_own")
 
     def __init__(self) -> None:
-        self._own: tuple[Any, Numbers] = (None, own_numbers())
+        self._own: tuple[Any, Numbers] = (None, _own_numbers())
         self._others: tuple[Any, Numbers] | None = None
         self._depth = 0
 
@@ -60,11 +94,47 @@ class GlobalRandom:
 
 
 def _present() -> tuple[Any, Numbers]:
-    return random.getstate(), present_numbers()
+    return random.getstate(), _present_numbers()
 
 
 def _put(numbers: tuple[Any, Numbers]) -> None:
     state, of_numpy = numbers
     if state is not None:  # a run seeds its own at its start
         random.setstate(state)
-    put_in_place(of_numpy)
+    _put_numbers(of_numpy)
+
+
+def _own_numbers() -> Numbers:
+    """Returns new, unshared numbers; the caller seeds them."""
+    return Numbers(MT19937(0), {"bit_generator": "MT19937", "state": None, "has_gauss": 0, "gauss": 0.0})
+
+
+def _present_numbers() -> Numbers:
+    """Returns the present numbers, to restore them later."""
+    bits = NUMPY.get_bit_generator()
+    if type(bits) is NUMPY.MT19937:
+        state = NUMPY.get_state(legacy=False)
+        bits = MT19937(0)
+        NUMPY.set_bit_generator(bits)
+        NUMPY.set_state(state)
+    with _apart(bits):
+        return Numbers(bits, NUMPY.get_state(legacy=False))
+
+
+def _put_numbers(numbers: Numbers) -> None:
+    """Sets numpy's global random numbers."""
+    NUMPY.set_bit_generator(numbers.bits)
+    with _apart(numbers.bits):
+        NUMPY.set_state(numbers.rest)
+
+
+@contextmanager
+def _apart(bits: BitGenerator) -> Generator[None]:
+    if not isinstance(bits, MT19937):
+        yield
+        return
+    bits.apart = True
+    try:
+        yield
+    finally:
+        bits.apart = False

@@ -9,11 +9,10 @@ from actr3d.actr.kernel.run_limits import Contacts, Recorder
 from actr3d.actr.modules.port import Request
 from actr3d.recording.schema import SIMULATION
 from actr3d.simulation.commands import Command
-from actr3d.simulation.surroundings import surroundings
+from actr3d.simulation.surroundings import scene_facts
 from actr3d.trace import Run, Trace, TraceEvent, with_number
 from actr3d.trace_kinds import KINDS, LEVELS
 from actr3d.world import World
-from actr3d.world.compiled import to_bytes, to_text
 
 
 class ProgramRun:
@@ -53,8 +52,7 @@ class ProgramRun:
         """
         if self._recorder is not None:
             if tick == 0:
-                scene = {"compiled": to_text(to_bytes(world.mj_model)), "world": surroundings(world)}
-                self._recorder.fact(SIMULATION.format(self.number), {"period_us": self._period, **scene})
+                self._recorder.fact(SIMULATION.format(self.number), {"period_us": self._period, **scene_facts(world)})
             self._recorder.state(self.number, tick, world.state_bytes(), contacts)
 
     def answer(self, tick: int, request: Request, value: Any) -> None:

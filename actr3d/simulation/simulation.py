@@ -30,12 +30,11 @@ from actr3d.simulation.lockstep import Lockstep
 from actr3d.simulation.measure import Measure
 from actr3d.simulation.observers import Glimpse, Observer, Observers
 from actr3d.simulation.real_time import RealTime, RunReport, SimulationEnding
-from actr3d.simulation.surroundings import surroundings
+from actr3d.simulation.surroundings import scene_facts
 from actr3d.simulation.timeline import Timeline
 from actr3d.simulation.validation import check_names, count_of, factor_of, named_factories, seed_of, steps_of, whole_ticks, world_of
 from actr3d.trace import Trace, TraceEvent
 from actr3d.world import Scene, World
-from actr3d.world.compiled import to_bytes, to_text
 
 
 class Simulation:
@@ -504,8 +503,7 @@ class Simulation:
         """
         world = self.world
         own = {"seed": self.seed, "period_us": self._period, "timestep_us": world.scene.timestep_us, "scene": world.fingerprint}
-        own |= {"compiled": to_text(to_bytes(world.mj_model)), "world": surroundings(world)}
-        return _facts_of(own, given, [*self._embodied.values(), *self._bodiless.values()])
+        return _facts_of(own | scene_facts(world), given, [*self._embodied.values(), *self._bodiless.values()])
 
     def _end_recording(self) -> None:
         self.event_log.end_recording(whole=self.timeline.begun and not self.timeline.lockstep.broken)

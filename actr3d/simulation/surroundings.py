@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from actr3d.world import Aperture, World
+from actr3d.world.compiled import to_bytes, to_text
 
 
 def surroundings(world: World) -> dict[str, Any]:
@@ -22,6 +23,11 @@ def surroundings(world: World) -> dict[str, Any]:
     }
     walls = {part.name: asdict(part.gap_in(world.mj_model)) for part in world.scene.parts if isinstance(part, Aperture)}
     return {"bodies": bodies, "apertures": list(walls), "walls": walls}
+
+
+def scene_facts(world: World) -> dict[str, Any]:
+    """Returns the facts with which a recording shows a world: its compiled model, and its surroundings."""
+    return {"compiled": to_text(to_bytes(world.mj_model)), "world": surroundings(world)}
 
 
 def _finite(limit: float) -> float | None:

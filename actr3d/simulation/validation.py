@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 from numbers import Real
 from typing import Any, cast
 
@@ -38,11 +39,7 @@ def seed_of(seed: Any) -> int | str:
     """
     if isinstance(seed, str) and seed.isprintable():
         return str(seed)
-    message = "Simulation.seed: must be a whole number >= 0 or a text of printable characters"
-    number = _whole(seed, message)
-    if number < 0:
-        raise SimulationError(f"{message} (got {seed!r})")
-    return number
+    return _whole(seed, "Simulation.seed: must be a whole number >= 0 or a text of printable characters")
 
 
 def count_of(n: Any, what: str) -> int:
@@ -51,11 +48,7 @@ def count_of(n: Any, what: str) -> int:
     Raises:
         SimulationError: If it is not a whole number, or is negative.
     """
-    message = f"{what}: must be a whole number >= 0"
-    count = _whole(n, message)
-    if count < 0:
-        raise SimulationError(f"{message} (got {n!r})")
-    return count
+    return _whole(n, f"{what}: must be a whole number >= 0")
 
 
 def factor_of(factor: Any, what: str) -> float | None:
@@ -72,10 +65,15 @@ def factor_of(factor: Any, what: str) -> float | None:
 
 
 def _whole(value: Any, message: str) -> int:
-    try:
-        return int(operator.index(value))
-    except TypeError:
-        raise SimulationError(f"{message} (got {value!r})") from None
+    """Returns a whole number >= 0.
+
+    Raises:
+        SimulationError: If it is something else; it begins with the message.
+    """
+    with suppress(TypeError):
+        if (number := int(operator.index(value))) >= 0:
+            return number
+    raise SimulationError(f"{message} (got {value!r})")
 
 
 # -- times

@@ -51,13 +51,13 @@ HEADLESS = """
 import sys, time
 from pathlib import Path
 from actr3d.actr.kernel.run_limits import RunLimits
-from actr3d.runner.model_factory import build
+from actr3d.runner.model_factory import Blueprint
 path = Path(sys.argv[1])
 print = lambda *_: None
 rates = []
 for number in range(int(sys.argv[2]) + 1):
     with RunLimits(seed=1):
-        simulation, _ = build(path.read_text(encoding="utf-8"), str(path), {}, path.parent)
+        simulation, _ = Blueprint(path.read_text(encoding="utf-8"), str(path), path.parent).build({})
         begin = time.perf_counter()
         report = simulation.run()
         rates.append((report.simulated, time.perf_counter() - begin))

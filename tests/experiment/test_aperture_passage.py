@@ -15,7 +15,7 @@ from actr3d.actr.loading import load_text
 from actr3d.cli import main
 from actr3d.experiment.aperture import Passage, PassageResult
 from actr3d.recording import Recorded
-from actr3d.runner.model_factory import build
+from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.replay import replay
 from actr3d.simulation import Simulation
 from actr3d.world import Aperture, Floor, Mannequin, Scene
@@ -473,7 +473,7 @@ def test_a_run_in_which_the_speed_changed_goes_back_and_on_with_the_same_bytes(m
 def test_a_run_in_which_the_speed_changed_is_replayed(tmp_path: Path) -> None:
     text = FILE.read_text(encoding="utf-8")
     with RunLimits(seed=1):
-        simulation, parameters = build(text, str(FILE), {"aperture": 0.45}, FILE.parent)
+        simulation, parameters = Blueprint(text, str(FILE), FILE.parent).build({"aperture": 0.45})
     with simulation.record(tmp_path / "run", sources={str(FILE): text}, parameters=parameters):
         simulation.run(7)
         simulation.command("parameter", "walker.pace.wanted", 0.8)
@@ -481,5 +481,5 @@ def test_a_run_in_which_the_speed_changed_is_replayed(tmp_path: Path) -> None:
     with Recorded(tmp_path / "run") as recorded:
         assert [command.data["command"] for command in recorded.commands()] == ["parameter"]
         with RunLimits(seed=1):
-            comparison = replay(recorded, lambda: build(text, str(FILE), {"aperture": 0.45}, FILE.parent)[0])
+            comparison = replay(recorded, lambda: Blueprint(text, str(FILE), FILE.parent).build({"aperture": 0.45})[0])
     assert (comparison.difference, comparison.ticks) == (None, simulation.ticks)

@@ -19,7 +19,7 @@ from actr3d.experiment.aperture import PassageResult, experiences
 from actr3d.experiment.aperture.experience import MASS, MEASURES, passage_remembered
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.trial import run_trial
-from actr3d.runner.model_factory import build
+from actr3d.runner.model_factory import Blueprint
 from actr3d.simulation import Simulation
 
 ROOT = Path(__file__).parents[2]
@@ -76,7 +76,8 @@ def test_its_speed_may_change_on_the_way(at: float, then: float) -> None:
     """As the parameter `speed` of `aperture_passage` does during a run; at 7.2 s it has turned and passes."""
     file = FILE.with_name("aperture_passage.py")
     with RunLimits(seed=1, until=60):
-        simulation, _ = build(file.read_text(encoding="utf-8"), str(file), {"variant": "predictive", "aperture": 0.8}, FILE.parent)
+        blueprint = Blueprint(file.read_text(encoding="utf-8"), str(file), FILE.parent)
+        simulation, _ = blueprint.build({"variant": "predictive", "aperture": 0.8})
         simulation.run(at)
         simulation.command("parameter", "walker.pace.wanted", then)
         simulation.run(0.6)

@@ -241,15 +241,9 @@ def test_critical_ratios_are_found() -> None:
     assert few.high - few.low > 0.2, "one trial each says less"
 
 
-def test_a_bend_has_a_baseline() -> None:
+def test_a_bend_is_where_the_fall_to_a_baseline_ends() -> None:
     ratios = [0.9 + 0.05 * n for n in range(15)]
-    found = bend(ratios, [18 + 150 * max(0.0, 1.2 - ratio) for ratio in ratios])
-    assert found is not None
-    assert (found.ratio, found.baseline, found.slope) == (
-        pytest.approx(1.2, abs=0.005),
-        pytest.approx(18, abs=0.2),
-        pytest.approx(150, rel=0.02),
-    )
+    assert bend(ratios, [18 + 150 * max(0.0, 1.2 - ratio) for ratio in ratios]) == pytest.approx(1.2, abs=0.005)
     assert bend([1.0, 1.1, 1.2], [3.0, 2.0, 1.0]) is None
 
 

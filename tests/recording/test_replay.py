@@ -18,7 +18,7 @@ from actr3d.errors import ConfigurationError, ModelFileError, ParameterError, Re
 from actr3d.recording import Recorded
 from actr3d.runner.build_check import has_build, problem_of_build
 from actr3d.runner.cli_options import read_settings
-from actr3d.runner.model_factory import build
+from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.replay import replay
 from actr3d.runner.run import run_model
 from actr3d.trace import Trace
@@ -441,7 +441,7 @@ def test_a_wrong_build_is_reported_with_its_line(tmp_path: Path, capsys: pytest.
     text = f"from actr3d.simulation import Simulation\n{line}\n"
     (tmp_path / "wrong.py").write_text(text, encoding="utf-8")
     with pytest.raises(ModelFileError, match=f"wrong.py{message}" if message[0] == ":" else message):
-        build(text, "wrong.py", {})
+        Blueprint(text, "wrong.py").build({})
     assert main(["run", str(tmp_path / "wrong.py")]) == 1
     assert re.search(message, capsys.readouterr().err)
 
@@ -450,17 +450,17 @@ def test_a_build_below_a_condition_is_used() -> None:
     text = "from actr3d.simulation import Simulation\nfrom actr3d.world import Scene\n"
     text += "if True:\n    def build() -> Simulation:\n        return Simulation(Scene())\n"
     assert has_build(text)
-    assert build(text, "plain.py", {})[0].ticks == 0
+    assert Blueprint(text, "plain.py").build({})[0].ticks == 0
 
 
 def test_a_build_without_parameters() -> None:
     text = "import actr3d.simulation\nfrom actr3d.world import Scene\n"
     text += "def build() -> 'actr3d.simulation.Simulation':\n    return actr3d.simulation.Simulation(Scene())\n"
     assert has_build(text)
-    simulation, parameters = build(text, "plain.py", {})
+    simulation, parameters = Blueprint(text, "plain.py").build({})
     assert (simulation.ticks, parameters) == (0, {})
     with pytest.raises(ConfigurationError, match="build takes no parameters"):
-        build(text, "plain.py", {"a": 1})
+        Blueprint(text, "plain.py").build({"a": 1})
 
 
 @pytest.mark.parametrize(

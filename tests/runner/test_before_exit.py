@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from actr3d.recording import Recorded
+from actr3d.runner.before_exit import before_the_end
 
 BUILT = """
 import os
@@ -54,6 +56,19 @@ def test_a_model_that_ends_its_process_loses_nothing(text: str, end: str, code: 
         recorded.check()
         assert [event.data["text"] for event in recorded.events() if event.kind == "output"] == ["one", "two"]
         assert "ended" not in recorded.facts
+
+
+def test_what_was_done_is_also_kept_if_the_arguments_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def do_nothing(**_: object) -> None:
+        pass
+
+    monkeypatch.setattr(os, "_exit", do_nothing)
+    monkeypatch.setattr(os, "execve", do_nothing)
+    kept: list[bool] = []
+    with before_the_end(kept.append):
+        os._exit(status=3)
+        os.execve(path=sys.executable, argv=["python"], env={})
+    assert kept == [True, True]
 
 
 @pytest.mark.parametrize(

@@ -80,6 +80,26 @@ def test_a_field_without_default_must_be_given() -> None:
     assert "must be given" in options_help([field])
 
 
+def test_a_redeclared_field_without_docstring_has_no_help_also_where_it_is_the_last_one() -> None:
+    text = """from dataclasses import dataclass
+
+@dataclass
+class A:
+    first: int = 1
+    'Of the base class [m].'
+    last: int = 1
+    'Of the base class [m].'
+
+@dataclass
+class B(A):
+    first: int = 2
+    last: int = 2
+"""
+    first, last = parameters_of(load_text(text, "a.py").B)
+    assert (first.help, first.unit) == ("", None)
+    assert (last.help, last.unit) == ("", None)
+
+
 def test_a_field_of_several_types_names_them_all() -> None:
     text = "from dataclasses import dataclass\n@dataclass\nclass A:\n    a: bool | str | None\n    b: int | float\n"
     first, second = parameters_of(load_text(text, "a.py").A)

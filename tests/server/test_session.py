@@ -13,7 +13,7 @@ from fastapi.routing import APIRoute
 
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import run_text
-from actr3d.runner.model_factory import build
+from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.model_stdout import ProgramOutput
 from actr3d.trace import Trace
 from tests.helpers.sessions import Desk, RefusedError, Talk
@@ -36,7 +36,7 @@ def fires(events: list[list[Any]]) -> list[tuple[float, str]]:
 def traced_doorway(**settings: float) -> list[list[Any]]:
     """Returns the events of a run without any workbench."""
     with RunLimits(seed=1):
-        simulation, _ = build(DOORWAY, "model.py", settings)
+        simulation, _ = Blueprint(DOORWAY, "model.py").build(settings)
     simulation.traced()
     simulation.run()
     assert simulation.trace is not None

@@ -18,7 +18,7 @@ from actr3d.actr.loading import run_text
 from actr3d.camera import CameraParameters, view_for_observer
 from actr3d.configuration import Live
 from actr3d.errors import CameraError, ParameterError, SimulationError, WorldError
-from actr3d.runner.model_factory import build
+from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.traceback_report import traceback_report
 from actr3d.simulation import BodyPort, Command, Simulation
 from actr3d.trace import Trace
@@ -31,7 +31,7 @@ CLOCK = "from actr3d.actr import *\nclass Clock(Model):\n    def start(self):\n 
 
 def doorway(**settings: Any) -> Simulation:
     with RunLimits(seed=1):
-        return build(DOORWAY.read_text(encoding="utf-8"), str(DOORWAY), {"width": 0.5, **settings})[0]
+        return Blueprint(DOORWAY.read_text(encoding="utf-8"), str(DOORWAY)).build({"width": 0.5, **settings})[0]
 
 
 class Own(MemorySubModule):

@@ -14,7 +14,7 @@ import pytest
 from actr3d.actr.loading import load_text
 from actr3d.cli import main
 from actr3d.recording import Recorded
-from actr3d.runner.model_factory import build
+from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.replay import replay
 from actr3d.simulation import Simulation
 from actr3d.trace import TraceEvent
@@ -82,7 +82,7 @@ def test_a_recording_holds_the_same_lines_however_it_is_made(tmp_path: Path, cap
     file.write_text(TALKER, encoding="utf-8")
     assert main(["run", str(file), "--seed", "1", "--record", str(tmp_path / "by command")]) == 0
     printed = capfd.readouterr().out
-    simulation, _ = build(TALKER, "talker.py", {})
+    simulation, _ = Blueprint(TALKER, "talker.py").build({})
     with simulation.record(tmp_path / "by library"):
         simulation.run()
     assert capfd.readouterr().out == printed
@@ -93,7 +93,7 @@ def test_a_recording_holds_the_same_lines_however_it_is_made(tmp_path: Path, cap
     assert sum('"output"' in line for line in lines) == 1 + 2 * 6 + 1
     for way in ("by command", "by library"):
         with Recorded(tmp_path / way) as file:
-            assert replay(file, lambda: build(TALKER, "talker.py", {})[0]).difference is None
+            assert replay(file, lambda: Blueprint(TALKER, "talker.py").build({})[0]).difference is None
     assert capfd.readouterr().out == ""
 
 

@@ -104,11 +104,11 @@ def main(number: int) -> None:
 def _preload() -> None:
     """Imports and compiles what models need, so that runs start at once: it runs a small one for a tenth of a second."""
     from actr3d.actr.kernel.run_limits import RunLimits
-    from actr3d.runner.model_factory import build
+    from actr3d.runner.model_factory import Blueprint
     from workbench.worker import program_run, recorded, simulation_run  # pyright: ignore[reportUnusedImport] # noqa: F401
 
     with RunLimits(seed=0):
-        simulation, _ = build(SMALL, "small.py", {}, Path())
+        simulation, _ = Blueprint(SMALL, "small.py", Path()).build({})
         simulation.run(0.1)
 
 

@@ -18,7 +18,7 @@ from actr3d.clock import MICROSECONDS, microseconds, seconds
 from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.runner.facts import NAMED, built_facts
-from actr3d.runner.model_factory import build
+from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.model_stdout import BuiltOutput
 from actr3d.runner.traceback_report import failure
 from actr3d.simulation import Command, Simulation
@@ -80,7 +80,7 @@ class SimulationRun(ControlledRun):
         limits = RunLimits(seed=fresh_seed() if start.seed is None else start.seed)
         held = helpers_of(self._controller.channel, start.helpers)
         with limits, suppress(EndOfRun), shared_random(limits.program_seed), held as helpers, BuiltOutput() as output:
-            simulation, parameters = build(start.source, start.path, start.settings, Path(start.folder), helpers)
+            simulation, parameters = Blueprint(start.source, start.path, Path(start.folder), helpers).build(start.settings)
             output.lead_to(simulation)
             self._simulation, self._shown = simulation, Shown(simulation)
             self._prepare(limits, parameters, helpers)
@@ -321,6 +321,6 @@ def check(source: str, filename: str, folder: Path) -> dict[str, Any]:
     """
     limits = RunLimits(seed=0)
     with limits, BuiltOutput():
-        simulation, parameters = build(source, filename, {}, folder)
+        simulation, parameters = Blueprint(source, filename, folder).build({})
         simulation.advance(1)
     return json.loads(to_json(parameters))

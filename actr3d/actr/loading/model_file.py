@@ -10,7 +10,7 @@ from __future__ import annotations
 import importlib
 import sys
 import weakref
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from threading import Lock
@@ -66,8 +66,6 @@ def run_text(
     *,
     limits: RunLimits | None = None,
     folder: Path | None = None,
-    names: dict[str, Any] | None = None,
-    prepare: Callable[[ModuleType], None] | None = None,
     helpers: HelperTexts | None = None,
 ) -> ModuleType:
     """Runs a model's text as a program, until it and the threads it has started end.
@@ -77,8 +75,6 @@ def run_text(
         filename: Its name in tracebacks.
         limits: Its seed, end and trace; None for a new seed, no end and no trace.
         folder: The folder of its helper modules; by default the current folder.
-        names: Its initial globals.
-        prepare: Called with the module before it runs.
         helpers: Stores the texts of its helper modules, or provides recorded ones.
 
     Returns:
@@ -91,9 +87,6 @@ def run_text(
     program = Program((folder or Path.cwd()).resolve(), helpers)
     module = _module("__main__", filename, program)
     code = program.prepare(source, filename, module)
-    module.__dict__.update(names or {})
-    if prepare is not None:
-        prepare(module)
     _execute(code, module, program, limits or RunLimits())
     return module
 

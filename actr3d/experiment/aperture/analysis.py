@@ -148,9 +148,7 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
     curves: list[Curve] = []
     for group in results.groups:
         of = means[means["group"] == group]
-        low, high = of["low"].tolist(), of["high"].tolist()
-        x, y = of["ratio"].tolist(), of["mean"].tolist()
-        curves.append(Curve(label=group, source="this model", look="model", x=x, y=y, low=low, high=high))
+        curves.append(_model_curve(group, of["ratio"].tolist(), of))
         curves += _curves_beside(others, "passable", {"group": group}, group, "ratio", 1.0)
     pane = Pane(title="", curves=curves, band=(*PASSABLE, "people judge from about 1.16"))
     figure = curves_figure([pane], OF_RATIO, "judged passable without turning [proportion]")
@@ -284,10 +282,7 @@ class Rotation:
 
     def _cells(self) -> Table:
         frame = self._means.copy()
-        frame["original"] = [
-            self._original.get((row["group"], row["condition"], row["level"]), math.nan) for row in frame.to_dict("records")
-        ]
-        frame["baseline"] = self._baseline(frame)
+        frame["original"], frame["baseline"] = self._original_of(frame), self._baseline(frame)
         frame = frame.rename(columns={"level": self._findings.by})
         units: dict[str, str] = dict.fromkeys(("mean", "sd", "low", "high", "original", "baseline"), "degrees")
         units |= {"aperture": "m"} if self._by_aperture else {}
@@ -295,6 +290,10 @@ class Rotation:
         note += "sd: between participants; low, high: 95 % interval; n: participants."
         digits = dict.fromkeys(units, 1) | {"aperture": 2, "ratio": 2}
         return Table(name="rotation", title="Rotation of each cell", frame=frame, units=units, digits=digits, note=note, folded=True)
+
+    def _original_of(self, cells: Any) -> list[float]:
+        """Returns the original's mean angle of each cell [degrees]; NaN where there is none."""
+        return [self._original.get((row["group"], row["condition"], row["level"]), math.nan) for row in cells.to_dict("records")]
 
     def _baseline(self, cells: Any) -> list[float]:
         """Returns the baseline's mean angle of each cell [degrees], from the shoulder widths of the participants."""
@@ -307,23 +306,10 @@ class Rotation:
         """Returns the agreement of model, original and baseline."""
         measure = "logged" if self._frame["logged"].notna().any() else "angle"
         logged = cell_means(self._frame, measure, ["group", "condition", "level"])
-        logged["baseline"] = self._baseline(logged)
-        logged["original"] = [
-            self._original.get((row["group"], row["condition"], row["level"]), math.nan) for row in logged.to_dict("records")
-        ]
+        logged["original"], logged["baseline"] = self._original_of(logged), self._baseline(logged)
         angles = self._means.assign(baseline=self._baseline(self._means))
-        pairs = [("this model", ORIGINAL, logged, "mean", "original"), (GEOMETRY, ORIGINAL, logged, "baseline", "original")]
-        pairs.append((GEOMETRY, "this model", angles, "baseline", "mean"))
-        rows: list[dict[str, Any]] = []
-        for what, other, frame, one, two in pairs:
-            both = frame[frame[two].notna()]
-            if len(both):
-                rmse, r2 = agreement(both[one], both[two])
-                rows.append({"means_of": what, "compared_with": other, "cells": len(both), "rmse": rmse, "r2": r2})
         note = "RMSE and squared correlation of the means of cells. The original's angle is the one it logged: torso plus clavicle."
-        frame = pandas().DataFrame(rows)
-        digits = {"rmse": 2, "r2": 3}
-        return Table(name="agreement", title="Agreement", frame=frame, units={"rmse": "degrees"}, digits=digits, note=note)
+        return _agreement("agreement", logged, angles, note)
 
     def _equivalence(self) -> Parts:
         test, pair = self._findings.ratio_test, self._findings.pair
@@ -391,6 +377,29 @@ def _curves_beside(others: Sequence[Beside], measure: str, cell: dict[str, str],
             low, high = rows["low"].tolist(), rows["high"].tolist()
             found.append(Curve(label=label, source=one.label, look=look, x=places, y=y, low=low, high=high))
     return found
+
+
+def _agreement(name: str, cells: Any, own: Any, note: str = "") -> Table:
+    """Returns how well the mean angles of the model, of the original and of the baseline agree.
+
+    Args:
+        name: The name of the table.
+        cells: For each cell, `mean` of the model, `original`, and `baseline` [degrees].
+        own: The cells in which the baseline is compared with the model.
+        note: The note below the table.
+    """
+    rows: list[dict[str, Any]] = []
+    for what, other, frame, one, two in (
+        ("this model", ORIGINAL, cells, "mean", "original"),
+        (GEOMETRY, ORIGINAL, cells, "baseline", "original"),
+        (GEOMETRY, "this model", own, "baseline", "mean"),
+    ):
+        both = frame[frame[two].notna()]
+        if len(both):
+            rmse, r2 = agreement(both[one], both[two])
+            rows.append({"means_of": what, "compared_with": other, "cells": len(both), "rmse": rmse, "r2": r2})
+    frame, digits = pandas().DataFrame(rows), {"rmse": 2, "r2": 3}
+    return Table(name=name, title="Agreement", frame=frame, units={"rmse": "degrees"}, digits=digits, note=note)
 
 
 def _model_curve(label: str, x: Sequence[float], of: Any) -> Curve:
@@ -483,7 +492,7 @@ def _fits(of: Sequence[Passing], curve: tuple[list[float], list[float]]) -> dict
         "high": math.nan if logistic is None else logistic.high,
         "beyond": "yes" if logistic is not None and logistic.beyond else "no",
         "baseline_deg": base if wide else math.nan,
-        "bend": math.nan if line is None else line.ratio,
+        "bend": math.nan if line is None else line,
     }
 
 
@@ -520,9 +529,7 @@ def _margins(findings: Findings, frame: Any) -> Parts:
             curves: list[Curve] = []
             for side, label in SIDES.items():
                 means = cell_means(of, side, ["level"])
-                x, y = (means["level"] * scale).tolist(), means["mean"].tolist()
-                low, high = means["low"].tolist(), means["high"].tolist()
-                curves.append(Curve(label=label, source="this model", look="model", x=x, y=y, low=low, high=high))
+                curves.append(_model_curve(label, (means["level"] * scale).tolist(), means))
             band = (100 * MARGIN[0], 100 * MARGIN[1], "people keep 6 to 8 cm")
             panes.append(Pane(title=", ".join(filter(None, (group, condition))), curves=curves, level=band))
     figure = curves_figure(panes, x_label, "smallest distance to the wall [cm]", from_zero=True)
@@ -602,9 +609,7 @@ def _starts(results: Results) -> Parts:
         means = cell_means(of, "passed", by)
         curves: list[Curve] = []
         for heading, cell in means.groupby("start_heading"):
-            x = (100 * cell["start_aside"]).tolist()
-            y, low, high = cell["mean"].tolist(), cell["low"].tolist(), cell["high"].tolist()
-            curves.append(Curve(label=f"{heading:g} degrees off", source="this model", look="model", x=x, y=y, low=low, high=high))
+            curves.append(_model_curve(f"{heading:g} degrees off", (100 * cell["start_aside"]).tolist(), cell))
         panes.append(Pane(title=title, curves=curves))
     figure = curves_figure(panes, "start beside the middle of the doorway [cm]", "passed [proportion]", from_zero=True)
     keys = ["aperture", *by] if wide else by
@@ -665,14 +670,5 @@ def _bars(bars: dict[float, dict[float, dict[str, float]]]) -> Parts:
     digits: dict[str, int] = dict.fromkeys(("mean", "low", "high", "original", "baseline"), 1)
     parts.append(Table(name="bars", title="Rotation with a bar", frame=frame, units=units, digits=digits))
     if len(both) > 2:
-        rows.clear()
-        for what, other, one, two in (
-            ("this model", ORIGINAL, "mean", "original"),
-            (GEOMETRY, ORIGINAL, "baseline", "original"),
-            (GEOMETRY, "this model", "baseline", "mean"),
-        ):
-            rmse, r2 = agreement(both[one], both[two])
-            rows.append({"means_of": what, "compared_with": other, "cells": len(both), "rmse": rmse, "r2": r2})
-        frame = pandas().DataFrame(rows)
-        parts.append(Table(name="bar_agreement", title="Agreement", frame=frame, units={"rmse": "degrees"}, digits={"rmse": 2, "r2": 3}))
+        parts.append(_agreement("bar_agreement", both, both))
     return parts

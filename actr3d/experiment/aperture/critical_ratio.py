@@ -33,18 +33,6 @@ class CriticalRatio:
     value is only a bound."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Bend:
-    """A straight fall of angles with the ratio, down to a baseline."""
-
-    ratio: float
-    """Where the fall ends."""
-    baseline: float
-    """The angle above that ratio [degrees]."""
-    slope: float
-    """The fall below it [degrees per unit of the ratio]."""
-
-
 def critical_ratio(trials: Iterable[tuple[float, bool]]) -> CriticalRatio | None:
     """Returns the ratio at which half of the trials are turned, by a logistic fit; None if all are, or none is.
 
@@ -80,10 +68,11 @@ def critical_ratio(trials: Iterable[tuple[float, bool]]) -> CriticalRatio | None
     return CriticalRatio(value=(top[0] + top[-1]) / 2, low=low, high=high, beyond=bool(likely[0] or likely[-1]))
 
 
-def bend(ratios: Sequence[float], angles: Sequence[float]) -> Bend | None:
-    """Returns the piecewise-linear fit `baseline + slope x max(0, ratio - x)` with the least squares; None with fewer than four ratios.
+def bend(ratios: Sequence[float], angles: Sequence[float]) -> float | None:
+    """Returns the ratio at which angles stop falling to a baseline; None with fewer than four ratios, or if they do not fall.
 
-    A rotation that falls more steeply near its end than before, as that of a body that just fits, makes the ratio too large.
+    It is `x` of the piecewise-linear fit `baseline + slope * max(0, x - ratio)` with a slope > 0 and the least squares.
+    A rotation that falls more steeply near its end than before, as that of a body that just fits, makes it too large.
 
     Args:
         ratios: The ratios of aperture to shoulders.
@@ -92,7 +81,7 @@ def bend(ratios: Sequence[float], angles: Sequence[float]) -> Bend | None:
     x, y = np.asarray(ratios, dtype=float), np.asarray(angles, dtype=float)
     if len(np.unique(x)) < 4:
         return None
-    best: tuple[float, Bend] | None = None
+    best: tuple[float, float] | None = None
     places: list[float] = np.linspace(min(ratios), max(ratios), STEPS).tolist()
     for at in places[1:]:
         fall = np.maximum(0.0, at - x)
@@ -100,5 +89,5 @@ def bend(ratios: Sequence[float], angles: Sequence[float]) -> Bend | None:
         (base, slope), *_ = np.linalg.lstsq(design, y, rcond=None)
         error = float(np.sum((y - base - slope * fall) ** 2))
         if slope > 0 and (best is None or error < best[0] - 1e-9):
-            best = error, Bend(ratio=at, baseline=float(base), slope=float(slope))
+            best = error, at
     return None if best is None else best[1]

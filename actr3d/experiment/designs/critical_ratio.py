@@ -1,9 +1,11 @@
 """The point at which people begin to turn their shoulders (Warren & Whang 1987)."""
 
+from dataclasses import replace
 from typing import Any
 
-from actr3d.experiment.design import Design, Group, Measured, Normal, design
+from actr3d.experiment.design import Design, Measured, design
 from actr3d.experiment.designs.passability_judgement import aperture_of
+from actr3d.experiment.designs.warren_whang_1987 import GROUPS
 
 CRITICAL = 1.30
 """The ratio of aperture to shoulder width below which people turn. Source: Warren & Whang (1987)."""
@@ -15,11 +17,10 @@ def critical_ratio() -> Design:
 
     That is the definition of the critical ratio. The free parameter of the `predictive` walker is fitted to this one number.
     """
-    small = {"group": "small", "shoulder_width": Normal(mean=0.404, sd=0.02, low=0.3, high=0.7)}
     return Design(
         model="aperture_passage.py",
         factors={"ratio": (CRITICAL,)},
-        groups={"small": Group(participants=20, parameters=small)},
+        groups={"small": replace(GROUPS["small"], participants=20)},
         settings={"variant": "predictive"},
         derive=aperture_of,
         results=decision,

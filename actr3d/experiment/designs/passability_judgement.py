@@ -3,12 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
-from actr3d.experiment.design import Design, Group, Measured, Normal, design
+from actr3d.experiment.design import Design, Measured, design
+from actr3d.experiment.designs.warren_whang_1987 import GROUPS
 
 RATIOS = tuple(round(0.9 + 0.04 * n, 2) for n in range(14))
 """The apertures in shoulder widths. Source: chosen, around the boundary that people judge, about 1.16 (docs/human-data.md)."""
-WIDTHS = {"small": (0.404, 0.020), "large": (0.484, 0.007)}
-"""The mean and standard deviation of shoulder widths [m]. Source: Warren & Whang (1987)."""
 
 
 def aperture_of(values: Mapping[str, Any]) -> dict[str, float]:
@@ -28,14 +27,10 @@ def passability_judgement() -> Design:
 
     What was put in: the judged ratio of the `descriptive` variant, 1.16, is its parameter; only its spread comes from the noise of vision.
     """
-    groups = {
-        name: Group(participants=5, parameters={"group": name, "shoulder_width": Normal(mean=mean, sd=sd, low=0.3, high=0.7)})
-        for name, (mean, sd) in WIDTHS.items()
-    }
     return Design(
         model="aperture_passage.py",
         factors={"ratio": RATIOS},
-        groups=groups,
+        groups=GROUPS,
         settings={"task": "judge"},
         derive=aperture_of,
         results=judgement,

@@ -6,6 +6,11 @@ APERTURES = (0.35, 0.40, 0.45, 0.50, 0.55, 0.60, 0.65, 0.70)
 """The widths of the doorways [m]. Source: Warren & Whang (1987)."""
 WIDTHS = {"small": (0.404, 0.020), "large": (0.484, 0.007)}
 """The mean and standard deviation of shoulder widths [m]. Source: Warren & Whang (1987)."""
+GROUPS = {
+    name: Group(participants=5, parameters={"group": name, "shoulder_width": Normal(mean=mean, sd=sd, low=0.3, high=0.7)})
+    for name, (mean, sd) in WIDTHS.items()
+}
+"""The two groups of the experiment."""
 
 
 @design
@@ -14,9 +19,5 @@ def warren_whang_1987() -> Design:
 
     The speeds are the means of the groups. The number of trials is that of the original ACT-R 3D's simulation.
     """
-    groups = {
-        name: Group(participants=5, parameters={"group": name, "shoulder_width": Normal(mean=mean, sd=sd, low=0.3, high=0.7)})
-        for name, (mean, sd) in WIDTHS.items()
-    }
     factors = {"aperture": APERTURES, "condition": ("normal", "fast")}
-    return Design(model="aperture_passage.py", factors=factors, groups=groups, trials=60, human="warren_whang_1987")
+    return Design(model="aperture_passage.py", factors=factors, groups=GROUPS, trials=60, human="warren_whang_1987")

@@ -76,7 +76,7 @@ def human_data_of(design: Design, parts: Sequence[Results], file: Path | str | N
         return None, "The design names no human data, and none were given with --human."
     if name not in known:
         return None, f"The design names the human data '{name}', which the library does not have, and none were given with --human."
-    if name in known and not set(schema_of(parts).measures) & _measures_in(known[name]):
+    if not set(schema_of(parts).measures) & _measures_in(known[name]):
         return None, f"The published means '{name}' are of other measures than this experiment has."
     return read_human_data(known[name], schema_of(parts)), ""
 
