@@ -362,7 +362,7 @@ def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished:
         assert download.headers["content-disposition"] == f'attachment; filename="{finished}-{file.rpartition("/")[2]}"'
     for file in ("../experiment.json", "%2e%2e/experiment.json", "tables/..%2f..%2fexperiment.json", "figures", "tables/none.csv"):
         url = httpx.URL(workbench.url, raw_path=f"{path}/{file}".encode())
-        assert httpx.get(url, headers=workbench.headers, timeout=60).status_code in (404, 422)
+        assert workbench.client.get(url).status_code in (404, 422)
     assert answer.headers["content-type"] == "text/html; charset=utf-8"
     policy = answer.headers.get_list("content-security-policy")
     assert len(policy) == 1
@@ -423,7 +423,7 @@ def test_names_that_lead_elsewhere_are_not_found(workbench: Served, name: str) -
     quoted = name.replace("\0", "%00")
     for what in ("", "/rows", "/means?x=n&measure=rt", "/report/index.html", "/code"):
         url = httpx.URL(workbench.url, raw_path=f"/api/experiments/{quoted}{what}".encode())
-        assert httpx.get(url, headers=workbench.headers, timeout=60).status_code in (404, 422)
+        assert workbench.client.get(url).status_code in (404, 422)
     outside.unlink()
 
 
