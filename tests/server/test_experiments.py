@@ -18,6 +18,7 @@ from typing import Any
 import httpx
 import pytest
 
+from tests.helpers.asgi_client import JSON, ORIGIN, OURS
 from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.sessions import Desk
 from tests.helpers.workbench_server import Served, served
@@ -436,30 +437,30 @@ def test_a_folder_that_is_a_link_is_no_experiment(workbench: Served, finished: s
     (folder / "linked").unlink()
 
 
-@pytest.mark.parametrize(
-    ("body", "status"),
-    [
-        ({}, 422),
-        ({"design": "nothing_like_this"}, 404),
-        ({"design": "--help"}, 404),
-        ({"design": "/etc/passwd:x"}, 400),
-        ({"design": "../counting_design.py:counting"}, 400),
-        ({"design": "counting_design.py:other"}, 404),
-        ({"design": "counting_design.py:__import__"}, 404),
-        ({"design": COUNTING, "values": {"n; import os": 1}}, 422),
-        ({"design": COUNTING, "values": {"n": []}}, 422),
-        ({"design": COUNTING, "values": {"n": [[1]]}}, 422),
-        ({"design": COUNTING, "values": {"n": "x" * 1001}}, 422),
-        ({"design": COUNTING, "participants": 0}, 422),
-        ({"design": COUNTING, "trials": -1}, 422),
-        ({"design": COUNTING, "workers": 10_000}, 422),
-        ({"design": COUNTING, "scheduler": "tcp://elsewhere:1"}, 422),
-    ],
-)
-def test_what_cannot_be_started_is_refused(workbench: Served, body: dict[str, Any], status: int) -> None:
+REFUSED: list[tuple[dict[str, Any], int]] = [
+    ({}, 422),
+    ({"design": "nothing_like_this"}, 404),
+    ({"design": "--help"}, 404),
+    ({"design": "/etc/passwd:x"}, 400),
+    ({"design": "../counting_design.py:counting"}, 400),
+    ({"design": "counting_design.py:other"}, 404),
+    ({"design": "counting_design.py:__import__"}, 404),
+    ({"design": COUNTING, "values": {"n; import os": 1}}, 422),
+    ({"design": COUNTING, "values": {"n": []}}, 422),
+    ({"design": COUNTING, "values": {"n": [[1]]}}, 422),
+    ({"design": COUNTING, "values": {"n": "x" * 1001}}, 422),
+    ({"design": COUNTING, "participants": 0}, 422),
+    ({"design": COUNTING, "trials": -1}, 422),
+    ({"design": COUNTING, "workers": 10_000}, 422),
+    ({"design": COUNTING, "scheduler": "tcp://elsewhere:1"}, 422),
+]
+
+
+def test_what_cannot_be_started_is_refused(workbench: Served) -> None:
     before = len(workbench.get("/api/experiments").json()["experiments"])
-    answer = workbench.post("/api/experiments", body)
-    assert (answer.status_code, isinstance(answer.json()["error"], str)) == (status, True)
+    for body, status in REFUSED:
+        answer = workbench.post("/api/experiments", body)
+        assert (answer.status_code, isinstance(answer.json()["error"], str)) == (status, True), body
     assert len(workbench.get("/api/experiments").json()["experiments"]) == before
 
 
@@ -517,7 +518,7 @@ def test_a_folder_with_damaged_files_is_listed_and_read_with_an_error(workbench:
     shutil.rmtree(folder)
 
 
-def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_package_is_named(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     packages = tmp_path / "packages"
     packages.mkdir()
     (packages / "distributed.py").write_text("raise ModuleNotFoundError('no', name='distributed')\n", "utf-8")
@@ -525,10 +526,10 @@ def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     folder.mkdir()
     write_experiment(folder)
     monkeypatch.setenv("PYTHONPATH", str(packages))
-    with served(folder) as running:
-        answer = running.post("/api/experiments", {"design": COUNTING})
-        assert (answer.status_code, answer.json()["error"].endswith("install: pip install 'actr3d[experiment]'")) == (422, True)
-        assert running.get("/api/experiments").json() == {"experiments": []}
+    body = json.dumps({"design": COUNTING}).encode()
+    answer = desk.ask(folder, "/api/experiments", JSON, ORIGIN, OURS, method="POST", body=body)
+    assert (answer.status, json.loads(answer.body)["error"].endswith("install: pip install 'actr3d[experiment]'")) == (422, True)
+    assert json.loads(desk.ask(folder, "/api/experiments").body) == {"experiments": []}
 
 
 def test_a_file_beside_the_models_does_not_stand_in_for_a_package(workbench: Served) -> None:

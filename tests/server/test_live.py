@@ -5,11 +5,12 @@ from __future__ import annotations
 import asyncio
 import json
 import re
+import signal
 import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from websockets.typing import Subprotocol
 
 from tests.helpers.workbench_server import Served, served
 from tests.server.test_bad_input import APP, DESCRIPTION, OPERATIONS
-from workbench.cli import listen
+from workbench.cli import listen, main
 from workbench.page_commands import COMMANDS
 
 # -- the command
@@ -65,10 +66,11 @@ def test_others_are_let_in_only_with_a_warning(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("options", [["--port", "70000"], ["--memory", "-1"], ["--port", "x"]])
-def test_wrong_options_are_reported(options: list[str]) -> None:
-    done = subprocess.run([sys.executable, "-m", "workbench", *options], capture_output=True, text=True)
-    assert done.returncode == 2
-    assert "error" in done.stderr
+def test_wrong_options_are_reported(options: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(options)
+    assert left.value.code == 2
+    assert "error" in capsys.readouterr().err
 
 
 def test_a_port_in_use_is_reported(server: Served) -> None:
@@ -77,14 +79,23 @@ def test_a_port_in_use_is_reported(server: Served) -> None:
     assert done.stderr == f"error: cannot listen at 127.0.0.1, port {server.port}: Address already in use\n"
 
 
+@pytest.fixture
+def kept_signals() -> Iterator[None]:
+    """The handler of SIGINT, which the command replaces for its process."""
+    before = signal.getsignal(signal.SIGINT)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.parametrize(
     ("named", "told"), [("file", "'{}' cannot be used: it is a file"), ("file/inside", "'{}' cannot be used: Not a directory")]
 )
-def test_a_models_folder_that_cannot_be_had_is_named(tmp_path: Path, named: str, told: str) -> None:
+def test_a_models_folder_that_cannot_be_had_is_named(
+    tmp_path: Path, named: str, told: str, kept_signals: None, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "file").write_text("x", encoding="utf-8")
-    done = subprocess.run([sys.executable, "-m", "workbench", str(tmp_path / named)], capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr == f"error: the models folder {told.format(tmp_path / named)}\n"
+    assert main([str(tmp_path / named)]) == 1
+    assert capsys.readouterr() == ("", f"error: the models folder {told.format(tmp_path / named)}\n")
 
 
 def test_the_server_answers_before_it_has_loaded_what_only_runs_and_their_views_need() -> None:
