@@ -199,10 +199,21 @@ def test_two_recordings_are_compared(server: Served) -> None:
         assert server.get(f"/api/recordings/{name}").status_code == 404
 
 
-@pytest.mark.parametrize("name", ["..", "../x", "%2e%2e%2fx", ".hidden", "x" * 150, "a b", "x.sqlite"])
+@pytest.mark.parametrize("name", ["..", "../x", "%2e%2e", "%2e%2e%2fx", "..%2Fx", ".hidden", "x" * 150, "a%20b", "x.sqlite"])
 def test_recordings_lie_in_their_folder(server: Served, name: str) -> None:
-    assert server.get(f"/api/recordings/{name}/file").status_code in (404, 307)
-    assert server.post(f"/api/recordings/{name}/delete").status_code in (404, 405)
+    """Of recordings that lie elsewhere, or have names that none has, no byte is sent, and they are not deleted."""
+    folder = server.folder / ".workbench" / "recordings"
+    folder.mkdir(parents=True, exist_ok=True)
+    outside = [folder.parent / "x.sqlite", folder / ".hidden.sqlite", folder / "a b.sqlite"]
+    for path in outside:
+        path.write_text("not for others", encoding="utf-8")
+    for method, what, status in (("GET", "file", (404,)), ("POST", "delete", (404, 405))):
+        answer = server.client.request(method, httpx.URL(server.url, raw_path=f"/api/recordings/{name}/{what}".encode()))
+        assert answer.status_code in status
+        assert "not for others" not in answer.text
+    assert all(path.exists() for path in outside)
+    for path in outside:
+        path.unlink()
 
 
 @pytest.mark.daily(4)
