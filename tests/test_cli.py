@@ -253,7 +253,7 @@ def test_the_order_of_sets_does_not_differ_between_runs(tmp_path: Path) -> None:
     env = {key: value for key, value in os.environ.items() if key != "PYTHONHASHSEED"}
     command = [str(Path(sys.executable).parent / "actr3d"), "run", "model.py", "--seed", "1"]
     runs: list[bytes] = []
-    for seed in ({}, {}, {"PYTHONHASHSEED": "random"}, {"PYTHONHASHSEED": "0"}, {"PYTHONHASHSEED": "123"}):
+    for seed in ({}, {"PYTHONHASHSEED": "random"}, {"PYTHONHASHSEED": "123"}):
         done = subprocess.run(command, cwd=tmp_path, env={**env, **seed}, capture_output=True, timeout=60, check=True)
         runs.append(done.stdout)
     assert len(set(runs)) == 1
@@ -341,7 +341,7 @@ def test_the_package_is_the_command(tmp_path: Path) -> None:
     file.write_text("import random\nprint('said', {'a', 'b', 'c', 'd', 'e'}, random.random())\n", encoding="utf-8")
     said = {
         subprocess.run([sys.executable, *program, "run", str(file), "--seed", "1"], check=True, capture_output=True, timeout=60).stdout
-        for program in (["-m", "actr3d"], ["-m", "actr3d"], [str(Path(sys.executable).with_name("actr3d"))])
+        for program in (["-m", "actr3d"], [str(Path(sys.executable).with_name("actr3d"))])
     }
     assert len(said) == 1
     assert said.pop().startswith(b"said {")

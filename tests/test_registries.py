@@ -6,6 +6,7 @@ import ast
 import inspect
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from string import Formatter
 from typing import Any, get_args
@@ -27,6 +28,7 @@ from actr3d.vision import DETECTORS
 from actr3d.world import Body, Car, Floor, ImportedBody, Scene, World
 from actr3d.world.anatomy import BODY_KINDS, Anatomy, Embodied, body_kind
 from actr3d.world.body import ACTUATORS, SENSORS, actuator, sensor
+from tests.helpers.syntax_trees import tree_of
 
 ARM = """<mujoco><worldbody><body name="arm"><joint name="elbow" axis="0 0 1"/><geom size="0.1"/><site name="eye"/></body></worldbody>
   <actuator><motor name="turn" joint="elbow"/></actuator></mujoco>"""
@@ -36,6 +38,12 @@ REQUIRED: dict[str, dict[str, Any]] = {"ImportedBody": {"name": "arm", "text": A
 
 def example(kind: str) -> Embodied:
     return BODY_KINDS[kind](**REQUIRED.get(kind, {}))
+
+
+@cache
+def one_of_each_kind() -> list[Body]:
+    """Returns bodies to look at: they are shared by tests."""
+    return [World(Scene(parts=(example(kind),))).bodies.popitem()[1] for kind in BODY_KINDS]
 
 
 @pytest.fixture
@@ -69,8 +77,7 @@ def test_each_kind_of_body_describes_itself_and_steps_and_senses(kind: str) -> N
 def test_each_word_explains_itself_and_some_body_has_it(word: str) -> None:
     registry = ACTUATORS if word in ACTUATORS else SENSORS
     assert registry[word].meaning.endswith(".")
-    bodies = [World(Scene(parts=(example(kind),))).bodies.popitem()[1] for kind in BODY_KINDS]
-    assert any(word in (body.actuators if word in ACTUATORS else body.sensors) for body in bodies)
+    assert any(word in (body.actuators if word in ACTUATORS else body.sensors) for body in one_of_each_kind())
 
 
 @pytest.mark.usefixtures("registered")
@@ -139,8 +146,8 @@ def test_a_new_kind_of_body_lives_in_a_scene_without_any_other_change() -> None:
 def test_no_part_of_the_library_asks_for_a_kind_of_body() -> None:
     root = Path(inspect.getfile(actr3d.world)).parents[2]
     for path in [*root.glob("actr3d/**/*.py"), *root.glob("workbench/**/*.py")]:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and ast.unparse(node.func) == "isinstance":
+        for node in ast.walk(tree_of(path)):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "isinstance":
                 asked = {name.id for name in ast.walk(node.args[1]) if isinstance(name, ast.Name)}
                 assert not asked & BODY_KINDS.keys(), f"{path.name}:{node.lineno}"
 

@@ -72,7 +72,7 @@ def test_does_what_its_golden_trace_says(name: str) -> None:
     compare(name, record(name))
 
 
-@pytest.mark.daily(4)
+@pytest.mark.daily(2)
 @pytest.mark.parametrize("name", NAMES)
 def test_does_the_same_twice_in_one_process(name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)

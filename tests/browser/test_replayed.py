@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import httpx
 import mujoco
 import numpy as np
 import pytest
@@ -41,8 +40,7 @@ def replay(tmp_path_factory: pytest.TempPathFactory) -> Path:
         recording = told["session"]["recording"]
         server.post(f"/api/sessions/{name}/close")
         file = folder / "replay.html"
-        address = f"{server.url}/api/recordings/{recording}/file"
-        file.write_bytes(httpx.get(address, headers=server.headers, params={"form": "replay.html"}, timeout=150).content)
+        file.write_bytes(server.get(f"/api/recordings/{recording}/file", params={"form": "replay.html"}).content)
         return file
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import csv
+import html
 import re
 import shutil
 import tempfile
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -15,14 +17,16 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
-from actr3d.experiment.aperture.analysis import OF_WALKS, frame_of, passing_apertures, passings_of, with_greatest_angles
+from actr3d.experiment.aperture.analysis import frame_of, passing_apertures, passings_of, with_greatest_angles
 from actr3d.experiment.aperture.constraints import Findings
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.beside import beside_experiment
 from actr3d.experiment.report.command import write_report
-from actr3d.experiment.report.figures import legend_columns
+from actr3d.experiment.report.figures import legend_columns, svg
+from actr3d.experiment.report.general import comparison_section, what_was_run
 from actr3d.experiment.report.libraries import pingouin
+from actr3d.experiment.report.parts import Caution, Plot, Table
 from actr3d.experiment.report.results import by_number, read_results
 from actr3d.experiment.report.statistics import cell_means
 from actr3d.experiment.specification import specify
@@ -49,14 +53,24 @@ def page(folder: Path) -> str:
 
 
 def walk_through(trial: Any) -> dict[str, Any]:
-    """Returns those of the measures of a walk from which reports have sections of their own, and one that has published means."""
-    names = ("outcome", "wall_angle_deg", "onset_distance_m", "contacts", "clearance_left_m", "clearance_right_m", "speed_m_s")
+    """Returns those of the measures of a walk from which reports have sections of their own."""
+    names = ("outcome", "wall_angle_deg", "onset_distance_m", "contacts", "clearance_left_m", "clearance_right_m")
     return {name: value for name, value in walk(trial).items() if name in names}
 
 
-def turn(trial: Any) -> dict[str, Any]:
-    """Returns the fewest measures of a walk that make it a passing: each further one would add a section."""
-    return {name: value for name, value in walk(trial).items() if name in OF_WALKS}
+def parts_on_apertures(folder: Path) -> list[str | Table | Plot | Caution]:
+    """Returns the parts of the sections on apertures, without writing a report: that would draw all figures and test each measure."""
+    return [part for section in passing_apertures(read_results(folder), []) for part in section.parts]
+
+
+def frames(parts: Sequence[str | Table | Plot | Caution]) -> dict[str, Any]:
+    """Returns the tables of parts by their names."""
+    return {part.name: part.frame for part in parts if isinstance(part, Table)}
+
+
+def cautions(parts: Sequence[str | Table | Plot | Caution]) -> str:
+    """Returns what parts say that a reader must not overlook."""
+    return "\n".join(part.text for part in parts if isinstance(part, Caution))
 
 
 def count(trial: Any) -> dict[str, Any]:
@@ -253,10 +267,14 @@ def test_two_experiments_are_compared(tmp_path: Path) -> None:
 
 
 def test_an_experiment_in_a_folder_with_the_name_of_a_column_is_compared(tmp_path: Path) -> None:
-    path = str(write_experiment(tmp_path, participants=3))
-    one = store_rows(tmp_path / "one", path, count)
+    def measures(trial: Any) -> dict[str, Any]:
+        return {"rt": count(trial)["rt"]}
+
+    path = write_experiment(tmp_path, participants=3)
+    path.write_text(path.read_text(encoding="utf-8").replace('"rt", "luck"', '"rt"'), encoding="utf-8")
+    one = store_rows(tmp_path / "one", str(path), measures)
     for name in ("model", "group", "measure"):
-        write_report(one, compare=store_rows(tmp_path / name, path, count))
+        write_report(one, compare=store_rows(tmp_path / name, str(path), measures))
         assert {"group", "model", "beside", "measure"} <= table(one, "means_beside_other")[0].keys()
         assert f'<th scope="col" class=number>{name}</th>' in page(one)
 
@@ -278,14 +296,15 @@ def test_critical_ratios_beyond_the_trials_are_in_no_mean(tmp_path: Path) -> Non
     def turning(trial: Any) -> dict[str, Any]:
         first = trial.participant.name == "small 1"
         upright = trial.values["aperture"] > (0.49 if first else 0.44) and (not first or trial.repetition <= 3)
-        return {**turn(trial), "wall_angle_deg": 0.0 if upright else 40.0}
+        return {**walk(trial), "wall_angle_deg": 0.0 if upright else 40.0}
 
     values = {"aperture": [0.35, 0.4, 0.45, 0.5], "condition": ["normal"]}
     folder = store_rows(tmp_path / "out", "warren_whang_1987", turning, trials=10, participants=3, values=values)
-    write_report(folder)
-    assert [(row["group"], row["n"]) for row in table(folder, "critical_ratios_of_groups")] == [("small", "2"), ("large", "3")]
-    assert [row["participant"] for row in table(folder, "critical_ratios") if row["beyond"] == "yes"] == ["small 1"]
-    assert "1 of 6 values are most likely beyond the ratios of the trials" in page(folder)
+    parts = parts_on_apertures(folder)
+    of_groups, of_all = frames(parts)["critical_ratios_of_groups"], frames(parts)["critical_ratios"]
+    assert list(zip(of_groups["group"], of_groups["n"], strict=True)) == [("small", 2), ("large", 3)]
+    assert list(of_all["participant"][of_all["beyond"] == "yes"]) == ["small 1"]
+    assert "1 of 6 values are most likely beyond the ratios of the trials" in cautions(parts)
 
 
 def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) -> None:
@@ -294,14 +313,16 @@ def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) 
     one = store_rows(tmp_path / "one", path, count)
 
     def compared(name: str, design: str, **options: Any) -> str:
-        write_report(one, compare=store_rows(tmp_path / name, design, count, **options))
-        return re.findall(rf"{name} \(“there”: counting, \d+ trials\) differs from this experiment \(“now”\) in: (.*?)\.</p>", page(one))[0]
+        results, other = read_results(one), read_results(store_rows(tmp_path / name, design, count, **options))
+        parts = by_number(results)
+        text = comparison_section(results, other, parts, beside_experiment(by_number(other), parts)).parts[0]
+        return re.findall(rf"{name} \(“there”: counting, \d+ trials\) differs from this experiment \(“now”\) in: (.*)\.", str(text))[0]
 
     assert compared("same", same) == "nothing that was set"
-    assert (
-        compared("more", same, participants=4, trials=5)
-        == "--participants: {&#x27;all&#x27;: 4} there, {&#x27;all&#x27;: 3} now; --trials: 5 there, 4 now"
-    )
+    more = "--participants: {'all': 4} there, {'all': 3} now; --trials: 5 there, 4 now"
+    assert compared("more", same, participants=4, trials=5) == more
+    write_report(one, compare=tmp_path / "more")
+    assert f"differs from this experiment (“now”) in: {html.escape(more)}.</p>" in page(one)
     Path(same).with_name("counter.py").write_text(f"{COUNTER}\n", encoding="utf-8")
     says = r"the model differs from line 37 on \(.*/counter\.py\); n: \[1\] there, \[1, 2, 5\] now"
     assert re.fullmatch(says, compared("other", same, values={"n": 1}))
@@ -474,30 +495,31 @@ def test_an_experiment_that_was_run_has_a_report(tmp_path: Path, capsys: Any) ->
 
 
 def test_two_participants_are_described_and_not_tested(tmp_path: Path) -> None:
-    folder = store_rows(tmp_path / "walks", "warren_whang_1987", turn, trials=1, participants=2)
-    write_report(folder)
-    assert "nothing is tested, and intervals over two participants are no more than their range" in page(folder)
-    found = {row["number"]: row["result"] for row in table(folder, "constraints")}
-    assert (found["3"], found["5"]) == ("not testable", "not testable")
-    assert not (folder / "report/tables/equivalence.csv").exists()
+    folder = store_rows(tmp_path / "walks", "warren_whang_1987", walk, trials=1, participants=2)
+    said = cautions(what_was_run(read_results(folder)).parts)
+    assert "nothing is tested, and intervals over two participants are no more than their range" in said
+    found = frames(parts_on_apertures(folder))
+    results = dict(zip(found["constraints"]["number"], found["constraints"]["result"], strict=True))
+    assert (results["3"], results["5"]) == ("not testable", "not testable")
+    assert "equivalence" not in found
 
 
 def test_each_critical_ratio_is_drawn_above_its_own_participant(tmp_path: Path) -> None:
     """That of the first is not known, as it never turns; one of a single step of apertures is not known either."""
 
     def first_never(trial: Any) -> dict[str, Any]:
-        return {**turn(trial), "wall_angle_deg": 0.0} if trial.participant.name == "small 1" else turn(trial)
+        return {**walk(trial), "wall_angle_deg": 0.0} if trial.participant.name == "small 1" else walk(trial)
 
     folder = store_rows(tmp_path / "walks", "warren_whang_1987", first_never, trials=1, participants=3)
-    write_report(folder)
-    picture = (folder / "report/figures/critical_ratio.svg").read_text(encoding="utf-8")
-    labels = [label for label in re.findall(r"<text [^>]*>([^<]+)</text>", picture) if label in ("1", "2", "3")]
+    parts = parts_on_apertures(folder)
+    (figure,) = [part.figure for part in parts if isinstance(part, Plot) and part.name == "critical_ratio"]
+    labels = [label for label in re.findall(r"<text [^>]*>([^<]+)</text>", svg(figure)) if label in ("1", "2", "3")]
     assert labels == ["1", "2", "3", "1", "2", "3"] * 2
-    assert "2 of 12 curves have no critical ratio" in page(folder)
-    folder = store_rows(tmp_path / "two", "warren_whang_1987", turn, trials=1, participants=3, values={"aperture": [0.5, 0.7]})
-    write_report(folder)
-    assert {row["critical_ratio"] for row in table(folder, "critical_ratios")} == {""}
-    assert "12 of 12 curves have no critical ratio: all of their trials are turned, or none is, or there are too few" in page(folder)
+    assert "2 of 12 curves have no critical ratio" in cautions(parts)
+    folder = store_rows(tmp_path / "two", "warren_whang_1987", walk, trials=1, participants=3, values={"aperture": [0.5, 0.7]})
+    parts = parts_on_apertures(folder)
+    assert frames(parts)["critical_ratios"]["critical_ratio"].isna().all()
+    assert "12 of 12 curves have no critical ratio: all of their trials are turned, or none is, or there are too few" in cautions(parts)
 
 
 @pytest.mark.slow

@@ -71,7 +71,7 @@ def run_here(client: Any, path: Path, folder: Path, **options: Any) -> str:
 
 def reference(path: Path, folder: Path) -> str:
     """Returns the table of an experiment that ran through on one worker."""
-    assert subprocess.run([*COMMAND, str(path), "--out", str(folder), "--workers", "1"], timeout=120, capture_output=True).returncode == 0
+    assert main(["experiment", str(path), "--out", str(folder), "--workers", "1"]) == 0
     return table(folder)
 
 

@@ -830,6 +830,7 @@ def test_a_row_has_the_values_that_ran(tmp_path: Path) -> None:
     path.write_text("import os\n" + path.read_text(encoding="utf-8").replace("limit=60", derive), encoding="utf-8")
     (tmp_path / "counter.py").write_text(COUNTER.replace("model.run()", "model.run(0)"), encoding="utf-8")
     batch = run_batch(specify(str(path)).specification.to_json(), [0, 1], 60, cluster_versions())
+    assert len(batch.rows) == 2
     for _, row, _ in batch.rows:
         assert row["rt"] == row["n"] != os.getpid()
 

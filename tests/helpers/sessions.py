@@ -10,7 +10,7 @@ from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any, TypeVar
 
-from tests.helpers.asgi_client import COOKIE, GATE, HOST, Answer, call
+from tests.helpers.asgi_client import COOKIE, GATE, HOST, Answer, Header, call
 from workbench.app import make_app
 from workbench.files import ModelFolder
 from workbench.protocol import COMMAND
@@ -50,11 +50,11 @@ class Desk:
         self._open.append(sessions)
         return sessions
 
-    def ask(self, folder: Path, path: str, **more: Any) -> Answer:
+    def ask(self, folder: Path, path: str, *headers: Header, **more: Any) -> Answer:
         """Sends a request to an application with the models of a folder, and returns the answer."""
         app = make_app(folder, GATE)
         app.state.sessions = self.sessions(folder)
-        return self.do(call(app, path, HOST, COOKIE, **more))
+        return self.do(call(app, path, HOST, COOKIE, *headers, **more))
 
     def listed(self, folder: Path, first: int = 0, most: int = 1000) -> tuple[int, list[Summary]]:
         """Returns how many recordings a folder has, and the summaries of some."""

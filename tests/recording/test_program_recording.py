@@ -19,6 +19,7 @@ from actr3d.recording.schema import SIMULATION
 from actr3d.runner.facts import program_facts
 from actr3d.runner.replay import replay
 from tests.helpers.recording_forgery import Change, forge
+from tests.helpers.replays import verdict
 from tests.helpers.walkers import DRIVER
 
 BEGIN = (
@@ -163,13 +164,11 @@ SOURCE = "UPDATE facts SET value = replace(value, '{}', '{}') WHERE name = 'sour
         ("INSERT INTO commands SELECT 2, run, 51, data, checksum FROM commands WHERE first = 1", "the recording holds 1 command more"),
     ],
 )
-def test_a_replay_says_where_a_simulation_of_a_program_differs(
-    alter: Change, message: str, path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_replay_says_where_a_simulation_of_a_program_differs(alter: Change, message: str, path: Path) -> None:
     forge(path, alter)
-    capsys.readouterr()
-    assert main(["replay", str(path)]) == 1
-    assert message in capsys.readouterr().out
+    told = verdict(path)
+    assert told.code == 1
+    assert message in told.text
 
 
 def test_a_program_that_was_killed_agrees_as_far_as_it_goes(tmp_path: Path) -> None:
@@ -198,8 +197,9 @@ def test_a_program_that_raises_what_is_no_exception_is_recorded_as_failed(tmp_pa
     file.write_text("print('begun')\nclass Odd(BaseException): pass\nraise Odd('on purpose')\n", encoding="utf-8")
     assert main(["run", str(file), "--seed", "1", "--record", str(recording)]) == 1
     assert "Odd: on purpose" in capsys.readouterr().err
-    assert main(["replay", str(recording)]) == 0
-    assert "failed after 0 s (Odd: on purpose)" in capsys.readouterr().out
+    told = verdict(recording)
+    assert told.code == 0
+    assert "failed after 0 s (Odd: on purpose)" in told.text
 
 
 def test_a_program_that_prints_the_report_of_its_run_agrees_with_itself(

@@ -23,6 +23,7 @@ from actr3d.recording import Recorded, Recording, writer
 from actr3d.recording.schema import versions
 from actr3d.runner.replay import replay
 from actr3d.trace import TraceEvent
+from tests.helpers.commands import run_command
 from tests.helpers.walkers import driving
 
 TESTS = Path(__file__).parents[1]
@@ -205,8 +206,7 @@ simulation.run(60)
 @pytest.mark.parametrize("source", [FAST, FALLING], ids=["without a body", "without events"])
 def test_a_fast_run_that_is_killed_lacks_no_more_than_its_last_second(source: str, tmp_path: Path) -> None:
     (tmp_path / "fast.py").write_text(source, encoding="utf-8")
-    command = [sys.executable, "-m", "actr3d", "run", str(tmp_path / "fast.py"), "--record", str(tmp_path / "run")]
-    assert subprocess.run(command, timeout=120, check=False).returncode == -signal.SIGKILL
+    assert run_command("run", str(tmp_path / "fast.py"), "--record", str(tmp_path / "run")).returncode == -signal.SIGKILL
     with Recorded(tmp_path / "run") as recorded:
         recorded.check()
         last = max([event.time for event in recorded.events()] + [state.tick / 100 for state in recorded.states()])

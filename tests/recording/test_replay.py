@@ -21,8 +21,10 @@ from actr3d.runner.cli_options import read_settings
 from actr3d.runner.model_factory import Blueprint
 from actr3d.runner.replay import replay
 from actr3d.runner.run import run_model
+from actr3d.runner.verdict import Verdict
 from actr3d.trace import Trace
 from tests.helpers.recording_forgery import forge
+from tests.helpers.replays import verdict
 from tests.helpers.walkers import driving
 
 ROOT = Path(__file__).parents[2]
@@ -145,8 +147,7 @@ def test_a_walker_that_stops_before_a_wall_is_recorded_and_replayed(tmp_path: Pa
         last = list(recorded.answers())[-1]
         ticks = recorded.ticks
     assert 0.2 < last.value < 0.6
-    assert main(["replay", str(path)]) == 0
-    assert f"every byte agrees: {ticks:,} ticks" in capsys.readouterr().out
+    assert f"every byte agrees: {ticks:,} ticks" in verdict(path).text
 
 
 def test_until_ends_what_is_built_with_a_whole_tick(file: Path) -> None:
@@ -154,7 +155,7 @@ def test_until_ends_what_is_built_with_a_whole_tick(file: Path) -> None:
     with Recorded(path) as recorded:
         assert recorded.ticks == 12
         assert recorded.facts["ended"] == {"by": "limits"}
-    assert main(["replay", str(path)]) == 0
+    assert verdict(path).code == 0
 
 
 def test_fewer_events_can_be_shown_than_are_recorded(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -180,9 +181,8 @@ def test_a_program_without_a_world_is_recorded_and_replayed(name: str, tmp_path:
     path = tmp_path / "run"
     assert main(["run", str(file), "--record", str(path)]) == 0
     printed = capsys.readouterr().out
-    assert main(["replay", str(path)]) == 0
     with Recorded(path) as recorded:
-        assert capsys.readouterr().out == f"every byte agrees: {recorded.event_count:,} events\n"
+        assert verdict(path) == Verdict(code=0, text=f"every byte agrees: {recorded.event_count:,} events\n")
         assert recorded.event_count > 20
     assert main(["run", str(file), "--seed", "1"]) == 0
     assert (printed == capsys.readouterr().out) or name == "noisy.py"
@@ -214,13 +214,12 @@ CHANGES = [
 
 @pytest.mark.daily(2)
 @pytest.mark.parametrize(("change", "message"), CHANGES)
-def test_a_replay_says_where_it_differs(change: str, message: str, file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_replay_says_where_it_differs(change: str, message: str, file: Path) -> None:
     path = recorded_run(file)
     forge(path, change)
-    capsys.readouterr()
-    assert main(["replay", str(path)]) == (2 if "error" in message else 1)
-    told = capsys.readouterr()
-    assert message in told.out + told.err
+    told = verdict(path)
+    assert told.code == (2 if "error" in message else 1)
+    assert message in told.text
 
 
 def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -273,16 +272,15 @@ def test_a_recording_without_its_facts_is_reported(file: Path, capsys: pytest.Ca
     assert "is not a recording: it lacks the fact 'kind' and the fact 'versions'" in capsys.readouterr().err
 
 
-def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path) -> None:
     file = tmp_path / "noisy.py"
     file.write_text(NOISY.replace("python_actr", "actr3d.actr"), encoding="utf-8")
     path = recorded_run(file)
-    forge(path, in_fact("sources", "range(2)", "range(1)"))
-    assert main(["replay", str(path)]) == 1
-    assert "differs: the run ended after " in capsys.readouterr().out
-    forge(path, in_fact("sources", "range(1)", "range(3)"))
-    assert main(["replay", str(path)]) == 1
-    assert "recorded: nothing; now: " in capsys.readouterr().out
+    for before, after, message in ((2, 1, "differs: the run ended after "), (1, 3, "recorded: nothing; now: ")):
+        forge(path, in_fact("sources", f"range({before})", f"range({after})"))
+        told = verdict(path)
+        assert told.code == 1
+        assert message in told.text
 
 
 CUT = """UPDATE events SET count = count - 1, data = json_remove(data, '$[#-1]') WHERE first = (SELECT max(first) FROM events)"""
@@ -326,11 +324,11 @@ def test_a_run_that_fails_is_recorded_until_then(tmp_path: Path, capsys: pytest.
     path = tmp_path / "run"
     assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 1
     assert "has no attribute 'halt'" in capsys.readouterr().err
-    assert main(["replay", str(path)]) == 0
-    out = capsys.readouterr().out
+    told = verdict(path)
+    assert told.code == 0
     assert re.fullmatch(
         r"agrees up to the end of the recording: 14 ticks, \d+ events; the run failed after 0.14 s \(AttributeError: .*'halt'\)\n",
-        out,
+        told.text,
     )
 
 
@@ -345,29 +343,27 @@ def test_a_program_that_exits_is_replayed_to_its_end(code: int, tmp_path: Path, 
     assert main(["replay", str(path)]) == 0
     assert capsys.readouterr().out.startswith("every byte agrees: ")
     forge(path, "UPDATE facts SET value = replace(value, 'over', 'more') WHERE name = 'sources'")
-    assert main(["replay", str(path)]) == 1
-    assert '"text": "moreend..."' in capsys.readouterr().out
+    told = verdict(path)
+    assert told.code == 1
+    assert '"text": "moreend..."' in told.text
 
 
 @pytest.mark.daily(1)
 @pytest.mark.parametrize("leave", ["1 / 0", "raise SystemExit(0)", "raise BaseException"])
-def test_a_replay_that_fails_differs(
-    leave: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_replay_that_fails_differs(leave: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "fallen.py"
     fail = f"if os.environ.get('FAIL') == '%s': {leave}\n"
     text = BUILT.replace("    scene = ", f"    {fail % 'build'}    scene = ")
     text = text.replace("        print(side", f"        if self.times == 2:\n            {fail % 'run'}        print(side")
     file.write_text("import os\n" + text, encoding="utf-8")
     path = recorded_run(file)
-    capsys.readouterr()
     what = {"1 / 0": "ZeroDivisionError: division by zero", "raise BaseException": "BaseException: "}.get(leave, "SystemExit: 0")
     monkeypatch.setenv("FAIL", "run")
-    assert main(["replay", str(path)]) == 1
-    assert capsys.readouterr().out == f"differs: the run failed after 0.09 s ({what})\n"
+    assert verdict(path) == Verdict(code=1, text=f"differs: the run failed after 0.09 s ({what})\n")
     monkeypatch.setenv("FAIL", "build")
-    assert main(["replay", str(path)]) == 2
-    assert f"error: what '{path}' holds cannot be built here: {what}\n" in capsys.readouterr().err
+    told = verdict(path)
+    assert told.code == 2
+    assert f"error: what '{path}' holds cannot be built here: {what}\n" in told.text
 
 
 @pytest.mark.parametrize(
@@ -490,22 +486,21 @@ def test_lines_that_a_model_prints_are_recorded_where_they_come(file: Path, caps
     path = recorded_run(file)
     assert capsys.readouterr().out == "loaded and ready\n1\nend2\nend3\nend"
     assert printed_lines(path) == [(0.0, "loaded and ready"), (0.05, "1"), (0.1, "end2"), (0.15, "end3"), (0.15, "end")]
-    assert main(["replay", str(path)]) == 0
+    assert verdict(path).code == 0
     forge(path, "UPDATE events SET data = replace(data, 'end2', 'end7')")
-    capsys.readouterr()
-    assert main(["replay", str(path)]) == 1
-    assert '"text": "end7"' in capsys.readouterr().out
+    told = verdict(path)
+    assert told.code == 1
+    assert '"text": "end7"' in told.text
 
 
-def test_lines_that_a_program_prints_are_recorded_where_they_come(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_lines_that_a_program_prints_are_recorded_where_they_come(tmp_path: Path) -> None:
     file = tmp_path / "talking.py"
     text = NOISY + "import sys\nsys.stdout.buffer.write('größe\\n'.encode())\nsys.stdout.writelines(['a', 'b\\n'])\nprint('c', end='')\n"
     file.write_text("print('first')\n" + text.replace("Noisy().run()", "Noisy().run(0.22)\n    print('run')"), encoding="utf-8")
     path = recorded_run(file)
     expected = [(0.0, "first"), (0.22, "run"), (0.22, "run"), (0.22, "größe"), (0.22, "ab"), (0.22, "cend...")]
     assert printed_lines(path) == expected
-    assert main(["replay", str(path)]) == 0
-    assert "every byte agrees" in capsys.readouterr().out
+    assert "every byte agrees" in verdict(path).text
 
 
 def test_shown_events_hold_each_printed_line_once(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -532,9 +527,7 @@ ENDS = [
 
 @pytest.mark.daily(2)
 @pytest.mark.parametrize(("text", "name", "then", "other"), ENDS)
-def test_a_replay_compares_how_the_run_ended(
-    text: str, name: str, then: str, other: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_replay_compares_how_the_run_ended(text: str, name: str, then: str, other: str, tmp_path: Path) -> None:
     file, path = tmp_path / "model.py", tmp_path / "run"
     file.write_text(text, encoding="utf-8")
     with suppress(SystemExit):
@@ -543,26 +536,25 @@ def test_a_replay_compares_how_the_run_ended(
         assert recorded.facts[name] == (then if name == "failed" else {"by": then})
         assert ("ended" in recorded.facts) != ("failed" in recorded.facts)
         events = recorded.event_count
-    capsys.readouterr()
-    assert main(["replay", str(path)]) == 0
-    assert f"{events} events" in (agrees := capsys.readouterr().out)
-    assert agrees.startswith("every byte agrees" if name == "ended" else "agrees up to the end of the recording")
+    agrees = verdict(path)
+    assert agrees.code == 0
+    assert f"{events} events" in agrees.text
+    assert agrees.text.startswith("every byte agrees" if name == "ended" else "agrees up to the end of the recording")
     forge(path, in_fact(name, then, other))
-    assert main(["replay", str(path)]) == 1
-    assert f"differs: the fact '{name}'; recorded: " in (differs := capsys.readouterr().out)
-    assert then in differs
-    assert other in differs
+    differs = verdict(path)
+    assert differs.code == 1
+    assert f"differs: the fact '{name}'; recorded: " in differs.text
+    assert then in differs.text
+    assert other in differs.text
 
 
-def test_a_run_that_failed_then_and_does_not_now_differs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_that_failed_then_and_does_not_now_differs(tmp_path: Path) -> None:
     for text in (BUILT, "print(1)\n"):
         file = tmp_path / "model.py"
         file.write_text(text, encoding="utf-8")
         path = recorded_run(file)
         forge(path, "UPDATE facts SET name = 'failed', value = '\"ValueError: no\"' WHERE name = 'ended'")
-        capsys.readouterr()
-        assert main(["replay", str(path)]) == 1
-        assert capsys.readouterr().out == "differs: the fact 'failed'; recorded: \"ValueError: no\"; now: null\n"
+        assert verdict(path) == Verdict(code=1, text="differs: the fact 'failed'; recorded: \"ValueError: no\"; now: null\n")
         path.unlink()
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import pytest
 
 from actr3d.recording import Recorded
 from actr3d.runner.before_exit import before_the_end
+from tests.helpers.commands import run_command
 
 BUILT = """
 import os
@@ -48,8 +48,7 @@ PROGRAM = "import os, sys, threading, time\nprint('one')\nprint('two', end='')\n
 def test_a_model_that_ends_its_process_loses_nothing(text: str, end: str, code: int, tmp_path: Path) -> None:
     file, path = tmp_path / "model.py", tmp_path / "run"
     file.write_text(text.format(end=end), encoding="utf-8")
-    command = [sys.executable, "-m", "actr3d", "run", str(file), "--seed", "1", "--record", str(path)]
-    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=120)
+    done = run_command("run", str(file), "--seed", "1", "--record", str(path))
     assert (done.returncode, done.stdout) == (code, "one\ntwo")
     assert f"the model has ended its own process; '{path}' holds the run until then, without its end" in done.stderr
     with Recorded(path) as recorded:
@@ -82,9 +81,7 @@ def test_what_was_done_is_also_kept_if_the_arguments_are_named(monkeypatch: pyte
 def test_a_model_that_fails_to_end_its_process_goes_on(tries: str, tmp_path: Path) -> None:
     file, path = tmp_path / "model.py", tmp_path / "run"
     file.write_text(f"import os\nprint('a', end=' ')\ntry:\n    {tries}\nexcept OSError:\n    print('b')\n", encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "-m", "actr3d", "run", str(file), "--record", str(path)], check=False, capture_output=True, text=True
-    )
+    done = run_command("run", str(file), "--record", str(path))
     assert (done.returncode, done.stdout, done.stderr) == (0, "a b\n", "")
     with Recorded(path) as recorded:
         assert [event.data["text"] for event in recorded.events() if event.kind == "output"] == ["a b"]

@@ -21,6 +21,7 @@ from typing import Any
 import httpx
 import pytest
 
+from tests.helpers.asgi_client import JSON, ORIGIN, OURS
 from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.sessions import Desk
 from tests.helpers.workbench_server import Served, served
@@ -366,7 +367,7 @@ def test_a_report_is_made_and_shown_without_scripts(workbench: Served, finished:
         assert download.headers["content-disposition"] == f'attachment; filename="{finished}-{file.rpartition("/")[2]}"'
     for file in ("../experiment.json", "%2e%2e/experiment.json", "tables/..%2f..%2fexperiment.json", "figures", "tables/none.csv"):
         url = httpx.URL(workbench.url, raw_path=f"{path}/{file}".encode())
-        assert httpx.get(url, headers=workbench.headers, timeout=60).status_code in (404, 422)
+        assert workbench.client.get(url).status_code in (404, 422)
     assert answer.headers["content-type"] == "text/html; charset=utf-8"
     policy = answer.headers.get_list("content-security-policy")
     assert len(policy) == 1
@@ -427,7 +428,7 @@ def test_names_that_lead_elsewhere_are_not_found(workbench: Served, name: str) -
     quoted = name.replace("\0", "%00")
     for what in ("", "/rows", "/means?x=n&measure=rt", "/report/index.html", "/code"):
         url = httpx.URL(workbench.url, raw_path=f"/api/experiments/{quoted}{what}".encode())
-        assert httpx.get(url, headers=workbench.headers, timeout=60).status_code in (404, 422)
+        assert workbench.client.get(url).status_code in (404, 422)
     outside.unlink()
 
 
@@ -440,30 +441,30 @@ def test_a_folder_that_is_a_link_is_no_experiment(workbench: Served, finished: s
     (folder / "linked").unlink()
 
 
-@pytest.mark.parametrize(
-    ("body", "status"),
-    [
-        ({}, 422),
-        ({"design": "nothing_like_this"}, 404),
-        ({"design": "--help"}, 404),
-        ({"design": "/etc/passwd:x"}, 400),
-        ({"design": "../counting_design.py:counting"}, 400),
-        ({"design": "counting_design.py:other"}, 404),
-        ({"design": "counting_design.py:__import__"}, 404),
-        ({"design": COUNTING, "values": {"n; import os": 1}}, 422),
-        ({"design": COUNTING, "values": {"n": []}}, 422),
-        ({"design": COUNTING, "values": {"n": [[1]]}}, 422),
-        ({"design": COUNTING, "values": {"n": "x" * 1001}}, 422),
-        ({"design": COUNTING, "participants": 0}, 422),
-        ({"design": COUNTING, "trials": -1}, 422),
-        ({"design": COUNTING, "workers": 10_000}, 422),
-        ({"design": COUNTING, "scheduler": "tcp://elsewhere:1"}, 422),
-    ],
-)
-def test_what_cannot_be_started_is_refused(workbench: Served, body: dict[str, Any], status: int) -> None:
+REFUSED: list[tuple[dict[str, Any], int]] = [
+    ({}, 422),
+    ({"design": "nothing_like_this"}, 404),
+    ({"design": "--help"}, 404),
+    ({"design": "/etc/passwd:x"}, 400),
+    ({"design": "../counting_design.py:counting"}, 400),
+    ({"design": "counting_design.py:other"}, 404),
+    ({"design": "counting_design.py:__import__"}, 404),
+    ({"design": COUNTING, "values": {"n; import os": 1}}, 422),
+    ({"design": COUNTING, "values": {"n": []}}, 422),
+    ({"design": COUNTING, "values": {"n": [[1]]}}, 422),
+    ({"design": COUNTING, "values": {"n": "x" * 1001}}, 422),
+    ({"design": COUNTING, "participants": 0}, 422),
+    ({"design": COUNTING, "trials": -1}, 422),
+    ({"design": COUNTING, "workers": 10_000}, 422),
+    ({"design": COUNTING, "scheduler": "tcp://elsewhere:1"}, 422),
+]
+
+
+def test_what_cannot_be_started_is_refused(workbench: Served) -> None:
     before = len(workbench.get("/api/experiments").json()["experiments"])
-    answer = workbench.post("/api/experiments", body)
-    assert (answer.status_code, isinstance(answer.json()["error"], str)) == (status, True)
+    for body, status in REFUSED:
+        answer = workbench.post("/api/experiments", body)
+        assert (answer.status_code, isinstance(answer.json()["error"], str)) == (status, True), body
     assert len(workbench.get("/api/experiments").json()["experiments"]) == before
 
 
@@ -555,7 +556,7 @@ def test_a_table_that_ends_its_worker_does_not_hide_other_experiments(tmp_path: 
     assert found == {"good": (3, None), "better": (3, None), "bad": (0, "its table cannot be read: no progress for 120 s")}
 
 
-def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_package_is_named(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     packages = tmp_path / "packages"
     packages.mkdir()
     (packages / "distributed.py").write_text("raise ModuleNotFoundError('no', name='distributed')\n", "utf-8")
@@ -563,10 +564,10 @@ def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     folder.mkdir()
     write_experiment(folder)
     monkeypatch.setenv("PYTHONPATH", str(packages))
-    with served(folder) as running:
-        answer = running.post("/api/experiments", {"design": COUNTING})
-        assert (answer.status_code, answer.json()["error"].endswith("install: pip install 'actr3d[experiment]'")) == (422, True)
-        assert running.get("/api/experiments").json() == {"experiments": []}
+    body = json.dumps({"design": COUNTING}).encode()
+    answer = desk.ask(folder, "/api/experiments", JSON, ORIGIN, OURS, method="POST", body=body)
+    assert (answer.status, json.loads(answer.body)["error"].endswith("install: pip install 'actr3d[experiment]'")) == (422, True)
+    assert json.loads(desk.ask(folder, "/api/experiments").body) == {"experiments": []}
 
 
 def test_a_file_beside_the_models_does_not_stand_in_for_a_package(workbench: Served) -> None:

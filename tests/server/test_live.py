@@ -5,11 +5,12 @@ from __future__ import annotations
 import asyncio
 import json
 import re
+import signal
 import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from websockets.typing import Subprotocol
 
 from tests.helpers.workbench_server import Served, served
 from tests.server.test_bad_input import APP, DESCRIPTION, OPERATIONS
-from workbench.cli import listen, listen_for, port_of
+from workbench.cli import listen, listen_for, main, port_of
 from workbench.page_commands import COMMANDS
 
 # -- the command
@@ -46,8 +47,8 @@ def test_the_token_is_in_no_list_of_processes(server: Served) -> None:
 
 
 def test_a_browser_comes_in_with_the_address_only(server: Served) -> None:
-    assert httpx.get(server.url).status_code == 401
     with httpx.Client() as browser:
+        assert browser.get(server.url).status_code == 401
         answer = browser.get(server.address)
         assert answer.status_code == 303
         assert browser.get(server.url + answer.headers["location"]).status_code == 200
@@ -60,15 +61,16 @@ def test_others_are_let_in_only_with_a_warning(tmp_path: Path) -> None:
         local = f"http://127.0.0.1:{running.port}"
         assert httpx.get(local).status_code == 401
         for host, status in (("lab.example", 200), ("127.0.0.1", 200), ("evil.example", 421)):
-            headers = {**running.headers, "host": f"{host}:{running.port}"}
-            assert httpx.get(f"{local}/api/models", headers=headers).status_code == status
+            answer = running.client.get(f"{local}/api/models", headers={"host": f"{host}:{running.port}"})
+            assert answer.status_code == status
 
 
 @pytest.mark.parametrize("options", [["--port", "70000"], ["--memory", "-1"], ["--port", "x"]])
-def test_wrong_options_are_reported(options: list[str]) -> None:
-    done = subprocess.run([sys.executable, "-m", "workbench", *options], capture_output=True, text=True)
-    assert done.returncode == 2
-    assert "error" in done.stderr
+def test_wrong_options_are_reported(options: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(options)
+    assert left.value.code == 2
+    assert "error" in capsys.readouterr().err
 
 
 def test_a_port_in_use_is_reported(server: Served) -> None:
@@ -101,14 +103,23 @@ def test_a_host_that_cannot_be_listened_at_is_reported(tmp_path: Path) -> None:
     assert done.stderr == "error: cannot listen at 203.0.113.1: Cannot assign requested address\n"
 
 
+@pytest.fixture
+def kept_signals() -> Iterator[None]:
+    """The handler of SIGINT, which the command replaces for its process."""
+    before = signal.getsignal(signal.SIGINT)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.parametrize(
     ("named", "told"), [("file", "'{}' cannot be used: it is a file"), ("file/inside", "'{}' cannot be used: Not a directory")]
 )
-def test_a_models_folder_that_cannot_be_had_is_named(tmp_path: Path, named: str, told: str) -> None:
+def test_a_models_folder_that_cannot_be_had_is_named(
+    tmp_path: Path, named: str, told: str, kept_signals: None, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "file").write_text("x", encoding="utf-8")
-    done = subprocess.run([sys.executable, "-m", "workbench", str(tmp_path / named)], capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr == f"error: the models folder {told.format(tmp_path / named)}\n"
+    assert main([str(tmp_path / named)]) == 1
+    assert capsys.readouterr() == ("", f"error: the models folder {told.format(tmp_path / named)}\n")
 
 
 def test_the_server_answers_before_it_has_loaded_what_only_runs_and_their_views_need() -> None:
@@ -178,7 +189,7 @@ def test_a_session_by_rest_alone(server: Served) -> None:
     assert len(events) == listed[recording]["events"] + 1
     states = server.get(file, params={"form": "states.csv"}).text.splitlines()
     assert len(states) == 682
-    replay = httpx.get(server.url + file, headers=server.headers, params={"form": "replay.html"}, timeout=150)
+    replay = server.get(file, params={"form": "replay.html"})
     assert replay.text.startswith("<!doctype html>")
     assert replay.headers["content-disposition"] == f'attachment; filename="{recording}.replay.html"'
     assert states[-1].startswith("6.8,")
@@ -212,10 +223,21 @@ def test_two_recordings_are_compared(server: Served) -> None:
         assert server.get(f"/api/recordings/{name}").status_code == 404
 
 
-@pytest.mark.parametrize("name", ["..", "../x", "%2e%2e%2fx", ".hidden", "x" * 150, "a b", "x.sqlite"])
+@pytest.mark.parametrize("name", ["..", "../x", "%2e%2e", "%2e%2e%2fx", "..%2Fx", ".hidden", "x" * 150, "a%20b", "x.sqlite"])
 def test_recordings_lie_in_their_folder(server: Served, name: str) -> None:
-    assert server.get(f"/api/recordings/{name}/file").status_code in (404, 307)
-    assert server.post(f"/api/recordings/{name}/delete").status_code in (404, 405)
+    """Of recordings that lie elsewhere, or have names that none has, no byte is sent, and they are not deleted."""
+    folder = server.folder / ".workbench" / "recordings"
+    folder.mkdir(parents=True, exist_ok=True)
+    outside = [folder.parent / "x.sqlite", folder / ".hidden.sqlite", folder / "a b.sqlite"]
+    for path in outside:
+        path.write_text("not for others", encoding="utf-8")
+    for method, what, status in (("GET", "file", (404,)), ("POST", "delete", (404, 405))):
+        answer = server.client.request(method, httpx.URL(server.url, raw_path=f"/api/recordings/{name}/{what}".encode()))
+        assert answer.status_code in status
+        assert "not for others" not in answer.text
+    assert all(path.exists() for path in outside)
+    for path in outside:
+        path.unlink()
 
 
 @pytest.mark.daily(4)

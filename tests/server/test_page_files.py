@@ -10,7 +10,7 @@ from starlette.applications import Starlette
 from starlette.routing import Mount
 
 from tests.helpers.asgi_client import ask
-from tests.helpers.workbench_server import served
+from tests.helpers.workbench_server import Served
 from workbench import page_files
 from workbench.page_files import ROUTE, PageFiles
 
@@ -41,10 +41,9 @@ def test_a_file_is_kept_until_one_is_edited(tmp_path: Path, monkeypatch: pytest.
     assert files.with_versions('src="/static/main.js"') == f'src="{files.address()}/main.js"'
 
 
-def test_the_page_names_the_version_of_its_files(tmp_path: Path) -> None:
-    with served(tmp_path / "models") as server:
-        addresses = re.findall('(?:src|href)="(/static/[^"]+)"', server.get("/").text)
-        assert sorted(re.sub("/static/[0-9a-f]{16}/", "", address) for address in addresses) == ["icon.svg", "main.js", "style.css"]
-        for address in addresses:
-            assert "immutable" in server.get(address).headers["cache-control"]
-        assert server.get("/static/0123456789abcdef/main.js").headers["cache-control"] == "no-store"
+def test_the_page_names_the_version_of_its_files(server: Served) -> None:
+    addresses = re.findall('(?:src|href)="(/static/[^"]+)"', server.get("/").text)
+    assert sorted(re.sub("/static/[0-9a-f]{16}/", "", address) for address in addresses) == ["icon.svg", "main.js", "style.css"]
+    for address in addresses:
+        assert "immutable" in server.get(address).headers["cache-control"]
+    assert server.get("/static/0123456789abcdef/main.js").headers["cache-control"] == "no-store"

@@ -235,7 +235,7 @@ def gltf(**parts: Any) -> str:
 def bomb() -> bytes:
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("3D/3dmodel.model", "w") as entry:
-        for _ in range(300):
+        for _ in range(257):
             entry.write(b" " * 1024 * 1024)
     return packed.getvalue()
 
@@ -302,9 +302,9 @@ BROKEN: list[tuple[str, Callable[[], str | bytes], str]] = [
         r"'mesh\.gltf' cannot be read as gltf: no file 'gone\.bin'",
     ),
     ("mesh.gltf", lambda: gltf(buffers=[{"uri": "../secret.bin", "byteLength": 36}]), r"'\.\./secret\.bin' lies outside the folder"),
-    ("mesh.3mf", bomb, r"'mesh\.3mf' unpacks to 314,572,800 bytes; the limit is 268,435,456"),
+    ("mesh.3mf", bomb, r"'mesh\.3mf' unpacks to 269,484,032 bytes; the limit is 268,435,456"),
     ("mesh.3mf", lambda: b"PK\x03\x04 and no more", r"'mesh\.3mf' is not a complete archive"),
-    ("mesh.zip", bomb, r"'mesh\.zip' is an archive, not a mesh: unpack it"),
+    ("mesh.zip", lambda: b"PK\x03\x04", r"'mesh\.zip' is an archive, not a mesh: unpack it"),
     ("mesh.step", lambda: "ISO-10303-21;", r"'\.step' is not a mesh format; known are .*glb"),
     ("mesh.stk", lambda: "solid", r"'\.stk' is not a mesh format; .*did you mean 'stl'\?"),
     ("mesh.dae", lambda: "<COLLADA>", r"'mesh\.dae' cannot be read as dae"),

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import FrozenInstanceError, dataclass, replace
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -221,6 +222,7 @@ def test_proximity_is_the_nearest_surface() -> None:
     assert body.get("proximity", 0.3) is None
 
 
+@cache
 def can_draw() -> bool:
     """Returns whether this machine has EGL, asked in a process of its own."""
     code = "import mujoco.egl; mujoco.egl.GLContext(64, 64).make_current()"
