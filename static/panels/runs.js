@@ -57,7 +57,7 @@ function Runs() {
     <div class="tools">
       <input type="search" aria-label="Search recordings" placeholder="Search: model, parameter, outcome …" value=${search.value} onInput=${(event) => (search.value = event.currentTarget.value)} />
       <span class="quiet number" role="status">${countText(shown.length, all.length, whole.length)}</span>
-      <button class="bare" title="Add recording files to the list: choose them, or drop them on it" onClick=${chooseFiles}>Open a file …</button>
+      <button class="bare" title="Add recording files to the list: choose them, or drop them on it" onClick=${chooseFiles}>Add files …</button>
       <button class="bare" title="Read the list again" aria-label="Read the list again" onClick=${listRuns}><${Icon} name="restart" /></button>
     </div>
     ${problem.value ? html`<p class="problem bad" role="alert">The recordings cannot be listed: ${problem.value} <button onClick=${listRuns}>Try again</button></p>` : null}

@@ -178,7 +178,7 @@ def test_files_are_added_by_choosing_or_dropping_them(pages: Callable[..., Page]
     shutil.copy(recordings / f"{two[0]}.sqlite", file)
     open_tab(page, "Runs")
     with page.expect_file_chooser() as chooser:
-        page.get_by_role("button", name="Open a file …").click()
+        page.get_by_role("button", name="Add files …").click()
     chooser.value.set_files(file)
     expect(page.locator(".recording-banner")).to_contain_text("of a colleague")
     expect(row(page, "of_a_colleague")).to_have_class(re.compile("chosen"))
