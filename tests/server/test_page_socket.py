@@ -71,8 +71,8 @@ def test_errors_are_reported(server: Served, session: str, text: str | bytes) ->
 
 
 def test_a_page_is_not_shown_the_session_of_the_same_name_of_another_server(server: Served, session: str) -> None:
-    async def first(**known: float) -> Any:
-        async with await attached(server, session, **known) as socket:
+    async def first(**born: float) -> Any:
+        async with await attached(server, session, queue=None, **born) as socket:
             return await heard(socket, lambda _: True)
 
     async def talk() -> None:
