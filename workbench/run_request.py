@@ -88,7 +88,7 @@ class LaunchedRun:
         self.over = asyncio.Event()
         """Set when the worker has ended and its last messages have been read."""
         self.stuck: dict[str, Any] | None = None
-        """Where the model has kept its process busy for a while: `file`, `line`, `function`, and the `signal` that has stopped it, if any."""
+        """Where the model keeps its process busy: `file`, `line`, `function`, and the `signal` that has stopped it, if any."""
         self._digest = digest_of(start.source)
         self._helpers: dict[Path, str] = {}
         for file, text in list(start.helpers.values())[:MAX_HELPERS]:

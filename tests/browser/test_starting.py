@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from typing import Any
 
 from playwright.sync_api import Page, Route, expect
 
@@ -33,7 +34,7 @@ def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> N
     expect(page.locator("#scene progress")).to_have_count(0)
 
 
-NO_MODELS = {"folder": "/empty", "models": [], "manual": False, "no_manual": None}
+NO_MODELS: dict[str, Any] = {"folder": "/empty", "models": [], "manual": False, "no_manual": None}
 
 
 def test_a_recording_is_shown_though_the_folder_has_no_models(pages: Callable[..., Page], workbench: Served) -> None:

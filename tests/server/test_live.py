@@ -307,7 +307,7 @@ def test_the_description_names_every_command(server: Served) -> None:
 # -- websockets
 
 
-async def attached(server: Served, session: str, queue: int | None = None, **known: float) -> Any:
+async def attached(server: Served, session: str, queue: int | None = None, **known: float | None) -> Any:
     """Returns a websocket that shows a session; where it may queue no more than so many messages, whoever does not read it is frozen."""
     bearer = {"authorization": f"Bearer {server.token}"}
     more: dict[str, Any] = {"max_size": 5_000_000, "max_queue": queue, "close_timeout": 1}

@@ -64,14 +64,14 @@ def test_errors_are_reported(server: Served, session: str, text: str | bytes) ->
 
 
 def test_a_page_is_not_shown_the_session_of_the_same_name_of_another_server(server: Served, session: str) -> None:
-    async def first(**known: float) -> Any:
-        async with await attached(server, session, **known) as socket:
+    async def first(born: float | None = None) -> Any:
+        async with await attached(server, session, born=born) as socket:
             return await heard(socket, lambda _: True)
 
     async def talk() -> None:
         born = (await first())["session"]["born"]
-        assert (await first(born=born))["session"]["born"] == born
-        assert await first(born=born - 3600) == {"type": "refused", "error": "there is no such session", "session": session}
+        assert (await first(born))["session"]["born"] == born
+        assert await first(born - 3600) == {"type": "refused", "error": "there is no such session", "session": session}
 
     asyncio.run(talk())
 
