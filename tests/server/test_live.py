@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import json
+import os
 import re
 import socket
 import subprocess
@@ -98,7 +100,7 @@ def test_a_host_that_cannot_be_listened_at_is_reported(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "workbench", str(tmp_path), "--host", "203.0.113.1"]  # an address for documentation
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr == "error: cannot listen at 203.0.113.1: Cannot assign requested address\n"
+    assert done.stderr == f"error: cannot listen at 203.0.113.1: {os.strerror(errno.EADDRNOTAVAIL)}\n"
 
 
 @pytest.mark.parametrize(
