@@ -47,9 +47,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("models", nargs="?", type=Path, metavar="MODELS_FOLDER", help="the models (default: ./models, or a folder at home)")
     parser.add_argument("--host", default="127.0.0.1", help="where to listen; anything but loopback lets others reach it")
-    parser.add_argument(
-        "--port", type=_port, help="the port (default: the same at each start for a models folder; 0: any free one)"
-    )
+    parser.add_argument("--port", type=_port, help="the port (default: the same at each start for a models folder; 0: any free one)")
     parser.add_argument("--name", action="append", default=[], metavar="NAME", help="another name by which browsers may call this server")
     parser.add_argument("--no-browser", action="store_true", help="do not open the browser")
     parser.add_argument(
