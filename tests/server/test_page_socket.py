@@ -77,8 +77,8 @@ def test_a_page_is_not_shown_the_session_of_the_same_name_of_another_server(serv
 
     async def talk() -> None:
         born = (await first())["session"]["born"]
-        assert (await first(born))["session"]["born"] == born
-        assert await first(born - 3600) == {"type": "refused", "error": "there is no such session", "session": session}
+        assert (await first(born=born))["session"]["born"] == born
+        assert await first(born=born - 3600) == {"type": "refused", "error": "there is no such session", "session": session}
 
     asyncio.run(talk())
 
