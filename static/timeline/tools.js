@@ -49,7 +49,7 @@ registered("Five ticks on", "Shift+ArrowRight", () => goTicks(FEW), canGo);
 const zoomIn = registered("Zoom in", "z", () => near(1 / STEP));
 const zoomOut = registered("Zoom out", "Shift+z", () => near(STEP));
 const showAll = registered("Show all of the run", "f", fit);
-const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0);
+const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0 || running.value);
 const keep = registered("Save the timeline or a plot as a picture, or its values as CSV", null, savePictures, () => Boolean(session.value));
 const openTimeline = command({ text: "Open the timeline in a window of its own", group: "Page", work: () => openWindow("timeline") });
 commandsOf(() => names.value.map(({ name }) => {
