@@ -61,6 +61,14 @@ def when(page: Page, time: str) -> None:
     expect(page.locator("#timeline")).to_have_attribute("aria-valuetext", re.compile(re.escape(f"{time} s of ")))
 
 
+ALL_CURVES = """async () => {
+  const { known, plots } = await part("timeline/curves.js");
+  const { furthest } = await part("timeline/seek.js");
+  return plots.value.some(({ series }) => series.length > 0) && known.whole.some(([from, to]) => from === 0 && to >= furthest.value);
+}"""
+"""Whether there are plots, of which every value is known."""
+
+
 @pytest.fixture
 def ended(pages: Callable[..., Page]) -> Page:
     """A page that shows a run of models/doorway.py that is over."""
@@ -79,7 +87,7 @@ def ended(pages: Callable[..., Page]) -> Page:
     )
     expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"))
     # Curves come by a request of their own, after the events.
-    becomes_true(page, "async () => (await part('timeline/curves.js')).plots.value.some(({ title }) => title === 'speed')")
+    becomes_true(page, ALL_CURVES)
     return page
 
 
@@ -608,6 +616,9 @@ model.run()
 """
 
 
+PLOTTED = """async () => (await part("timeline/curves.js")).plots.value.map(({ title, series }) => [title, series])"""
+
+
 def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "counts.py").write_text(COUNTS, encoding="utf-8")
     page = pages("counts.py", height=1000)
@@ -637,6 +648,13 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
     tips = list(told(page, 0.95))
     assert any("goal.at 4" in text for text in tips), tips
     assert any("memory latency" in text and " s" in text for text in tips), tips
+    becomes_true(page, ALL_CURVES)
+    shown = page.evaluate(PLOTTED)
+    assert len(shown) == 3
+    page.evaluate("async () => (await part('server.js')).say({ type: 'seek', time: 0.2 })")
+    page.reload()
+    becomes_true(page, ALL_CURVES)
+    assert page.evaluate(PLOTTED) == shown  # also what lies ahead
 
 
 LINES = """async () => {
