@@ -1,4 +1,4 @@
-"""Computes curves of a run: joint positions, speeds of bodies, clearance in doorways, and contact forces."""
+"""Computes curves of the bodies of a run: joint positions, speeds, clearance in doorways, and contact forces."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -20,6 +20,9 @@ INTEGRATION = int(mujoco.mjtState.mjSTATE_INTEGRATION)
 Values = Sequence[float | None]
 Moment = tuple[int, bytes, Contacts]
 """A tick, the state at its end, and the contacts since the state before."""
+Shape = Literal["line", "points", "steps", "sum"]
+"""How a curve is drawn: a line through the values at the ends of ticks; values of single moments; values that hold until the next one;
+or a sum that grows evenly between its values."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,11 @@ class Curve:
     name: str
     unit: str
     group: str
-    """The group of curves that are drawn together: `joint`, `joint speed`, `place`, `speed`, `clearance` or `contact`."""
+    """The group of curves that are drawn together: `joint`, `joint speed`, `place`, `speed`, `clearance` or `contact`; of what an agent
+    does, such as `utility`, `activation` or the name of a slot."""
+    of: str | None = None
+    """The list in which it is offered; None for that of its group."""
+    shape: Shape = "line"
 
 
 class Source(ABC):

@@ -19,8 +19,10 @@ from actr3d.recording.opening import opened
 from actr3d.values import to_json
 from workbench.csv_files import write_events_csv, write_states_csv
 from workbench.curves import CurveReader, joined, stretch, thinned
+from workbench.event_curves import EventCurves
 from workbench.experiment_table import Table, counts
 from workbench.html_replay.make import write_replay
+from workbench.program_time import timed_events
 from workbench.recorded_simulations import RecordedSimulation, simulations_of
 from workbench.recorded_start import beginning_of, written
 from workbench.recording_diff import compare
@@ -49,7 +51,7 @@ def curves_of(path: Path, *, names: Sequence[str] | None, first: float, most: in
         path: The recording.
         names: Which curves; None for all.
         first: The start of the interval [s].
-        most: Maximum number of times, evenly spaced; the last moment is included, and so are moments of contacts.
+        most: Maximum number of times, evenly spaced, and of values of a curve of events; see `Curves.most`.
         last: The end of the interval [s]; None for the end of the recording.
 
     Raises:
@@ -57,12 +59,14 @@ def curves_of(path: Path, *, names: Sequence[str] | None, first: float, most: in
     """
     with Recorded(path) as recorded:
         found = simulations_of(recorded)
+        of_events = EventCurves()
+        of_events.take(timed_events(recorded))
 
     def sampled(one: RecordedSimulation) -> dict[str, Any]:
         known = partial(one.past.between, *stretch(first, last, one.period, one.begin))
         return CurveReader(one.mj_model, one.facts["world"]).sampled(thinned(known, most, one.past.every), names, one.period, one.begin)
 
-    return joined(map(sampled, found))
+    return of_events.added_to(joined(map(sampled, found)), names, first, last, most)
 
 
 def _from_table(what: Callable[..., Any]) -> Callable[..., Any]:

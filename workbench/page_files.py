@@ -12,6 +12,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
 from actr3d.trace_kinds import GROUPS, KINDS
+from workbench.part_names import NAMES
 from workbench.shipped import static
 
 ROUTE = "/static/{version}"
@@ -44,11 +45,17 @@ def trace_kinds() -> str:
     return f"export const GROUPS = {json.dumps(groups)};\nexport const TEXTS = {json.dumps(texts)};\n"
 
 
+def part_names() -> str:
+    """Returns a module with the names that users see for what adds to an activation."""
+    return f"export const NAMES = {json.dumps(dict(NAMES))};\n"
+
+
 GENERATED: Mapping[str, tuple[Callable[[], str], str]] = MappingProxyType(
     {
         "panels.js": (panels, "text/javascript"),
         "panels.css": (panel_styles, "text/css"),
         "trace_kinds.js": (trace_kinds, "text/javascript"),
+        "activation_parts.js": (part_names, "text/javascript"),
     }
 )
 """The files that are made on request, by name: what makes the text, and its type."""

@@ -196,7 +196,7 @@ async def recorded_curves(
 ) -> Response:
     """Returns curves of a recorded run over time, for plots: the named ones, or all; the run may still be going on.
 
-    `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`, as the question `curves` of a session returns.
+    They are returned as the question `curves` of a session returns them; see `workbench.page_commands.bodies.Curves`.
     """
     path = sessions_of(request).recordings.path(recording)
     return OpenFile(await _made(request, "curves", path, names=name, first=first, most=most, last=last), "application/json")

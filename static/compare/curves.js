@@ -9,6 +9,7 @@ import { nameOf, whenText } from "../runs/wording.js";
 export const COLOURS = ["series-1", "series-2"];
 const MAX_MOMENTS = 20_000; // moments per curve: every tick of a run of up to 200 s
 const AT_FIRST = 3; // the number of curves shown before the user has chosen any
+const USUAL = ["speed", "clearance", "learned utility", "retrieval latency", "utility", "activation", "time busy", "time full"]; // their groups, in this order
 const SIDES = ["first", "second"];
 const DASHES = [null, [6, 3]];
 
@@ -20,21 +21,26 @@ async function read(run, names) {
   return call("GET", `/api/recordings/${run.id}/curves?most=${MAX_MOMENTS}&${query(names)}`);
 }
 
-/** Returns the default curves: speed, clearance, and the joint that moves most. */
-async function first(runs, known) {
+/** Returns the joint that moves most; undefined if there is none. */
+async function moving(run, known) {
   const joints = known.filter(({ group }) => group === "joint").map(({ name }) => name);
-  const samples = await call("GET", `/api/recordings/${runs[0].id}/curves?most=100&${query(joints.slice(0, 100))}`);
+  if (joints.length === 0) return undefined;
+  const samples = await call("GET", `/api/recordings/${run.id}/curves?most=100&${query(joints.slice(0, 100))}`);
   const reach = (name) => Math.max(...samples.curves[name]) - Math.min(...samples.curves[name]);
-  const moving = joints.filter((name) => name in samples.curves).sort((one, other) => reach(other) - reach(one))[0];
-  const of = (wanted) => known.find(({ group }) => group === wanted)?.name;
-  return [moving, of("speed"), of("clearance")].filter(Boolean).slice(0, AT_FIRST);
+  return joints.filter((name) => name in samples.curves).sort((one, other) => reach(other) - reach(one))[0];
+}
+
+/** Returns the default curves: the joint that moves most, and one of each of the usual groups. */
+async function first(runs, known) {
+  const usual = USUAL.map((wanted) => known.find(({ group, of }) => wanted === (of ?? group))?.name);
+  return [await moving(runs[0], known), ...usual].filter(Boolean).slice(0, AT_FIRST);
 }
 
 /** Stores which curves exist, which are chosen, and their values in both runs. */
 function useCurves(runs) {
-  const known = useSignal(null); // [{name, unit, group}] of both runs
+  const known = useSignal(null); // [{name, unit, group, of, shape}] of both runs
   const chosen = useSignal([]);
-  const samples = useSignal({}); // by run and name: {times, values}
+  const samples = useSignal({}); // by run and name: {times, values, slope?}
   const error = useSignal(null);
   const key = runs.map(({ id }) => id).join();
 
@@ -57,9 +63,9 @@ function useCurves(runs) {
     async function complete(run) {
       const missing = chosen.value.filter((name) => !samples.value[`${run.id} ${name}`]);
       if (missing.length === 0) return;
-      const { times, curves } = await read(run, missing);
+      const { times, curves, events } = await read(run, missing);
       if (over) return;
-      const more = missing.map((name) => [`${run.id} ${name}`, { times, values: curves[name] ?? [] }]);
+      const more = missing.map((name) => [`${run.id} ${name}`, events[name] ?? { times, values: curves[name] ?? [] }]);
       samples.value = { ...samples.value, ...Object.fromEntries(more) };
     }
     Promise.all(runs.map(complete)).catch((reason) => !over && (error.value = reason.message));
@@ -70,7 +76,7 @@ function useCurves(runs) {
 }
 
 function Choice({ known, chosen }) {
-  const groups = [...Map.groupBy(known, ({ group }) => group)];
+  const groups = [...Map.groupBy(known, ({ group, of }) => of ?? group)];
   const toggle = (name) => (chosen.value = chosen.value.includes(name) ? chosen.value.filter((each) => each !== name) : [...chosen.value, name]);
   const add = (event) => {
     const name = event.currentTarget.value;
@@ -93,7 +99,9 @@ function Overlaid({ curve, runs, samples, cursor, span }) {
   const series = useMemo(
     () =>
       both.flatMap((of, n) =>
-        of?.values.some((value) => value !== null) ? [{ name: `${SIDES[n]}: ${runs[n].label.name || whenText(runs[n].made)}`, unit: curve.unit, times: of.times, values: of.values, colour: COLOURS[n], dash: DASHES[n] }] : [],
+        of?.values.some((value) => value !== null)
+          ? [{ name: `${SIDES[n]}: ${runs[n].label.name || whenText(runs[n].made)}`, unit: curve.unit, shape: curve.shape, times: of.times, values: of.values, slope: of.slope ?? undefined, until: runs[n].time, colour: COLOURS[n], dash: DASHES[n] }]
+          : [],
       ),
     [...both],
   );
@@ -111,7 +119,7 @@ export function Curves({ runs }) {
     <header><h3>Curves</h3>${known?.length ? html`<${Choice} known=${known} chosen=${chosen} />` : null}</header>
     ${error ? html`<p class="problem bad" role="alert">The curves cannot be read: ${error}</p>` : null}
     ${!known && !error ? html`<p class="waiting quiet" role="status"><progress aria-label="Reading"></progress> Reading the curves …</p>` : null}
-    ${known?.length === 0 ? html`<p class="empty">Neither run has a body in a world, or they were recorded before curves were kept.</p>` : null}
+    ${known?.length === 0 ? html`<p class="empty">Neither run has numbers over time.</p>` : null}
     ${known && known.length > 0 && chosen.value.length === 0 ? html`<p class="empty">Add a curve to see both runs over one another.</p>` : null}
     ${(known ?? []).length > 0 ? chosen.value.map((name) => html`<${Overlaid} key=${name} curve=${known.find((curve) => curve.name === name)} runs=${runs} samples=${samples} cursor=${cursor} span=${span} />`) : null}
   </section>`;

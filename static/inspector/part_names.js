@@ -1,19 +1,8 @@
 // The names of the components of activations, and the format of their numbers in columns.
 
 import { html } from "../vendor/preact.js";
+import { NAMES } from "../activation_parts.js";
 import { valueText } from "../parts/chunk.js";
-
-/** The names that users see for the components that library modules add to an activation. */
-const NAMES = {
-  DMBaseLevel: "base level",
-  DMFixed: "fixed",
-  DMSpreading: "spreading",
-  DMSalience: "salience",
-  DMAssociate: "association",
-  DMInhibition: "inhibition",
-  DMNoise: "noise",
-  partial: "partial match",
-};
 
 /** Returns the name of a component of an activation. */
 export function partName(part) {

@@ -6,13 +6,14 @@ import { valueAt } from "./curve.js";
  * Returns curves as the text of a CSV file: a column of times, and one for each curve, with units. Where a curve has no value, the cell
  * is empty: one that neither holds nor goes on (without `slope`, see `drawCurves`) has values only at its own moments.
  *
- * @param until The end of curves that go on [s].
+ * @param until The end of curves that go on, and have no `until` of their own [s].
  */
-export function csvText(curves, until = 0) {
+export function csvText(all, until = 0) {
+  const curves = all.map((curve) => ({ until, ...curve }));
   const quoted = (text) => `"${text.replaceAll('"', '""')}"`;
-  const goesOn = ({ times, values, slope }) => slope !== undefined && (values.at(-1) ?? null) !== null && until > times.at(-1);
+  const goesOn = ({ times, values, slope, until }) => slope !== undefined && (values.at(-1) ?? null) !== null && until > times.at(-1);
   const moments = new Set(curves.flatMap((curve) => curve.times));
-  if (curves.some(goesOn)) moments.add(until);
+  for (const curve of curves.filter(goesOn)) moments.add(curve.until);
   const times = [...moments].sort((one, other) => one - other);
   const heads = ["time [s]", ...curves.map(({ name, unit }) => (unit ? `${name} [${unit}]` : name))];
   const columns = curves.map((curve) => {

@@ -30,15 +30,15 @@ export function firstFrom(times, time) {
  *
  * @param near The distance up to which a moment counts that no line leads to [s].
  */
-export function valueAt({ times, values, steps, slope }, time, near = 0) {
+export function valueAt({ times, values, shape = "line", slope, until = Infinity }, time, near = 0) {
   const at = firstFrom(times, time + SAME) - 1;
   const [before, after] = [values[at] ?? null, values[at + 1] ?? null];
   const since = time - times[at];
   if (before !== null) {
     if (since <= SAME) return before;
-    if (slope !== undefined && at === times.length - 1) return before + slope * since;
-    if (steps && at < times.length - 1) return before;
-    if (after !== null) return before + ((after - before) * since) / (times[at + 1] - times[at]);
+    if (slope !== undefined && at === times.length - 1) return time <= until + SAME ? before + slope * since : null;
+    if (shape === "steps" && at < times.length - 1) return before;
+    if (after !== null && shape !== "points") return before + ((after - before) * since) / (times[at + 1] - times[at]);
     if (since <= near) return before;
   }
   return after !== null && times[at + 1] - time <= near ? after : null;
@@ -62,7 +62,7 @@ export function rangeOf(series) {
 }
 
 /** Returns a curve as points in a box; if several values share a pixel, its minimum and maximum. */
-function pointsOf({ times, values, steps, slope }, span, box, yOf, until) {
+function pointsOf({ times, values, shape, slope, until }, span, box, yOf) {
   const scale = box.width / (span.to - span.from);
   const [begin, beyond] = [Math.max(0, firstFrom(times, span.from) - 1), Math.min(times.length, firstFrom(times, span.to) + 1)];
   const points = [];
@@ -72,7 +72,7 @@ function pointsOf({ times, values, steps, slope }, span, box, yOf, until) {
   for (let n = begin; n < beyond; n += 1) {
     const x = box.x + (times[n] - span.from) * scale;
     const value = values[n];
-    if (steps && !dense && n > begin && values[n - 1] !== null) points.push(x, yOf(values[n - 1]));
+    if (shape === "steps" && !dense && n > begin && values[n - 1] !== null) points.push(x, yOf(values[n - 1]));
     if (value === null || value === undefined) {
       flush();
       [pixel, last] = [null, null];
@@ -92,6 +92,25 @@ function pointsOf({ times, values, steps, slope }, span, box, yOf, until) {
   return points;
 }
 
+/** Draws the values of single moments; those that share a pixel as one stroke. */
+function drawMoments(surface, { times, values }, span, box, yOf, colour) {
+  const scale = box.width / (span.to - span.from);
+  const beyond = firstFrom(times, span.to + SAME);
+  let [pixel, least, most] = [null, 0, 0];
+  const flush = () => pixel !== null && surface.fill(pixel - 1.5, yOf(most) - 1.5, 3, yOf(least) - yOf(most) + 3, colour);
+  for (let n = firstFrom(times, span.from); n < beyond; n += 1) {
+    const value = values[n];
+    if (value === null || value === undefined) continue;
+    const x = box.x + (times[n] - span.from) * scale;
+    if (pixel !== null && x - pixel < 1) [least, most] = [Math.min(least, value), Math.max(most, value)];
+    else {
+      flush();
+      [pixel, least, most] = [x, value, value];
+    }
+  }
+  flush();
+}
+
 /** Returns the values labelled on a scale: at least two, because one alone shows no size; otherwise as many as fit. */
 function scaleOf(least, most, room) {
   const values = ticks(least, most, stepFor(most - least, room));
@@ -109,12 +128,13 @@ function* alone(points) {
  *
  * @param surface The surface to draw on.
  * @param box {x, y, width, height} of the curves; the scale is left of it.
- * @param series [{name, unit, values, times?, colour?, dash?, steps?, slope?}]: with `steps`, each value holds until the next one; with
- *   `slope`, the last value goes on until `until`, and changes by it in a second.
+ * @param series [{name, unit, values, times?, colour?, dash?, shape?, slope?, until?}]: of the shape "points", each value is that of a
+ *   moment; of "steps", it holds until the next one; of any other, a line joins them. With `slope`, the last value goes on until `until`,
+ *   and changes by it in a second.
  * @param times The times of the series without their own [s].
  * @param span {from, to}: the times from the left to the right edge [s].
  * @param range [least, most]: the values from the lower to the upper edge.
- * @param until The end of curves that go on [s].
+ * @param until The end of curves that go on, and have no `until` of their own [s].
  */
 export function drawCurves(surface, box, { series, times, span, range, until }) {
   const [least, most] = range;
@@ -126,9 +146,11 @@ export function drawCurves(surface, box, { series, times, span, range, until }) 
   }
   surface.within(box.x, box.y, box.width, box.height, () => {
     series.forEach(({ colour, dash, ...curve }, n) => {
-      const points = pointsOf({ times, ...curve }, span, box, yOf, until);
-      surface.line(points, colour ?? seriesColour(n), { width: 1.5, dash: dash ?? [] });
-      for (const [x, y] of alone(points)) surface.fill(x - 2, y - 2, 4, 4, colour ?? seriesColour(n));
+      const [of, name] = [{ times, until, ...curve }, colour ?? seriesColour(n)];
+      if (of.shape === "points") return drawMoments(surface, of, span, box, yOf, name);
+      const points = pointsOf(of, span, box, yOf);
+      surface.line(points, name, { width: 1.5, dash: dash ?? [] });
+      for (const [x, y] of alone(points)) surface.fill(x - 2, y - 2, 4, 4, name);
     });
   });
 }

@@ -1,8 +1,8 @@
 // The menu for the plotted curves.
 
-import { html, useSignal } from "../vendor/preact.js";
+import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
-import { chosen, names, plot, plotUsual, titleOf } from "./curves.js";
+import { chosen, names, offered, plot, plotUsual, titleOf } from "./curves.js";
 
 const MAX_LISTED = 40; // the maximum number of curves shown of one list: the others are found by their names
 
@@ -22,6 +22,10 @@ function Group({ title, curves, all }) {
 
 export function CurveChoice() {
   const sought = useSignal("");
+  useEffect(() => {
+    offered.value = true;
+    return () => (offered.value = false);
+  }, []);
   const wanted = sought.value.trim().toLowerCase();
   const found = names.value.filter(({ name, group, of }) => `${of ?? titleOf(group)} ${name}`.toLowerCase().includes(wanted));
   const groups = Map.groupBy(found, ({ group, of }) => of ?? titleOf(group));

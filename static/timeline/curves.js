@@ -1,13 +1,13 @@
-// The curves that are plotted below the lanes: those of bodies, which the server computes, and the numbers of events. While the run is
-// active, the newest stretch of the former is requested, coarsely if it is fast; what was omitted is requested when it pauses: first the
-// visible stretch, then the rest, until each tick is known.
+// The curves that are plotted below the lanes, which the worker computes: those of bodies, with a value at each tick, and those of events,
+// each with its own times. While the run is active, the newest stretch is requested, coarsely if it is fast; what was omitted is requested
+// when it pauses: first the visible stretch, then the rest, until every value is known.
 
 import { computed, effect, signal } from "../vendor/preact.js";
 import { remembered } from "../local_storage.js";
 import { isLeft, say } from "../server.js";
-import { alive, complain, hurried, running, session, way } from "../store.js";
+import { alive, complain, hurried, running, session, state, way } from "../store.js";
 import { firstFrom, rangeOf } from "../parts/curve.js";
-import { lanes, lanesVersion } from "./record.js";
+import { lanes } from "./record.js";
 import { furthest } from "./seek.js";
 import { span } from "./view.js";
 
@@ -15,17 +15,22 @@ const PAUSE = 400; // between two requests while the run is active [ms]: answeri
 const AT_ONCE = 150; // the number of moments per request while it is active
 const OVERVIEW = 1500; // the number of moments for a whole run of which nothing is known yet
 const PIECE = 1000; // the number of ticks per request when paused: longer stretches would delay commands
+const MAX_VALUES = 5000; // the maximum number of values of a curve per request
+const NOTHING = { times: [], values: [], slope: null, range: [Infinity, -Infinity] };
 
-/** The curves of bodies: [{name, unit, group}]. */
+/** The curves of bodies: [{name, unit, group, of, shape}], where `of` is the list in which a curve is offered, if it is not its group. */
 const ofBodies = signal([]);
-/** How many curves of numbers there are. */
-const numberCount = computed(() => (lanesVersion.value, lanes.numbers.curves.size));
-/** All curves there are: [{name, unit, group, of?}]; `of` is the list in which a curve is offered, if it is not its group. */
-export const names = computed(() => (numberCount.value, [...ofBodies.value, ...lanes.numbers.curves.values()]));
+/** The same for those of events, as far as the page has asked for them. */
+const ofEvents = signal([]);
+/** All curves that are known. */
+export const names = computed(() => [...ofBodies.value, ...ofEvents.value]);
+/** Whether the curves are offered to the user. */
+export const offered = signal(false);
 /** Counts the changes of what is known. */
 export const curvesVersion = signal(0);
-/** The known data: moments [s], ascending, values by name, and the stretches [from, to] of which every moment is known. */
-export const known = { times: [], values: new Map(), whole: [] };
+/** The known data: of bodies, moments [s], ascending, and values by name; of events, by name `{times, values, slope, range}`; `until` when
+ * [s] they are known, at least coarsely (null for not at all), and the stretches [from, to] of which every value is known. */
+export const known = { times: [], values: new Map(), events: new Map(), until: null, whole: [] };
 
 const GROUPS = ["joint", "speed", "clearance", "contact", "place", "joint speed", "learned utility", "utility", "activation"]; // in the order in which they are plotted
 const TITLES = { joint: "joints", contact: "contact force", "joint speed": "joint speeds" };
@@ -83,11 +88,15 @@ const plotsOfBodies = computed(() => {
   return plotsOf(ofBodies.value, ({ name, unit }) => ({ name, unit, times: known.times, values: known.values.get(name) ?? [] }));
 });
 
-/** The same for numbers of events, which are drawn again with each event. */
-const plotsOfNumbers = computed(() => {
-  lanesVersion.value;
+/** The same for those of events, some of which go on until the newest moment. */
+const plotsOfEvents = computed(() => {
+  curvesVersion.value;
   const until = furthest.value;
-  return plotsOf(lanes.numbers.curves.values(), (curve) => ({ ...curve, name: curve.title, range: curve.rangeUntil(until) }));
+  return plotsOf(ofEvents.value, ({ name, unit, shape }) => {
+    const { times, values, slope, range } = known.events.get(name) ?? NOTHING;
+    const grown = slope && values.length ? values.at(-1) + slope * (until - times.at(-1)) : -Infinity;
+    return { name, unit, times, values, shape, slope: slope ?? undefined, range: [range[0], Math.max(range[1], grown)] };
+  });
 });
 
 /** Returns one plot for each group and unit of chosen curves. */
@@ -107,7 +116,7 @@ function plotsOf(curves, seriesOf) {
 /** The plots: [{title, unit, series, range}], one for each group with chosen curves. */
 export const plots = computed(() => {
   const order = ({ group }) => (GROUPS.includes(group) ? GROUPS.indexOf(group) : GROUPS.length);
-  return [...plotsOfBodies.value, ...plotsOfNumbers.value].sort((one, other) => order(one) - order(other));
+  return [...plotsOfBodies.value, ...plotsOfEvents.value].sort((one, other) => order(one) - order(other));
 });
 
 /** The times of contact with the body: bands, from the known moments. */
@@ -129,27 +138,61 @@ export const contacts = computed(() => {
   return bands.sort((one, other) => one.from - other.from);
 });
 
-let asked = ""; // the history, the run and the curves of the known data
+let of = null; // the history of the known data
+let named = null; // the history whose curves are named
+let key = ""; // the curves of the known data
+let counted = -1; // the number of events at the last request that wanted curves of events
+let piece = PIECE; // the number of ticks of the next request when paused
 let busy = false;
 let again = false;
 let newer = false; // whether the newest stretch was requested last, while the run is active
 
 const near = () => (session.peek()?.period || 0.01) / 2; // moments that are no farther apart count as the same [s]
+const exact = (time) => Math.round(time * 1e6) / 1e6; // a whole number of microseconds, as times of events are [s]
 
-function forget(key) {
-  asked = key;
-  Object.assign(known, { times: [], values: new Map(), whole: [] });
+function changed() {
   curvesVersion.value = curvesVersion.peek() + 1;
 }
 
+/** Removes everything, as the run continues differently, or another one is shown. */
+function forget(history) {
+  of = history;
+  key = "";
+  counted = -1;
+  Object.assign(known, { times: [], values: new Map(), events: new Map(), until: null, whole: [] });
+  changed();
+}
+
+/** Requests everything again for other curves; what is known of them is drawn until then. */
+function begin(list) {
+  key = list.join("\n");
+  Object.assign(known, { until: null, whole: [] });
+  for (const all of [known.values, known.events]) for (const name of [...all.keys()]) if (!list.includes(name)) all.delete(name);
+  changed();
+}
+
 /** Replaces the known data of a stretch by new data. */
-function put(names, { from, to, whole }, { times, curves }) {
-  const [begin, end] = [firstFrom(known.times, from - near()), firstFrom(known.times, to + near())];
-  const placed = (list, news) => [...list.slice(0, begin), ...news, ...list.slice(end)];
-  for (const name of names) known.values.set(name, placed(known.values.get(name) ?? [], curves[name] ?? times.map(() => null)));
-  known.times = placed(known.times, times);
+function put(list, { from, to, first, last, whole }, { times, curves, events }) {
+  const [low, high] = [firstFrom(known.times, from - near()), firstFrom(known.times, to + near())];
+  const placed = (list, news, low, high) => [...list.slice(0, low), ...news, ...list.slice(high)];
+  for (const name of list) {
+    if (events[name]) known.events.set(name, withNews(known.events.get(name) ?? NOTHING, events[name], first, last));
+    else if (isOfBody(name)) known.values.set(name, placed(known.values.get(name) ?? [], curves[name] ?? times.map(() => null), low, high));
+  }
+  known.times = placed(known.times, times, low, high);
+  known.until = Math.max(known.until ?? 0, to);
   if (whole) known.whole = joined([...known.whole, [from, to]]);
-  curvesVersion.value = curvesVersion.peek() + 1;
+  changed();
+}
+
+/** Returns a curve of events with the new data of a stretch. */
+function withNews({ times, values }, news, first, last) {
+  const [low, high] = [firstFrom(times, first), firstFrom(times, last + 5e-7)];
+  const placed = (list, more) => list.slice(0, low).concat(more, list.slice(high));
+  const curve = { times: placed(times, news.times), values: placed(values, news.values), slope: news.slope };
+  let [least, most] = NOTHING.range;
+  for (const value of curve.values) if (value !== null) [least, most] = [Math.min(least, value), Math.max(most, value)];
+  return { ...curve, range: [least, most] };
 }
 
 /** Joins stretches that overlap or follow each other. */
@@ -163,7 +206,7 @@ function joined(stretches) {
   return found;
 }
 
-/** Returns the first stretch with omitted moments between two moments; null if there is none. */
+/** Returns the first stretch with omitted values between two moments; null if there is none. */
 function gap(begin, end) {
   let from = begin;
   for (const [first, last] of known.whole) {
@@ -175,20 +218,32 @@ function gap(begin, end) {
   return { from, to: Math.min(beyond, end) };
 }
 
+function isOfBody(name) {
+  return ofBodies.peek().some((curve) => curve.name === name);
+}
+
+/** Whether curves of events are needed now: while the run is active, only if they are plotted or offered, as computing them takes time. */
+function needsEvents() {
+  if (!running.peek() || offered.peek()) return true;
+  if (kept.peek() === null && lanes.learns) return true; // learned utilities are usual curves
+  return (kept.peek() ?? chosen.peek()).some((name) => !isOfBody(name));
+}
+
 /** Returns the next stretch to request, {from, to, most, whole}; null if everything needed now is known. */
-function next() {
+function next(list) {
   const end = furthest.peek();
   const tick = session.peek()?.period || 0.01;
-  const last = known.times.at(-1);
-  const newest = (from, most) => ({ from, to: end, most, whole: (end - from) / tick < most - 2 });
-  if (last === undefined) return newest(0, OVERVIEW);
+  const bodies = list.some(isOfBody);
+  const newest = (from, most) => ({ from, to: end, most, whole: !bodies || (end - from) / tick < most - 2 });
+  if (known.until === null) return newest(0, OVERVIEW);
   const { from, to } = span.peek();
   const missing = hurried.peek() ? null : (gap(Math.max(0, from), Math.min(to, end)) ?? gap(0, end));
   // While the run is active there is always new data: requests alternate between it and what was omitted.
   newer = running.peek() && (!newer || !missing);
-  if (newer) return end > last + near() ? newest(last, AT_ONCE) : null;
-  const ticks = running.peek() ? AT_ONCE : PIECE;
-  return missing && { from: missing.from, to: Math.min(missing.to, missing.from + ticks * tick), most: ticks + 3, whole: true };
+  if (newer) return end > known.until + near() ? newest(known.until, AT_ONCE) : null;
+  if (!missing) return null;
+  const ticks = running.peek() ? Math.min(AT_ONCE, piece) : bodies ? Math.min(PIECE, piece) : piece;
+  return { from: missing.from, to: Math.min(missing.to, missing.from + ticks * tick), most: MAX_VALUES, whole: true, ticks };
 }
 
 async function ask() {
@@ -213,30 +268,44 @@ async function ask() {
 
 /** Requests missing data, if any; returns whether there may be more. Ignores data of another history. */
 async function askOnce() {
-  const { world } = session.peek() ?? {};
-  const whose = `${way.peek()} ${Boolean(world)}`; // a program may create its world later
-  if (!asked.startsWith(`${whose} `)) {
-    forget(`${whose} `);
-    const answer = world ? await say({ type: "curves", names: [] }) : { names: [] };
-    if (!whose.startsWith(`${way.peek()} `)) return true;
-    ofBodies.value = answer.names;
-  }
-  const list = ofBodies.peek().map(({ name, group }) => (group === "contact" || chosen.peek().includes(name) ? name : null)).filter(Boolean);
-  const key = `${whose} ${JSON.stringify(list)}`;
-  if (asked !== key) forget(key);
-  const stretch = list.length > 0 ? next() : null;
+  const history = `${way.peek()} ${Boolean(session.peek()?.world)}`; // a program may create its world later
+  if (of !== history) forget(history);
+  const isNew = named !== history;
+  const events = needsEvents();
+  const list = isNew ? [] : names.peek().map(({ name, group }) => (group === "contact" || chosen.peek().includes(name) ? name : null)).filter(Boolean);
+  if (key !== list.join("\n")) begin(list);
+  const mine = key;
+  const now = furthest.peek();
+  const count = state.peek()?.events ?? 0;
+  // Events may have been added at the newest moment itself, and curves that the page does not know.
+  const stretch = (list.length > 0 ? next(list) : null) ?? (isNew || (events && counted !== count) ? { from: now, to: now, most: AT_ONCE, whole: false } : null);
   if (!stretch) return false;
-  const answer = await say({ type: "curves", names: list, first: Math.max(0, stretch.from - near()), last: stretch.to + near(), most: stretch.most });
-  if (asked !== key || !whose.startsWith(`${way.peek()} `)) return true;
-  if (answer.names.length !== ofBodies.peek().length) ofBodies.value = answer.names; // another world was added
-  put(list, stretch, answer);
-  return known.times.length > 0;
+  Object.assign(stretch, { first: exact(Math.max(0, stretch.from - near())), last: exact(stretch.to + near()) });
+  const seen = !events ? null : isNew ? 0 : ofEvents.peek().length;
+  const answer = await say({ type: "curves", names: list, first: stretch.first, last: stretch.last, most: stretch.most, seen });
+  if (of !== history || !history.startsWith(`${way.peek()} `)) return true;
+  const [bodies, more] = [true, false].map((isBody) => answer.names.filter(({ shape }) => (shape === "line") === isBody));
+  if (isNew || bodies.length !== ofBodies.peek().length) ofBodies.value = bodies; // another world was added
+  if (isNew || more.length > 0) ofEvents.value = isNew ? more : [...ofEvents.peek(), ...more];
+  named = history;
+  if (events) counted = count;
+  if (key !== mine || list.length === 0) return key !== mine || more.length > 0 || isNew;
+  const isWhole = Object.values(answer.events).every(({ whole }) => whole);
+  if (stretch.ticks) piece = isWhole ? Math.max(PIECE, 2 * stretch.ticks) : Math.max(1, Math.floor(stretch.ticks / 2));
+  put(list, { ...stretch, whole: stretch.whole && (isWhole || stretch.ticks === 1) }, answer);
+  return true;
 }
 
 document.addEventListener("visibilitychange", () => alive.peek() && ask());
 
+const eventCount = computed(() => state.value?.events);
+
 effect(() => {
-  for (const one of [furthest, running, chosen, session, way, span]) one.value;
+  for (const one of [furthest, running, chosen, session, way, span, offered, eventCount]) one.value;
   if (alive.value) ask();
-  else if (!session.value && ofBodies.peek().length > 0) ofBodies.value = [];
+  else if (!session.value && of !== null) {
+    forget(null);
+    named = null;
+    for (const known of [ofBodies, ofEvents]) known.value = [];
+  }
 });

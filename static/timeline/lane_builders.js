@@ -126,6 +126,10 @@ function reward(lanes, time, source, { value }) {
   lanes.lane("rewards", "marks", "rewards").mark(time, { text: `${valueText(value)} to ${source}`, tone: "good" });
 }
 
+function utility(lanes) {
+  lanes.learns = true;
+}
+
 /** What a part holds or does ends on the axis with its run: a program may make other runs afterwards. */
 function stop(lanes, time, source) {
   for (const lane of lanes.ofRun(source)) lane.suspend(time);
@@ -154,4 +158,5 @@ export const TAKERS = {
   output,
   command,
   reward,
+  utility,
 };

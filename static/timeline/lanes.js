@@ -1,11 +1,10 @@
-// Lanes made of a run's events as they arrive: a row for each thing with states, with a band for each state; and curves of their numbers.
+// Lanes made of a run's events as they arrive: a row for each thing with states, with a band for each state.
 
 import { runOf } from "../inspector/agents.js";
 import { chunkText } from "../parts/chunk.js";
 import { Former } from "./commands.js";
 import { firstWhere } from "./search.js";
 import { TAKERS } from "./lane_builders.js";
-import { Numbers } from "./numbers.js";
 
 /**
  * @typedef Band
@@ -95,13 +94,13 @@ export class Lanes {
     this.clear();
   }
 
-  /** Removes everything; `whole` if the events that follow begin with the first of the run. */
-  clear(whole = true) {
+  /** Removes everything. */
+  clear() {
     this.lanes = new Map();
     this.tones = new Map();
     this.asked = new Map();
     this.former = new Former();
-    this.numbers = new Numbers(whole);
+    this.learns = false; // whether utilities are learned
     this.now = 0;
     this.begin = null;
   }
@@ -132,13 +131,11 @@ export class Lanes {
     const now = this.now / 1e6;
     this.begin ??= now;
     TAKERS[kind]?.(this, now, source, data, event);
-    this.numbers.take(now, source, kind, data);
   }
 
   /** Removes what was over before a time [s]. */
   forget(time) {
     this.begin = time;
-    this.numbers.forget(time);
     for (const lane of this.lanes.values()) lane.bands.splice(0, lane.firstAfter(time));
   }
 }

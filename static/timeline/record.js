@@ -14,7 +14,7 @@ effect(() => {
   const { list, first, cut } = events.value;
   // If the end of a run is cut off, all lanes are rebuilt: it happens only when a user changes the run's past.
   if (list !== taken.list || cut) {
-    lanes.clear(first === 0);
+    lanes.clear();
     Object.assign(taken, { list, first, next: first });
   }
   for (let n = taken.next - first; n < list.length; n += 1) lanes.take(list[n]);

@@ -50,7 +50,7 @@ const zoomOut = registered("Zoom out", "Shift+z", () => near(STEP));
 registered("Make the plots taller", "h", () => grow(1), () => names.value.length > 0);
 registered("Make the plots lower", "Shift+h", () => grow(-1), () => names.value.length > 0);
 const showAll = registered("Show all of the run", "f", fit);
-const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0);
+const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0 || running.value);
 const keep = registered("Save the timeline or a plot as a picture, or its values as CSV", null, savePictures, () => Boolean(session.value));
 const openTimeline = command({ text: "Open the timeline in a window of its own", group: "Page", work: () => openWindow("timeline") });
 commandsOf(() => names.value.map(({ name }) => {

@@ -283,6 +283,40 @@ IN_ITS_BOX = """row => {
 }"""
 
 
+def test_runs_without_a_body_are_compared_by_what_their_agents_did(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    expect(page.locator("#status")).to_contain_text("at its start")
+    open_tab(page, "Runs")
+    runs = page.evaluate(
+        """async () => {
+          const { say } = await part("server.js");
+          const { alive, session, state } = await part("store.js");
+          const made = [];
+          for (const seed of [1, 2]) {
+            const before = session.value.run;
+            await say({ type: "restart", seed, run: true });
+            const isOver = () => session.value.run > before && alive.value && state.value.status === "ended";
+            while (!isOver()) await new Promise((done) => setTimeout(done, 50));
+            made.push(session.value.recording);
+          }
+          (await part("compare/compare.js")).compareRuns(...made);
+          return made;
+        }"""
+    )
+    assert len(set(runs)) == 2
+    dialog = page.get_by_role("dialog", name="Two runs")
+    expect(dialog.get_by_role("figure", name=re.compile("latency$")).locator(".plot-of")).to_have_text(
+        [re.compile("first"), re.compile("second")]
+    )
+    dialog.get_by_label("Add a curve").select_option(label="memory busy")
+    busy = dialog.get_by_role("figure", name="memory busy")
+    canvas = busy.locator("canvas")
+    area = canvas.bounding_box()
+    assert area is not None
+    canvas.hover(position={"x": area["width"] - 10, "y": 20})
+    expect(busy.locator("output")).to_have_text([re.compile(r"\d"), re.compile(r"\d")])  # it goes on to the end of both runs
+
+
 @pytest.mark.slow
 def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     open_tab(page, "Runs")

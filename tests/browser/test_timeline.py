@@ -61,6 +61,14 @@ def when(page: Page, time: str) -> None:
     expect(page.locator("#timeline")).to_have_attribute("aria-valuetext", re.compile(re.escape(f"{time} s of ")))
 
 
+ALL_CURVES = """async () => {
+  const { known, plots } = await part("timeline/curves.js");
+  const { furthest } = await part("timeline/seek.js");
+  return plots.value.some(({ series }) => series.length > 0) && known.whole.some(([from, to]) => from === 0 && to >= furthest.value);
+}"""
+"""Whether there are plots, of which every value is known."""
+
+
 @pytest.fixture
 def ended(pages: Callable[..., Page]) -> Page:
     """A page that shows a run of models/doorway.py that is over."""
@@ -79,7 +87,7 @@ def ended(pages: Callable[..., Page]) -> Page:
     )
     expect(page.locator("#timeline")).to_have_attribute("aria-valuemax", re.compile(r"6\.\d"))
     # Curves come by a request of their own, after the events.
-    becomes_true(page, "async () => (await part('timeline/curves.js')).plots.value.some(({ title }) => title === 'speed')")
+    becomes_true(page, ALL_CURVES)
     return page
 
 
@@ -493,7 +501,8 @@ ENDS = """async () => {
   const { lanes } = await part("timeline/record.js");
   const { state } = await part("store.js");
   const fired = [1, 2, 3, 4, 5, 6].map((run) => lanes.lanes.get(`productions ${run === 1 ? "top" : `top#${run}`}`)?.bands.at(-1).to);
-  const latest = Math.max(...[...lanes.numbers.curves.values()].map(({ times }) => times.at(-1)));
+  const { events } = await (await part("server.js")).say({ type: "curves" });
+  const latest = Math.max(...Object.values(events).map(({ times }) => times.at(-1)));
   return { fired, printed: lanes.lanes.get("said").bands.map(({ from }) => from), now: state.value.time, latest };
 }"""
 """When the last production of each run has fired, when something was printed, the time of the run, and that of the last number."""
@@ -604,6 +613,9 @@ model.run()
 """
 
 
+PLOTTED = """async () => (await part("timeline/curves.js")).plots.value.map(({ title, series }) => [title, series])"""
+
+
 def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "counts.py").write_text(COUNTS, encoding="utf-8")
     page = pages("counts.py", height=1000)
@@ -620,9 +632,10 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
           const { csvText } = await part("parts/csv.js");
           const { plots } = await part("timeline/curves.js");
           const { lanes } = await part("timeline/record.js");
-          const busy = plots.value.find(({ title }) => title === "time busy").series[0];
-          const csv = plots.value.filter(({ title }) => title === "at").map(({ series }) => csvText(series));
-          return { csv, busy: busy.values.at(-1), end: lanes.now / 1e6 };
+          const seriesOf = (title) => plots.value.find((plot) => plot.title === title)?.series ?? [];
+          while (!["time busy", "at"].every((title) => seriesOf(title)[0]?.values.length > 0)) await new Promise((done) => setTimeout(done, 20));
+          const csv = [csvText(seriesOf("at"))];
+          return { csv, busy: seriesOf("time busy")[0].values.at(-1), end: lanes.now / 1e6 };
         }"""
     )
     rows = list(csv.reader(found["csv"][0].splitlines()))
@@ -632,6 +645,13 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
     tips = list(told(page, 0.95))
     assert any("goal.at 4" in text for text in tips), tips
     assert any("memory latency" in text and " s" in text for text in tips), tips
+    becomes_true(page, ALL_CURVES)
+    shown = page.evaluate(PLOTTED)
+    assert len(shown) == 3
+    page.evaluate("async () => (await part('server.js')).say({ type: 'seek', time: 0.2 })")
+    page.reload()
+    becomes_true(page, ALL_CURVES)
+    assert page.evaluate(PLOTTED) == shown  # also what lies ahead
 
 
 LINES = """async () => {
@@ -640,11 +660,13 @@ LINES = """async () => {
   const long = { name: "long", unit: "m", times: [0, 1, 2, 4], values: [0, 10, null, 40] };
   const short = { name: "short", unit: "m", times: [0, 1], values: [5, 6] };
   const once = { name: "once", unit: "", times: [1.5], values: [7] };
-  const held = { name: "held", unit: "", times: [1, 2], values: [3, 4], steps: true, slope: 0 };
+  const held = { name: "held", unit: "", times: [1, 2], values: [3, 4], shape: "steps", slope: 0 };
   const busy = { name: "busy", unit: "s", times: [0, 1, 2], values: [0, 1, 1], slope: 1 };
-  const gone = { name: "gone", unit: "", times: [0, 1], values: [8, null], steps: true, slope: 0 };
+  const gone = { name: "gone", unit: "", times: [0, 1], values: [8, null], shape: "steps", slope: 0 };
+  const points = { name: "points", unit: "", times: [0, 2], values: [1, 9], shape: "points" };
+  const over = { ...held, name: "over", until: 3 };
   const moments = [-0.5, 0, 0.5, 1, 1.5, 2, 3, 5];
-  const all = [long, short, once, held, busy, gone];
+  const all = [long, short, once, held, busy, gone, points, over];
   const values = Object.fromEntries(all.map((curve) => [curve.name, moments.map((time) => valueAt(curve, time))]));
   const near = [1.4, 1.6, 2].map((time) => valueAt(once, time, 0.2));
   return { values, near, compared: csvText([long, short]), csv: csvText([long, once, held, busy, gone], 5) };
@@ -661,6 +683,8 @@ def test_the_value_of_a_curve_is_where_its_line_is_and_nowhere_else(blank: Page)
         "held": [None, None, None, 3, 3, 4, 4, 4],
         "busy": [None, 0, 0.5, 1, 1, 1, 2, 4],
         "gone": [None, 8, 8, None, None, None, None, None],
+        "points": [None, 1, None, None, None, 9, None, None],
+        "over": [None, None, None, 3, 3, 4, 4, None],
     }
     assert found["near"] == [7, 7, None]
     assert found["compared"].splitlines() == ['"time [s]","long [m]","short [m]"', "0,0,5", "1,10,6", "2,,", "4,40,"]
@@ -706,8 +730,8 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
     becomes_true(page, "async () => (await part('store.js')).state.value?.status === 'ended'")
     curves = page.evaluate(
         """async () => {
-          const { lanes } = await part("timeline/record.js");
-          return Object.fromEntries([...lanes.numbers.curves].map(([name, { values }]) => [name, values.at(-1)]));
+          const { events } = await (await part("server.js")).say({ type: "curves" });
+          return Object.fromEntries(Object.entries(events).map(([name, { values }]) => [name, values.at(-1)]));
         }"""
     )
     assert (curves["left.go utility"], curves["right.go utility"]) == pytest.approx((0.638704, -2.050576))
@@ -718,14 +742,18 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
         """async () => {
           const { plot } = await part("timeline/curves.js");
           for (const name of ["left.goal full", "left.memory busy", "left.go utility"]) plot(name, true);
+          const { plots } = await part("timeline/curves.js");
+          const isThere = (title) => plots.value.find((plot) => plot.title === title)?.series.every(({ values }) => values.length > 0);
+          while (!["time full", "time busy", "utility"].every(isThere)) await new Promise((done) => setTimeout(done, 20));
         }"""
     )
-    tips = {share: "\n".join(told(page, share)) for share in (0.15, 0.4, 0.7)}
+    tips = {share: "\n".join(told(page, share)) for share in (0.14, 0.16, 0.4, 0.7)}  # of 1.25 s
     for text in tips.values():
         full = re.search(r"time full at ([\d.]+) s\s+left\.goal full ([\d.]+) s", text)
         assert full is not None, text
         assert float(full[2]) == pytest.approx(float(full[1]), abs=0.01)
-    assert re.search(r"left\.go utility 0\.\d+", tips[0.15])
+    assert re.search(r"left\.go utility 0\.\d+", tips[0.16])
+    assert "left.go utility –\n" in tips[0.14]  # between two conflicts it is not known
     assert "left.go utility –\n" in tips[0.4]
     page.get_by_role("button", name="Save a picture").click()
     with page.expect_download() as taken:
@@ -736,35 +764,6 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
     assert float(rows[-1]["time [s]"]) == 1
     assert rows[-1]["left.go utility"] == ""
     assert 0.1 < float(rows[-1]["left.memory busy [s]"]) < 0.5
-
-
-LATE = """async () => {
-  const { known, session, take } = await part("store.js");
-  const { lanes } = await part("timeline/record.js");
-  const { names, plot, plots } = await part("timeline/curves.js");
-  const of = (time, busy) => [time * 1e6, "memory", "state", { busy }];
-  // At once, before a message of the server can replace the run.
-  const seen = (first, list) => {
-    take([{ run: known.run + 1, epoch: 1, events: { first, list, ...(first > 0 && { missing: first }) } }]);
-    plot("memory busy", true);
-    const { name, times, values } = plots.value.find(({ title }) => title === "time busy").series[0];
-    return { name, times: [...times], values: [...values] };
-  };
-  const events = [of(1, true), of(3, false), of(5, true), of(6, false)];
-  const whole = seen(0, events);
-  const late = seen(2, events.slice(2));
-  const idle = seen(1, events.slice(1));
-  return { whole, late, idle };
-}"""
-"""The time that a memory was busy: of a run whose first event is known, and of others of which the page was sent only the last ones."""
-
-
-def test_a_sum_of_a_run_whose_beginning_is_not_known_says_from_when_on_it_counts(page: Page) -> None:
-    shows(page, "#status", "at its start")
-    found = page.evaluate(LATE)
-    assert found["whole"] == {"name": "memory busy", "times": [1, 3, 5, 6], "values": [0, 2, 2, 3]}
-    assert found["late"] == {"name": "memory busy since 5.000 s", "times": [5, 6], "values": [0, 1]}
-    assert found["idle"] == {"name": "memory busy since 3.000 s", "times": [3, 5, 6], "values": [0, 0, 1]}
 
 
 PLOTTED = """async (title) => {

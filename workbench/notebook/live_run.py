@@ -109,6 +109,7 @@ class LiveRun(SimulationRun):
         if self._own or self.left or os.getpid() != self._process:
             return
         self._look()
+        self.take_events()  # a cell may go back next
         if self._simulation.timeline.lockstep.broken:
             self._controller.end("failed", "in a cell of the notebook")
         else:

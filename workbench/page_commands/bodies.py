@@ -79,12 +79,19 @@ class BodyState(Question):
 class Curves(Question):
     """Returns curves of the run over time, up to the furthest time that it has reached, for plots.
 
-    The answer is `{names: [{name, unit, group}], times: [s], curves: {name: [value or null]}}`. `names` lists all curves, with
-    angles in degrees; `curves` holds the requested ones, with one value for each time, or null if there is no value (for example the
-    clearance of a body that is not in the doorway). Groups are `place`, `speed`, `clearance`, `contact`, `joint` and `joint speed`. All
-    values are those at the ends of ticks, except the contact force: it is the greatest in the physics steps since the time before. After
-    going back, a run still returns what lies ahead, until it continues differently. `/api/recordings/{recording}/curves` returns the
-    same for a recording.
+    The answer is `{names: [{name, unit, group, of, shape}], times: [s], curves: {name: [value or null]}, events: {name: {times: [s],
+    values: [value or null], slope, whole}}}`. `names` lists all curves, with angles in degrees: first those of bodies, with the shape
+    `line`, then those of events, such as utilities, activations and numbers in buffers, in the order in which they appeared. `curves`
+    holds the requested ones of bodies, with one value for each time, or null if there is no value (for example the clearance of a body
+    that is not in the doorway). Their groups are `place`, `speed`, `clearance`, `contact`, `joint` and `joint speed`. All values are
+    those at the ends of ticks, except the contact force: it is the greatest in the physics steps since the time before.
+
+    `events` holds the requested ones of events, each with its own times. Their shape is `points` (each value is that of a moment),
+    `steps` (each holds until the next one) or `sum` (it grows evenly between two); `slope` says by how much the last value of the run
+    changes in a second, and `whole` whether no value of the interval is left out.
+
+    After going back, a run still returns what lies ahead, until it continues differently. `/api/recordings/{recording}/curves` returns
+    the same for a recording.
     """
 
     type: Literal["curves"] = "curves"
@@ -96,7 +103,10 @@ class Curves(Question):
     """End of the interval, included [s]; None for the furthest time of the run."""
     most: int = Field(default=1_000, ge=2, le=5_000)
     """Maximum number of times, evenly spaced; the last moment of the interval is included, and so are moments of contacts. A shorter
-    interval is returned completely."""
+    interval is returned completely. Of a curve of events, at most so many values; its extremes and the last value are included."""
+    seen: int | None = Field(default=0, ge=0)
+    """How many curves of events the page knows: `names` need not list these again. None if it wants no curves of events: computing them
+    takes time."""
 
     def answer(self, run: ControlledRun) -> dict[str, Any]:
-        return run.curves(self.names, self.first, self.last, self.most)
+        return run.curves(self.names, self.first, self.last, self.most, self.seen)

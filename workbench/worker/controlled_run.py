@@ -12,6 +12,8 @@ from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.trace import Trace, TraceEvent
+from workbench.event_curves import EventCurves
+from workbench.worker.known_run import KnownRun
 from workbench.worker.names import Names, Top
 from workbench.worker.shown import Shown
 from workbench.worker.stop_conditions import Touches
@@ -21,6 +23,8 @@ class ControlledRun(ABC):
     """A run that a controller controls."""
 
     _recording: Recording | None = None
+    _event_curves: EventCurves | None = None
+    """The curves of the events that have been taken; None until they are needed."""
     ancestors: Sequence[Sequence[Any]] = ()
     """The recordings from which the run comes, the nearest first, each with the time at which the one before it left it [s]."""
 
@@ -128,12 +132,39 @@ class ControlledRun(ABC):
         """Returns the latest top models, or the agents of a simulation."""
 
     @abstractmethod
-    def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
-        """Returns curves of the known run; see `workbench.page_commands.bodies.Curves`."""
+    def body_curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
+        """Returns curves of the bodies of the known run; see `workbench.page_commands.bodies.Curves`."""
 
     @abstractmethod
     def names(self) -> Names:
         """Returns the names at which the run can be stopped."""
+
+    # -- curves
+
+    def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int, seen: int | None = 0) -> dict[str, Any]:
+        """Returns curves of the known run; see `workbench.page_commands.bodies.Curves`."""
+        bodies = self.body_curves(names, first, last, most)
+        if seen is None:
+            return {**bodies, "events": {}}
+        return self.take_events().added_to(bodies, names, first, last, most, seen=seen)
+
+    def take_events(self) -> EventCurves:
+        """Adds the events up to now to the curves of events, which know them also after the run has gone back; returns these curves."""
+        if self._event_curves is None:
+            self._event_curves = EventCurves()
+        count = 0 if self.trace is None else len(self.trace)
+        if count > self._event_curves.next:
+            self._event_curves.take(self.events(self._event_curves.next, count))
+        return self._event_curves
+
+    def repeat_recorded(self, known_run: KnownRun) -> None:
+        """Takes the curves of the events of a recorded run, which this run repeats."""
+        self._event_curves = known_run.event_curves
+
+    def cut_events(self, count: int) -> None:
+        """Removes the events from a number on from the curves of events, because the run continues differently."""
+        if self._event_curves is not None and self._event_curves.next > count:
+            self._event_curves = None  # those up to now are in the trace
 
     # -- what is shown
 

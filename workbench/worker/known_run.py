@@ -1,4 +1,4 @@
-"""Holds what a recorded run did, for a run that repeats it: its events, its duration, and its physics."""
+"""Holds what a recorded run did, for a run that repeats it: its events and their curves, its duration, and its physics."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from actr3d.recording import Recorded
 from actr3d.recording.writer import State as RecordedState
 from actr3d.runner.facts import REACHED
 from actr3d.trace import TraceEvent
+from workbench.event_curves import EventCurves
 from workbench.program_time import events_both_ways
 from workbench.worker.messages import Notice, notice
 from workbench.worker.truncation import event_json
@@ -36,6 +37,8 @@ class KnownRun:
         """A hash of each event."""
         self.events: list[bytes] = []
         """The last events, as JSON for pages."""
+        self.event_curves = EventCurves()
+        """The curves of all its events."""
         with Recorded(path) as recorded:
             self.facts: dict[str, Any] = recorded.facts
             self.ticks: int = recorded.ticks
@@ -60,6 +63,7 @@ class KnownRun:
         return self.count - len(self.events)
 
     def _take(self, event: TraceEvent, timed: TraceEvent) -> None:
+        self.event_curves.take([timed])
         text = event_json(event)
         self._digests.append(hash(text))
         self.events.append(text if timed == event else event_json(timed))

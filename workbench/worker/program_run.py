@@ -599,7 +599,7 @@ class ProgramRun(ControlledRun):
             found += [Top(agent, prefix) for agent in children_of(model)] if model.sch.in_lockstep else [Top(model)]
         return found
 
-    def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
+    def body_curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
         return joined(shown.curves(names, first, last, most, begin) for _, (shown, begin) in sorted(self._simulations.items()))
 
     def scene(self) -> tuple[bytes | None, dict[str, float]]:

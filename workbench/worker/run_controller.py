@@ -91,6 +91,7 @@ class RunController:
         """Sends all events of a recorded run, which this run repeats, before this run has reached them."""
         with self._sending:
             self._known_run = known_run
+            self.run.repeat_recorded(known_run)
             self._sent = known_run.count
             self.channel.send_events(known_run.first, known_run.events)
             known_run.events = []
@@ -206,7 +207,12 @@ class RunController:
                     self.reason = changed
             if changed is not None or events < self._sent:
                 self._sent = min(self._sent, events)
-                self.channel.cut(Cut(events=events), events)
+                self._cut(events)
+
+    def _cut(self, events: int) -> None:
+        """Removes what was known of the events from a number on."""
+        self.run.cut_events(events)
+        self.channel.cut(Cut(events=events), events)
 
     def leave_recording(self, at: float, until: float) -> None:
         """Makes the run, which has repeated a recording, a branch of it: what follows is kept in the run's own recording.
@@ -269,6 +275,7 @@ class RunController:
             Actr3dError: If the run has not been there.
         """
         self._reached = max(self._reached, self.run.clock)
+        self.run.take_events()  # the trace ends at the other time
         self.run.go_to(time)
         self.show()
 
@@ -394,7 +401,7 @@ class RunController:
             return state
         self.run.forget_ahead()
         self._sent = state.events if found is None else found
-        self.channel.cut(Cut(events=self._sent), self._sent)
+        self._cut(self._sent)
         different = None if found is None else self.run.events(found, found + 1)[0]
         self.leave_recording(state.time if different is None else min(known, seconds(different.time_us)), known)
         self.channel.post(difference_notice(state.time, different))

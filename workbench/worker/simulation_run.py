@@ -307,7 +307,7 @@ class SimulationRun(ControlledRun):
     def tops(self) -> list[Top]:
         return [Top(agent) for agent in self._simulation.agents.values()]
 
-    def curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
+    def body_curves(self, names: Sequence[str] | None, first: float, last: float | None, most: int) -> dict[str, Any]:
         return self._shown.curves(names, first, last, most)
 
     def names(self) -> Names:
