@@ -633,7 +633,8 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
           const { plots } = await part("timeline/curves.js");
           const { lanes } = await part("timeline/record.js");
           const seriesOf = (title) => plots.value.find((plot) => plot.title === title)?.series ?? [];
-          while (!["time busy", "at"].every((title) => seriesOf(title)[0]?.values.length > 0)) await new Promise((done) => setTimeout(done, 20));
+          const known = () => ["time busy", "at"].every((title) => seriesOf(title)[0]?.values.length > 0);
+          while (!known()) await new Promise((done) => setTimeout(done, 20));
           const csv = [csvText(seriesOf("at"))];
           return { csv, busy: seriesOf("time busy")[0].values.at(-1), end: lanes.now / 1e6 };
         }"""
@@ -766,7 +767,7 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
     assert 0.1 < float(rows[-1]["left.memory busy [s]"]) < 0.5
 
 
-PLOTTED = """async (title) => {
+PLOT_ROW = """async (title) => {
   const { drawTimeline } = await part("timeline/draw.js");
   const { scene } = await part("timeline/canvas.js");
   const texts = [];
@@ -795,18 +796,18 @@ def test_plots_are_resized_and_name_every_curve_with_its_value_at_the_playhead(p
           names.value.filter(({ name }) => name.endsWith("_yaw")).slice(0, 5).forEach(({ name }) => plot(name, true));
         }"""
     )
-    until(page, lambda: page.evaluate(PLOTTED)["texts"][1:] and "–" not in page.evaluate(PLOTTED)["texts"])
-    row = page.evaluate(PLOTTED)
+    until(page, lambda: page.evaluate(PLOT_ROW)["texts"][1:] and "–" not in page.evaluate(PLOT_ROW)["texts"])
+    row = page.evaluate(PLOT_ROW)
     speeds: list[list[str]] = []
     for time in ("0.50", "0.00"):
         page.evaluate("async (time) => (await part('timeline/seek.js')).seek(time)", float(time))
         when(page, time)
-        speeds.append(page.evaluate(PLOTTED, "speed")["texts"])
+        speeds.append(page.evaluate(PLOT_ROW, "speed")["texts"])
     assert speeds == [["walker", "1.20"], ["walker", "0.000"]]
     assert (row["curves"], row["height"], len(row["texts"])) == (5, 20 + 5 * 13, 10)  # each name and its value
     page.locator("#status").click()
     page.keyboard.press("Shift+h")
-    lower = page.evaluate(PLOTTED)
+    lower = page.evaluate(PLOT_ROW)
     assert (lower["height"], len(lower["texts"]), lower["texts"][-1]) == (72, 3 * 2 + 1, "and 2 more")
     area = box(page)
     page.mouse.move(area["x"] + 20, area["y"] + lower["top"] + lower["height"])
@@ -814,8 +815,8 @@ def test_plots_are_resized_and_name_every_curve_with_its_value_at_the_playhead(p
     page.mouse.down()
     page.mouse.move(area["x"] + 20, area["y"] + lower["top"] + lower["height"] + 60)
     page.mouse.up()
-    assert page.evaluate(PLOTTED)["height"] == 132
+    assert page.evaluate(PLOT_ROW)["height"] == 132
     assert "0.00 s" in page.locator("#time").inner_text()  # it did not go elsewhere
     page.reload()
     until(page, lambda: page.evaluate("async () => (await part('timeline/curves.js')).plots.value.length > 0"))
-    assert page.evaluate(PLOTTED)["height"] == 132
+    assert page.evaluate(PLOT_ROW)["height"] == 132
