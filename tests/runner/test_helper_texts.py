@@ -8,8 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.cli import main
 from actr3d.recording import Recorded
+from actr3d.runner.replay import replay
+from actr3d.runner.run import run_model
 
 RULES = """
 from actr3d.actr import *
@@ -55,6 +58,14 @@ def folder_(tmp_path: Path) -> Path:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
     return tmp_path
+
+
+@pytest.mark.parametrize("name", ["program", "built"])
+def test_a_run_is_replayed_while_its_own_helper_modules_are_still_loaded(name: str, folder: Path) -> None:
+    run_model(folder / f"own/{name}.py", RunLimits(seed=1), record=folder / "run")
+    for _ in range(2):
+        with Recorded(folder / "run") as recorded:
+            assert str(replay(recorded)).startswith("every byte agrees: ")
 
 
 @pytest.mark.parametrize("name", ["program", "built"])

@@ -121,9 +121,11 @@ def _is_installed(root: str, folders: Iterable[str]) -> bool:
     """Returns whether a loaded module or package is built in, or comes from one of the given folders."""
     module = sys.modules.get(root)
     file = getattr(module, "__file__", None)
-    if root in sys.stdlib_module_names or not isinstance(file, str):
+    places = [file] if isinstance(file, str) else [f"{folder}/__init__.py" for folder in getattr(module, "__path__", ())]
+    if root in sys.stdlib_module_names or not places:
         return True  # or it was made without a file
-    return any(str(parent) in folders for parent in Path(file).parents[:2]) or "site-packages" in Path(file).parts
+    paths = [Path(place) for place in places]
+    return any("site-packages" in path.parts or any(str(parent) in folders for parent in path.parents[:2]) for path in paths)
 
 
 def _lay_out(folder: Path, texts: Iterable[Sequence[str]]) -> None:
