@@ -36,7 +36,10 @@ class Counting(ACTR):
         goal.modify(at=to)
         self.reward(1)
 """
-BUILT = f'{COUNTS}\ndef build() -> Simulation:\n    return Simulation(Scene(parts=(Floor(),)), {{}}, bodiless={{"counter": Counting}}, seed=1)\n'
+BUILT = f"""{COUNTS}
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(),)), bodiless={{"counter": Counting}}, seed=1)
+"""
 PROGRAM = f"{COUNTS}\nfor trial in range(2):\n    Counting().run(1)\n"
 
 
