@@ -75,6 +75,17 @@ function takeOne(message) {
   }
 }
 
+/** Returns for how many events before those of the list there is room: fewer than the maximum, as new ones may come. */
+export function roomForEarlier() {
+  return 0.9 * MAX_EVENTS - events.value.list.length;
+}
+
+/** Adds the events directly before those of the list. */
+export function addEarlier(earlier) {
+  const { list, first } = events.peek();
+  events.value = { list: [...earlier, ...list], first: first - earlier.length, missing: first - earlier.length, cut: false };
+}
+
 function withEvents({ list, first, missing }, news) {
   if (news.cut !== undefined) list.length = Math.max(0, Math.min(list.length, news.cut - first));
   if (news.missing || list.length === 0) {

@@ -77,13 +77,16 @@ function add(map, key, value) {
 
 let known = new Known();
 let of = "";
+let begin = 0; // the number of the first event
 
 /** Returns what is known of the run that is shown. */
 export function flows() {
-  if (of !== way.value) {
+  const { first } = events.value;
+  if (of !== way.value || first < begin) {
     known = new Known();
     of = way.value;
   }
+  begin = first;
   known.take(events.value, agentsOf(state.value?.parts));
   return known;
 }

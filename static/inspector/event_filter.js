@@ -9,20 +9,22 @@ export class EventFilter {
   constructor(takes) {
     this.takes = takes;
     this.numbers = [];
+    this.first = 0;
     this.next = 0;
     this.last = null;
   }
 
-  /** Checks the new events; or all of them if the run has changed its past. */
+  /** Checks the new events; or all of them if the run has changed its past, or earlier ones were added. */
   update({ list, first }) {
     let known = this.next - first;
-    if (known < 0 || known > list.length || (known > 0 && list[known - 1] !== this.last)) {
+    if (first < this.first || known < 0 || known > list.length || (known > 0 && list[known - 1] !== this.last)) {
       this.numbers = [];
       known = 0;
     } else if (this.numbers.length > 0 && this.numbers[0] < first) {
       this.numbers.splice(0, this.below(first));
     }
     for (; known < list.length; known += 1) if (this.takes(list[known])) this.numbers.push(first + known);
+    this.first = first;
     this.next = first + list.length;
     this.last = list.at(-1) ?? null;
     return this;

@@ -7,6 +7,7 @@ export const COLOURS = 6;
 const MIN_RANGE = 0.01; // smaller differences are drawn as a straight line, not as amplified numerical noise
 const BETWEEN = 4; // the minimum distance between two labels of an axis [px]
 const SAME = 1e-6; // times that are no farther apart are the same [s]
+const GROUP = 16; // the number of values that are read as one where a pixel has more than two such groups
 const EDGE = 6; // the distance of the first and last text from the ends of an axis [px]
 
 /** Returns the name of the colour of the nth curve. */
@@ -61,27 +62,66 @@ export function rangeOf(series) {
   return roundRange(least - room, most + room);
 }
 
+const groups = new WeakMap(); // by values
+
+/** Returns groups of values: their first times, and their least, greatest and last values; null where all are missing. */
+function groupsOf(times, values) {
+  const known = groups.get(values);
+  if (known?.count === values.length) return known;
+  const found = { count: values.length, times: [], least: [], most: [], last: [] };
+  for (let first = 0; first < values.length; first += GROUP) {
+    let [least, most, last] = [Infinity, -Infinity, null];
+    for (let n = first; n < Math.min(first + GROUP, values.length); n += 1) {
+      const value = values[n];
+      if (value === null || value === undefined) continue;
+      if (value < least) least = value;
+      if (value > most) most = value;
+      last = value;
+    }
+    found.times.push(times[first]);
+    found.least.push(last === null ? null : least);
+    found.most.push(last === null ? null : most);
+    found.last.push(last);
+  }
+  groups.set(values, found);
+  return found;
+}
+
+/** Returns the visible part of a curve with one value more at each end, {times, least, most, last, begin, beyond}: its values, or groups of
+ * them if they are very dense. */
+function visible({ times, values }, span, box) {
+  const within = (all) => ({ begin: Math.max(0, firstFrom(all, span.from) - 1), beyond: Math.min(all.length, firstFrom(all, span.to) + 1) });
+  const { begin, beyond } = within(times);
+  if (beyond - begin <= 2 * GROUP * box.width) return { times, least: values, most: values, last: values, begin, beyond };
+  const found = groupsOf(times, values);
+  return { ...found, ...within(found.times) };
+}
+
 /** Returns a curve as points in a box; if several values share a pixel, its minimum and maximum. */
-function pointsOf({ times, values, shape, slope, until }, span, box, yOf) {
+function pointsOf(curve, span, box, yOf) {
+  const { times, values, shape, slope, until } = curve;
   const scale = box.width / (span.to - span.from);
-  const [begin, beyond] = [Math.max(0, firstFrom(times, span.from) - 1), Math.min(times.length, firstFrom(times, span.to) + 1)];
+  const seen = visible(curve, span, box);
   const points = [];
-  const dense = beyond - begin > 3 * box.width;
+  const dense = seen.beyond - seen.begin > 3 * box.width;
   let [pixel, least, most, last] = [null, 0, 0, null];
   const flush = () => last !== null && points.push(pixel, yOf(least), pixel, yOf(most), pixel, yOf(last));
-  for (let n = begin; n < beyond; n += 1) {
-    const x = box.x + (times[n] - span.from) * scale;
-    const value = values[n];
-    if (shape === "steps" && !dense && n > begin && values[n - 1] !== null) points.push(x, yOf(values[n - 1]));
+  for (let n = seen.begin; n < seen.beyond; n += 1) {
+    const x = box.x + (seen.times[n] - span.from) * scale;
+    const value = seen.last[n];
+    if (shape === "steps" && !dense && n > seen.begin && seen.last[n - 1] !== null) points.push(x, yOf(seen.last[n - 1]));
     if (value === null || value === undefined) {
       flush();
       [pixel, last] = [null, null];
       points.push(x, NaN);
     } else if (!dense) points.push(x, yOf(value));
-    else if (pixel !== null && Math.abs(x - pixel) < 1) [least, most, last] = [Math.min(least, value), Math.max(most, value), value];
-    else {
+    else if (pixel !== null && x - pixel < 1) {
+      if (seen.least[n] < least) least = seen.least[n];
+      if (seen.most[n] > most) most = seen.most[n];
+      last = value;
+    } else {
       flush();
-      [pixel, least, most, last] = [x, value, value, value];
+      [pixel, least, most, last] = [x, seen.least[n], seen.most[n], value];
     }
   }
   flush();
@@ -93,19 +133,20 @@ function pointsOf({ times, values, shape, slope, until }, span, box, yOf) {
 }
 
 /** Draws the values of single moments; those that share a pixel as one stroke. */
-function drawMoments(surface, { times, values }, span, box, yOf, colour) {
+function drawMoments(surface, curve, span, box, yOf, colour) {
   const scale = box.width / (span.to - span.from);
-  const beyond = firstFrom(times, span.to + SAME);
+  const seen = visible(curve, span, box);
   let [pixel, least, most] = [null, 0, 0];
   const flush = () => pixel !== null && surface.fill(pixel - 1.5, yOf(most) - 1.5, 3, yOf(least) - yOf(most) + 3, colour);
-  for (let n = firstFrom(times, span.from); n < beyond; n += 1) {
-    const value = values[n];
-    if (value === null || value === undefined) continue;
-    const x = box.x + (times[n] - span.from) * scale;
-    if (pixel !== null && x - pixel < 1) [least, most] = [Math.min(least, value), Math.max(most, value)];
-    else {
+  for (let n = seen.begin; n < seen.beyond; n += 1) {
+    if ((seen.last[n] ?? null) === null) continue;
+    const x = box.x + (seen.times[n] - span.from) * scale;
+    if (pixel !== null && x - pixel < 1) {
+      if (seen.least[n] < least) least = seen.least[n];
+      if (seen.most[n] > most) most = seen.most[n];
+    } else {
       flush();
-      [pixel, least, most] = [x, value, value];
+      [pixel, least, most] = [x, seen.least[n], seen.most[n]];
     }
   }
   flush();

@@ -1,5 +1,6 @@
 // The lanes of the run that is shown, updated with its events as they arrive.
 
+import "../earlier_events.js";
 import { effect, signal } from "../vendor/preact.js";
 import { events } from "../store.js";
 import { Lanes } from "./lanes.js";

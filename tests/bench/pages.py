@@ -42,13 +42,19 @@ PANS = """async ([events, pictures]) => {
     const { Lanes } = await part("timeline/lanes.js");
     const { drawTimeline } = await part("timeline/draw.js");
     const { CanvasSurface, scaled } = await part("parts/surface.js");
-    const lanes = new Lanes(), hour = 3600;
+    const lanes = new Lanes(), hour = 3600, shapes = ["points", "steps", "sum"];
+    const slopeOf = (shape) => (shape === "points" ? undefined : 0);
+    const series = shapes.map((shape) => ({ name: shape, unit: "", shape, times: [], values: [], slope: slopeOf(shape) }));
     for (let n = 0; n < events; n += 1) {
-        lanes.take([Math.round((n * hour * 1e6) / events), `mind.buffer_${n % 10}`, "buffer", { chunk: { 0: `chunk ${n}` } }]);
+        const time = (n * hour) / events, { times, values } = series[n % 3];
+        lanes.take([Math.round(time * 1e6), `mind.buffer_${n % 10}`, "buffer", { chunk: { 0: `chunk ${n}` } }]);
+        times.push(time);
+        values.push(n % 3 === 2 ? time / 2 : Math.sin(n));
     }
     const canvas = document.createElement("canvas");
     const surface = new CanvasSurface(scaled(canvas, 900, 260));
-    const rows = [...lanes.lanes.values()].map((lane, n) => ({ lane, label: `buffer ${n}`, y: 24 + 22 * n, height: 18 }));
+    const rows = [...lanes.lanes.values()].map((lane, n) => ({ lane, label: `buffer ${n}`, y: 72 + 18 * n, height: 18 }));
+    rows.push({ plot: { title: "numbers", unit: "", series, range: [-1, hour / 2] }, label: "numbers", y: 24, height: 46 });
     const taken = [];
     for (const span of [10, 100, 1000, hour]) {
         for (let n = 0; n < pictures; n += 1) {
@@ -60,7 +66,8 @@ PANS = """async ([events, pictures]) => {
     }
     return taken;
 }"""
-"""Moves the timeline of a run of an hour with so many events along, at four scales, and returns the script time of each picture [ms]."""
+"""Moves the timeline of a run of an hour with so many events, and a plot of three curves with a value for each, along, at four scales, and
+returns the script time of each picture [ms]."""
 
 
 class Client:

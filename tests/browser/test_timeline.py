@@ -385,6 +385,36 @@ def test_many_events_are_taken_in_one_by_one(blank: Page) -> None:
     assert counts["calls"] < 3 * 900
 
 
+EARLIER = """async () => {
+  const { events } = await part("store.js");
+  const { lanes } = await part("timeline/record.js");
+  const { EventFilter } = await part("inspector/event_filter.js");
+  const filter = new EventFilter(([, , kind]) => kind === "fire");
+  const shown = () => {
+    const { first, list } = events.value;
+    const counts = [...lanes.lanes].map(([key, { bands }]) => [key, bands.length]).sort();
+    return { first, list, counts, fired: [...filter.update(events.value).numbers] };
+  };
+  const whole = shown();
+  const list = whole.list.slice(40);
+  events.value = { list, first: 40, missing: 40, cut: false };
+  const late = shown();
+  for (let n = 0; n < 500 && events.value.first > 0; n += 1) await new Promise((done) => setTimeout(done, 10));
+  return { whole, late, again: shown() };
+}"""
+"""What a page shows of a run of which it has all events, only the last ones, and what it has a little later."""
+
+
+def test_a_page_that_has_only_the_last_events_fetches_the_earlier_ones_while_the_run_is_paused(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    page.get_by_role("button", name="Run", exact=True).click()
+    shows(page, "#status", "ended")
+    found = page.evaluate(EARLIER)
+    assert found["whole"]["first"] == 0 < found["late"]["first"]
+    assert found["late"]["fired"] != found["whole"]["fired"]
+    assert found["again"] == found["whole"]
+
+
 AXIS = """async ([end, width]) => {
   const { drawTimes } = await part("parts/curve.js");
   const { widthOf } = await part("parts/surface.js");
@@ -393,6 +423,31 @@ AXIS = """async ([end, width]) => {
   drawTimes({ line() {}, text }, { x: 0, y: 0, width, height: 20 }, { from: 0, to: end }, { y: 0 });
   return found;
 }"""
+
+
+SPIKES = """async () => {
+  const { drawCurves } = await part("parts/curve.js");
+  const count = 300000;
+  const times = Array.from({ length: count }, (_, n) => n / 100);
+  const values = times.map((_, n) => (n === 123456 ? 9 : n === 234567 ? -9 : Math.sin(n)));
+  const found = {};
+  for (const shape of ["line", "points", "steps"]) {
+    const [tops, ends, calls] = [[], [], []];
+    const fill = (x, y, w, h) => (tops.push(y + 1.5), ends.push(y + h - 1.5), calls.push(x));
+    const line = (points, colour, style) => {
+      if (style?.width === 1.5) points.forEach((y, n) => n % 2 && [tops, ends, calls].forEach((list) => list.push(y)));
+    };
+    const surface = { fill, line, text() {}, within: (x, y, w, h, draw) => draw() };
+    const box = { x: 0, y: 0, width: 800, height: 100 };
+    drawCurves(surface, box, { series: [{ name: "many", values, times, shape }], span: { from: 0, to: count / 100 }, range: [-10, 10] });
+    found[shape] = [Math.min(...tops), Math.max(...ends), calls.length < 8 * box.width];
+  }
+  return found;
+}"""
+
+
+def test_a_plot_of_very_many_values_has_their_extremes_and_is_no_more_than_the_page_is_wide(blank: Page) -> None:
+    assert blank.evaluate(SPIKES) == {shape: [5, 95, True] for shape in ("line", "points", "steps")}
 
 
 def test_no_text_of_the_axis_is_cut(blank: Page) -> None:
@@ -633,8 +688,8 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
           const { plots } = await part("timeline/curves.js");
           const { lanes } = await part("timeline/record.js");
           const seriesOf = (title) => plots.value.find((plot) => plot.title === title)?.series ?? [];
-          const known = () => ["time busy", "at"].every((title) => seriesOf(title)[0]?.values.length > 0);
-          while (!known()) await new Promise((done) => setTimeout(done, 20));
+          const isThere = (title) => seriesOf(title)[0]?.values.length > 0;
+          while (!["time busy", "at"].every(isThere)) await new Promise((done) => setTimeout(done, 20));
           const csv = [csvText(seriesOf("at"))];
           return { csv, busy: seriesOf("time busy")[0].values.at(-1), end: lanes.now / 1e6 };
         }"""

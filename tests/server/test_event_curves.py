@@ -38,7 +38,7 @@ class Counting(ACTR):
 """
 BUILT = f"""{COUNTS}
 def build() -> Simulation:
-    return Simulation(Scene(parts=(Floor(),)), {{}}, bodiless={{"counter": Counting}}, seed=1)
+    return Simulation(Scene(parts=(Floor(),)), bodiless={{"counter": Counting}}, seed=1)
 """
 PROGRAM = f"{COUNTS}\nfor trial in range(2):\n    Counting().run(1)\n"
 

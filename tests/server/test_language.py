@@ -238,7 +238,7 @@ def test_a_completion_says_what_it_is(ask: Asked) -> None:
         (DOORWAY.replace("width=parameters", "wid|th=parameters"), "", "free width"),
         (COUNTING.replace("Memory(retrieval)", "Memory(retrieval, lat|ency=1)"), "latency: ", "F in the retrieval time"),
         (SEEING.replace("bearing=", "bea|ring="), "condition bearing", "obstacle: Greatest angle"),
-        (SEEING.replace("radius=", "rad|ius="), "condition radius", "obstacle: distance: Distance on the ground"),
+        (SEEING.replace("radius=", "rad|ius="), "condition radius", "obstacle: distance: Horizontal distance from the eye"),
     ],
 )
 def test_what_is_known_of_a_name(ask: Asked, text: str, title: str, said: str) -> None:
