@@ -247,6 +247,7 @@ def test_recordings_lie_in_their_folder(server: Served, name: str) -> None:
 def test_no_input_gives_an_error_of_the_server(method: str, path: str, server: Served) -> None:
     import schemathesis  # takes a second to load
 
+    schemathesis.serializer.alias("application/vnd.sqlite3", "application/octet-stream")
     schema: Any = schemathesis.openapi.from_dict(DESCRIPTION)
     asked = schema[path][method]
 
