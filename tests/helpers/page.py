@@ -145,6 +145,8 @@ class Users:
         page.goto(self._elsewhere)
         for name in ("on", *LASTING):
             setattr(page, name, self._noted(page, name, getattr(page, name)))
+        for name in LASTING:
+            setattr(context, name, self._noted(page, name, getattr(context, name)))
         return page
 
     def _noted(self, page: Page, name: str, method: Callable[..., Any]) -> Callable[..., Any]:

@@ -196,7 +196,8 @@ def test_a_session_by_rest_alone(server: Served) -> None:
     assert replay.headers["content-disposition"] == f'attachment; filename="{recording}.replay.html"'
     assert states[-1].startswith("6.8,")
     told = server.get(f"/api/recordings/{recording}/curves", params={"name": ["walker_torso_yaw", "no"], "most": 100}).json()
-    assert {"name": "walker_torso_yaw speed", "unit": "deg/s", "group": "joint speed"} in told["names"]
+    speed = {"name": "walker_torso_yaw speed", "unit": "deg/s", "group": "joint speed", "of": None, "shape": "line"}
+    assert speed in told["names"]
     ((name, curve),) = told["curves"].items()
     assert (name, told["times"][0], told["times"][-1]) == ("walker_torso_yaw", 0.0, 6.8)
     assert 90 <= len(curve) == len(told["times"]) <= 100

@@ -19,6 +19,7 @@ MODULES = [path for path in OWN if path.suffix == ".js"]
 MADE = {
     (static() / "panels.js").resolve(): set((static() / "panels").resolve().glob("*.js")),
     (static() / "trace_kinds.js").resolve(): set[Path](),
+    (static() / "activation_parts.js").resolve(): set[Path](),
 }
 """The modules that the server makes, and what they import."""
 ELSEWHERE = re.compile(r"""(?:https?:|wss?:)?//(?!www\.w3\.org/)[\w-]+(?:\.[\w-]+)+""")
