@@ -31,7 +31,7 @@ router = APIRouter(prefix="/api")
 
 File = Literal["sqlite", "events.csv", "states.csv", "replay.html"]
 KINDS: dict[File, str] = {
-    "sqlite": "application/vnd.sqlite3",
+    "sqlite": UPLOAD_TYPE,
     "events.csv": "text/csv",
     "states.csv": "text/csv",
     "replay.html": "text/html",

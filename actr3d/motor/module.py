@@ -224,9 +224,10 @@ class Motor(WithParameters, Port):
             self._begin({key: movement})
 
     def _stop(self, groups: Sequence[Any], site: CallSite | None) -> None:
-        plan = self._felt().limbs.plan
+        limbs = self._felt().limbs
+        plan = limbs.plan
         for group in groups:
-            checked_name(group, self._felt().limbs.groups, plan.name, "muscle group")
+            checked_name(group, limbs.groups, plan.name, "muscle group")
         self._accept()
         self._halt([key for key, movement in self._under_way.items() if not groups or movement.group in groups], site)
         if not groups and "stop" in plan.actuators:
@@ -560,8 +561,14 @@ class Motor(WithParameters, Port):
         felt = {joint: at + draw(0, sd) if (sd := noise[limbs.joints[joint].kind]) else at for joint, at in felt.items()}
         schema = self._schema
         if schema is None:
-            grids = {"angle_grid": self.angle_grid, "size_grid": self.size_grid}
-            schema = self._schema = BodySchema(limbs, felt, **grids, step=self.extreme_step, slide=self.extreme_slide)
+            schema = self._schema = BodySchema(
+                limbs,
+                felt,
+                angle_grid=self.angle_grid,
+                size_grid=self.size_grid,
+                step=self.extreme_step,
+                slide=self.extreme_slide,
+            )
             new = tuple(felt)
         else:
             new = schema.feel(felt)

@@ -145,6 +145,11 @@ class Recorded:
         return self.facts.get("failed") is not None
 
     @property
+    def finished(self) -> bool:
+        """Whether the run ended or failed; False if the user left it before."""
+        return self.over or self.failed
+
+    @property
     def closed(self) -> bool:
         """Whether the recording ends with the end of the run or between two ticks; False if the run failed or was killed within a tick."""
         return self.facts.get("ended") is not None or bool(self.facts.get("whole"))

@@ -110,7 +110,7 @@ def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress
     """Replays a program until it ends. If the recorded run did not end by itself, the replay ends when it does more than was recorded."""
     facts = recorded.facts
     file, source = facts["file"], facts["sources"][facts["file"]]
-    comparator = Comparator(recorded, open_end=not (recorded.over or recorded.failed))
+    comparator = Comparator(recorded, open_end=not recorded.finished)
     comparator.facts |= program_facts(file, source, facts["seed"], facts["until"])
     trace = Trace("all", keep=False)
     count = max(1, recorded.event_count)
@@ -168,7 +168,7 @@ def _replay_simulation(
             ended = None
         if ended is not None:
             comparator.fact("ended", {"by": ended})
-        if recorded.over or recorded.failed or recorded.facts.get("whole"):
+        if recorded.finished or recorded.facts.get("whole"):
             log.end_recording(whole=simulation.timeline.begun and not simulation.timeline.lockstep.broken)
         log.check()
         for command in commands[: simulation.timeline.lockstep.commands]:
@@ -197,7 +197,7 @@ def _end(recorded: Recorded, simulation: Simulation, ended: str | None) -> None:
         simulation.step()
         return
     simulation.timeline.repeat_commands()
-    if recorded.over or recorded.failed:
+    if recorded.finished:
         simulation.conclude()
 
 
@@ -244,7 +244,7 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
     if not from_code:  # `make` has other code, and what its program has recorded is unknown
         named |= {"sources"} | (then.keys() - now.keys() - {*END, *silent})
     said: dict[str, Any] = then.get("ended") or {}
-    if not (recorded.over or recorded.failed):
+    if not recorded.finished:
         # The recorded run did not end by itself, so an end of the replay is a difference.
         goes_on = then["kind"] == "program" or now.get("ended") is None or (recorded.ticks == 0 and now["ended"] != {"by": "limits"})
         silent |= {"failed", "whole"} | ({"ended"} if goes_on or not from_code else set())
@@ -252,7 +252,7 @@ def _unchecked(recorded: Recorded, comparator: Comparator) -> tuple[set[str], li
     elif not from_code and said.get("by") not in ("stop", "done", None):
         named.add("ended")  # it was not run to its end by this library, but by a program that says so
     helpers, used = then.get("helpers", {}), now.get("helpers", {})
-    early = comparator.commands > 0 or not (recorded.over or recorded.failed)
+    early = comparator.commands > 0 or not recorded.finished
     if early and {name: helpers[name] for name in used if name in helpers} == used:
         # A run that went back and continued differently, or was interrupted, may have loaded more than its recording needs.
         (named if len(used) < len(helpers) else silent).add("helpers")

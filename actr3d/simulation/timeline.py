@@ -214,14 +214,14 @@ class Timeline:
         Raises:
             SimulationError: If there is no command up to the present, or as `seek` does.
         """
-        latest, history = self.latest, self._history
-        if latest is None:
+        known = [command for command in self._history.commands if command.tick <= self.ticks]
+        if not known:
             raise SimulationError(f"undo: there is no command up to {seconds(self.lockstep.agents.time):g} s")
-        kept = next(number for number, command in enumerate(history.commands) if command is latest)
+        *kept, latest = known
         self.seek(latest.tick)
-        self.lockstep.repeat_commands(history.commands[:kept])
-        history.cut(latest.tick, kept)
-        self._log.cut(latest.tick, kept)
+        self.lockstep.repeat_commands(kept)
+        self._history.cut(latest.tick, len(kept))
+        self._log.cut(latest.tick, len(kept))
 
     # -- known commands
 

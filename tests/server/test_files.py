@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from time import sleep
+from types import ModuleType
 
 import pytest
 
@@ -271,14 +272,20 @@ def test_a_file_keeps_its_encoding_and_its_line_ends(folder: ModelFolder) -> Non
         folder.save("new.py", "# coding: klingon\n", None)
 
 
-def test_the_description_of_a_file_in_a_list_is_read_again_only_after_a_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def readings(monkeypatch: pytest.MonkeyPatch, module: ModuleType) -> list[Path]:
+    """Returns a list of the files whose source a module reads from now on."""
     read: list[Path] = []
 
     def reading(path: Path) -> str:
         read.append(path)
         return read_source(path)
 
-    monkeypatch.setattr(loader, "read_source", reading)
+    monkeypatch.setattr(module, "read_source", reading)
+    return read
+
+
+def test_the_description_of_a_file_in_a_list_is_read_again_only_after_a_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    read = readings(monkeypatch, loader)
     file = tmp_path / "model.py"
     for text, outline in (
         ("'''Counts.'''", Outline("Counts.", "program")),
@@ -302,13 +309,7 @@ def test_the_description_of_a_file_in_a_list_is_read_again_only_after_a_change(t
 
 
 def test_the_digest_of_a_file_is_computed_again_only_when_the_file_has_changed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    read: list[Path] = []
-
-    def reading(path: Path) -> str:
-        read.append(path)
-        return read_source(path)
-
-    monkeypatch.setattr(run_request, "read_source", reading)
+    read = readings(monkeypatch, run_request)
     file = tmp_path / "model.py"
     for text in ("a = 1", "a = 22", "a = 1"):
         file.write_text(text, encoding="utf-8")

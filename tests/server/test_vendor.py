@@ -16,11 +16,8 @@ VENDOR = static() / "vendor"
 MANIFEST = json.loads((VENDOR / "manifest.json").read_text(encoding="utf-8"))
 OWN = sorted(path for path in static().rglob("*") if path.suffix in (".html", ".css", ".js", ".svg") and VENDOR not in path.parents)
 MODULES = [path for path in OWN if path.suffix == ".js"]
-MADE = {
-    (static() / "panels.js").resolve(): set((static() / "panels").resolve().glob("*.js")),
-    (static() / "trace_kinds.js").resolve(): set[Path](),
-    (static() / "activation_parts.js").resolve(): set[Path](),
-}
+MADE = {(static() / name).resolve(): set[Path]() for name in page_files.GENERATED if name.endswith(".js")}
+MADE[(static() / "panels.js").resolve()] |= set((static() / "panels").resolve().glob("*.js"))
 """The modules that the server makes, and what they import."""
 ELSEWHERE = re.compile(r"""(?:https?:|wss?:)?//(?!www\.w3\.org/)[\w-]+(?:\.[\w-]+)+""")
 

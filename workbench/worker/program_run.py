@@ -74,15 +74,11 @@ class _RecordedOnce:
     @contextmanager
     def changing(self) -> Generator[None]:
         """Makes a change of a user in the block; if it succeeds, what an earlier pass has recorded after the present is removed."""
-        recording, counts = self._recording, self._counts.copy()
+        counts = self._counts.copy()
         self._held = []
         try:
             yield
-            if recording.events > counts["event"] or recording.commands > counts["command"]:
-                recording.cut(self._counts["state"] - 1, counts["event"], self._counts["answer"], counts["command"])
-            for name in self._known - self._begun:
-                recording.fact(name, None)
-            self._known &= self._begun
+            self._cut(counts["event"], counts["command"])
         except BaseException:
             self._held.clear()
             raise
@@ -90,6 +86,19 @@ class _RecordedOnce:
             held, self._held = self._held, None
             for write in held:
                 write()
+
+    def cut(self) -> None:
+        """Removes what an earlier pass has recorded after the present."""
+        self._cut(self._counts["event"], self._counts["command"])
+
+    def _cut(self, events: int, commands: int) -> None:
+        """Removes what an earlier pass has recorded after a number of events and commands."""
+        recording = self._recording
+        if recording.events > events or recording.commands > commands:
+            recording.cut(self._counts["state"] - 1, events, self._counts["answer"], commands)
+        for name in self._known - self._begun:
+            recording.fact(name, None)
+        self._known &= self._begun
 
     def _is_new(self, sort: str, recorded: int) -> bool:
         """Counts an item of a sort; returns whether it is to be recorded, given how many are recorded already."""
@@ -388,8 +397,8 @@ class ProgramRun(ControlledRun):
     def _finish_undo(self, branch: KeptBranch) -> None:
         """Forgets what came after the present, where the program was before the change that a user undoes."""
         self._undoing = None
-        with self._recorded.changing() if self._recorded is not None else nullcontext():
-            pass
+        if self._recorded is not None:
+            self._recorded.cut()
         self._continue_differently()
         branch.announce_undone()
 

@@ -417,8 +417,7 @@ def _critical_ratios(findings: Findings) -> Parts:
             for one in findings.people(group):
                 fits = _fits(findings.trials(group, condition, one), findings.curve(group, condition, one))
                 rows.append({"group": group, "condition": condition, "participant": one, **fits})
-    pd = pandas()
-    frame = pd.DataFrame(rows)
+    frame = pandas().DataFrame(rows)
     digits = {"critical_ratio": 3, "low": 3, "high": 3, "bend": 3, "baseline_deg": 1}
     note = (
         f"Logistic: half of the trials are turned by more than {TURNED:g} degrees above the participant's baseline, its median angle above "
@@ -426,34 +425,16 @@ def _critical_ratios(findings: Findings) -> Parts:
         f"trials; if the change is abrupt, the interval is one step between two apertures. {BEYOND} "
         "Bend: piecewise-linear fit; it is too large for a rotation that falls more steeply near its end."
     )
+    title = "Critical ratio of each participant"
     parts: Parts = []
     if (known := frame[frame["critical_ratio"].notna()]).size:
         panes = [_ratios_pane(known[known["condition"] == condition], condition, findings) for condition in findings.conditions]
         names = _places(findings)
         ticks = [(float(n), one.rpartition(" ")[2]) for one, n in names.items()] if len(names) <= 30 else [(0.0, "")]
         figure = curves_figure(panes, "participant", "critical ratio A/S", ticks=ticks)
-        title = "Critical ratio of each participant"
-        parts.append(
-            Plot(
-                name="critical_ratio",
-                title=title,
-                figure=figure,
-                note="Bars: 95 % intervals of the profile likelihood; an interval without an end is not drawn.",
-            )
-        )
-    summary: list[dict[str, Any]] = []
-    for (group, condition), of in frame.groupby(["group", "condition"], sort=False):
-        values: list[float] = of[of["beyond"] == "no"]["critical_ratio"].dropna().tolist()
-        low, high = bootstrap_interval(values)
-        bends: list[float] = of["bend"].dropna().tolist()
-        row = {"group": group, "condition": condition, "mean": float(np.mean(values)) if values else math.nan, "low": low, "high": high}
-        summary.append({**row, "n": len(values), "mean_bend": float(np.mean(bends)) if bends else math.nan})
-    note_of_all = "Means of participants with 95 % bootstrap intervals. People: 1.30 (1.28 to 1.31; Warren & Whang 1987)."
-    of_all: dict[str, int] = dict.fromkeys(("mean", "low", "high", "mean_bend"), 3)
-    parts.append(
-        Table(name="critical_ratios_of_groups", title="Critical ratio", frame=pd.DataFrame(summary), note=note_of_all, digits=of_all)
-    )
-    title = "Critical ratio of each participant"
+        note_of_bars = "Bars: 95 % intervals of the profile likelihood; an interval without an end is not drawn."
+        parts.append(Plot(name="critical_ratio", title=title, figure=figure, note=note_of_bars))
+    parts.append(_critical_ratios_of_groups(frame))
     parts.append(Table(name="critical_ratios", title=title, frame=frame, note=note, digits=digits, folded=True))
     if len(known) < len(frame):
         parts.append(
@@ -463,6 +444,20 @@ def _critical_ratios(findings: Findings) -> Parts:
             )
         )
     return [*parts, *_left_out(frame, "critical_ratio")]
+
+
+def _critical_ratios_of_groups(frame: Any) -> Table:
+    """Returns the means over the participants of each group and condition."""
+    rows: list[dict[str, Any]] = []
+    for (group, condition), of in frame.groupby(["group", "condition"], sort=False):
+        values: list[float] = of[of["beyond"] == "no"]["critical_ratio"].dropna().tolist()
+        low, high = bootstrap_interval(values)
+        bends: list[float] = of["bend"].dropna().tolist()
+        row = {"group": group, "condition": condition, "mean": float(np.mean(values)) if values else math.nan, "low": low, "high": high}
+        rows.append({**row, "n": len(values), "mean_bend": float(np.mean(bends)) if bends else math.nan})
+    note = "Means of participants with 95 % bootstrap intervals. People: 1.30 (1.28 to 1.31; Warren & Whang 1987)."
+    digits: dict[str, int] = dict.fromkeys(("mean", "low", "high", "mean_bend"), 3)
+    return Table(name="critical_ratios_of_groups", title="Critical ratio", frame=pandas().DataFrame(rows), note=note, digits=digits)
 
 
 def _left_out(frame: Any, column: str) -> list[Caution]:
