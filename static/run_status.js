@@ -6,7 +6,7 @@ import { toShowOne } from "./bar/models.js";
 import { connected, opening, restarted, session, state } from "./store.js";
 import { embedded } from "./windows.js";
 
-const AGAIN = embedded === null ? "«Run again» starts it from the beginning." : "A cell can make it again.";
+const AGAIN = embedded === null ? "«Run again» starts it from the beginning." : "Run its cell again to start a new run.";
 const FIX = embedded === null ? "see Messages for the reason and the line. Fix it in the editor, then run it again." : "the cell shows the reason.";
 const RESTARTED =
   embedded === null
@@ -25,7 +25,7 @@ const STATUSES = {
   busy: { line: ({ status, at }) => `${status ?? "loading"} (busy${at})`, text: ({ at }) => `The model is busy${at}; ${STOP}` },
   halted: { line: ({ signal }) => `stopped by ${signal}`, text: ({ signal }) => `The model's process was stopped by ${signal} and does not continue. Stop ends it.` },
   paused: { line: withReason, text: () => "The run is paused." },
-  ended: { line: withReason, text: () => `The run is over. Go back on the timeline; ${AGAIN}` },
+  ended: { line: withReason, text: () => `The run is over; you can go back on the timeline. ${AGAIN}` },
   failed: { line: withReason, text: () => `The run has failed: ${FIX}` },
   stopped: { line: stoppedLine, text: () => `The run was stopped: nothing more can be asked of it. ${AGAIN}` },
   lost: { line: ({ ending }) => `failed: ${ending}`, text: ({ ending }) => `There is no run any more: ${ending}. What happened just before that may be missing. ${AGAIN}` },

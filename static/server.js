@@ -4,7 +4,7 @@ import { page } from "./address.js";
 import { frameBudget } from "./frame_budget.js";
 import { complain, connected, events, forget, hurried, known, opening, restarted, session, take } from "./store.js";
 
-const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation the eye is compiled, too, which takes up to a minute.";
+const FIRST_START = "The workbench is starting: it loads what models need. On the first start after an installation, the camera's code is compiled, too, which takes up to a minute.";
 /** The delay before a new attempt to reach the workbench [ms]. */
 export const AGAIN = 1000;
 

@@ -112,7 +112,7 @@ function isOfShown({ attempt }) {
   return attempt !== undefined && attempt === session.value?.shown_attempt;
 }
 
-/** Whether a notice is of what the run that is shown has left, because a user has changed something before it. */
+/** Whether a notice is from a part of the shown run that no longer exists, because a user has changed something before it. */
 function isCut(notice) {
   const cuts = session.value?.cuts ?? [];
   return isOfShown(notice) && cuts.some(([next, kept]) => notice.number < next && notice.events > kept);
@@ -128,8 +128,8 @@ export function isGiven(notice) {
   return isOfShown(notice) && !isCut(notice) && !isAhead(notice);
 }
 
-/** Whether a notice is of the newest run, which may have failed before it could be shown, or of the page itself: not of an earlier run,
- * nor of what the run that is shown has not given. */
+/** Whether a notice is from the page itself, or from the newest run, which may have failed before it could be shown. If that run is shown,
+ * only its notices up to the shown moment count. */
 export function isPresent(notice) {
   const { attempt } = notice;
   return attempt === undefined || (attempt === session.value?.attempt && (!isOfShown(notice) || isGiven(notice)));

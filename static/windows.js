@@ -1,4 +1,4 @@
-// Windows of their own for panels, the 3D view and the timeline: each is a page that shows what the page shows that has opened it.
+// Windows of their own for panels, the 3D view and the timeline: each is a page that shows the same run as the page that opened it.
 
 import { addressed, page } from "./address.js";
 import { show } from "./server.js";

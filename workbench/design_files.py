@@ -121,7 +121,7 @@ def _read(path: Path, file: str | None, _: tuple[int, ...]) -> tuple[DesignOutli
 
 
 class WantedDesign(PageMessage):
-    """A design, with what replaces some of it."""
+    """A design, and the values and numbers that replace some of its own."""
 
     design: Annotated[str, Field(min_length=1, max_length=500)]
     """The name of one of the library's, or `FILE:NAME`."""

@@ -28,7 +28,8 @@ REPORT_POLICY = (
     "default-src 'none'; img-src data:; style-src 'unsafe-inline'; font-src data:; "
     "sandbox allow-downloads allow-same-origin; frame-ancestors 'self'"
 )
-"""What a report may do: show itself, and keep its files, for which it has the page's origin and cookie; its code does not run."""
+"""The content security policy of a report: no scripts run, and nothing is loaded from elsewhere. The report keeps the page's origin, so
+that its links can download files with the page's cookie."""
 
 Column = Annotated[str, Query(min_length=1, max_length=200)]
 WHERE: TypeAdapter[dict[str, Level]] = TypeAdapter(Annotated[dict[str, Level], Field(max_length=10)])

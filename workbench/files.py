@@ -181,8 +181,8 @@ class ModelFolder:
         with self._saving:  # of two who have read the same version, only one replaces it
             now = self.version(where) if where.is_file() else None
             if now != version:
-                gone, there = "there is no such file any more", "there is such a file already"
-                reason = gone if now is None else there if version is None else "it has changed"
+                gone, exists = "the file no longer exists", "the file already exists"
+                reason = gone if now is None else exists if version is None else "the file has changed"
                 raise ConflictError(f"'{path}' was not saved: {reason}")
             try:
                 if where.exists() and not is_writable(where):

@@ -69,7 +69,7 @@ class PageFiles(StaticFiles):
         self._version = ""
 
     def address(self) -> str:
-        """Returns where the files of this moment are served. To be asked for each page: a file that was edited changes it."""
+        """Returns the address of the present version of the files. Call it for each page, because it changes when a file is edited."""
         version = blake2b(digest_size=8)
         for path in sorted(path for path in static().rglob("*") if path.is_file()):
             known = path.stat()

@@ -49,10 +49,10 @@ class Summary:
     branched: float | None = None
     """For a branch: the time at which the past of its run was changed [s]."""
     origin: str | None = None
-    """For a branch: the recording that has the other way of its run, by the name that it was given first; so are `ancestors`."""
+    """For a branch: the recording from which it branches, by its first name (`named`); the names in `ancestors` are first names, too."""
     ancestors: tuple[tuple[str, float], ...] = ()
-    """For a branch: the recordings from which its origin comes, the nearest first, each with the time at which the recording before
-    it in this list left it [s]. Any of them may have been deleted since."""
+    """For a branch: the recordings from which its origin branches, the nearest first, each with the time at which the recording before
+    it (the origin for the first one) branches from it [s]. Any of them may have been deleted since."""
     kept: float | None = None
     """For a copy of what lay ahead of a run when its past was changed: when that was [s since 1970]."""
     copied: tuple[str, float] | None = None

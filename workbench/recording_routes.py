@@ -63,7 +63,7 @@ class Labelling(KnownLabel):
     """What a user writes about a recording; what is left out is not changed."""
 
     known: KnownLabel | None = None
-    """What the label was before; then a field that somebody else has changed since is not replaced."""
+    """The label as the user saw it before the change; if given, a field that somebody else has changed since is not replaced."""
 
 
 class Trusting(PageMessage):
@@ -204,7 +204,7 @@ async def recorded_curves(
 
 @router.post("/recordings/{recording}/open", status_code=201)
 async def open_recording(request: Request, recording: Id, body: Opening | None = None) -> dict[str, Any]:
-    """Starts a session that repeats a recorded run, or returns the session that is known by the recording, its `recorded`.
+    """Starts a session that repeats a recorded run, or returns the open session whose `recorded` is this recording.
 
     The whole recorded run is available at once: the session can go to any time of it. Once a user changes the run, the session is known by
     the branch that it writes then, and the recording can be opened again, unchanged. Opening runs the code in the recording: 403 if

@@ -78,7 +78,7 @@ class Session(Broadcast, Receiver):
         Earlier notices about later events belong to a past that no longer exists.
         """
         self._given: dict[Notice, None] = {}
-        """The latest notices of the run on screen, in order. A run that goes a stretch again gives them again."""
+        """The latest notices of the run on screen, in order. A run that repeats a part of its past repeats its notices."""
         self._controlled_by = ""
         self._ending = ""
         self._after_end = "the worker has ended"
@@ -215,7 +215,7 @@ class Session(Broadcast, Receiver):
         self.changed()
 
     def _was_given(self, notice: Notice) -> bool:
-        """Returns whether the run on screen gives a notice again, on a stretch that it had gone before; otherwise remembers it."""
+        """Returns whether the run on screen repeats a notice in a part of its past; otherwise stores the notice."""
         before = notice.events is not None and (notice.events < self.log.next or notice.level == "error")  # a run fails only once
         if before and notice in self._given:
             return True
@@ -450,7 +450,7 @@ class Session(Broadcast, Receiver):
 
     @property
     def recorded(self) -> Path | None:
-        """The recording by which a run that was opened from one is known, on screen or being built; None for a new run.
+        """The recording that identifies a run that was opened from one (the run on screen, or being built); None for a new run.
 
         It is the opened recording, until a user changes the run; from then on, it is the recording that the run itself writes.
         """
@@ -478,7 +478,7 @@ class Session(Broadcast, Receiver):
 
     @property
     def is_outdated(self) -> bool:
-        """Whether the run on screen waits at its start and its file has another text by now: nothing is lost if it is made again."""
+        """Whether the run on screen still waits at its start although its file has changed: it can be replaced without loss."""
         if self._shown is None or self.is_loading or not never_begun(self.state, self.log) or not is_there(self.path):
             return False
         return self._shown.is_stale(digest_of_file(self.path))

@@ -133,7 +133,7 @@ class _Page:
                     joined.resume(attach.run, attach.epoch, attach.events)
                     feed, sending = joined, asyncio.create_task(self._send(joined))
                 elif feed is None:
-                    await self._refuse(problem or "say first which session is shown: attach", id=_number_of(text))
+                    await self._refuse(problem or "the first message must be an attach, which names a session", id=_number_of(text))
                 elif request is not None and len(self._tasks) < MAX_AT_ONCE:
                     task = asyncio.create_task(self._carry_out(session, feed, request))
                     self._tasks.add(task)

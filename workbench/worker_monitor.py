@@ -68,7 +68,7 @@ class WorkerMonitor:
         self._receiver = receiver
         self._heard = time.monotonic()
         self._given_up = 0.0
-        """When the last message had arrived before the worker did not even answer where it is."""
+        """The arrival of the last message before the worker did not even answer `Where`; each such silence is reported once."""
 
     async def serve(self) -> None:
         """Starts the worker's job, passes on its messages, and reports how it ended, or that it was ended because serving it failed."""

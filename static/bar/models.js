@@ -118,7 +118,7 @@ async function chooseAddressed(id) {
   if (time !== null) return chooseMoment(id, time);
   const text = addressed("t");
   const isShown = await chooseRecording(id);
-  if (text !== null) complain(`The link has no time that can be read: t=${text}; it must be a number of seconds, such as t=1.5.`);
+  if (text !== null) complain(`The link's time must be a number of seconds >= 0, such as t=1.5 (got t=${text}).`);
   return isShown;
 }
 

@@ -59,7 +59,7 @@ function headline({ same_events: same, whole, difference }) {
   const [one, other] = difference.events;
   if (!one || !other) return `${first} the same; then the ${one ? "second" : "first"} run has no more.`;
   if (same === 0) return `The traces differ from the first event on, at ${difference.time.toFixed(3)} s.`;
-  return `${first} the same; the traces part at ${difference.time.toFixed(3)} s.`;
+  return `${first} the same; the traces first differ at ${difference.time.toFixed(3)} s.`;
 }
 
 function What({ difference }) {

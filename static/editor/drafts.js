@@ -14,9 +14,9 @@ const keyOf = (path) => `${PREFIX}${ownName} ${path}`;
 /** The files with a draft of this tab. */
 export const drafted = signal([]);
 
-/** Determines which drafts belong to this tab: its own from before a reload, and those of closed tabs, the newest of each file. A draft of a
- * file that has one here stays where it is, until a tab has none. A browser that gives the page no locks, as over http from another machine,
- * does not show which tabs are closed: then it has its own alone. */
+/** Determines which drafts belong to this tab: its own from before a reload, and the newest of each file from closed tabs. If this tab
+ * already has a draft of a file, the others stay, for a tab that has none. Without locks (a page over http from another machine), the
+ * browser does not show which tabs are closed: then the tab has only its own drafts. */
 export const ready = settle();
 
 async function settle() {

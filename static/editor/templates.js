@@ -50,7 +50,7 @@ export const BODY = {
   ],
   source: `@dataclass(frozen=True, kw_only=True)
 class Parameters(Configuration):
-    """What may be set."""
+    """The parameters of the model."""
 
     width: Annotated[float, Gt(0), Le(3), Live("aperture")] = 0.8
     """The free width of the doorway [m]."""

@@ -58,7 +58,7 @@ export function MemoryTable({ answer, words }) {
 
   const row = (n) => html`<tr key=${all[n].chunk} class="${under(all[n]) ? "under" : ""} ${n === mark ? "threshold" : ""} ${n === at ? "chosen" : ""}" aria-selected=${n === at} title=${chunkText(shownSlots(all[n]))} onClick=${() => setChosen(n === at ? null : all[n].chunk)}>
     <td><${Chunk} chunk=${shownSlots(all[n])} /></td>
-    <td class="number">${all[n].activation === null ? html`<span class="quiet" title="One of its parts is known at a retrieval only">?</span>` : html`<span title=${all[n].activation}>${fixed(all[n].activation)}</span>`}</td>
+    <td class="number">${all[n].activation === null ? html`<span class="quiet" title="A part of the activation is computed only at a retrieval">?</span>` : html`<span title=${all[n].activation}>${fixed(all[n].activation)}</span>`}</td>
     ${names.map((name) => html`<td key=${name} class="number"><${Part} value=${all[n].parts[name]} /></td>`)}
   </tr>`;
   return html`<${Rows}

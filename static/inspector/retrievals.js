@@ -11,7 +11,7 @@ function outcomeText({ outcome, candidates, excluded, threshold, latency }) {
   if (outcome === "retrieved") return `retrieved${takes}`;
   if (outcome === "pending") return `on its way${takes ? `, which takes${takes.slice(3)}` : ""}`;
   if (candidates.length > 0) return `failed${takes}: no candidate reaches the threshold of ${valueText(threshold)}`;
-  return `failed${takes}: no chunk matches${excluded.length ? " that was not retrieved recently" : ""}`;
+  return `failed${takes}: no chunk matches${excluded.length ? ", apart from recently retrieved ones (finsts)" : ""}`;
 }
 
 function Candidates({ reason }) {
@@ -90,7 +90,7 @@ export function Search({ reason }) {
 export function Retrievals({ explanations }) {
   const retrievals = explanations.flatMap((one) => one.retrievals);
   const searches = explanations.flatMap((one) => one.searches);
-  if (retrievals.length + searches.length === 0) return html`<p class="empty">Nothing had been asked of a memory or of the eyes by then.</p>`;
+  if (retrievals.length + searches.length === 0) return html`<p class="empty">No retrieval and no visual search had been requested by that time.</p>`;
   return html`${retrievals.map((reason) => html`<${Retrieval} key=${reason.memory} reason=${reason} />`)}
   ${searches.map((reason) => html`<${Search} key="${reason.module} ${reason.bottom_up}" reason=${reason} />`)}`;
 }

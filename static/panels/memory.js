@@ -27,7 +27,7 @@ function Seen() {
   const searches = (result.answer ?? []).flatMap((one) => one.searches);
   return html`<div class="reasons-text">
     <${Waiting} answer=${result} />
-    ${result.answer && searches.length === 0 ? html`<p class="empty">The eyes have not looked for anything yet.</p>` : null}
+    ${result.answer && searches.length === 0 ? html`<p class="empty">There has been no visual search yet.</p>` : null}
     ${searches.map((reason) => html`<${Search} key="${reason.module} ${reason.bottom_up}" reason=${reason} />`)}
   </div>`;
 }

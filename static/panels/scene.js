@@ -154,7 +154,7 @@ function Lag({ frame }) {
 function missing(drawn) {
   if (isShown()) return drawn === null ? ["The 3D view loads …", true] : drawn ? null : [NO_WEBGL, false];
   if (state.value === null) return [runStatus.value.text, runStatus.value.is === "loading"];
-  return ["This model has no world: there is nothing to see. Its buffers, productions and memory stand beside.", false];
+  return ["This model has no world: there is nothing to show here. See the tabs Buffers, Productions and Memory.", false];
 }
 
 function Cover({ text, awaited }) {

@@ -1,5 +1,5 @@
 // The branches of the run as a small tree on the axis of time: each begins where its run was changed. They are opened, compared, named
-// and deleted here; there is nothing to see as long as there is only one way.
+// and deleted here; nothing is shown as long as the run has no branch.
 
 import { commandsOf } from "../commands.js";
 import { compareRuns } from "../compare/compare.js";
@@ -21,11 +21,11 @@ import { span } from "./view.js";
 
 const open = remembered("branches open", true);
 
-/** Returns a function from a run of the list to it and all from which it comes, one after the other: [{id, run, left}]. `run` is undefined for
- * a recording that was deleted; `left` is until when the first run is the same as this one [s].
+/** Returns a function that maps a run of the list to its lineage: the run itself, then its origin, the origin of that, and so on, as
+ * [{id, run, left}]. `run` is undefined for a recording that was deleted; `left` is until when the first run is the same as this one [s].
  *
- * What lay ahead of a run is kept when its past is changed. If that happens again later, at an earlier time, the former copy follows the new
- * one, which has the run's way until then. */
+ * When a run's past is changed, its earlier future is kept as a copy. If the run is then changed again at an earlier time, the first copy
+ * branches from the second one, which contains the run up to the first change. */
 function lines(list) {
   const known = new Map(list.map((run) => [run.id, run]));
   const copies = Map.groupBy(list.filter(({ copied }) => copied), (run) => run.copied[0]);

@@ -37,7 +37,7 @@ def test_the_value_of_a_live_parameter_is_that_of_the_moment_for_all_who_look(pa
     field.fill("1.5")
     field.press("Enter")
     expect(field).to_have_value("1.5")
-    expect(page.get_by_text("not in force yet")).to_have_count(0)
+    expect(page.get_by_text("not in effect yet")).to_have_count(0)
     until(page, lambda: commands(page) == ["speed 1.2 -> 1.5 m/s"])
     say(page, type="step", ticks=10)
     shows(page, "#time", r"0\.60")

@@ -132,7 +132,7 @@ def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..
     expect(page.get_by_role("alert")).to_have_text(re.compile("must be more than 0, at most 3"))
     expect(page.get_by_role("button", name="Restart with these")).to_be_disabled()
     speed.fill("1.1")
-    expect(page.locator(".note")).to_have_text(re.compile("One value is not in force yet"))
+    expect(page.locator(".note")).to_have_text(re.compile("One value is not in effect yet"))
     page.get_by_role("button", name="Restart with these").click()
     expect(page.locator(".note")).to_have_count(0)
     expect(speed).to_have_value("1.1")

@@ -391,7 +391,7 @@ def test_text_in_fields_stays_as_it_was_typed(pages: Callable[..., Page]) -> Non
         width.press("Tab")
         speed.fill("1.3")
     shows(page, "#width", "90 cm")
-    expect(page.locator(".note")).to_have_text(re.compile("One value is not in force yet"))
+    expect(page.locator(".note")).to_have_text(re.compile("One value is not in effect yet"))
     expect(speed).to_have_value("1.3")
 
 

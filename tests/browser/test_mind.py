@@ -405,7 +405,7 @@ def test_an_empty_agent_says_so(pages: Pages, workbench: Served) -> None:
     page.get_by_role("tab", name="Conflict set").click()
     expect(page.locator("#reasons-panel")).to_contain_text("No production has matched in this run")
     page.get_by_role("tab", name="Retrievals").click()
-    expect(page.locator("#reasons-panel")).to_contain_text("Nothing had been asked of a memory")
+    expect(page.locator("#reasons-panel")).to_contain_text("No retrieval and no visual search had been requested")
     open_tab(page, "Memory")
     expect(page.locator("#panel-memory")).to_have_text("This model has no declarative memory.")
 

@@ -56,7 +56,7 @@ def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_w
         page = context.new_page()
         page.set_default_timeout(PATIENCE)
         page.goto((tmp_path / "replay.html").as_uri())
-        expect(page.locator("#outcome")).to_have_text("Shown up to 1.20 s: the run was not over then.")
+        expect(page.locator("#outcome")).to_have_text("Shown up to 1.20 s: the run was not over at that time.")
         expect(page.locator("#empty")).to_have_text("No scene is stored before 0.20 s.")
         expect(page.locator("#canvas")).to_be_hidden()
         page.get_by_role("slider", name="Time").fill("0.2")

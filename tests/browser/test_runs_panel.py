@@ -337,7 +337,7 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     sides.get_by_label("differences only").check()
     expect(sides).not_to_contain_text("seed")
 
-    expect(dialog.get_by_text(re.compile(r"The first \d+ events are the same; the traces part at"))).to_be_visible()
+    expect(dialog.get_by_text(re.compile(r"The first \d+ events are the same; the traces first differ at"))).to_be_visible()
     around = dialog.get_by_role("table", name="Events around the first difference")
     expect(around.locator("tr.here")).to_have_count(1)
     dialog.get_by_label("Which events are compared").select_option("firings")

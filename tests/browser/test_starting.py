@@ -27,7 +27,7 @@ def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> N
     page.route("**/api/sessions", hold)
     page.get_by_label("Model", exact=True).select_option("counting.py")
     shows(page, "#status", "the workbench is starting")
-    expect(page.locator("#scene")).to_contain_text("the eye is compiled")
+    expect(page.locator("#scene")).to_contain_text("the camera's code is compiled")
     expect(page.locator("#scene progress")).to_be_visible()
     held[0].continue_()
     shows(page, "#status", "paused")

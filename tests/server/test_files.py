@@ -108,7 +108,7 @@ def test_a_conflict_is_reported_and_nothing_is_overwritten(folder: ModelFolder) 
         folder.save("one.py", "mine = 1\n", None)
     assert folder.read("one.py").text == "other = 1\n"
     (folder.root / "one.py").unlink()
-    with pytest.raises(ConflictError, match="no such file any more"):
+    with pytest.raises(ConflictError, match="no longer exists"):
         folder.save("one.py", "mine = 1\n", file.version)
 
 

@@ -25,7 +25,7 @@ class Camera {
     return [flat * Math.cos(this.turn), flat * Math.sin(this.turn), Math.sin(this.tilt)];
   }
 
-  // What is looked at, and from how far off, so that the whole stage is in view; reckoned for the direction of the start.
+  // Returns the target and the distance at which the whole stage is in view, computed for the first viewing direction.
   fit(aspect) {
     const { low, high, corners } = this.stage, middle = low.map((value, axis) => (value + high[axis]) / 2);
     const back = this.from, right = unit(cross([0, 0, 1], back)), upward = Math.tan(FOV / 2);
@@ -45,7 +45,8 @@ class Camera {
     return { target, distance: distance * ROOM };
   }
 
-  // The eye, what it looks at, and the matrix of both: a body that leaves the stage is gone along with.
+  // Returns the camera's position, its target, and the matrix that projects the scene. While it follows, it moves along with a body that
+  // leaves the stage.
   seen(body, aspect) {
     const { low, high } = this.stage;
     if (this.following) this.off = [0, 1].map((axis) => body[axis] - Math.min(Math.max(body[axis], low[axis]), high[axis])).concat(0);
@@ -61,7 +62,7 @@ class Camera {
     this.tilt = Math.min(1.5, Math.max(-0.2, this.tilt + y * 0.006));
   }
 
-  // Moves what is looked at by parts of the picture's height.
+  // Moves the target; x and y are fractions of the picture's height.
   shift(x, y) {
     const size = this.distance * 2 * Math.tan(FOV / 2), s = Math.sin(this.turn), c = Math.cos(this.turn);
     this.shifted = plus(this.shifted, [x * s - y * c, -x * c - y * s, 0], size);

@@ -39,7 +39,7 @@ const rows = data.events.rows;
 const end = Math.max(drawing ? drawing.end : 0, rows.length ? rows[rows.length - 1][0] : 0);
 const events = new Events(data.events, (time) => goTo(time));
 get("time").max = end;
-const over = data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : `Shown up to ${end.toFixed(2)} s: ${data.failed ? "the run has failed" : "the run was not over"} then.`;
+const over = data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : `Shown up to ${end.toFixed(2)} s: ${data.failed ? "the run failed" : "the run was not over"} at that time.`;
 get("outcome").textContent = (came ? `Outcome: ${came}. ` : "") + over;
 
 function goTo(time) {

@@ -104,7 +104,7 @@ def complete_name(model: ModelText, at: int, attributes: Attributes) -> tuple[li
 
 
 def _conditions(model: ModelText, name: Name, attributes: Attributes | None = None) -> list[tuple[Word, dict[str, str]]]:
-    """Returns the features that the request around a name may search for, with what it may name as `width=">0.5"`."""
+    """Returns the features that the request around a name may search for, with the keyword arguments of each, such as `width=">0.5"`."""
     part = model.parts_of(name.agent).get(name.called[-2]) if name.called[-1:] == ("request",) and len(name.called) > 1 else None
     if part is None:
         return []
@@ -131,7 +131,7 @@ def complete_part(text: str, start: int) -> list[Item]:
 
 
 def sign(model: ModelText, at: int) -> Signature | None:
-    """Returns how a command or a question to a body is given in whose brackets a position is, after its word: `body.set("heading", `."""
+    """Returns the signature of the command or question to a body whose brackets contain a position: `body.set("heading", `."""
     bracket = _bracket_around(model.text, at)
     name = model.name_at(bracket)
     part = model.parts_of(name.agent).get(name.before[-1]) if name is not None and name.before and bracket else None

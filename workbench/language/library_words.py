@@ -26,7 +26,7 @@ class Word:
     slots: dict[str, str] = dataclasses.field(default_factory=dict[str, str])
     """The slots of the chunk that answers it, with their meanings."""
     conditions: dict[str, str] = dataclasses.field(default_factory=dict[str, str])
-    """What a request for it may name besides: slots by their other names, and parameters, with their meanings."""
+    """The other keyword arguments of a request for it, with their meanings: other names of slots, and parameters."""
 
 
 @cache

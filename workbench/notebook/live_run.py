@@ -104,7 +104,7 @@ class LiveRun(SimulationRun):
             self._loop.call_soon(self._rest)
 
     def _rest(self, _: Glimpse | None = None) -> None:
-        """Shows the run exactly as a call of a cell has left it, or the cell itself."""
+        """Shows the exact state of the run after a call in a cell, or after the whole cell."""
         self._rest_due &= _ is not None
         if self._own or self.left or os.getpid() != self._process:
             return

@@ -22,7 +22,7 @@ ABOVE = 0.02
 class Handles(Overlay):
     """Shows arrows and an arc at the foot of each body, wall or object that can be moved: dragging them puts it elsewhere, or turns it.
 
-    It moves when its handle is released. It is a change of the user like any other: recorded, and can be undone.
+    The thing moves when its handle is released. This is a user's change like any other: it is recorded, and can be undone.
     """
 
     def __init__(self, drawn: Drawn) -> None:

@@ -35,7 +35,7 @@ class KeptBranch:
         self._branch: Path | None = None
         self._ancestors = controller.run.ancestors
         self._left_later = bool(self._ancestors) and self._ancestors[0][1] > self._at
-        """Whether the run has left the recording that it comes from at a later time."""
+        """Whether the run branched from its origin recording at a time after the present moment."""
         # A run that repeats a recording is kept by that recording.
         self._repeated = Path(start.recorded) if start.recorded is not None and controller.repeats_recording else None
         self._is_gone = self._repeated is not None and not self._repeated.is_file()
@@ -51,7 +51,8 @@ class KeptBranch:
             raise SimulationError(f"{why}: {ahead} would be lost; go to its newest moment, or set `drop` to lose it")
         path, origin = new_branch(Path(self._start.record), self._at), Path(self._start.record).stem
         try:
-            # The copy has the way of the run: if the run itself left another recording later than now, the copy did.
+            # The copy is of the run as it was. If the run branched from another recording after the present moment, the copy has that
+            # branch point, and keeps the run's own facts.
             tie = {} if self._left_later else {"branched": self._at, "origin": origin, "ancestors": self._ancestors}
             recording.copy_to(path, **{NAMED: path.stem, **tie})
         except Actr3dError as error:

@@ -165,8 +165,8 @@ class ProgramRun(ControlledRun):
         self._begun = 0
         """The number of simulations that have begun."""
         self._simulations: dict[int, tuple[Shown, int]] = {}
-        """Those nearest to the present by number, and when each began [us]. They outlive that the program is run again: what is kept of a
-        simulation's past is passed on to the one that begins in its place."""
+        """Those nearest to the present by number, and when each began [us]. They are kept when the program is run again: the stored past of
+        a simulation is passed on to the one that begins in its place."""
         self._held: deque[tuple[int, Run, Any]] = deque(maxlen=MAX_RUNS)
         """The numbers of the latest runs, these, and their models."""
         self._runs = 0
@@ -178,7 +178,7 @@ class ProgramRun(ControlledRun):
         self._scene_of: Shown | None = None
         """The simulation that was shown last."""
         self._ahead: dict[int, Past] = {}
-        """By its number among all runs, the states of a simulation that has not begun yet in the recording that is run again."""
+        """The recorded states of simulations that have not begun yet in this repetition of a recording, by their number among all runs."""
         self._commands = [RecordedCommand(*command) for command in start.commands]
         """The changes of users, which each pass through the program repeats."""
         self._changes = ProgramChanges(self._limits, self._commands)
@@ -321,7 +321,7 @@ class ProgramRun(ControlledRun):
         self._times.add(event, self._clock + (since if 0 <= since <= self.period else 0))
 
     def _hold_at_start(self) -> None:
-        """Waits before the program begins, where nothing says that it is to go on."""
+        """Waits before the program begins, unless it is being run again to reach a later moment."""
         controller = self._controller
         if self._rush == 0 and self._undoing is None:
             self._arrive()
@@ -407,7 +407,7 @@ class ProgramRun(ControlledRun):
 
         Args:
             to: The time.
-            again: Whether a known change is repeated there: whoever goes to that time sees what was before it.
+            again: Whether a known change is repeated at that time; a user who goes to that time sees the moment before the change.
         """
         controller = self._controller
         while True:

@@ -194,7 +194,7 @@ class RunController:
         self._halt()
 
     def goes_another_way(self, events: int, changed: str | None) -> None:
-        """Informs the server that what was known after the present moment is no longer valid.
+        """Informs the server that the known future after the present moment is no longer valid.
 
         Args:
             events: Number of events up to this moment.
