@@ -80,10 +80,11 @@ export function roomForEarlier() {
   return 0.9 * MAX_EVENTS - events.value.list.length;
 }
 
-/** Adds the events directly before those of the list. */
+/** Adds the events directly before those of the list, the latest of them if there is not room for all. */
 export function addEarlier(earlier) {
   const { list, first } = events.peek();
-  events.value = { list: [...earlier, ...list], first: first - earlier.length, missing: first - earlier.length, cut: false };
+  const added = earlier.slice(Math.max(0, earlier.length - roomForEarlier())); // new ones have come since these were requested
+  events.value = { list: [...added, ...list], first: first - added.length, missing: first - added.length, cut: false };
 }
 
 function withEvents({ list, first, missing }, news) {

@@ -412,27 +412,27 @@ def test_an_empty_agent_says_so(pages: Pages, workbench: Served) -> None:
 
 @pytest.mark.slow
 def test_a_long_trace_stays_in_hand(pages: Pages, workbench: Served) -> None:
-    page = opened(pages, workbench, "long.py", "for n in range(60000):\n    print('line', n)\n")
+    page = opened(pages, workbench, "long.py", "for n in range(190_000):\n    print('line', n)\n")
     open_tab(page, "Productions")
     page.click("#run")
     shows(page, "#status", "ended")
     rows = page.locator("#events tbody tr:not(.gap)")
-    expect(rows.last).to_contain_text("line 59999")
+    expect(rows.last).to_contain_text("line 189999")
     assert rows.count() < 200, "only what is in sight is drawn"
-    page.reload()  # the server keeps fewer than all
+    page.reload()  # the server sends the latest; the page requests as many earlier ones as it has room for
     shows(page, ".gap-note", "^10,000 earlier events are not shown$")
-    expect(rows.last).to_contain_text("line 59999")
+    expect(rows.last).to_contain_text("line 189999")
     page.get_by_role("region", name="Firing trace").focus()
     page.keyboard.press("Home")
     expect(rows.first).to_contain_text("line 10000")
     page.get_by_role("button", name="To the present").click()
-    expect(rows.last).to_contain_text("line 59999")
+    expect(rows.last).to_contain_text("line 189999")
     page.get_by_role("region", name="Firing trace").press("Home")
     expect(rows.first).to_contain_text("line 10000")
     page.click("#restart")
     expect(rows).to_have_count(0)
     page.click("#run")
-    expect(rows.last).to_contain_text("line 59999")  # who had scrolled away had done so in another run
+    expect(rows.last).to_contain_text("line 189999")  # who had scrolled away had done so in another run
     expect(page.get_by_role("button", name="To the present")).to_have_count(0)
 
 
