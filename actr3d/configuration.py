@@ -103,9 +103,9 @@ def checked(value: Any, declared: Any, where: str) -> Any:
     if origin in (Union, UnionType):
         return _one_of(value, get_args(declared), where)
     if origin is Literal:
-        if value in get_args(declared):
-            return value
         options = get_args(declared)
+        if any(isinstance(value, type(option)) and value == option for option in options):
+            return value
         near = did_you_mean(value, options) if isinstance(value, str) else ""
         raise ConfigurationError(f"{where}: must be one of {', '.join(map(repr, options))} (got {value!r}){near}")
     if origin is tuple:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
+
+from annotated_types import Ge, Le
 
 from actr3d.actr.explain.module_reasons import outcome_of
-from actr3d.actr.kernel.parameters import WithParameters, named_parameters
+from actr3d.actr.kernel.parameters import WithParameters, check_attribute, named_parameters
 from actr3d.actr.modules.answers import plain_answer
 from actr3d.actr.modules.port import RAW_VISION, Request, Searching, note_request
 from actr3d.camera import CameraParameters, View
@@ -19,12 +21,16 @@ from actr3d.vision.feature import off_sight
 from actr3d.vision.feature_cache import FeatureCache
 from actr3d.vision.noise import blurred
 from actr3d.vision.request_parser import Query, read_request
+from actr3d.vision.salience import Rule
 from actr3d.vision.search import Search
-from actr3d.vision.validation import CAMERA, check_camera, check_numbers, encoding_of, saliences_of
+from actr3d.vision.validation import CAMERA, FromZero, check_camera, encoding_of, saliences_of
 from actr3d.world.command_registry import number
 
 BITS = 64
 """Bits of the seed of a view's noise."""
+
+STATE = ("busy", "error", "watching")
+"""What the module tells productions about itself."""
 
 
 class Vision(WithParameters, Searching):
@@ -81,15 +87,15 @@ class Vision(WithParameters, Searching):
     def __init__(
         self,
         buffer: Any,
-        delay: float = 0.05,
-        delay_sd: float | None = None,
-        bottom_up_delay: float = 0.02,
-        hold: float = 0.1,
+        delay: FromZero = 0.05,
+        delay_sd: FromZero | None = None,
+        bottom_up_delay: FromZero = 0.02,
+        hold: FromZero = 0.1,
         salience: Any = None,
-        rule: str = "share",
-        error_rate: float = 0.0,
-        edge_noise: float = 0.0,
-        distance_noise: float = 0.0,
+        rule: Rule = "share",
+        error_rate: Annotated[float, Ge(0), Le(1)] = 0.0,
+        edge_noise: FromZero = 0.0,
+        distance_noise: FromZero = 0.0,
         encoding: Any = 0.0,
         saccades: bool = False,
         private_view: bool = True,
@@ -111,8 +117,7 @@ class Vision(WithParameters, Searching):
         self.distance_noise = distance_noise
         self.saccades = saccades
         self.private_view = private_view
-        self._check_parameters(vars(self))
-        check_camera(camera, sorted(self._settable() - {"camera", "busy", "error", "watching"}))
+        check_camera(camera, sorted(self._settable() - {"camera", *STATE}))
         self._detectors = dict(DETECTORS)
         self._saliences = saliences_of(salience, self._detectors)
         self._encoding = encoding_of(encoding)
@@ -125,9 +130,6 @@ class Vision(WithParameters, Searching):
         self._aim: tuple[int, float, float] = (0, 0.0, 0.0)
         self._last: dict[bool, Search] = {}
 
-    def _check_parameters(self, values: Mapping[str, Any]) -> None:
-        check_numbers(values)
-
     def __setattr__(self, name: str, value: Any) -> None:
         if "_last" in vars(self):  # it has been made
             if name == "salience":
@@ -136,6 +138,8 @@ class Vision(WithParameters, Searching):
                 self._encoding = encoding_of(value)
             elif name in CAMERA:
                 raise ParameterError(f"Vision.{name}: a camera cannot be changed; set it in Vision({name}=...)")
+            elif name[0] != "_" and name not in STATE:
+                check_attribute(type(self), name, value)
         super().__setattr__(name, value)
 
     # -- for observers
@@ -169,11 +173,9 @@ class Vision(WithParameters, Searching):
         Raises:
             VisionError: If there is no such feature or slot, or a value is invalid.
             ChunkError: If a variable is not bound.
-            ParameterError: If a parameter was changed to an invalid value.
             SimulationError: If the agent has no body, or has not started.
         """
         self._joined("view")
-        check_numbers(vars(self))
         if not isinstance(bottom_up, bool):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
             raise VisionError(f"vision '{self._path}': bottom_up: must be True or False (got {bottom_up!r})")
         query = read_request(pattern, slots, self._detectors, self.sch.bound, f"vision '{self._path}'")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from numbers import Real
 from random import Random
-from typing import Any, TypeAlias, cast
+from typing import Any, Literal, TypeAlias, cast
 
 from actr3d.configuration import is_finite
 from actr3d.errors import VisionError, did_you_mean
@@ -27,7 +27,7 @@ KINDS: Mapping[str, Function] = {
 }
 """Kinds of salience by word: width times height [m²]; 1 / distance [1/m]; speed of the place [m/s]; 1."""
 
-RULES = ("share", "sos")
+Rule: TypeAlias = Literal["share", "sos"]
 """Rules of choice: with probability s_i / sum(s); or each survives with probability s_i (at most 1), then one of those is drawn."""
 
 

@@ -10,7 +10,7 @@ from actr3d.actr.modules.port import CallSite, Reading
 from actr3d.camera import View
 from actr3d.vision.feature import Feature
 from actr3d.vision.request_parser import Query, Test, refusal
-from actr3d.vision.salience import Function, share, survivors, weigh
+from actr3d.vision.salience import Function, Rule, share, survivors, weigh
 
 
 class Search(Reading):
@@ -91,8 +91,8 @@ class Search(Reading):
         self.noticed = noticed
         self.weights = weigh(noticed, salience, f"the salience of '{self.query.detector.name}'")
 
-    def choose(self, rule: str, random: Random) -> None:
-        """Draws one of those noticed, by a rule of `RULES`."""
+    def choose(self, rule: Rule, random: Random) -> None:
+        """Draws one of those noticed, by a rule."""
         if not self.noticed:
             return
         if rule == "share":

@@ -2,59 +2,27 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import fields
 from numbers import Real
-from typing import Any, cast
+from typing import Annotated, Any, cast
+
+from annotated_types import Ge, Le
 
 from actr3d.camera import CameraParameters
+from actr3d.configuration import is_finite
 from actr3d.errors import ParameterError, alternatives, did_you_mean
 from actr3d.vision.detectors.registry import Detector
 from actr3d.vision.encoding import Emma
-from actr3d.vision.salience import RULES, Function, salience_of
+from actr3d.vision.salience import Function, salience_of
 
 MAX_VALUE = 1e6
 """Upper bound of times [s] and noise: longer than any run, and far from the limit of floats."""
 
-FROM_ZERO = ("delay", "delay_sd", "bottom_up_delay", "hold", "edge_noise", "distance_noise")
+FromZero = Annotated[float, Ge(0), Le(MAX_VALUE)]
 
 CAMERA = tuple(field.name for field in fields(CameraParameters))
 """Parameters of the camera, which a module accepts besides its own."""
-
-
-def check_numbers(given: Mapping[str, Any]) -> None:
-    """Checks the numbers and the rule of a module.
-
-    Raises:
-        ParameterError: If one is out of bounds.
-    """
-    for name in FROM_ZERO:
-        value = given[name]
-        if value is None and name == "delay_sd":
-            continue
-        number = _number(value)
-        if number < 0:
-            raise ParameterError(f"Vision.{name}: must be >= 0 (got {value!r})")
-        if number > MAX_VALUE:
-            raise ParameterError(f"Vision.{name}: must be <= {MAX_VALUE:g} (got {value!r})")
-    for name in ("saccades", "private_view"):
-        if not isinstance(given[name], bool):
-            raise ParameterError(f"Vision.{name}: must be True or False (got {given[name]!r})")
-    if not 0 <= _number(given["error_rate"]) <= 1:
-        raise ParameterError(f"Vision.error_rate: must be a probability, >= 0 and <= 1 (got {given['error_rate']!r})")
-    if not isinstance(given["rule"], str) or given["rule"] not in RULES:
-        raise ParameterError(f"Vision.rule: must be one of {', '.join(RULES)} (got {given['rule']!r})")
-
-
-def _number(value: Any) -> float:
-    """Returns a number; infinity if it is too large for a float, -1 if it is not a number."""
-    if isinstance(value, bool) or not isinstance(value, Real):
-        return -1.0
-    try:
-        return -1.0 if math.isnan(value) else float(value)
-    except OverflowError:
-        return math.inf
 
 
 def check_camera(camera: Mapping[str, Any], own: list[str]) -> None:
@@ -103,6 +71,6 @@ def encoding_of(given: Any) -> Emma | float:
         return given
     if isinstance(given, str) and given == "emma":
         return Emma()
-    if 0 <= _number(given) <= MAX_VALUE:
-        return _number(given)
+    if isinstance(given, Real) and not isinstance(given, bool) and is_finite(given) and 0 <= float(given) <= MAX_VALUE:
+        return float(given)
     raise ParameterError(f"Vision.encoding: must be a time >= 0 [s], 'emma' or an Emma (got {given!r})")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from functools import cache, wraps
 from itertools import islice
 from numbers import Integral, Real
@@ -72,13 +72,6 @@ class WithParameters:
             warn_of_slip(self, name)
         super().__setattr__(name, value)
 
-    def _check_parameters(self, values: Mapping[str, Any]) -> None:
-        """Checks the bounds of its parameters that their types do not show.
-
-        Raises:
-            ParameterError: If one is out of bounds.
-        """
-
     def _settable(self) -> set[str]:
         """Returns the names that may be meant by a misspelt one: parameters and attributes; nothing for a modeller's own class,
         which may have any attributes.
@@ -145,8 +138,6 @@ def check_parameter(part: Any, name: str, value: Any, where: str) -> None:
     """
     kind = cast("type[Any]", type(part))
     _check(value, next(_declared(kind, name), _kind_of(vars(part)[name])), where)
-    if isinstance(part, WithParameters):
-        part._check_parameters({**vars(part), name: value})  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
 def check_attribute(kind: type, name: str, value: Any) -> None:
