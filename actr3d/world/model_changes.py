@@ -11,6 +11,8 @@ import numpy as np
 from mujoco import MjModel
 from numpy.typing import NDArray
 
+from actr3d.world.compiled import from_bytes
+
 Changes = tuple[tuple[str, NDArray[Any]], ...]
 """Each array of the model, and each option (`opt.gravity`), that differs from the start, by name."""
 
@@ -55,8 +57,7 @@ class ModelChanges:
     @cached_property
     def _original(self) -> MjModel:
         """The model at the start; made when something first differs from it."""
-        kind: Any = MjModel
-        return kind.from_binary_path("start.mjb", {"start.mjb": self._start})
+        return from_bytes(self._start)
 
     def _set(self, name: str, number: NDArray[Any]) -> None:
         option = name.removeprefix("opt.")

@@ -18,12 +18,11 @@ from actr3d.world.anatomy import Anatomy, NamedMovement, body_kind
 from actr3d.world.bodies.load import Load
 from actr3d.world.bodies.mannequin_limits import FASTEST_JOINT, FASTEST_TURN, FASTEST_WALK, limits_of, strength_of
 from actr3d.world.bodies.planar_base import add_planar_base
-from actr3d.world.gait import OWN, Gait, LegPlan
+from actr3d.world.gait import OWN, SIDES, Gait, LegPlan
 from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Length, Name, Positive
 from actr3d.world.sensor_noise import Noise
 from actr3d.world.velocity_servo import add_servo
 
-SIDES = ("left", "right")
 HINGES = ("yaw", "pitch", "roll")
 HINGED = (
     *("pelvis", "torso", "head", "eye"),
@@ -62,7 +61,7 @@ SHOULDER, UPPER_ARM = 0.818, 0.186 / 0.44
 Point = tuple[float, float, float]
 _AXES = {"yaw": (0, 0, 1), "pitch": (0, 1, 0), "roll": (1, 0, 0), "sway": (0, 1, 0), "bob": (0, 0, 1)}
 
-ARM = tuple(f"upper_arm_{hinge}" for hinge in ("yaw", "pitch", "roll"))
+ARM = tuple(f"upper_arm_{hinge}" for hinge in HINGES)
 
 MOVEMENTS = (
     NamedMovement(name="rotate_torso", joints=(("torso_yaw", 1),)),
@@ -70,7 +69,7 @@ MOVEMENTS = (
     NamedMovement(name="extend_shoulder", side="right", joints=(("right_shoulder_yaw", 1),)),
     NamedMovement(name="compress_shoulder", side="left", joints=(("left_shoulder_yaw", 1),)),
     NamedMovement(name="compress_shoulder", side="right", joints=(("right_shoulder_yaw", -1),)),
-    NamedMovement(name="lower_arms", joints=tuple((f"{side}_{joint}", 1) for side in ("left", "right") for joint in ARM), to=0.0),
+    NamedMovement(name="lower_arms", joints=tuple((f"{side}_{joint}", 1) for side in SIDES for joint in ARM), to=0.0),
 )
 """The named movements. The torso turns to the left. A shoulder extends forward and compresses backward from its rest position: a turn
 to the left extends the right one and compresses the left one. Lowered arms hang, or hold the load, as at the start.
