@@ -98,7 +98,6 @@ EVENTS: msgspec.json.Decoder[AnyExperimentEvent] = msgspec.json.Decoder(AnyExper
 class ExperimentRunError(Actr3dError):
     """An experiment cannot be run, continued or read as requested."""
 
-    status = 409
 
 
 class ExperimentCommand:

@@ -22,7 +22,6 @@ LOOK = 0.25
 class StuckError(Actr3dError):
     """A worker makes no progress."""
 
-    status = 409
 
 
 class Job(Receiver):

@@ -23,7 +23,6 @@ PART = 256 * 1024
 class DisconnectedError(Actr3dError):
     """The client of a request has disconnected."""
 
-    status = 409
 
 
 class OpenFile(Response):

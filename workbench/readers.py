@@ -32,13 +32,11 @@ MAX_REPLAYS = 2
 class ReadingError(Actr3dError):
     """A recording cannot be read, or nothing made of it."""
 
-    status = 409
 
 
 class BusyError(Actr3dError):
     """Too many recordings are being replayed."""
 
-    status = 409
 
 
 class Readers:

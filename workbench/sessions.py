@@ -28,7 +28,6 @@ CHECK_TIME = 10.0
 class SessionError(Actr3dError):
     """A session cannot be started or does not exist."""
 
-    status = 409
 
 
 class NoSuchSessionError(SessionError):

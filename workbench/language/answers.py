@@ -10,7 +10,6 @@ from actr3d.errors import Actr3dError
 class LanguageError(Actr3dError):
     """A question about a text cannot be answered; the message says why."""
 
-    status = 409
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -122,12 +122,11 @@ class LiveRun(SimulationRun):
         self._note()
 
     def _note(self) -> None:
-        trace = self.trace
-        self._count, self._events = self._simulation.timeline.furthest, 0 if trace is None else len(trace)
+        self._count, self._events = self._simulation.timeline.furthest, len(self.trace)
 
     def write_to(self, recording: Recording) -> None:
         """Writes the run up to now to a new recording, which can only be looked at: commands and answers are left out."""
-        for event in self.trace or ():
+        for event in self.trace:
             recording.event(event)
         for moment in self._shown.kept.states.between(0, self._simulation.ticks):
             recording.state(1, *moment)

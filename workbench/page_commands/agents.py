@@ -120,13 +120,12 @@ class Events(Question):
     kinds: tuple[Name, ...] | None = Field(default=None, max_length=50)
 
     def answer(self, run: ControlledRun) -> dict[str, Any]:
-        trace = run.trace
         events = run.events(self.first, self.first + self.most)
         wanted = [(number, event) for number, event in enumerate(events, self.first) if self.kinds is None or event.kind in self.kinds]
         return {
             "first": self.first,
             "next": self.first + len(events),
-            "total": 0 if trace is None else len(trace),
+            "total": len(run.trace),
             "numbers": [number for number, _ in wanted],
             "events": [[event.time_us, event.source, event.kind, event.data] for _, event in wanted],
         }

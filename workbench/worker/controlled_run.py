@@ -45,12 +45,12 @@ class ControlledRun(ABC):
 
     @property
     @abstractmethod
-    def trace(self) -> Trace | None:
+    def trace(self) -> Trace:
         """The trace up to now."""
 
     def events(self, first: int, end: int) -> list[TraceEvent]:
         """Returns the events from a number on and before another one, with the times of the whole run."""
-        return [] if self.trace is None else self.trace.since(first)[: max(0, end - first)]
+        return self.trace.since(first)[: max(0, end - first)]
 
     def own_time(self, source: str, time: int) -> int | None:
         """Returns the time of the model of an agent at a time of the run [us]; None if there was no such model yet.
@@ -152,7 +152,7 @@ class ControlledRun(ABC):
         """Adds the events up to now to the curves of events, which know them also after the run has gone back; returns these curves."""
         if self._event_curves is None:
             self._event_curves = EventCurves()
-        count = 0 if self.trace is None else len(self.trace)
+        count = len(self.trace)
         if count > self._event_curves.next:
             self._event_curves.take(self.events(self._event_curves.next, count))
         return self._event_curves

@@ -68,9 +68,9 @@ class KeptBranch:
 
     def announce_undone(self) -> None:
         """Informs the server that the run is now where a user has undone a change, and pauses there."""
-        controller, trace = self._controller, self._controller.run.trace
+        controller = self._controller
         controller.status, controller.reason = "paused", "undone"
-        self.announce(0 if trace is None else len(trace), "undone")
+        self.announce(len(controller.run.trace), "undone")
         controller.went_back(controller.reason)
 
     def announce(self, events: int, what: str = "changed") -> None:

@@ -148,7 +148,8 @@ class ProgramRun(ControlledRun):
         self._listing = listing
         self._source = with_values(start.source, start.settings)
         self._seed = fresh_seed() if start.seed is None else start.seed
-        self._limits = RunLimits()
+        self._trace = Trace("all")
+        self._limits = RunLimits(trace=self._trace)
         self._output: ProgramOutput | None = None
         self._clock: int = 0
         self._tick_begin: int | None = None
@@ -275,7 +276,7 @@ class ProgramRun(ControlledRun):
         self._changed = False
         self._tick_begin = None
         self._times = ProgramTimes()
-        trace = Trace("all")
+        self._trace = trace = Trace("all")
         trace.listen(self._note_time)
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
@@ -501,8 +502,8 @@ class ProgramRun(ControlledRun):
         return PERIOD if self._shown is None else self._shown.period
 
     @property
-    def trace(self) -> Trace | None:
-        return self._limits.trace
+    def trace(self) -> Trace:
+        return self._trace
 
     def events(self, first: int, end: int) -> list[TraceEvent]:
         times = self._times.between(first, end)  # of an event that another thread is adding there may be none yet
@@ -530,7 +531,7 @@ class ProgramRun(ControlledRun):
         if self._waits is None:
             raise SimulationError(f"'{word}' cannot be done: the program has not begun, so there is no agent yet; step once first")
         sch, begin, clock = self._waits
-        before = 0 if self.trace is None else len(self.trace)
+        before = len(self.trace)
         self.flush()
         branch = KeptBranch(self._controller, self._recording, self._clock, self._furthest, drop=drop)
         try:
@@ -625,12 +626,10 @@ class ProgramRun(ControlledRun):
 
     def _hold_models(self) -> None:
         """Keeps the latest models; otherwise garbage collection would decide which are shown."""
-        trace = self._limits.trace
-        if trace is not None:
-            for run in trace.runs[self._runs :]:
-                self._runs += 1
-                if run.model is not None:
-                    self._held.append((self._runs, run, run.model))
+        for run in self._trace.runs[self._runs :]:
+            self._runs += 1
+            if run.model is not None:
+                self._held.append((self._runs, run, run.model))
 
 
 def _refusal(what: str) -> SimulationError:

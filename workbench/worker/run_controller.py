@@ -113,8 +113,7 @@ class RunController:
 
     def _count(self) -> int:
         """Returns the number of events."""
-        trace = self.run.trace
-        return 0 if trace is None else len(trace)
+        return len(self.run.trace)
 
     # -- calls from the run
 
@@ -173,8 +172,7 @@ class RunController:
     def end(self, status: Status, reason: str) -> None:
         """Records the end of the run; the reason names the stop condition that was not met, if any."""
         self._finish_errors()
-        trace = self.run.trace
-        news = trace.since(self._seen) if trace is not None and self.watch.of_events else []
+        news = self.run.trace.since(self._seen) if self.watch.of_events else []
         missed = (self.watch.found(news) or self.watch.missed) if status == "ended" else ""  # the condition may be met at the very end
         self.status, self.reason = status, shortened(f"{reason}; {missed}" if missed else reason)
         self._halt()
@@ -188,8 +186,7 @@ class RunController:
 
     def went_back(self, reason: str = "went to this time") -> None:
         """Records that the run is now at another time, whose events were all known, and why."""
-        trace = self.run.trace
-        self._seen = 0 if trace is None else len(trace)
+        self._seen = len(self.run.trace)
         self.status, self.reason = "paused", reason
         self._halt()
 
@@ -261,8 +258,7 @@ class RunController:
         if self.status in ENDED:
             raise Actr3dError("the run is over: go back to an earlier time, or restart it")
         self.watch = self.watch.renewed(**wanted)
-        trace = self.run.trace
-        self._seen = 0 if trace is None else len(trace)
+        self._seen = len(self.run.trace)
         self.status, self.reason = "running", ""
         self.pacer.halt()
         if "goal" not in wanted:
@@ -304,7 +300,7 @@ class RunController:
     def _check_events(self) -> None:
         """Pauses the run if a new event meets a stop condition."""
         trace = self.run.trace
-        if trace is not None and self.status == "running" and self.watch.of_events and len(trace) > self._seen:
+        if self.status == "running" and self.watch.of_events and len(trace) > self._seen:
             found = self.watch.found(trace.since(self._seen))
             self._seen = len(trace)
             if found is not None:
@@ -328,7 +324,7 @@ class RunController:
         run = self.run
         self._shown = perf_counter()
         trace = run.trace
-        count = 0 if trace is None else len(trace)
+        count = len(trace)
         physics, apertures = run.scene()
         state = State(
             status=self.status,
@@ -357,7 +353,7 @@ class RunController:
         # The model may be in an inconsistent state, and this thread must go on in any case.
         with suppress(Exception), self._sending:
             trace, last = self.run.trace, self._last
-            if last is None or trace is None or self.status != "running" or len(trace) <= self._sent:
+            if last is None or self.status != "running" or len(trace) <= self._sent:
                 return
             clock = self.run.clock
             time, furthest = seconds(clock), seconds(max(clock, self.run.furthest))
@@ -378,11 +374,11 @@ class RunController:
             self.show_busy()
             self.channel.flush()
 
-    def _send(self, state: State, trace: Trace | None) -> None:
+    def _send(self, state: State, trace: Trace) -> None:
         """Sends the server a state, and the events up to it that it does not have yet."""
         count = state.events
         on_its_thread = threading.current_thread() is threading.main_thread()  # otherwise the run may be in the middle of a tick
-        if self._known_run is not None and trace is not None and on_its_thread:
+        if self._known_run is not None and on_its_thread:
             state = self._compare(self._known_run, state, trace)
         news = self.run.events(self._sent, count)
         self.channel.show(state, self._sent, [event_json(event) for event in news])

@@ -198,8 +198,10 @@ class SimulationRun(ControlledRun):
         return microseconds(self._simulation.period)
 
     @property
-    def trace(self) -> Trace | None:
-        return self._simulation.trace
+    def trace(self) -> Trace:
+        trace = self._simulation.trace
+        assert trace is not None, "a simulation that was prepared has one"
+        return trace
 
     @property
     def shown(self) -> Shown:
@@ -248,8 +250,7 @@ class SimulationRun(ControlledRun):
         if set_by is not None:
             parameter, value = set_by
             parameter.check(value)
-        trace = self._simulation.trace
-        before = 0 if trace is None else len(trace)
+        before = len(self.trace)
         branch = KeptBranch(self._controller, self._recording, self.clock, self.furthest, drop=drop)
         try:
             self._simulation.command(word, *values, body=body, **named)
