@@ -124,6 +124,26 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
+def test_the_tests_of_all_registries_pass_with_them(copy: Path) -> None:
+    shutil.copytree(ROOT / "tests", copy / "tests", ignore=shutil.ignore_patterns("*.pyc*"))
+    shutil.copytree(ROOT / "models", copy / "models")
+    shutil.copy(ROOT / "pyproject.toml", copy)
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-n",
+        "0",
+        "-q",
+        "tests/test_registries.py",
+        "tests/world/test_world_state.py",
+        "tests/test_cli.py",
+    ]
+    done = subprocess.run(command, cwd=copy, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
 def test_every_file_of_the_page_is_checked() -> None:
     assert files().keys() == CHECKS.keys()
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, Union, cast
 
-from pydantic import Field, TypeAdapter
+from pydantic import Discriminator, Field, Tag, TypeAdapter
 
 from workbench.page_commands import COMMANDS, Name, PageCommand, PageMessage
 
@@ -39,6 +39,15 @@ class Request(PageMessage):
 
     id: int = Field(ge=0, lt=2**53)
     command: AnyCommand
+
+
+def _kind_of(message: Any) -> str:
+    return "attach" if isinstance(message, dict) and cast("dict[Any, Any]", message).get("type") == "attach" else "request"
+
+
+Message: TypeAlias = Annotated[Annotated[Attach, Tag("attach")] | Annotated[Request, Tag("request")], Discriminator(_kind_of)]
+MESSAGE: TypeAdapter[Attach | Request] = TypeAdapter(Message)
+"""Validates a message of a page: it is an `Attach` if its own `type` says so."""
 
 
 def problem_of(error: Mapping[str, Any]) -> str:

@@ -115,8 +115,8 @@ class _Page:
                 if feed is not None and feed.choked:
                     await self._websocket.close(1008, "too many replies were not read")
                     return
-                attach, request, problem = _read(text)
-                if attach is not None:
+                read = _read(text)
+                if isinstance(read, protocol.Attach):
                     if feed is not None:
                         session.leave(feed)
                         feed = None
@@ -124,22 +124,25 @@ class _Page:
                         sending.cancel()
                         await asyncio.gather(sending, return_exceptions=True)
                     try:
-                        session = self._sessions.get(attach.session, attach.born)
+                        session = self._sessions.get(read.session, read.born)
                     except Actr3dError as error:
-                        await self._refuse(str(error), session=attach.session)
+                        await self._refuse(str(error), session=read.session)
                         continue
-                    self._name = attach.page or self._name
+                    self._name = read.page or self._name
                     joined: Feed = session.join(self._name)
-                    joined.resume(attach.run, attach.epoch, attach.events)
+                    joined.resume(read.run, read.epoch, read.events)
                     feed, sending = joined, asyncio.create_task(self._send(joined))
                 elif feed is None:
-                    await self._refuse(problem or "the first message must be an attach, which names a session", id=_number_of(text))
-                elif request is not None and len(self._tasks) < MAX_AT_ONCE:
-                    task = asyncio.create_task(self._carry_out(session, feed, request))
+                    problem = read if isinstance(read, str) else "the first message must be an attach, which names a session"
+                    await self._refuse(problem, id=_number_of(text))
+                elif isinstance(read, str):
+                    feed.reply(_reply(_number_of(text), error=read))
+                elif len(self._tasks) < MAX_AT_ONCE:
+                    task = asyncio.create_task(self._carry_out(session, feed, read))
                     self._tasks.add(task)
                     task.add_done_callback(self._tasks.discard)
                 else:
-                    feed.reply(_reply(_number_of(text), error=problem or "too many requests are waiting for their results"))
+                    feed.reply(_reply(read.id, error="too many requests are waiting for their results"))
         finally:
             if feed is not None:
                 session.leave(feed)
@@ -179,13 +182,12 @@ def _number_of(text: str | None) -> int | None:
     return number if isinstance(number, int) and 0 <= number < 2**53 else None
 
 
-def _read(text: str | None) -> tuple[protocol.Attach | None, protocol.Request | None, str]:
+def _read(text: str | None) -> protocol.Attach | protocol.Request | str:
     """Parses a page's message: an `Attach`, a `Request`, or the reason why it is neither. The text of a binary message is None."""
     if text is None:
-        return None, None, "a message must be text (JSON), not binary data"
+        return "a message must be text (JSON), not binary data"
     try:
-        if '"attach"' in text[:200]:
-            return protocol.Attach.model_validate_json(text), None, ""
-        return None, protocol.Request.model_validate_json(text), ""
+        return protocol.MESSAGE.validate_json(text)
     except ValidationError as error:
-        return None, None, protocol.problem_of(error.errors(include_url=False, include_input=False)[0])
+        first = error.errors(include_url=False, include_input=False)[0]
+        return protocol.problem_of({**first, "loc": first["loc"][1:]})  # without the kind of message

@@ -11,7 +11,7 @@ from mujoco import MjData, MjModel
 from numpy.typing import NDArray
 
 from actr3d.clock import seconds
-from actr3d.errors import WorldError, did_you_mean
+from actr3d.errors import WorldError, alternatives, did_you_mean
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
 from actr3d.world.model_changes import Changes, ModelChanges
@@ -48,6 +48,13 @@ class WorldState:
     """What is left of pushes by hand, from `Pushes.state`."""
 
 
+class Bodies(dict[str, Body]):
+    """The bodies of a world by name, in the order of the scene; a name that does not exist raises a `WorldError`."""
+
+    def __missing__(self, name: object) -> Body:
+        raise WorldError(f"no body '{name}'{alternatives(name, self)}")
+
+
 class World:
     """Holds the compiled scene (`mj_model`) and its state (`mj_data`), and steps them.
 
@@ -79,7 +86,7 @@ class World:
         described = [part for part in scene.parts if isinstance(part, Embodied)]
         for part in described:
             fit_servos(self.mj_model, self.mj_data, part.anatomy().servos)
-        self.bodies: dict[str, Body] = {part.name: Body(self.physics, part, seed) for part in described}
+        self.bodies = Bodies({part.name: Body(self.physics, part, seed) for part in described})
         segments = frozenset(f"{name}_{side}" for name in self._apertures for side in ("left", "right"))
         self.objects = Objects(self.physics, self.bodies, segments)
         """What can be moved by hand."""

@@ -202,7 +202,7 @@ def test_a_missing_object_is_reported() -> None:
     scene = Scene(parts=(Floor(), Aperture(), Mannequin(name="walker"), Car(name="car", position=(0, 5))))
     simulation = Simulation(scene)
     for body, aperture, message in [
-        ("walkr", "aperture", "no body 'walkr' to measure; did you mean 'walker'"),
+        ("walkr", "aperture", "no body 'walkr'; did you mean 'walker'"),
         ("walker", "door", "no aperture 'door'"),
         ("car", "aperture", "body 'car' has no shoulders to measure"),
     ]:

@@ -83,6 +83,16 @@ def test_a_page_is_not_shown_the_session_of_the_same_name_of_another_server(serv
     asyncio.run(talk())
 
 
+def test_a_request_may_speak_of_attach(server: Served, session: str) -> None:
+    async def talk() -> None:
+        async with await attached(server, session) as socket:
+            await socket.send(json.dumps({"id": 7, "command": {"type": "explain", "production": "attach"}}))
+            told = await heard(socket, lambda message: "replies" in message)
+            assert told["replies"][0] == {"id": 7, "result": None, "error": "no production 'attach'; there are: none"}
+
+    asyncio.run(talk())
+
+
 def test_a_session_that_does_not_exist_is_refused(server: Served, session: str) -> None:
     async def talk() -> None:
         socket = await attached(server, session)

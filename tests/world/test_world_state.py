@@ -58,7 +58,7 @@ COMMANDS: dict[str, list[tuple[str, tuple[Any, ...]]]] = {
     "release": [("walker", ("right",))],
     "control": [("arm", ("turn", 0.5))],
 }
-"""Each command of a body, with values."""
+"""Commands of bodies with their values; any other command gets numbers."""
 READINGS: dict[str, list[tuple[str, dict[str, Any]]]] = {
     "view": [("walker", {}), ("walker", {"horizontal_fov": 1.0, "rows": 9}), ("car", {"rows": 5})],
     "contacts": [("walker", {}), ("arm", {})],
@@ -69,6 +69,10 @@ PICTURES = {"image", "depth"}
 """They need EGL, and leave nothing but what draws them."""
 
 
+def numbers_for(command: str) -> tuple[float, ...]:
+    return tuple(0.3 for value in ACTUATORS[command].takes.split(", ") if value and "=" not in value)
+
+
 def world() -> World:
     walker = Mannequin(name="walker", noise=(("velocity", 0.01),))
     ball = SimpleObject(name="ball", size=(0.05, 0.05, 0.2), position=(0.0, -0.24, 0.66), mass=0.2)  # beside the right hand
@@ -77,10 +81,12 @@ def world() -> World:
 
 
 def test_a_state_holds_all_that_any_command_and_any_reading_changes() -> None:
-    assert COMMANDS.keys() == ACTUATORS.keys()
     there = world()
     rng = np.random.default_rng(1)
     acts: list[tuple[str, str, Any]] = [(name, word, values) for word, each in COMMANDS.items() for name, values in each]
+    for name, body in there.bodies.items():
+        acts += [(name, word, numbers_for(word)) for word in body.actuators if word not in COMMANDS]
+    assert {word for _, word, _ in acts} == ACTUATORS.keys()
     acts += [(name, word, options) for word, each in READINGS.items() for name, options in each]
     acts += [(name, word, {}) for name, body in there.bodies.items() for word in body.sensors if word not in PICTURES]
     assert {word for _, word, options in acts if isinstance(options, dict)} == SENSORS.keys() - PICTURES

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from actr3d.errors import WorldError, did_you_mean
+from actr3d.errors import WorldError
 from actr3d.experiment.aperture.clearance import Clearance
 from actr3d.experiment.aperture.kernel import posture
 from actr3d.simulation.measure import measure
@@ -133,8 +133,6 @@ class Passage:
             WorldError: If they do not exist, or the body has no shoulders.
         """
         body, aperture = self._names
-        if body not in world.bodies:
-            raise WorldError(f"no body '{body}' to measure{did_you_mean(body, world.bodies)}")
         self._world, self._body = world, world.bodies[body]
         data = world.mj_data
         self._data, self._options, self._contacts = data, world.mj_model.opt, self._body.contacts
