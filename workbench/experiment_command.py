@@ -99,7 +99,6 @@ class ExperimentRunError(Actr3dError):
     """An experiment cannot be run, continued or read as requested."""
 
 
-
 class ExperimentCommand:
     """Holds a process that runs `actr3d`, and reads its output.
 

@@ -23,7 +23,6 @@ class StuckError(Actr3dError):
     """A worker makes no progress."""
 
 
-
 class Job(Receiver):
     """Tracks the progress and the result of one job."""
 

@@ -31,7 +31,6 @@ class LabelError(Actr3dError):
         there: Its present value.
     """
 
-
     def __init__(self, field: str, there: str | tuple[str, ...]) -> None:
         value = there if isinstance(there, str) else ", ".join(there)
         super().__init__(f"another browser has changed the {field} to '{value}' in the meantime")

@@ -24,7 +24,6 @@ class DisconnectedError(Actr3dError):
     """The client of a request has disconnected."""
 
 
-
 class OpenFile(Response):
     """Responds with the content of an open file, and closes the file at the end or when the client has disconnected.
 

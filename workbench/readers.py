@@ -33,10 +33,8 @@ class ReadingError(Actr3dError):
     """A recording cannot be read, or nothing made of it."""
 
 
-
 class BusyError(Actr3dError):
     """Too many recordings are being replayed."""
-
 
 
 class Readers:

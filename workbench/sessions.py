@@ -29,7 +29,6 @@ class SessionError(Actr3dError):
     """A session cannot be started or does not exist."""
 
 
-
 class NoSuchSessionError(SessionError):
     """There is no session of that name."""
 

@@ -11,7 +11,6 @@ class LanguageError(Actr3dError):
     """A question about a text cannot be answered; the message says why."""
 
 
-
 @dataclass(frozen=True, kw_only=True)
 class Item:
     """One completion."""
