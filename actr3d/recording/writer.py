@@ -31,7 +31,7 @@ BLOB = 1_000_000
 MAX_EVENTS = 10_000
 """The maximum number of events in a row."""
 
-MARKS = 4 * 8
+MARK_BYTES = 4 * 8
 """The size of the marks of a state [bytes]."""
 
 
@@ -117,13 +117,13 @@ class Writer:
         self.facts: deque[tuple[str, str]] = deque()
         self._written = {"events": 0, "answers": 0, "states": 0, "ticks": 0, "commands": 0}
         """The number of items of each sort in the file, including those of the current transaction."""
-        self._safe = dict(self._written)
+        self._committed = dict(self._written)
         """The number of items of each sort that are committed."""
-        self._made = False
+        self._created = False
         self._checksums = Checksums()
         self._key = make_key()
         self._writing = Lock()
-        self._over = Event()
+        self._closing = Event()
         self._attempt(self._create, facts)
         if self.failure is not None:
             raise self.failure
@@ -172,13 +172,13 @@ class Writer:
         Raises:
             RecordingError: If the file cannot be written.
         """
-        self._over.set()
+        self._closing.set()
         self._thread.join()
         if self.failure is not None:
             raise self.failure
 
     def _run(self) -> None:
-        while not self._over.wait(INTERVAL):
+        while not self._closing.wait(INTERVAL):
             self.flush()
         self.flush()
         self._attempt(self._finish)
@@ -196,16 +196,16 @@ class Writer:
                 work(*args)
             except BaseException as error:
                 # Items may be lost, whatever was raised: nothing may be written after a gap.
-                self.failure = RecordingError(f"cannot write the recording '{self.path}': {_reason(error)}{self._kept()}")
+                self.failure = RecordingError(f"cannot write the recording '{self.path}': {_reason(error)}{self._kept_text()}")
                 if not isinstance(error, Exception):
                     raise
 
-    def _kept(self) -> str:
+    def _kept_text(self) -> str:
         """Returns how much is kept of a recording that can no longer be written; removes the file if it has nothing of the run."""
-        if not self._made:
+        if not self._created:
             return ""
-        if any(self._safe.values()):
-            ticks, events = self._safe["ticks"], self._safe["events"]
+        if any(self._committed.values()):
+            ticks, events = self._committed["ticks"], self._committed["events"]
             some = f"{ticks:,} ticks and {events:,} events" if ticks else f"{events:,} events"
             return f"; the first {some} of the run are kept, nothing of what came after"
         with suppress(sqlite3.Error, AttributeError):  # it may not have been opened
@@ -217,7 +217,7 @@ class Writer:
 
     def _create(self, facts: Sequence[tuple[str, str]]) -> None:
         self.path.open("xb").close()
-        self._made = True
+        self._created = True
         # The absolute path, because SQLite gives names such as `:memory:` a special meaning.
         self._file = sqlite3.connect(self.path.absolute(), isolation_level=None, check_same_thread=False)
         # The beginning and the end of a run do not wait for the disk, only for the system; the thread waits in between.
@@ -283,7 +283,7 @@ class Writer:
         try:
             work(*args)
             self._file.execute("COMMIT")
-            self._safe = dict(self._written)
+            self._committed = dict(self._written)
         except BaseException:
             if self._file.in_transaction:
                 self._file.execute("ROLLBACK")
@@ -299,7 +299,7 @@ class Writer:
         if last is not None:
             first, _, data, marks, contacts, _ = last
             left = kept["states"] - first
-            marks = marks[: MARKS * left]
+            marks = marks[: MARK_BYTES * left]
             contacts = [contact for contact in json.loads(contacts) if contact[0] < left]
             self._insert("states", left, left, data[: sum(array("q", marks)[3::4])], marks, json.dumps(contacts))
         self._written["ticks"] = max(0, kept["states"] - 1)
@@ -321,7 +321,7 @@ class Writer:
         return last
 
     def _add_facts(self, copy: sqlite3.Connection, facts: Sequence[tuple[str, str]]) -> None:
-        """Adds facts to a copy, and that the run was left at the copy's end, unless the run was over there."""
+        """Adds facts to a copy. If the run has not ended by then, adds the fact `ended` with `by: left`."""
         over = copy.execute("SELECT 1 FROM facts WHERE name IN ('ended', 'failed') AND value != 'null'").fetchone()
         added = [*facts, *([] if over else [("ended", json.dumps({"by": LEFT}))])]
         checksums = deepcopy(self._checksums)

@@ -16,7 +16,7 @@ Files = tuple[tuple[str, bytes], ...]
 """Names, as in the files that mention them, and contents. The first file is the requested one."""
 
 
-class Folder:
+class AssetFolder:
     """Reads the files of one part from inside a folder, each once; or returns those of an earlier reading, and no others.
 
     A name that leads out of the folder, by `..`, as an absolute path or through a link, is refused: a foreign description must
@@ -25,13 +25,13 @@ class Folder:
     Args:
         root: The folder; nothing outside it is read.
         error: The exception for a file that cannot be read.
-        given: Files of an earlier reading, or none at all. With them nothing is read from the disk.
+        recorded: The recorded files, by name; then nothing is read from the disk. None to read from the disk.
     """
 
-    def __init__(self, root: Path, error: type[WorldError], given: Files | None = None) -> None:
+    def __init__(self, root: Path, error: type[WorldError], recorded: Files | None = None) -> None:
         self.root = resolved(root, error)
         self._error = error
-        self._given = None if given is None else dict(given)
+        self._recorded = None if recorded is None else dict(recorded)
         self._read: dict[str, bytes] = {}
 
     @property
@@ -47,7 +47,7 @@ class Folder:
     def put(self, name: str, content: bytes) -> None:
         """Adds a file that is not in the folder, as if it had been read from there."""
         self._read[name] = content
-        self._hold_size(name)
+        self._check_size(name)
 
     def read(self, name: str, asked_by: str = "") -> bytes:
         """Returns the content of a file, its name relative to the folder.
@@ -63,26 +63,26 @@ class Folder:
         if name not in self._read:
             content = self._content(name, f"{asked_by}: " if asked_by else "")
             self._read[name] = content
-            self._hold_size(name)
+            self._check_size(name)
         return self._read[name]
 
     def has(self, name: str) -> bool:
         """Returns whether a file of this name can be read."""
         name = posixpath.normpath(name.replace("\\", "/"))
-        if self._given is not None:
-            return name in self._given
+        if self._recorded is not None:
+            return name in self._recorded
         with suppress(self._error):
             path = resolved(self.root / name, self._error)
             return path.is_relative_to(self.root) and path.is_file()
         return False
 
     def _content(self, name: str, whose: str) -> bytes:
-        if self._given is not None:
-            if not self._given:
+        if self._recorded is not None:
+            if not self._recorded:
                 raise self._error(f"{whose}'{name}' is not read: files that a text mentions are read only from a given folder")
-            if name not in self._given:
-                raise self._error(f"{whose}no '{name}' among the files that were recorded{did_you_mean(name, self._given)}")
-            return self._given[name]
+            if name not in self._recorded:
+                raise self._error(f"{whose}no '{name}' among the files that were recorded{did_you_mean(name, self._recorded)}")
+            return self._recorded[name]
         try:
             path = (self.root / name).resolve()
             if not path.is_relative_to(self.root):
@@ -100,7 +100,7 @@ class Folder:
             return " (it is a folder)"
         return did_you_mean(path.name, (other.name for other in path.parent.iterdir())) if path.parent.is_dir() else ""
 
-    def _hold_size(self, name: str) -> None:
+    def _check_size(self, name: str) -> None:
         total = sum(map(len, self._read.values()))
         if total > MAX_BYTES:
             raise self._error(f"'{name}': the files have {total:,} bytes together; the limit is {MAX_BYTES:,}")

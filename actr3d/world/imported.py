@@ -16,7 +16,7 @@ from mujoco import MjSpec, mjtGeom
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, WorldError, did_you_mean
 from actr3d.warnings import warn_modeller
-from actr3d.world.asset_folder import Files, Folder, digest, resolved
+from actr3d.world.asset_folder import AssetFolder, Files, digest, resolved
 from actr3d.world.mesh import INVISIBLE, Quaternion, orientation
 from actr3d.world.mjcf_rewrite import Document, read_imported
 from actr3d.world.scene import on_one_line
@@ -121,12 +121,12 @@ class Imported(Configuration):
             raise ConfigurationError(f"Imported '{self.name}': give a path, or a text (got {'neither' if self.text is None else 'both'})")
         if self.text is not None:
             name = f"{self.name}.xml"
-            folder = Folder(Path(self.folder), WorldError) if self.folder else Folder(Path(), WorldError, ())
+            folder = AssetFolder(Path(self.folder), WorldError) if self.folder else AssetFolder(Path(), WorldError, ())
             folder.put(name, _encoded(self.text))
         else:
             path = resolved(Path(str(self.path)), WorldError)
             root = resolved(Path(self.folder), WorldError) if self.folder else _package_folder(path)
-            folder = Folder(root, WorldError)
+            folder = AssetFolder(root, WorldError)
             if not path.is_relative_to(root):
                 raise WorldError(f"'{path.name}' does not lie in the folder '{folder.name}'")
             name = path.relative_to(root).as_posix()
@@ -150,7 +150,7 @@ def _package_folder(path: Path) -> Path:
 
 @lru_cache(maxsize=64)
 def _document(files: Files) -> Document:
-    return read_imported(Folder(Path(), WorldError, files), files[0][0])
+    return read_imported(AssetFolder(Path(), WorldError, files), files[0][0])
 
 
 @lru_cache(maxsize=64)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError, MeshError
 from actr3d.warnings import warn_modeller
-from actr3d.world.asset_folder import Files, Folder, digest
+from actr3d.world.asset_folder import AssetFolder, Files, digest
 from actr3d.world.convex_decomposition import convex_parts
 from actr3d.world.mesh_loading import Triangles, read_triangles
 from actr3d.world.mesh_repair import Surface, check_extent, surface
@@ -106,7 +106,7 @@ class Mesh(Configuration):
         orientation(f"Mesh '{self.name}'", self.heading, self.quaternion)
         if self.files is None:
             path = Path(self.path)
-            folder = Folder(path.parent, MeshError)
+            folder = AssetFolder(path.parent, MeshError)
             read_triangles(folder, path.name, self.up)
             object.__setattr__(self, "files", folder.files)
         triangles, ordered = _read(self._source)
@@ -177,7 +177,7 @@ class _Source:
 @lru_cache(maxsize=64)
 def _read(source: _Source) -> tuple[Triangles, Surface]:
     name = source.files[0][0]
-    triangles = read_triangles(Folder(Path(), MeshError, source.files), name, source.up)
+    triangles = read_triangles(AssetFolder(Path(), MeshError, source.files), name, source.up)
     vertices = triangles.vertices * source.scale
     check_extent(vertices, triangles.faces, name)
     return triangles, surface(vertices, triangles.faces, name)

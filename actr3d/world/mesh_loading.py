@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actr3d.errors import Actr3dError, MeshError, did_you_mean
-from actr3d.world.asset_folder import MAX_BYTES, Folder
+from actr3d.world.asset_folder import MAX_BYTES, AssetFolder
 
 MAX_TRIANGLES = 500_000
 """Greatest number of triangles of a mesh. At this size MuJoCo takes about two seconds to compile it; people and rooms need far fewer."""
@@ -47,7 +47,7 @@ class Triangles:
     """Defects of the file, and how they were handled."""
 
 
-def read_triangles(folder: Folder, name: str, up: str | None = None) -> Triangles:
+def read_triangles(folder: AssetFolder, name: str, up: str | None = None) -> Triangles:
     """Reads a mesh file, with all its pieces at their places in its scene.
 
     Args:
@@ -88,7 +88,7 @@ def read_triangles(folder: Folder, name: str, up: str | None = None) -> Triangle
 class _Beside:
     """Gives trimesh the files that a mesh mentions, from its folder; notes a missing one. No image is read."""
 
-    def __init__(self, folder: Folder, name: str) -> None:
+    def __init__(self, folder: AssetFolder, name: str) -> None:
         self._folder, self._name = folder, name
         self.missed = ""
         self.why = ""

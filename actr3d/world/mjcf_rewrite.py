@@ -8,7 +8,7 @@ import struct
 from dataclasses import dataclass, field
 
 from actr3d.errors import MeshError, WorldError
-from actr3d.world.asset_folder import Folder, digest
+from actr3d.world.asset_folder import AssetFolder, digest
 from actr3d.world.mesh_loading import read_triangles
 from actr3d.world.mesh_repair import Surface, surface
 from actr3d.world.xml_document import Element, read_document, written
@@ -75,7 +75,7 @@ class Document:
     """What was left out or filled in."""
 
 
-def read_imported(folder: Folder, name: str) -> Document:
+def read_imported(folder: AssetFolder, name: str) -> Document:
     """Reads an MJCF or URDF file and the files that it needs.
 
     Raises:
@@ -174,7 +174,7 @@ def _is_without_mass(link: Element) -> bool:
 class _Assets:
     """Finds the files that a document mentions, and replaces their names in the document by unique ones."""
 
-    def __init__(self, root: Element, folder: Folder, name: str, document: Document) -> None:
+    def __init__(self, root: Element, folder: AssetFolder, name: str, document: Document) -> None:
         self._root, self._folder, self._document = root, folder, document
         self._base = posixpath.dirname(name)
         self._compiler: dict[str, str] = {}

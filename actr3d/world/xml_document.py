@@ -9,7 +9,7 @@ from xml.parsers import expat
 from xml.sax.saxutils import quoteattr
 
 from actr3d.errors import WorldError
-from actr3d.world.asset_folder import Folder
+from actr3d.world.asset_folder import AssetFolder
 
 MAX_ELEMENTS = 100_000
 """Greatest number of elements of a document and the files that it includes; the largest public robots have some thousands."""
@@ -36,7 +36,7 @@ class Element:
             yield from child.walk()
 
 
-def read_document(folder: Folder, name: str) -> Element:
+def read_document(folder: AssetFolder, name: str) -> Element:
     """Reads an XML file, replaces each `<include file="…"/>` with the content of that file, and returns the root.
 
     An included name is relative to the folder of the first file, or else to that of the file that includes it.
@@ -107,7 +107,7 @@ def _parsed(content: bytes, name: str) -> Element:
     return reader.root
 
 
-def _expand(element: Element, folder: Folder, inside: tuple[str, ...], count: list[int]) -> None:
+def _expand(element: Element, folder: AssetFolder, inside: tuple[str, ...], count: list[int]) -> None:
     """Replaces the includes below an element; `inside` are the including files, `count` the number of elements up to now."""
     children: list[Element] = []
     for child in element.children:
@@ -123,7 +123,7 @@ def _expand(element: Element, folder: Folder, inside: tuple[str, ...], count: li
     element.children = children
 
 
-def _included(element: Element, folder: Folder, inside: tuple[str, ...], count: list[int]) -> Element:
+def _included(element: Element, folder: AssetFolder, inside: tuple[str, ...], count: list[int]) -> Element:
     file = element.attributes.get("file")
     if not file:
         raise WorldError(f'{element.where}: <include> has no file="…"')

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from actr3d.errors import Actr3dError, MeshError, ModelWarning
 from actr3d.world import Floor, Mesh, Scene, SimpleObject, World
-from actr3d.world.asset_folder import Folder, digest
+from actr3d.world.asset_folder import AssetFolder, digest
 from actr3d.world.mesh_repair import surface
 from tests.helpers.small_agents import near
 
@@ -454,7 +454,7 @@ def test_files_together_have_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyP
     file(tmp_path, b"x" * 60, "a")
     file(tmp_path, b"x" * 60, "b")
     file(tmp_path, b"x" * 101, "c")
-    folder = Folder(tmp_path, MeshError)
+    folder = AssetFolder(tmp_path, MeshError)
     folder.read("a")
     with pytest.raises(MeshError, match=r"a: 'c' has 101 bytes; the limit is 100"):
         folder.read("c", "a")

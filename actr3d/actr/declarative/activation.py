@@ -48,7 +48,7 @@ class MemorySubModule(WithParameters):
         parent: The memory.
 
     Raises:
-        ParameterError: If it is something else.
+        ParameterError: If `parent` is not a memory.
     """
 
     def __init__(self, parent: ActivatedMemory | None) -> None:
@@ -59,13 +59,13 @@ class MemorySubModule(WithParameters):
             parent.add_adaptor(self)
 
     def create(self, chunk: Any, **keys: Any) -> None:
-        """Is called for each new chunk, before it is added to the memory."""
+        """Handles a new chunk, before it is added to the memory."""
 
     def merge(self, chunk: Any, **keys: Any) -> None:
-        """Is called when a chunk is added again."""
+        """Handles a chunk that is added again."""
 
     def matched(self, chunks: list[Any]) -> None:
-        """Is called with the chunks that match a request."""
+        """Handles the chunks that match a request."""
 
     def activation(self, chunk: Any) -> float:
         """Returns this module's part of a chunk's activation.
@@ -76,7 +76,7 @@ class MemorySubModule(WithParameters):
         return 0
 
     def recalled(self, chunk: Any) -> None:
-        """Is called when a chunk has been retrieved."""
+        """Handles a chunk that has been retrieved."""
 
     def now(self) -> float:
         """Returns the current time [s]."""
@@ -178,7 +178,7 @@ class DMBaseLevel(MemorySubModule):
         self._limit = value
 
     def create(self, chunk: Any, time: float = 0.0, baselevel: Any = None, **keys: Any) -> None:
-        # Both are kept, because the profile is not known yet for a chunk that is added in a class's body.
+        # `creation` and `first` are both kept, because the profile is not known yet for a chunk that is added in a class's body.
         chunk.creation = self.now()
         chunk.first = self.now() - time
         chunk.times = [chunk.first]
@@ -219,18 +219,18 @@ class DMBaseLevel(MemorySubModule):
         total = 0.0
         for time in times:
             total += math.pow(max(now - time, youngest), -d)
-        forgotten = chunk.count - len(times)
-        if forgotten > 0 and limit is not None:
+        dropped = chunk.count - len(times)
+        if dropped > 0 and limit is not None:
             latest = now - times[0] if times else None
             if profile.optimized_learning:
                 latest = max(now - min(times), youngest) if times else None
-                total += _forgotten(forgotten, max(now - chunk.first, youngest), latest, d, youngest)
-            else:  # it also counts a chunk's life from when it was added, even if it is declared to be older
-                total += _forgotten(forgotten, now - chunk.creation, latest, d, youngest)
+                total += _sum_of_dropped(dropped, max(now - chunk.first, youngest), latest, d, youngest)
+            else:  # Python ACT-R also counts a chunk's life from when it was added, even if it is declared to be older
+                total += _sum_of_dropped(dropped, now - chunk.creation, latest, d, youngest)
         return math.log(total) if total > 0 else -math.inf
 
 
-def _forgotten(count: int, oldest: float, latest: float | None, d: float, youngest: float) -> float:
+def _sum_of_dropped(count: int, oldest: float, latest: float | None, d: float, youngest: float) -> float:
     """Returns the sum over references whose times are not kept, as if they were spread evenly.
 
     Args:

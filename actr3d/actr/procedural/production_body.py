@@ -1,8 +1,8 @@
 """Converts the body of a production to a function of the bound variables.
 
 A body sees, nearest first: its bound variables and the names that it assigns; the attributes of its agent and of the agent's
-ancestors; the variables of a function around the agent's class; the globals of its own file. `?name` in the texts that it
-passes on sees what it assigns. Line numbers are kept, so that a traceback shows the modeller's own file.
+ancestors; the variables of a function around the agent's class; the globals of its own file. `?name` in a pattern that
+the body passes to a module has the value that the body has assigned. Line numbers are kept, so that a traceback shows the modeller's own file.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from types import CellType, CodeType, FunctionType
 from typing import Any
 
 from actr3d.actr.kernel.source_code import for_python_actr, source_of, with_filename
-from actr3d.actr.procedural.rebinding import BOUND, SEEING, Names, Rebinder, stored_names, used_names
+from actr3d.actr.procedural.rebinding import BOUND, SCOPE_BUILTINS, Names, Rebinder, stored_names, used_names
 from actr3d.errors import ProductionException
 
 Body = Callable[[dict[str, Any]], None]
@@ -48,7 +48,7 @@ class Scope(dict[str, Any]):
         layers = (BUILTINS, func.__globals__) if for_python_actr(func.__globals__) else (func.__globals__, BUILTINS)
         for names in layers:
             if key in names:
-                return self._seeing(key) if names is BUILTINS and key in SEEING else names[key]
+                return self._seeing(key) if names is BUILTINS and key in SCOPE_BUILTINS else names[key]
         raise NameError(f"name '{key}' is not defined", name=key)
 
     def __delitem__(self, key: str) -> None:
@@ -147,7 +147,7 @@ def _code_of(
     key = (source_of(func), func.__code__, func.__qualname__, name, places, bound, seen, any_bound)
     made = _CODES.get(key)
     if made is None:
-        _refuse_waiting(statements, name, filename)
+        _refuse_yield(statements, name, filename)
         if len(_CODES) >= MAX_CODES:
             _CODES.clear()
         made = _CODES[key] = _compile(statements, func, name, bound, seen, any_bound)
@@ -158,7 +158,7 @@ def _code_of(
 def _compile(
     statements: Sequence[ast.stmt], func: Callable[..., Any], name: str, bound: Iterable[str], seen: Iterable[str], any_bound: bool
 ) -> tuple[CodeType, Sequence[str]]:
-    """Compiles a function that takes objects by name and returns the body as a function; returns its code, and these names."""
+    """Compiles a factory, which takes objects by name and returns the body as a function; returns its code, and the names that it needs."""
     filename = func.__code__.co_filename
     assigned = stored = stored_names(statements)
     used = used_names(statements)
@@ -166,7 +166,7 @@ def _compile(
     body = [mangler.visit(copy.deepcopy(node)) for node in statements]
     if any_bound:
         stored = assigned | used - Names(statements).declared_global
-    own = SEEING - assigned
+    own = SCOPE_BUILTINS - assigned
     if stored:
         body = Rebinder(stored, own).body(body)
     taken = [n for n in bound if n in used and n not in stored - own]
@@ -186,7 +186,7 @@ def _compile(
         raise ProductionException(f"{filename}:{line}: production '{name}': {error.msg}").at(filename, line) from error
 
 
-def _refuse_waiting(statements: Iterable[ast.stmt], name: str, filename: str) -> None:
+def _refuse_yield(statements: Iterable[ast.stmt], name: str, filename: str) -> None:
     """Raises an error if a body contains `yield`."""
     for node in statements:
         for part in _own_nodes(node):

@@ -16,7 +16,7 @@ BOUND = "__bound__"
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 _SCOPES = (*_FUNCTIONS, ast.Lambda, ast.ClassDef)
 _COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
-SEEING = frozenset({"dir", "eval", "exec", "locals", "vars"})
+SCOPE_BUILTINS = frozenset({"dir", "eval", "exec", "locals", "vars"})
 """The builtins that see the variables around their call."""
 
 
@@ -99,7 +99,7 @@ def used_names(nodes: Iterable[ast.AST]) -> set[str]:
 def sees_variables(nodes: Iterable[ast.AST]) -> bool:
     """Returns whether statements mention, in their own scope, a builtin that sees the variables there."""
     return any(
-        (isinstance(node, ast.Name) and node.id in SEEING)
+        (isinstance(node, ast.Name) and node.id in SCOPE_BUILTINS)
         or sees_variables(
             outside(node)
             if isinstance(node, _SCOPES)
