@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from actr3d.actr.changes.agent_change import AgentChange, Parts
 from actr3d.actr.explain.present_state import Present
-from actr3d.actr.explain.trial import why
+from actr3d.actr.explain.condition_tests import why
 from actr3d.actr.procedural.production_system import choose_next
 from actr3d.change import change
 from actr3d.errors import ProductionException

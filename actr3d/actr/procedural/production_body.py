@@ -1,8 +1,9 @@
 """Converts the body of a production to a function of the bound variables.
 
 A body sees, nearest first: its bound variables and the names that it assigns; the attributes of its agent and of the agent's
-ancestors; the variables of a function around the agent's class; the globals of its own file. `?name` in a pattern that
-the body passes to a module has the value that the body has assigned. Line numbers are kept, so that a traceback shows the modeller's own file.
+ancestors; the variables of a function around the agent's class; the globals of its own file. `?name` in a pattern that the body
+passes to a module has the value that the body has assigned. Line numbers are kept, so that a traceback shows the modeller's own
+file.
 """
 
 from __future__ import annotations

@@ -26,8 +26,8 @@ class Failure:
     unknown: bool = False
 
 
-class ProductionTrial:
-    """The test of one production; `failure` is the first condition that fails, None if all hold.
+class ConditionTests:
+    """Tests the conditions of one production; `failure` is the first condition that fails, None if all hold.
 
     The later conditions do not affect the result; `conditions` contains what is known about them.
 
@@ -179,8 +179,8 @@ def _expected(condition: Condition, wanted: Any) -> str:
 
 def why(production: Production, state: AgentState) -> ProductionReason:
     """Returns the reason of one production in a state."""
-    trial = ProductionTrial(production, state)
-    failed = trial.failure
+    tests = ConditionTests(production, state)
+    failed = tests.failure
     choice = state.choice(production)
     none_drawn: dict[str, float] = {}
     drawn = none_drawn if choice is None else choice.parts.get(production.name, none_drawn)
@@ -192,13 +192,13 @@ def why(production: Production, state: AgentState) -> ProductionReason:
         name=production.name,
         system=state.path(system_of(production)),
         parents=production.parents,
-        matches=trial.matches,
+        matches=tests.matches,
         condition=failed.condition if failed is not None else None,
         expected=failed.expected if failed is not None else None,
         found=failed.found if failed is not None else None,
-        source=trial.source,
-        bindings=trial.bindings,
-        conditions=trial.conditions,
+        source=tests.source,
+        bindings=tests.bindings,
+        conditions=tests.conditions,
         utility=sum(known) if len(known) == len(parts) else None,
         parts=parts,
         selected=choice is not None and choice.chosen == production.name,
