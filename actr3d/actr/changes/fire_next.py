@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from actr3d.actr.changes.agent_change import AgentChange, Parts
-from actr3d.actr.explain.present_state import Present
 from actr3d.actr.explain.condition_tests import why
+from actr3d.actr.explain.present_state import Present
 from actr3d.actr.procedural.production_system import choose_next
 from actr3d.change import change
 from actr3d.errors import ProductionException

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from typing import TypeVar
 
 from actr3d.actr.declarative.memory import Memory
+from actr3d.actr.explain.condition_tests import why
 from actr3d.actr.explain.past_state import Past
 from actr3d.actr.explain.present_state import Present
-from actr3d.actr.explain.condition_tests import why
 from actr3d.actr.kernel.model import Model, ensure_converted
 from actr3d.actr.kernel.tree import path_of, places_in, subtree, top_of
 from actr3d.actr.modules.port import Searching

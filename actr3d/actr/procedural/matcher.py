@@ -1,7 +1,8 @@
 """Finds the productions that match: those that test a slot for a value are indexed by it, and tried only if the slot has it.
 
 Each production is compiled into straight-line code that reads each slot at most once, and only if all tests before it hold.
-No reasons are kept: `actr3d.actr.explain.condition_tests` tests the conditions of a production again when somebody asks why it does not match.
+No reasons are kept: when somebody asks why a production does not match, `actr3d.actr.explain.condition_tests` tests its conditions
+again.
 
 What productions read that is not recorded as a change of a model (plain objects, properties, results of modellers' functions) is kept
 for the trace and for explanations. These must not read it again, because a property may return another value, or change something,
