@@ -3,7 +3,7 @@
 // when it pauses: first the visible stretch, then the rest, until every value is known.
 
 import { computed, effect, signal } from "../vendor/preact.js";
-import { remembered } from "../local_storage.js";
+import { rememberedByModel } from "../model_storage.js";
 import { isLeft, say } from "../server.js";
 import { alive, complain, hurried, running, session, state, way } from "../store.js";
 import { firstFrom, rangeOf } from "../parts/curve.js";
@@ -57,16 +57,8 @@ export function titleOf(group) {
 
 const USUAL = ["speed", "clearance", "learned utility"]; // the groups that are plotted until the user chooses
 
-const MAX_MODELS = 50; // of which choices are remembered
-const chosenOf = remembered("timeline curves of models", []);
-const model = computed(() => session.value?.model ?? null);
-
 /** The names that the user has chosen for this model; null as long as that is none. */
-const kept = computed(() => chosenOf.value.find((one) => one.model === model.value)?.names ?? null);
-
-function keep(names) {
-  chosenOf.value = [...chosenOf.newest().filter((one) => one.model !== model.peek()), ...(names === null ? [] : [{ model: model.peek(), names }])].slice(-MAX_MODELS);
-}
+const { kept, keep } = rememberedByModel("timeline curves of models", "names");
 
 function usual(all) {
   const joints = all.filter(({ group }) => group === "joint");
