@@ -71,6 +71,7 @@ export class SceneCamera {
     const { controls, camera, actions } = this;
     this.flat = view === "top" || view === "side";
     if (!stays) this.covered = view === "eye" ? NOTHING : this.coveredIn(view);
+    if (returns) this.covered = { right: kept[6], top: kept[7] };
     controls.setFocalOffset(0, 0, 0, false);
     // A view without perspective pans and does not rotate; one that follows the body pans within the picture and rotates about the body.
     controls.mouseButtons.left = this.flat ? actions.TRUCK : actions.ROTATE;
@@ -78,7 +79,7 @@ export class SceneCamera {
     controls.maxPolarAngle = this.flat ? Math.PI : 0.52 * Math.PI; // not below the ground
     this.setFov(FOV);
     this.anchor = anchorOf(view, stage, now.body);
-    if (returns) controls.setLookAt(...plus(kept.slice(0, 3), this.shiftOf()), ...plus(kept.slice(3), this.shiftOf()), false);
+    if (returns) controls.setLookAt(...plus(kept.slice(0, 3), this.shiftOf()), ...plus(kept.slice(3, 6), this.shiftOf()), false);
     else if (view !== "eye" && !stays) {
       const { target, back, distance } = cameraPose(view, stage, now.body, camera.aspect, this.covered);
       const place = this.toThree(plus(target, back, distance)).toArray();
@@ -97,10 +98,12 @@ export class SceneCamera {
     return this.toThree(this.anchor, true).toArray();
   }
 
-  /** Returns where a free camera is and where it looks, without that: [x, y, z, x, y, z], in the frame of three.js. */
+  /** Returns where a free camera is and where it looks, without that, in the frame of three.js, and which parts of the picture count as
+   * covered: [x, y, z, x, y, z, right, top]. */
   place() {
     const shift = this.shiftOf();
-    return [this.controls.getPosition(this.vector.clone()), this.controls.getTarget(this.vector.clone())].flatMap((point) => plus(point.toArray(), shift, -1));
+    const points = [this.controls.getPosition(this.vector.clone()), this.controls.getTarget(this.vector.clone())];
+    return [...points.flatMap((point) => plus(point.toArray(), shift, -1)), this.covered.right, this.covered.top];
   }
 
   /** Reports to the page where the user has left the free camera. */
