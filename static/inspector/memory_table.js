@@ -3,7 +3,7 @@
 import { html, useMemo, useState } from "../vendor/preact.js";
 import { ChangeButtons } from "../changes/changes.js";
 import { Chunk, chunkText, valueText } from "../parts/chunk.js";
-import { chosen, notComputed, plot } from "../timeline/curves.js";
+import { chosen, notComputed, plotAll } from "../timeline/curves.js";
 import { hidden } from "../timeline/rows.js";
 import { fixed, Part, partName } from "./part_names.js";
 import { Rows } from "./rows.js";
@@ -37,7 +37,7 @@ function PlotButton({ memory, chunk, plots }) {
   const on = curves.length > 0 && curves.every((name) => chosen.value.includes(name));
   const reasons = [...new Set([plots.why, ...(on ? notComputed.value : [])])].filter(Boolean);
   const press = () => {
-    plot(curves, !on);
+    plotAll(curves, !on);
     hidden.value = hidden.value.filter((group) => group !== "curves");
   };
   return html`<span class="change-buttons"><button disabled=${curves.length === 0} aria-pressed=${on} title="Plot its activation and the parts of it over time, in the timeline" onClick=${press}>Plot</button></span>

@@ -12,7 +12,7 @@ function Group({ title, curves, all }) {
     <legend>${title} ${units ? html`<span class="quiet">[${units}]</span>` : null}</legend>
     ${curves.slice(0, all ? curves.length : MAX_LISTED).map(
       ({ name }) => html`<label key=${name} title=${name}>
-        <input type="checkbox" checked=${chosen.value.includes(name)} onChange=${(event) => plot([name], event.currentTarget.checked)} />
+        <input type="checkbox" checked=${chosen.value.includes(name)} onChange=${(event) => plot(name, event.currentTarget.checked)} />
         <span>${name}</span>
       </label>`,
     )}

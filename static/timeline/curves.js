@@ -74,8 +74,13 @@ export const chosen = computed(() => {
   return wanted && (wanted.length > 0 || kept.value.length === 0) ? wanted : usual(names.value);
 });
 
-/** Plots curves, or no longer. */
-export function plot(names, on) {
+/** Plots a curve, or no longer. */
+export function plot(name, on) {
+  plotAll([name], on);
+}
+
+/** Plots several curves, or no longer. */
+export function plotAll(names, on) {
   const others = (kept.value ?? chosen.value).filter((other) => !names.includes(other));
   keep(on ? [...others, ...names] : others);
 }

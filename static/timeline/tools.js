@@ -55,7 +55,7 @@ const keep = registered("Save the timeline or a plot as a picture, or its values
 const openTimeline = command({ text: "Open the timeline in a window of its own", group: "Page", work: () => openWindow("timeline") });
 commandsOf(() => names.value.map(({ name }) => {
   const shown = plotted.value.includes(name);
-  return { text: `${shown ? "Remove the curve" : "Plot the curve"} ${name}`, group: "Timeline", work: () => plot([name], !shown) };
+  return { text: `${shown ? "Remove the curve" : "Plot the curve"} ${name}`, group: "Timeline", work: () => plot(name, !shown) };
 }));
 
 function chooseCurves() {
