@@ -12,14 +12,16 @@
     facts: {},
     heard: [], // the data of the newest moments, with the stage of their scene; some of them are not drawn yet
     view: "follow",
+    kept: null,
     onview: null,
     receive(name, value) {
       this.facts[name] = value;
       if (name === "now") this.heard = [...this.heard, { ...value, stage: this.facts.stage }].slice(-MAX_HEARD);
     },
-    /** Moves the camera to the start of a view, also if it is that view already. */
-    choose(view) {
-      this.view = view;
+    /** Moves the camera to the start of a view, also if it is that view already; a free one to where the user has left it, `kept`, if
+     * anywhere: as the camera reports it (`scene/camera.js`). */
+    choose(view, kept = null) {
+      Object.assign(this, { view, kept });
       this.onview?.();
     },
   };

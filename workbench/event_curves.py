@@ -7,19 +7,22 @@ import math
 import re
 from array import array
 from bisect import bisect_left, bisect_right
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from types import MappingProxyType
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from actr3d.clock import microseconds, seconds
-from actr3d.trace import TraceEvent
+from actr3d.trace import TraceEvent, run_of
 from workbench.curves import Curve, Shape
 from workbench.part_names import part_name
 
+LOGGED = frozenset({"add", "chunks", "buffer", "request"})
+"""The kinds of the events from which activations follow."""
 MAX_CURVES = 5_000
 """Maximum number of curves of a run; others are left out."""
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
@@ -75,6 +78,53 @@ class _EventCurve:
             self.values.append(stored)
 
 
+class LoggedEvent(NamedTuple):
+    """An event from which activations follow."""
+
+    number: int
+    """Its number in the run."""
+    own: int
+    """The time of its model [us]; that of the event is the time of the run."""
+    event: TraceEvent
+
+
+class RunClock:
+    """Converts times of a program, which counts all its runs, to those of one run, which starts at 0; both are the same in a
+    simulation."""
+
+    def __init__(self) -> None:
+        self.own = 0
+        """The time of the run at its last event [us]."""
+        self.last = 0
+        """The time of the program at this event [us]."""
+        self._begins = array("q")
+        """When other runs gave way to this one: the time of the program [us]."""
+        self._lags = array("q")
+        """From then on: how much the time of the program is ahead [us]."""
+
+    def advance(self, before: int, time: int) -> int:
+        """Goes on to an event; returns the time of the run [us].
+
+        Args:
+            before: The time of the program at the event before it, of whatever run [us].
+            time: The time of the program at this event [us].
+        """
+        lag = before - self.own
+        if not self._lags or self._lags[-1] != lag:
+            self._begins.append(before)
+            self._lags.append(lag)
+        self.own, self.last = time - lag, time
+        return self.own
+
+    def at(self, time: int) -> int | None:
+        """Returns the time of the run at a time of the program [us]; None if it had not begun, or if another run went on."""
+        place = bisect_right(self._begins, time)
+        if place == 0:
+            return None
+        own = time - self._lags[place - 1]
+        return own if place == len(self._begins) or own <= self._begins[place] - self._lags[place] else None
+
+
 class EventCurves:
     """The curves of the events of a run, which are taken in their order, each once."""
 
@@ -89,14 +139,26 @@ class EventCurves:
         """By buffer: its slots that hold numbers."""
         self._firsts: dict[str, tuple[int, float]] = {}
         """By attribute: when it had its first number, and this number."""
+        self.logged: defaultdict[str, list[LoggedEvent]] = defaultdict(list)
+        """By source: the events from which activations follow; see `workbench.chunk_curves`."""
+        self.clocks: defaultdict[int, RunClock] = defaultdict(RunClock)
+        """By the number of the run."""
+        self.latest = 1
+        """The number of the run of the last event."""
 
     def take(self, events: Iterable[TraceEvent]) -> None:
         """Takes the next events, with the times of the whole run."""
-        for time, source, kind, data in events:
+        for event in events:
+            time, source, kind, data = event
             number, self.next = self.next, self.next + 1
             taker = self._TAKERS.get(kind)
             # A module of a model may report other data in an event of this kind, and a recording may have any times.
             with suppress(KeyError, TypeError, ValueError, AttributeError, OverflowError):
+                if kind != "output":  # which belongs to the program, and to none of its runs
+                    self.latest = run_of(source)
+                    own = self.clocks[self.latest].advance(self._now, max(self._now, time))
+                    if kind in LOGGED:
+                        self.logged[source].append(LoggedEvent(number, own, event))
                 if time > self._now:
                     if number == 0:
                         self._since = f" since {seconds(time):.3f} s"
@@ -146,7 +208,7 @@ class EventCurves:
             asked: The arguments of `sampled`.
             seen: How many of its curves need not be named.
         """
-        return {**answer, "names": [*answer["names"], *self.names(seen)], "events": self.sampled(*asked)}
+        return {**answer, "names": [*answer["names"], *self.names(seen)], "events": self.sampled(*asked), "basis": ""}
 
     # -- values
 

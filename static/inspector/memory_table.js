@@ -3,6 +3,8 @@
 import { html, useMemo, useState } from "../vendor/preact.js";
 import { ChangeButtons } from "../changes/changes.js";
 import { Chunk, chunkText, valueText } from "../parts/chunk.js";
+import { chosen, notComputed, plotAll } from "../timeline/curves.js";
+import { hidden } from "../timeline/rows.js";
 import { fixed, Part, partName } from "./part_names.js";
 import { Rows } from "./rows.js";
 
@@ -29,7 +31,20 @@ function Head({ text, title, by, sort, onSort }) {
   </th>`;
 }
 
-function Chosen({ memory, row, names, threshold }) {
+/** Plots the activation of a chunk over time in the timeline, with its parts; or no longer. */
+function PlotButton({ memory, chunk, plots }) {
+  const curves = plots.curves.map((end) => `${memory}: ${chunk} ${end}`);
+  const on = curves.length > 0 && curves.every((name) => chosen.value.includes(name));
+  const reasons = [...new Set([plots.why, ...(on ? notComputed.value : [])])].filter(Boolean);
+  const press = () => {
+    plotAll(curves, !on);
+    hidden.value = hidden.value.filter((group) => group !== "curves");
+  };
+  return html`<span class="change-buttons"><button disabled=${curves.length === 0} aria-pressed=${on} title="Plot its activation and the parts of it over time, in the timeline" onClick=${press}>Plot</button></span>
+    ${reasons.map((why) => html`<span key=${why} class="quiet">${why}</span>`)}`;
+}
+
+function Chosen({ memory, row, names, threshold, plots }) {
   const sum = row.activation === null ? "not known before a retrieval" : fixed(row.activation);
   return html`<section class="one-chunk" aria-label="The chosen chunk">
     <p class="mono">${Object.entries(row.slots).map(([slot, value]) => html`<span key=${slot} class="slot">${/^\d+$/.test(slot) ? null : html`<b>${slot}</b>`}${valueText(value)}</span>`)}</p>
@@ -38,21 +53,21 @@ function Chosen({ memory, row, names, threshold }) {
       ${names.length ? html`<span class="quiet"> = ${names.map((name, n) => html`${n ? " + " : ""}${partName(name)} <${Part} value=${row.parts[name]} />`)}</span>` : null}
       ${threshold !== null ? html`, threshold ${valueText(threshold)}` : null}
     </p>
-    <p><${ChangeButtons} of="chunk" given=${{ memory, chunk: row.chunk }} /></p>
+    <p class="chunk-buttons"><${PlotButton} memory=${memory} chunk=${row.chunk} plots=${plots} /><${ChangeButtons} of="chunk" given=${{ memory, chunk: row.chunk }} /></p>
   </section>`;
 }
 
 /** @param answer The run's answer to `memory`. */
 export function MemoryTable({ answer, words }) {
-  const { rows, threshold, memory } = answer;
+  const { rows, threshold, memory, plots } = answer;
   const [sort, setSort] = useState({ by: "activation", down: true });
   const key = `${memory} ${words}`;
   const [choice, setChoice] = useState({ key, chunk: null });
-  const chosen = choice.key === key ? choice.chunk : null;
+  const inHand = choice.key === key ? choice.chunk : null;
   const setChosen = (chunk) => setChoice({ key, chunk });
   const names = useMemo(() => [...new Set(rows.flatMap(({ parts }) => Object.keys(parts)))], [rows]);
   const all = useMemo(() => sorted(rows, sort), [rows, sort]);
-  const at = all.findIndex(({ chunk }) => chunk === chosen);
+  const at = all.findIndex(({ chunk }) => chunk === inHand);
   const under = ({ activation }) => threshold !== null && activation !== null && activation < threshold;
   const mark = sort.by === "activation" ? all.findIndex((row, n) => n > 0 && under(row) !== under(all[n - 1]) && row.activation !== null && all[n - 1].activation !== null) : -1;
 
@@ -73,5 +88,5 @@ export function MemoryTable({ answer, words }) {
       onChoose=${(n) => setChosen(all[n].chunk)}
       empty=${html`<p class="empty">${words ? "No chunk has all of these words." : "This memory is still empty."}</p>`}
     />
-    ${at < 0 ? null : html`<${Chosen} memory=${memory} row=${all[at]} names=${names} threshold=${threshold} />`}`;
+    ${at < 0 ? null : html`<${Chosen} memory=${memory} row=${all[at]} names=${names} threshold=${threshold} plots=${plots} />`}`;
 }

@@ -55,8 +55,8 @@ function Retrieval({ reason }) {
       <span class="quiet"> at ${time.toFixed(3)} s, ${threshold === null ? "no threshold" : `threshold ${valueText(threshold)}`}${fresh ? ", only what was not retrieved recently" : ""}</span>
     </p>
     ${candidates.length ? html`<${Candidates} reason=${reason} />` : null}
-    <${Lately} title="Left out, because they were retrieved recently" chunks=${excluded} open=${excluded.length < 4} />
-    <${Lately} title="Retrieved recently" chunks=${finsts} />
+    <${Lately} title="Matched, but left out as retrieved recently" chunks=${excluded} open=${excluded.length < 4} />
+    <${Lately} title="All chunks marked as retrieved recently (finsts)" chunks=${finsts} />
   </section>`;
 }
 

@@ -5,9 +5,12 @@ import { agentsOf, isBelow, nameIn } from "../inspector/agents.js";
 import { at, production as explainedProduction, shownReasons } from "../inspector/asked.js";
 import { flows, justNow, keyOf } from "../graph/flows.js";
 import { edgePath, placed } from "../graph/layout.js";
+import { pictureOfGraph } from "../graph/picture.js";
 import { openTab } from "../open_tab.js";
 import { useAnswer } from "../parts/answer.js";
 import { chunkText } from "../parts/chunk.js";
+import { Icon } from "../parts/icon.js";
+import { pictureName, runName, savePicture } from "../parts/picture.js";
 import { nothing } from "../run_status.js";
 import { running, session, state } from "../store.js";
 
@@ -178,6 +181,13 @@ function Legend() {
   </ul>`;
 }
 
+/** Saves the graph as it is shown; `kind` is "png" or "svg". */
+function save(element, kind) {
+  const { model, run, seed } = session.peek();
+  const at = `at ${state.peek().time.toFixed(2)} s`;
+  savePicture({ ...pictureOfGraph(element), name: pictureName({ model, seed }, `graph ${at}`), title: `Graph ${at}: ${runName({ model, run, seed })}` }, kind);
+}
+
 function Graph() {
   const box = useRef(null);
   const [width, setWidth] = useState(0);
@@ -191,7 +201,10 @@ function Graph() {
   }, []);
   const reasons = new Map((answer ?? []).flatMap((one) => one.productions).map((reason) => [keyOf(reason.system, reason.name), reason]));
   return html`<div class="graph" ref=${box}>
-    ${agents.length === 0 ? html`<p class="empty">${nothing("This model has no agent: there is nothing to draw.")}</p>` : html`<${Legend} />`}
+    ${agents.length === 0 ? html`<p class="empty">${nothing("This model has no agent: there is nothing to draw.")}</p>` : html`<div class="graph-head">
+      <${Legend} />
+      ${["png", "svg"].map((kind) => html`<button key=${kind} class="bare" title="Save the graph as ${kind === "png" ? "a PNG" : "an SVG"}" onClick=${() => save(box.current, kind)}><${Icon} name="download" />${kind.toUpperCase()}</button>`)}
+    </div>`}
     ${width > 0 ? agents.map((agent) => html`<${Agent} key=${agent} agent=${agent} parts=${parts} reasons=${reasons} width=${width - 2 * MARGIN} several=${agents.length > 1} />`) : null}
   </div>`;
 }

@@ -12,6 +12,7 @@ import { ManualLink } from "../parts/manual.js";
 import { pictureName, saveFile, SHARPNESS } from "../parts/picture.js";
 import { optimistic } from "../parts/optimistic_value.js";
 import { remembered } from "../local_storage.js";
+import { rememberedByModel } from "../model_storage.js";
 import { frameBudget } from "../frame_budget.js";
 import { VIEWS } from "../scene/stage.js";
 import { runStatus } from "../run_status.js";
@@ -22,6 +23,7 @@ const open = signal(false); // whether the list of overlays is shown
 const view = remembered("view", "follow");
 if (!(view.value in VIEWS)) view.value = "follow";
 const resets = signal(0); // how often the view was reset
+const { kept: freeCamera, keep: keepCamera } = rememberedByModel("free cameras of models", "camera"); // where the user has left it
 const BETWEEN = 250; // the interval between two checks of the time that the 3D view shows [ms]
 const LATE = 0.5; // the delay of the 3D view from which it is reported [s]
 const NO_WEBGL =
@@ -91,6 +93,7 @@ async function moveOrPush() {
 
 /** Moves the camera back to the start of the chosen view. */
 function resetView() {
+  if (view.value === "free") keepCamera(null);
   resets.value += 1;
 }
 
@@ -170,6 +173,7 @@ export function Scene() {
   useEffect(() => {
     const hear = ({ source, data }) => {
       if (source === frame.current.contentWindow && typeof data?.drawn === "boolean") pictured.value = { of: address.current, drawn: data.drawn };
+      if (source === frame.current.contentWindow && Array.isArray(data?.camera)) keepCamera(data.camera);
       if (source === frame.current.contentWindow && data?.focused && view.value === "follow") view.value = "free"; // what is focused stays in the middle
     };
     addEventListener("message", hear);
@@ -179,7 +183,7 @@ export function Scene() {
   const lacks = missing(pictured.value.of === address.current ? pictured.value.drawn : null);
   const loads = useSignal(0);
   useEffect(() => {
-    frame.current.contentWindow?.scene?.choose(view.value);
+    frame.current.contentWindow?.scene?.choose(view.value, freeCamera.peek());
   }, [view.value, resets.value, loads.value]);
   function begin({ currentTarget: { contentWindow: inner } }) {
     inner?.useFrameBudget?.(frameBudget);

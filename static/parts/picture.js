@@ -20,11 +20,16 @@ export function pictureName({ model, seed }, what) {
   return `${model.replace(/\.py$/, "")} seed ${seed} ${what}`;
 }
 
+/** Returns a description of a run for the line above a picture. */
+export function runName({ model, run, seed }) {
+  return `${model}, run ${run}${seed === null || seed === undefined ? "" : `, seed ${seed}`}`;
+}
+
 /** Draws a picture with its title and background. */
-function drawWhole(surface, { title, width, height, draw }, move) {
+function drawWhole(surface, { title, width, height, draw }) {
   surface.fill(0, 0, width + 2 * MARGIN, height + TITLE + 2 * MARGIN, "panel");
   surface.text(title, MARGIN, MARGIN + TITLE / 2 - 4, "text", { size: 12, bold: true });
-  move(MARGIN, MARGIN + TITLE, () => draw(surface));
+  surface.at(MARGIN, MARGIN + TITLE, () => draw(surface));
 }
 
 function sizeOf({ width, height }) {
@@ -34,13 +39,7 @@ function sizeOf({ width, height }) {
 /** Returns a picture as the text of an SVG file. */
 export function svgText(picture) {
   const surface = new SvgSurface(...sizeOf(picture));
-  drawWhole(surface, picture, (x, y, draw) => {
-    const group = document.createElementNS("http://www.w3.org/2000/svg", "g");
-    group.setAttribute("transform", `translate(${x} ${y})`);
-    surface.root.append(group);
-    surface.into = group;
-    draw();
-  });
+  drawWhole(surface, picture);
   return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(surface.root)}\n`;
 }
 
@@ -54,10 +53,7 @@ export function pngBlob(picture) {
   canvas.height = height * scale;
   const context = canvas.getContext("2d");
   context.scale(scale, scale);
-  drawWhole(new CanvasSurface(context), picture, (x, y, draw) => {
-    context.translate(x, y);
-    draw();
-  });
+  drawWhole(new CanvasSurface(context), picture);
   return new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
 }
 

@@ -77,8 +77,9 @@ export class CanvasSurface {
   }
 
   /** A line through [x, y, x, y, …]; NaN breaks it. */
-  line(points, name, { width = 1, dash = [] } = {}) {
+  line(points, name, { width = 1, dash = [], alpha = 1 } = {}) {
     const { context } = this;
+    context.globalAlpha = alpha;
     context.strokeStyle = this.#colour(name);
     context.lineWidth = width;
     context.lineJoin = "round";
@@ -94,6 +95,7 @@ export class CanvasSurface {
       }
     }
     context.stroke();
+    context.globalAlpha = 1;
   }
 
   polygon(points, name) {
@@ -112,6 +114,15 @@ export class CanvasSurface {
     context.textBaseline = "middle";
     context.textAlign = { start: "left", middle: "center", end: "right" }[style.anchor ?? "start"];
     context.fillText(text, x, y);
+  }
+
+  /** Draws with the origin moved to a place. */
+  at(x, y, draw) {
+    const { context } = this;
+    context.save();
+    context.translate(x, y);
+    draw();
+    context.restore();
   }
 
   /** Draws with clipping to a rectangle. */
@@ -139,7 +150,7 @@ export class SvgSurface {
     this.into.append(node("rect", { x: short(x), y: short(y), width: short(width), height: short(height), fill: colour(name), ...(alpha < 1 ? { "fill-opacity": alpha } : {}) }));
   }
 
-  line(points, name, { width = 1, dash = [] } = {}) {
+  line(points, name, { width = 1, dash = [], alpha = 1 } = {}) {
     let path = "";
     let broken = true;
     for (let n = 0; n < points.length; n += 2) {
@@ -149,7 +160,7 @@ export class SvgSurface {
         broken = false;
       }
     }
-    const dashes = dash.length ? { "stroke-dasharray": dash.join(" ") } : {};
+    const dashes = { ...(dash.length ? { "stroke-dasharray": dash.join(" ") } : {}), ...(alpha < 1 ? { "stroke-opacity": alpha } : {}) };
     this.into.append(node("path", { d: path, fill: "none", stroke: colour(name), "stroke-width": width, "stroke-linejoin": "round", ...dashes }));
   }
 
@@ -165,14 +176,22 @@ export class SvgSurface {
     this.into.append(made);
   }
 
+  at(x, y, draw) {
+    this.#group({ transform: `translate(${x} ${y})` }, draw);
+  }
+
   within(x, y, width, height, draw) {
     this.clips += 1;
     const clip = node("clipPath", { id: `clip${this.clips}` });
     clip.append(node("rect", { x, y, width, height }));
-    const group = node("g", { "clip-path": `url(#clip${this.clips})` });
+    this.into.append(clip);
+    this.#group({ "clip-path": `url(#clip${this.clips})` }, draw);
+  }
+
+  #group(attributes, draw) {
     const outer = this.into;
-    outer.append(clip, group);
-    this.into = group;
+    this.into = node("g", attributes);
+    outer.append(this.into);
     draw();
     this.into = outer;
   }

@@ -7,6 +7,8 @@ import { cross, plus } from "./space.js";
 /** The names of viser's nodes that are things of the world, in contrast to what is drawn over it. */
 export const THING = /^\/(fixed_)?bodies\//;
 const SLIGHT = 1e-6; // smaller movements are ignored [m]
+const MOVED = 1e-3; // smaller changes of a free camera are not reported [m]
+const RESTS = 300; // how long it must stand before its place is reported [ms]
 const DEEP = 500; // without perspective, the visible depth before and behind the target [m]
 
 /** Returns whether an object of the scene is shown, with all that it is in. */
@@ -56,15 +58,20 @@ export class SceneCamera {
     return direction ? found.sub(this.other.set(0, 0, 0).applyMatrix4(this.root.matrixWorld)) : found;
   }
 
-  /** Moves the camera to the start of a view. When coming from the view of the body, `free` keeps its place. */
-  choose(view, stage, now) {
+  /** Moves the camera to the start of a view. When coming from the view of the body, `free` keeps its place.
+   *
+   * @param kept Where the user has left the free camera, as `report` gives it; null for nowhere.
+   */
+  choose(view, stage, now, kept = null) {
     const stays = view === "free" && this.view === "follow";
+    const returns = view === "free" && !stays && kept !== null;
     this.view = view;
-    this.touched = stays;
+    this.touched = stays || returns;
     this.aspect = this.camera.aspect;
     const { controls, camera, actions } = this;
     this.flat = view === "top" || view === "side";
     if (!stays) this.covered = view === "eye" ? NOTHING : this.coveredIn(view);
+    if (returns) this.covered = { right: kept[6], top: kept[7] };
     controls.setFocalOffset(0, 0, 0, false);
     // A view without perspective pans and does not rotate; one that follows the body pans within the picture and rotates about the body.
     controls.mouseButtons.left = this.flat ? actions.TRUCK : actions.ROTATE;
@@ -72,15 +79,41 @@ export class SceneCamera {
     controls.maxPolarAngle = this.flat ? Math.PI : 0.52 * Math.PI; // not below the ground
     this.setFov(FOV);
     this.anchor = anchorOf(view, stage, now.body);
-    if (view !== "eye" && !stays) {
+    if (returns) controls.setLookAt(...plus(kept.slice(0, 3), this.shiftOf()), ...plus(kept.slice(3, 6), this.shiftOf()), false);
+    else if (view !== "eye" && !stays) {
       const { target, back, distance } = cameraPose(view, stage, now.body, camera.aspect, this.covered);
       const place = this.toThree(plus(target, back, distance)).toArray();
       controls.setLookAt(...place, ...this.toThree(target).toArray(), false);
     }
     if (stays && this.aim) controls.moveTo(...this.aim.toArray(), false);
     this.aim = null;
+    clearTimeout(this.reporting);
+    this.reported = stays ? null : this.place();
     camera.updateProjectionMatrix();
     this.viewer.requestRender();
+  }
+
+  /** Returns how far the body that has left the stage has taken the camera with it, in the frame of three.js. */
+  shiftOf() {
+    return this.toThree(this.anchor, true).toArray();
+  }
+
+  /** Returns where a free camera is and where it looks, without that, in the frame of three.js, and which parts of the picture count as
+   * covered: [x, y, z, x, y, z, right, top]. */
+  place() {
+    const shift = this.shiftOf();
+    const points = [this.controls.getPosition(this.vector.clone()), this.controls.getTarget(this.vector.clone())];
+    return [...points.flatMap((point) => plus(point.toArray(), shift, -1)), this.covered.right, this.covered.top];
+  }
+
+  /** Reports to the page where the user has left the free camera. */
+  report() {
+    if (this.view !== "free") return;
+    const place = this.place();
+    if (this.reported?.every((value, n) => Math.abs(value - place[n]) < MOVED)) return;
+    this.reported = place;
+    clearTimeout(this.reporting);
+    this.reporting = setTimeout(() => parent.postMessage({ camera: place }, location.origin), RESTS);
   }
 
   /** Moves the camera so that the thing at the pointer is in the middle. A view that follows the body becomes free, which the page is asked for. */
@@ -126,6 +159,7 @@ export class SceneCamera {
     }
     if (this.flat) this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
+    this.report();
   }
 
   /** Looks from an eye, with its vertical field of view; the horizontal one depends on the browser's window. */

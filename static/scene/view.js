@@ -116,7 +116,7 @@ function drawnNow() {
 }
 
 function choose() {
-  if (stage !== null && isWhole()) camera.choose(given.view, stage, drawnNow());
+  if (stage !== null && isWhole()) camera.choose(given.view, stage, drawnNow(), given.kept);
   else waiting = true;
   viewer.requestRender();
 }
@@ -187,8 +187,9 @@ viewer.scene.onBeforeRender = (renderer, _, seenBy) => {
   if (now.stage !== stage) {
     // Another scene: if its stage differs, the camera returns to the start of its view.
     const same = JSON.stringify({ ...now.stage, grounds: 0 }) === JSON.stringify({ ...stage, grounds: 0 });
+    const kept = stage === null || waiting ? given.kept : null;
     ({ stage } = now);
-    if (!same || waiting) camera.choose(given.view, stage, now);
+    if (!same || waiting) camera.choose(given.view, stage, now, kept);
     waiting = false;
   }
   given.shown = now;

@@ -2,7 +2,7 @@
 
 import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
-import { chosen, names, offered, plot, plotUsual, titleOf } from "./curves.js";
+import { chosen, isOfChunk, names, notComputed, offered, plot, plotUsual, titleOf } from "./curves.js";
 
 const MAX_LISTED = 40; // the maximum number of curves shown of one list: the others are found by their names
 
@@ -16,6 +16,7 @@ function Group({ title, curves, all }) {
         <span>${name}</span>
       </label>`,
     )}
+    ${curves.some(({ name }) => isOfChunk(name)) ? notComputed.value.map((why) => html`<p key=${why} class="quiet">${why}</p>`) : null}
     ${!all && curves.length > MAX_LISTED ? html`<p class="quiet">${counted(curves.length - MAX_LISTED, "other")}: filter by name</p>` : null}
   </fieldset>`;
 }

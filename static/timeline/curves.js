@@ -3,7 +3,7 @@
 // when it pauses: first the visible stretch, then the rest, until every value is known.
 
 import { computed, effect, signal } from "../vendor/preact.js";
-import { remembered } from "../local_storage.js";
+import { rememberedByModel } from "../model_storage.js";
 import { isLeft, say } from "../server.js";
 import { alive, complain, hurried, running, session, state, way } from "../store.js";
 import { firstFrom, rangeOf } from "../parts/curve.js";
@@ -17,13 +17,28 @@ const OVERVIEW = 1500; // the number of moments for a whole run of which nothing
 const PIECE = 1000; // the number of ticks per request when paused: longer stretches would delay commands
 const MAX_VALUES = 5000; // the maximum number of values of a curve per request
 const NOTHING = { times: [], values: [], slope: null, range: [Infinity, -Infinity] };
+const OVER_TIME = " over time"; // the end of the names of curves of chunks, as `workbench/chunk_curves.py` has it
+const CHUNKS = "activation over time";
+const COMPUTED = new Set(["activation", "base level", "spreading", "fixed", "inhibition"]); // the groups of the values at retrievals that are also computed over time
 
 /** The curves of bodies: [{name, unit, group, of, shape}], where `of` is the list in which a curve is offered, if it is not its group. */
 const ofBodies = signal([]);
 /** The same for those of events, as far as the page has asked for them. */
 const ofEvents = signal([]);
+/** Those of chunks over time, which the worker computes from the events if asked for: those that were chosen, and those of the chunks that
+ * were candidates of a retrieval. */
+const ofChunks = computed(() => {
+  const found = new Set((kept.value ?? []).filter(isOfChunk));
+  const all = new Set(ofEvents.value.map(({ name }) => name));
+  for (const { name, group, shape } of ofEvents.value) {
+    if (shape !== "points" || !COMPUTED.has(group)) continue;
+    const noisy = group === "activation" && all.has(name.replace(/activation$/, "noise"));
+    found.add(`${name}${noisy ? " without noise" : ""}${OVER_TIME}`);
+  }
+  return [...found].map((name) => ({ name, unit: "", group: CHUNKS, of: null, shape: "line" }));
+});
 /** All curves that are known. */
-export const names = computed(() => [...ofBodies.value, ...ofEvents.value]);
+export const names = computed(() => [...ofBodies.value, ...ofEvents.value, ...ofChunks.value]);
 /** Whether the curves are offered to the user. */
 export const offered = signal(false);
 /** Counts the changes of what is known. */
@@ -32,7 +47,7 @@ export const curvesVersion = signal(0);
  * [s] they are known, at least coarsely (null for not at all), and the stretches [from, to] of which every value is known. */
 export const known = { times: [], values: new Map(), events: new Map(), until: null, whole: [] };
 
-const GROUPS = ["joint", "speed", "clearance", "contact", "place", "joint speed", "learned utility", "utility", "activation"]; // in the order in which they are plotted
+const GROUPS = ["joint", "speed", "clearance", "contact", "place", "joint speed", "learned utility", "utility", CHUNKS, "activation"]; // in the order in which they are plotted
 const TITLES = { joint: "joints", contact: "contact force", "joint speed": "joint speeds" };
 
 /** The title of a group of curves. */
@@ -42,16 +57,8 @@ export function titleOf(group) {
 
 const USUAL = ["speed", "clearance", "learned utility"]; // the groups that are plotted until the user chooses
 
-const MAX_MODELS = 50; // of which choices are remembered
-const chosenOf = remembered("timeline curves of models", []);
-const model = computed(() => session.value?.model ?? null);
-
 /** The names that the user has chosen for this model; null as long as that is none. */
-const kept = computed(() => chosenOf.value.find((one) => one.model === model.value)?.names ?? null);
-
-function keep(names) {
-  chosenOf.value = [...chosenOf.newest().filter((one) => one.model !== model.peek()), ...(names === null ? [] : [{ model: model.peek(), names }])].slice(-MAX_MODELS);
-}
+const { kept, keep } = rememberedByModel("timeline curves of models", "names");
 
 function usual(all) {
   const joints = all.filter(({ group }) => group === "joint");
@@ -69,8 +76,13 @@ export const chosen = computed(() => {
 
 /** Plots a curve, or no longer. */
 export function plot(name, on) {
-  const others = (kept.value ?? chosen.value).filter((other) => other !== name);
-  keep(on ? [...others, name] : others);
+  plotAll([name], on);
+}
+
+/** Plots several curves, or no longer. */
+export function plotAll(names, on) {
+  const others = (kept.value ?? chosen.value).filter((other) => !names.includes(other));
+  keep(on ? [...others, ...names] : others);
 }
 
 /** Plots the usual curves. */
@@ -92,7 +104,7 @@ const plotsOfBodies = computed(() => {
 const plotsOfEvents = computed(() => {
   curvesVersion.value;
   const until = furthest.value;
-  return plotsOf(ofEvents.value, ({ name, unit, shape }) => {
+  return plotsOf([...ofEvents.value, ...ofChunks.value], ({ name, unit, shape }) => {
     const { times, values, slope, range } = known.events.get(name) ?? NOTHING;
     const grown = slope && values.length ? values.at(-1) + slope * (until - times.at(-1)) : -Infinity;
     return { name, unit, times, values, shape, slope: slope ?? undefined, range: [range[0], Math.max(range[1], grown)] };
@@ -110,7 +122,14 @@ function plotsOf(curves, seriesOf) {
     if (!made.has(key)) made.set(key, { title: titleOf(group), group, unit, series: [] });
     made.get(key).series.push(seriesOf(curve));
   }
-  return [...made.values()].map((plot) => ({ ...plot, range: rangeOf(plot.series) }));
+  return [...made.values()].map((plot) => ({ ...plot, title: onlyChunk(plot) ?? plot.title, range: rangeOf(plot.series) }));
+}
+
+/** Returns the title of a plot that shows a single chunk over time: `item:cup over time`; null for any other plot. */
+function onlyChunk({ group, series }) {
+  if (group !== CHUNKS) return null;
+  const chunks = new Set(series.map(({ name }) => /^.*?: (.*) (activation|base level|spreading|fixed|inhibition)( \d+)?( without noise)? over time$/.exec(name)?.[1]));
+  return chunks.size === 1 && !chunks.has(undefined) ? `${[...chunks][0]}${OVER_TIME}` : null;
 }
 
 /** The plots: [{title, unit, series, range}], one for each group with chosen curves. */
@@ -141,6 +160,7 @@ export const contacts = computed(() => {
 let of = null; // the history of the known data
 let named = null; // the history whose curves are named
 let key = ""; // the curves of the known data
+let basis = ""; // the parameters with which curves of chunks were computed
 let counted = -1; // the number of events at the last request that wanted curves of events
 let piece = PIECE; // the number of ticks of the next request when paused
 let busy = false;
@@ -189,7 +209,7 @@ function put(list, { from, to, first, last, whole }, { times, curves, events }) 
 function withNews({ times, values }, news, first, last) {
   const [low, high] = [firstFrom(times, first), firstFrom(times, last + 5e-7)];
   const placed = (list, more) => list.slice(0, low).concat(more, list.slice(high));
-  const curve = { times: placed(times, news.times), values: placed(values, news.values), slope: news.slope };
+  const curve = { times: placed(times, news.times), values: placed(values, news.values), slope: news.slope, why: news.why };
   let [least, most] = NOTHING.range;
   for (const value of curve.values) if (value !== null) [least, most] = [Math.min(least, value), Math.max(most, value)];
   return { ...curve, range: [least, most] };
@@ -217,6 +237,17 @@ function gap(begin, end) {
   const beyond = known.whole.find(([first]) => first > from)?.[0] ?? end;
   return { from, to: Math.min(beyond, end) };
 }
+
+/** Whether a curve is that of a chunk over time. */
+export function isOfChunk(name) {
+  return name.endsWith(OVER_TIME);
+}
+
+/** Why curves of chunks cannot be computed: sentences, each once. */
+export const notComputed = computed(() => {
+  curvesVersion.value;
+  return [...new Set(chosen.value.map((name) => known.events.get(name)?.why).filter(Boolean))];
+});
 
 function isOfBody(name) {
   return ofBodies.peek().some((curve) => curve.name === name);
@@ -289,6 +320,11 @@ async function askOnce() {
   if (isNew || more.length > 0) ofEvents.value = isNew ? more : [...ofEvents.peek(), ...more];
   named = history;
   if (events) counted = count;
+  if (events && basis !== answer.basis) {
+    basis = answer.basis;
+    if (list.some(isOfChunk)) begin(list); // what is known of chunks is no longer valid
+    return true;
+  }
   if (key !== mine || list.length === 0) return key !== mine || more.length > 0 || isNew;
   const isWhole = Object.values(answer.events).every(({ whole }) => whole);
   if (stretch.ticks) piece = isWhole ? Math.max(PIECE, 2 * stretch.ticks) : Math.max(1, Math.floor(stretch.ticks / 2));

@@ -4,7 +4,7 @@ import { html, signal } from "../vendor/preact.js";
 import { csvText } from "../parts/csv.js";
 import { drawCurves, drawLegend, drawTimes } from "../parts/curve.js";
 import { dialog } from "../parts/dialog.js";
-import { pictureName, saveFile, savePicture } from "../parts/picture.js";
+import { pictureName, runName, saveFile, savePicture } from "../parts/picture.js";
 import { session } from "../store.js";
 import { headingOf, plots } from "./curves.js";
 import { drawTimeline } from "./draw.js";
@@ -14,15 +14,9 @@ import { furthest } from "./seek.js";
 const [WIDE, HIGH, LEFT] = [900, 260, 46]; // of a plot [px]
 const which = signal("");
 
-/** Returns a description of the run. */
-function runText() {
-  const { model, run, seed } = session.peek();
-  return `${model}, run ${run}${seed === null || seed === undefined ? "" : `, seed ${seed}`}`;
-}
-
 function ofTimeline() {
   const all = scene(true);
-  return { width: all.width, height: all.height, title: `Timeline: ${runText()}`, draw: (surface) => drawTimeline(surface, all) };
+  return { width: all.width, height: all.height, title: `Timeline: ${runName(session.peek())}`, draw: (surface) => drawTimeline(surface, all) };
 }
 
 function ofPlot(plot) {
@@ -33,7 +27,7 @@ function ofPlot(plot) {
     drawTimes(surface, box, span, { y: box.y + box.height });
     drawCurves(surface, box, { ...plot, span, until: end });
   };
-  return { width: WIDE, height: HIGH, title: `${headingOf(plot)}: ${runText()}`, draw };
+  return { width: WIDE, height: HIGH, title: `${headingOf(plot)}: ${runName(session.peek())}`, draw };
 }
 
 /** Asks what to save, and saves it. */

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 from playwright.sync_api import Locator, Page, expect
 
@@ -96,3 +98,28 @@ def test_each_of_two_agents_has_its_own_edges(pages: Callable[..., Page], workbe
         graph = page.get_by_role("region", name=agent, exact=True)
         for kind, count in {"reads": 1, "writes": 1, "asks": 1, "fills": 1}.items():
             expect(graph.locator(f".edge.{kind}")).to_have_count(count)
+
+
+def test_the_graph_is_saved_as_a_picture_of_what_it_shows(pages: Callable[..., Page], tmp_path: Path) -> None:
+    page = pages("counting.py", tab="graph")
+    page.click("#cycle")
+    shows(page, "#status", "start_counting fired")
+
+    def saved(kind: str) -> Path:
+        with page.expect_download() as download:
+            page.locator(".graph-head").get_by_role("button", name=kind).click()
+        path = tmp_path / download.value.suggested_filename
+        download.value.save_as(path)
+        return path
+
+    svg = saved("SVG")
+    assert re.fullmatch(r"counting_seed_\d+_graph_at_0\.05_s\.svg", svg.name)
+    drawing = ElementTree.parse(svg).getroot()
+    words = [node.text or "" for node in drawing.iter("{http://www.w3.org/2000/svg}text")]
+    assert words[0].startswith("Graph at 0.05 s: counting.py, run ")
+    assert {"Modules", "Buffers", "Productions", "goal", "memory", "busy", "start_counting", "a production reads a buffer"} <= set(words)
+    lines = list(drawing.iter("{http://www.w3.org/2000/svg}path"))
+    assert len([line for line in lines if line.get("d", "").count("L") == 24]) == page.locator(".graph .edge").count()
+    png = saved("PNG").read_bytes()
+    assert png.startswith(b"\x89PNG\r\n")
+    assert int.from_bytes(png[16:20]) > 1000

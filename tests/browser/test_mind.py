@@ -28,6 +28,11 @@ class Quiet(ACTR):
 Quiet().run()
 """
 
+PLOTTED = """async () => (await part("timeline/curves.js")).plots.value
+    .filter(({ series }) => series.some(({ values }) => values.length >= 100))
+    .map(({ title, series }) => ({ title, names: series.map(({ name }) => name) }))"""
+"""The plots that have a value for each tick of a run of 1 s."""
+
 NOTE_CHANGES = """cell => {
   const lit = [];
   const note = () => {
@@ -352,6 +357,25 @@ def test_memory_is_searched_and_sorted(pages: Pages, workbench: Served) -> None:
     expect(page.get_by_role("region", name="The chosen chunk")).to_contain_text(re.compile("Activation .* = base level"))
     page.get_by_label("Search the memory").fill("nothing like it")
     expect(page.locator(".memory")).to_contain_text("No chunk has all of these words.")
+
+
+def test_the_activation_of_a_chosen_chunk_is_plotted_over_time_also_after_a_reload(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "chooses.py", CHOOSES)
+    page.click("#run")
+    shows(page, "#status", "ended")
+    open_tab(page, "Memory")
+    page.locator("#chunks tbody tr").filter(has_text="cat").click()
+    chosen = page.get_by_role("region", name="The chosen chunk")
+    chosen.get_by_role("button", name="Plot", exact=True).click()
+    names = ["memory: animal:cat activation over time", "memory: animal:cat base level over time"]
+    for _ in range(2):
+        until(page, lambda: page.evaluate(PLOTTED) == [{"title": "animal:cat over time", "names": names}])
+        page.reload()
+    page.locator("#chunks tbody tr").filter(has_text="cat").click()
+    button = chosen.get_by_role("button", name="Plot", exact=True)
+    expect(button).to_have_attribute("aria-pressed", "true")
+    button.click()
+    until(page, lambda: page.evaluate(PLOTTED) == [])
 
 
 @pytest.mark.slow

@@ -226,6 +226,36 @@ def drag(page: Page, x: float, y: float, button: Any = "left") -> None:
     page.wait_for_timeout(200)
 
 
+def test_the_free_camera_is_where_the_user_left_it_after_a_reload_until_the_view_is_reset(pages: Callable[..., Page]) -> None:
+    page = pages()
+    frame = frame_of(page)
+    page.get_by_label("Camera").select_option("side")
+    page.get_by_label("Camera").select_option("free")
+    until(page, lambda: look(page, frame)["view"] == "free")
+    begun = look(page, frame)["position"]
+    drag(page, 80, 10)
+    until(page, lambda: page.evaluate(KEPT) == 1)
+    page.wait_for_timeout(500)
+    left = look(page, frame)["position"]
+    assert np.linalg.norm(np.subtract(left, begun)) > 0.5
+    page.reload()
+    frame = frame_of(page)
+    until(page, lambda: np.allclose(look(page, frame)["position"], left, atol=0.02))
+    page.get_by_label("Camera").select_option("top")
+    page.get_by_label("Camera").select_option("free")
+    until(page, lambda: np.allclose(look(page, frame)["position"], left, atol=0.02))
+    page.get_by_role("button", name="Reset view").click()
+    until(page, lambda: np.allclose(look(page, frame)["position"], begun, atol=0.02))
+    assert page.evaluate(KEPT) == 0
+    page.reload()
+    frame = frame_of(page)
+    until(page, lambda: np.allclose(look(page, frame)["position"], begun, atol=0.02))
+
+
+KEPT = "() => JSON.parse(localStorage.getItem('actr3d.free cameras of models') ?? '[]').length"
+"""For how many models a free camera is remembered."""
+
+
 @pytest.mark.slow
 def test_with_the_body_it_stays_in_the_middle_whatever_the_user_does(pages: Callable[..., Page]) -> None:
     page = pages()

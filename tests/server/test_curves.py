@@ -216,7 +216,7 @@ def test_a_program_has_no_curves(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, "x = 1\n", record=True)
     talk.say("run")
     talk.until("ended")
-    nothing: dict[str, Any] = {**NOTHING, "events": {}}
+    nothing: dict[str, Any] = {**NOTHING, "events": {}, "basis": ""}
     assert talk.say("curves") == nothing
     assert curves_of(recording(desk, talk), names=None, first=0.0, most=100) == nothing
 

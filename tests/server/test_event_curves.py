@@ -184,3 +184,126 @@ def test_after_a_change_in_the_past_curves_of_events_are_those_of_the_new_way(de
     talk.until("paused", time=1.5)
     assert talk.say("curves", names=["counter.goal.at"])["events"]["counter.goal.at"] == told  # it waits for another answer
     assert max(before["values"]) > max(kept) + 1
+
+
+SPREADS = """
+from actr3d.actr import *
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Scene
+
+class Learning(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval, latency=0.1, threshold=-5)
+    noise = DMNoise(memory, noise=0)
+    base = DMBaseLevel(memory)
+    spread = DMSpreading(memory, goal)
+    memory.add("from:9 to:9")
+    memory.add("from:9 to:9")
+    goal.set("count at:0")
+    def init():
+        for number in range(9):
+            memory.add(f"from:{number} to:{number + 1}", time=2)
+        spread.strength = 3
+    def ask(goal="count at:?at", retrieval=None, memory="busy:False"):
+        memory.request(f"from:{at} to:?")
+    def step(goal="count at:?at", retrieval="from:?at to:?to"):
+        retrieval.clear()
+        memory.add(f"from:{at} to:{to}")
+        goal.modify(at=to)
+    def again(goal="count at:9"):
+        goal.set("count at:0")
+"""
+SPREADS_BUILT = f"""{SPREADS}
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(),)), bodiless={{"learner": Learning}}, seed=1)
+"""
+SPREADS_PROGRAM = f"{SPREADS}\nfor trial in range(2):\n    Learning().run(1)\n"
+PARTS = ("activation without noise", "base level", "spreading")
+CHUNKS = ("from:9 to:9", "from:1 to:2", "from:4 to:5")
+
+
+def chunk_curves(talk: Talk, memory: str, **asked: Any) -> dict[str, Any]:
+    plots = talk.say("memory", memory=memory)["plots"]
+    assert plots == {"curves": [f"{part} over time" for part in PARTS], "why": ""}
+    names = [f"{memory}: {chunk} {end}" for chunk in CHUNKS for end in plots["curves"]]
+    told = talk.say("curves", names=names, most=5_000, **asked)
+    assert set(names) <= set(told["events"])
+    assert not {one["name"] for one in told["names"]} & set(names)
+    return {name: told["events"][name] for name in names}
+
+
+def at(curve: dict[str, Any], time: float) -> Any:
+    return dict(zip(curve["times"], curve["values"], strict=True))[time]
+
+
+def test_the_activation_of_a_chunk_at_a_past_tick_is_what_it_was_in_the_memory(desk: Desk, tmp_path: Path) -> None:
+    memory = "learner.memory"
+    talk = desk.begin(tmp_path, SPREADS_BUILT, record=True)
+    was: dict[float, Any] = {}
+    for time in (0.1, 0.25, 0.53, 0.8):
+        talk.say("until", time=time)
+        talk.until("paused", time=time)
+        was[time] = {row["chunk"]: row["parts"] for row in talk.say("memory", memory=memory)["rows"]}
+    curves = chunk_curves(talk, memory)
+    assert all(curve["times"] == [n / 100 for n in range(81)] and curve["whole"] for curve in curves.values())
+    for time, rows in was.items():
+        for chunk in CHUNKS:
+            activation, base, spreading = (at(curves[f"{memory}: {chunk} {part} over time"], time) for part in PARTS)
+            assert [base, spreading] == [rows[chunk]["DMBaseLevel"], rows[chunk]["DMSpreading"]]
+            assert activation == base + spreading
+    assert len({at(curves[f"{memory}: from:1 to:2 spreading over time"], time) for time in was}) > 1
+    talk.say("seek", time=0.3)
+    talk.until("paused", time=0.3)
+    assert chunk_curves(talk, memory) == curves
+    part = chunk_curves(talk, memory, first=0.2, last=0.4)
+    assert all(part[name]["values"] == curves[name]["values"][20:41] for name in curves)
+    opened = Talk(desk, desk.do(talk.sessions.reopen(recording(desk, talk).stem)), talk.sessions)
+    opened.until("paused", time=0.0)
+    opened.say("until", time=0.05)
+    opened.until("paused", time=0.05)
+    assert chunk_curves(opened, memory) == curves
+
+
+def test_the_activation_of_a_chunk_in_each_run_of_a_program_begins_with_this_run(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SPREADS_BUILT)
+    talk.say("until", time=0.8)
+    talk.until("paused", time=0.8)
+    built = chunk_curves(talk, "learner.memory")
+    program = desk.begin(tmp_path, SPREADS_PROGRAM, name="program.py")
+    program.say("until", time=1.9)
+    program.until("paused", time=1.9)
+    first, second = (chunk_curves(program, memory) for memory in ("memory", "top#2.memory"))
+    for name, curve in built.items():
+        end = name.removeprefix("learner.memory")
+        assert first[f"memory{end}"]["values"][:81] == curve["values"]
+        assert first[f"memory{end}"]["values"][101:] == [None] * 90
+        assert second[f"top#2.memory{end}"]["values"][:100] == [None] * 100
+        assert second[f"top#2.memory{end}"]["values"][101:181] == pytest.approx(curve["values"][1:])
+
+
+def test_an_activation_that_does_not_follow_from_the_events_is_not_drawn_and_the_answer_says_why(desk: Desk, tmp_path: Path) -> None:
+    changing = SPREADS_BUILT.replace("retrieval.clear()", "retrieval.clear()\n        base.decay = 0.5 if at == '0' else 0.9")
+    talk = desk.begin(tmp_path, changing)
+    name = "learner.memory: from:1 to:2 base level over time"
+
+    def told(time: float) -> tuple[Any, str]:
+        talk.say("until", time=time)
+        talk.until("paused", time=time)
+        answer = talk.say("curves", names=[name])
+        return answer["events"][name], answer["basis"]
+
+    before, basis = told(0.1)
+    after, other = told(0.6)
+    assert before["values"]
+    assert "why" not in before
+    assert after["values"] == []
+    assert after["why"].startswith("The model changes parameters of this memory")
+    assert basis != other
+    associated = desk.begin(
+        tmp_path, SPREADS_BUILT.replace("goal.set", "assoc = DMAssociate(memory, goal)\n    goal.set", 1), name="other.py"
+    )
+    assert associated.say("memory", memory="learner.memory")["plots"] == {
+        "curves": ["base level over time", "spreading over time"],
+        "why": "What DMAssociate adds is known only at a retrieval.",
+    }

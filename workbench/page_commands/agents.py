@@ -90,7 +90,7 @@ def _agents(model: Model) -> Iterator[ProductionSystem]:
 
 @page_command
 class MemoryRows(Question):
-    """Returns the chunks of a memory with their current activations."""
+    """Returns the chunks of a memory with their current activations, and which curves over time each of them has."""
 
     type: Literal["memory"] = "memory"
     memory: Name
@@ -101,13 +101,14 @@ class MemoryRows(Question):
         from actr3d.actr.declarative.memory import Memory
         from actr3d.actr.explain.memory_table import memory_rows
         from actr3d.actr.modules.answers import plain_answer
+        from workbench.chunk_curves import offered
 
         memories = {name: part for top in run.tops() for name, part in top.parts() if isinstance(part, Memory)}
         if self.memory not in memories:
             raise unknown("memory", self.memory, memories)
         memory = memories[self.memory]
         rows = [plain_answer(row) for row in memory_rows(memory, self.words, self.most)]
-        return {"memory": self.memory, "size": len(memory.dm), "threshold": memory.threshold, "rows": rows}
+        return {"memory": self.memory, "size": len(memory.dm), "threshold": memory.threshold, "rows": rows, "plots": offered(memory)}
 
 
 @page_command

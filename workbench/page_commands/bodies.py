@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
 from actr3d.errors import Actr3dError
-from workbench.page_commands.command import Name, Question, Seconds, page_command, unknown
+from workbench.page_commands.command import LONGEST_TEXT, Name, Question, Seconds, page_command, unknown
 
 if TYPE_CHECKING:
     from actr3d.world.body import Body
     from workbench.worker.controlled_run import ControlledRun
     from workbench.worker.shown import Shown
+
+
+CurveName = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT)]
+"""The name of a curve, which may contain a chunk."""
 
 
 def _found(run: ControlledRun, name: str | None) -> tuple[Shown, Body]:
@@ -90,12 +94,18 @@ class Curves(Question):
     `steps` (each holds until the next one) or `sum` (it grows evenly between two); `slope` says by how much the last value of the run
     changes in a second, and `whole` whether no value of the interval is left out.
 
+    `events` also holds the activation of a chunk over time, with its value at each tick, which is computed from the events if its name is
+    among `names`: that of the memory, the chunk, and an end that the question `memory` lists, such as `agent.memory: item:cup base level
+    over time`. It is not among the `names` of the answer. If it cannot be computed, `why` is a sentence that says why. `basis` is a text;
+    if it differs from that of an earlier answer, the model has changed parameters of the memory, and earlier values are not valid.
+    A recording does not return these curves: they need the modules of the memory.
+
     After going back, a run still returns what lies ahead, until it continues differently. `/api/recordings/{recording}/curves` returns
     the same for a recording.
     """
 
     type: Literal["curves"] = "curves"
-    names: tuple[Name, ...] | None = Field(default=None, max_length=500)
+    names: tuple[CurveName, ...] | None = Field(default=None, max_length=500)
     """The names of the curves; None for all."""
     first: Seconds = 0.0
     """Start of the interval [s]: a page need not ask again for what it has."""

@@ -7,11 +7,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from actr3d.actr.explain.snapshot import snapshot_of
-from actr3d.clock import seconds
+from actr3d.clock import microseconds, seconds
 from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.trace import Trace, TraceEvent
+from workbench.chunk_curves import ChunkCurves
 from workbench.event_curves import EventCurves
 from workbench.worker.known_run import KnownRun
 from workbench.worker.names import Names, Top
@@ -25,6 +26,8 @@ class ControlledRun(ABC):
     _recording: Recording | None = None
     _event_curves: EventCurves | None = None
     """The curves of the events that have been taken; None until they are needed."""
+    _chunk_curves: ChunkCurves | None = None
+    """Those of chosen chunks, which follow from these events."""
     ancestors: Sequence[Sequence[Any]] = ()
     """The recordings from which the run comes, the nearest first, each with the time at which the one before it left it [s]."""
 
@@ -145,8 +148,16 @@ class ControlledRun(ABC):
         """Returns curves of the known run; see `workbench.page_commands.bodies.Curves`."""
         bodies = self.body_curves(names, first, last, most)
         if seen is None:
-            return {**bodies, "events": {}}
-        return self.take_events().added_to(bodies, names, first, last, most, seen=seen)
+            return {**bodies, "events": {}, "basis": ""}
+        events = self.take_events()
+        answer = events.added_to(bodies, names, first, last, most, seen=seen)
+        if self._chunk_curves is None or self._chunk_curves.of is not events:
+            self._chunk_curves = ChunkCurves(events, self.period)
+        end = self.furthest if last is None else min(microseconds(last), self.furthest)
+        parts = {name: part for top in self.tops() for name, part in top.parts()} if names else {}
+        present = 0 if self.trace is None else len(self.trace)
+        chunks = self._chunk_curves.sampled(names or (), microseconds(first), end, most, parts, present)
+        return {**answer, "events": {**answer["events"], **chunks["events"]}, "basis": chunks["basis"]}
 
     def take_events(self) -> EventCurves:
         """Adds the events up to now to the curves of events, which know them also after the run has gone back; returns these curves."""

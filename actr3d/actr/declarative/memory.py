@@ -143,15 +143,8 @@ class Memory(WithParameters, Model):
 
     def _keep(self, new: Chunk, keys: Mapping[str, Any]) -> None:
         """Adds a chunk, or strengthens the equal one in the memory."""
-        known = self.dm.equal_to(new)
-        if known is not None:
-            for adaptor in self.adaptors:
-                adaptor.merge(known, **keys)
-        else:
-            for adaptor in self.adaptors:
-                adaptor.create(new, **keys)
-            self.dm.keep(new)
-        self._trace_add(new, known is not None, keys)
+        merged = keep_in(self.dm, self.adaptors, new, keys) is not new
+        self._trace_add(new, merged, keys)
 
     def _collect(self, chunk: Chunk) -> None:
         """Adds a chunk that left a buffer (ACT-R 7); unlike `add`, this does not reset `error`."""
@@ -390,6 +383,26 @@ def buffer_of(memory: Memory) -> Any:
 def collect(memory: Memory, chunk: Chunk) -> None:
     """Adds a chunk to a memory like `Memory.add`, but without resetting its `error`."""
     memory._collect(chunk)  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
+
+
+def keep_in(store: ChunkStore, modules: Iterable[MemorySubModule], new: Chunk, keys: Mapping[str, Any]) -> Chunk:
+    """Adds a chunk to a list, or strengthens the equal one in it; returns the one that is in the list.
+
+    Args:
+        store: The list.
+        modules: The activation modules, which are notified.
+        new: The chunk.
+        keys: For the modules, as those of `Memory.add`.
+    """
+    known = store.equal_to(new)
+    if known is not None:
+        for module in modules:
+            module.merge(known, **keys)
+        return known
+    for module in modules:
+        module.create(new, **keys)
+    store.keep(new)
+    return new
 
 
 def own_activation(memory: Memory) -> Callable[[Any], float] | None:

@@ -46,7 +46,7 @@ def memory_rows(memory: Memory, words: str = "", most: int | None = None) -> lis
 
 
 def _row(memory: Memory, chunk: Chunk) -> MemoryRow:
-    parts = dict(_parts(memory, chunk))
+    parts = {name: part_now(module, chunk) for name, module in named_modules(memory)}
     known = [value for value in parts.values() if value is not None]
     own = own_activation(memory) is not None
     return MemoryRow(
@@ -57,15 +57,16 @@ def _row(memory: Memory, chunk: Chunk) -> MemoryRow:
     )
 
 
-def _parts(memory: Memory, chunk: Chunk) -> Iterator[tuple[str, float | None]]:
+def named_modules(memory: Memory) -> Iterator[tuple[str, MemorySubModule]]:
+    """Yields the activation modules of a memory by the names of their parts: the class, numbered if there are several of it."""
     names: list[str] = []
     for module in memory.adaptors:
         name = type(module).__name__
         names.append(name)
-        yield (name if names.count(name) == 1 else f"{name} {names.count(name)}"), _part(module, chunk)
+        yield (name if names.count(name) == 1 else f"{name} {names.count(name)}"), module
 
 
-def _part(module: MemorySubModule, chunk: Chunk) -> float | None:
+def part_now(module: MemorySubModule, chunk: Chunk) -> float | None:
     """Returns what a module adds to a chunk's activation now; None if it is known only at a retrieval."""
     if type(module) not in _READABLE or not IMMUTABLE_TYPES.issuperset(map(type, chunk.values())):
         return None
