@@ -16,7 +16,7 @@ from actr3d.runner.replay import replay
 from tests.helpers.recording_forgery import forge
 from tests.helpers.sessions import Desk, Talk
 from tests.helpers.workbench_server import MODELS
-from workbench.files import OWN
+from workbench.trash import OWN
 
 BUILT = """
 from actr3d.actr import *
