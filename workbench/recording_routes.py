@@ -127,7 +127,7 @@ async def import_recording(request: Request, name: Annotated[str, Query(min_leng
     summary = await sessions.listing.one(path.stem)
     if summary.problem is not None:
         await asyncio.to_thread(erase, path)
-        raise RecordingError(f"'{name}' cannot be added to the recordings: {summary.problem}")
+        raise RecordingError(f"the file cannot be read: {summary.problem}")
     await asyncio.to_thread(recordings.labels.change, path.stem, {"name": name.removesuffix(".sqlite")})
     sessions.listings_changed()
     return Response(to_json(await _recording(sessions, path.stem)), status_code=201, media_type="application/json")

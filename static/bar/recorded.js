@@ -43,7 +43,7 @@ export function RecordingBanner() {
   if (recorded === null) return null;
   const branched = recording !== null;
   const name = runs.value?.find((run) => run.id === recorded)?.label?.name;
-  const when = `made ${whenInFull(made)}`;
+  const when = made === null ? "deleted or renamed since it was opened" : `made ${whenInFull(made)}`;
   return html`<div class="recording-banner" role="status">
     <b>Recording</b>
     <div class="of">
