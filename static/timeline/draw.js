@@ -96,7 +96,7 @@ function drawUnknown(surface, scene) {
   const x = Math.min(scene.width, placeOf(scene.begin, scene));
   surface.fill(scene.column, AXIS, x - scene.column, scene.height - AXIS, "line", 0.5);
   const text = cut(scene.fetching ? "earlier events are being fetched …" : "earlier events are not kept on this page", x - scene.column - 8);
-  if (text) surface.text(text, x - 4, scene.height - 10, "quiet", { anchor: "end" });
+  if (text) surface.text(text, x - 4, scene.height - 10, "text", { anchor: "end" });
 }
 
 function drawLane(surface, { lane, label, height }, y, scene) {
