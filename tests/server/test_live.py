@@ -92,14 +92,14 @@ def test_a_models_folder_has_the_same_port_each_time_and_another_one_only_if_tha
 
 
 def test_a_workbench_that_does_not_get_the_usual_port_says_why(server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cli, "port_of", lambda folder: server.port)
+    monkeypatch.setattr(cli, "PORTS", [server.port])
     said = cli.other_port_warning(server.folder, "127.0.0.1", 1234)
     assert f"port {server.port}, the usual one of this folder, is taken by another workbench, most likely with the same folder" in said
     assert "This workbench has port 1234 instead: its page has settings of its own" in said
     monkeypatch.setattr(cli, "PROBE_TIME", 0.01)
     with listen("127.0.0.1", 0) as other:
-        port = other.getsockname()[1]
-        monkeypatch.setattr(cli, "port_of", lambda folder: port)
+        port: int = other.getsockname()[1]
+        monkeypatch.setattr(cli, "PORTS", [port])
         assert f"port {port}, the usual one of this folder, is taken by another program." in cli.other_port_warning(
             tmp_path, "127.0.0.1", 1
         )
