@@ -21,7 +21,7 @@ export function command({ text, about = () => "", group, key = null, work, ready
   return made;
 }
 
-/** Registers commands that depend on what is shown: `list` returns them, each time they are asked for. They are found by a search. */
+/** Registers commands that depend on what is shown: `list` returns them for a search, each time they are asked for. They are found by a search. */
 export function commandsOf(list) {
   sources.push(list);
 }
@@ -31,9 +31,9 @@ export function permanent() {
   return known;
 }
 
-/** Returns the commands that depend on what is shown. */
-export function present() {
-  return sources.flatMap((list) => list().map((one) => ({ key: null, ready: () => true, why: () => "", ...one })));
+/** Returns the commands that depend on what is shown, and on the words of a search. */
+export function present(search = "") {
+  return sources.flatMap((list) => list(search).map((one) => ({ key: null, ready: () => true, why: () => "", ...one })));
 }
 
 /** Returns the command of a key. */

@@ -144,9 +144,9 @@ export function complain(text, level = "error", action = null) {
   addNotices([{ number: ownNotices, level, text, file: null, line: null, detail: "", action }]);
 }
 
-/** Takes the action of a notice, which then no longer offers it. */
+/** Takes the action of a notice, and removes the notice: what it says may no longer be true. */
 export function takeAction(notice) {
-  notices.value = notices.value.map((one) => (one === notice ? { ...one, action: null } : one));
+  notices.value = notices.value.filter((one) => one !== notice);
   notice.action.work();
 }
 

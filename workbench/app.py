@@ -23,16 +23,20 @@ from workbench import experiment_routes, language_routes, recording_routes, rout
 from workbench.auth import Gate, Guard
 from workbench.built_manual import manual, no_manual
 from workbench.experiments import Experiments
-from workbench.files import ModelFolder, empty_trash
+from workbench.files import ModelFolder
 from workbench.language.language_server import LanguageServer
 from workbench.page_files import ROUTE, PageFiles
 from workbench.protocol import problem_of
 from workbench.recordings import Recordings
 from workbench.retention import Keeping, stands_alone
 from workbench.sessions import Sessions
+from workbench.trash import empty_trash
 from workbench.viser_bridge import Bridge
 from workbench.worker.spawn import MEMORY, Zygote
 from workbench.worker.workers import Workers
+
+DAY = 86_400.0
+"""How often old deleted files are removed from the trash folder [s]."""
 
 
 def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping | None = None, zygote: Zygote | None = None) -> FastAPI:
@@ -64,8 +68,10 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
 
         app.state.later = later
         workers.begin()
-        tidying = asyncio.create_task(tidy(sessions, keeping or Keeping()))
+        closing = asyncio.Event()
+        tidying = asyncio.create_task(keep_tidy(sessions, keeping or Keeping(), closing))
         yield
+        closing.set()
         await leave()
         await asyncio.wait([tidying])
 
@@ -93,15 +99,24 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
     return app
 
 
+async def keep_tidy(sessions: Sessions, keeping: Keeping, closing: asyncio.Event) -> None:
+    """Tidies the folder of the workbench at its start, and deletes old deleted files each day, until it is closing."""
+    await tidy(sessions, keeping)
+    while True:
+        await asyncio.to_thread(empty_trash, sessions.folder.root)
+        with suppress(TimeoutError):
+            await asyncio.wait_for(closing.wait(), DAY)
+            return
+
+
 async def tidy(sessions: Sessions, keeping: Keeping) -> None:
-    """Deletes recordings beyond the limits, unfinished files and old deleted files."""
+    """Deletes recordings beyond the limits, and unfinished files."""
     recordings = sessions.recordings
     for path in await asyncio.to_thread(recordings.all):
         if not stands_alone(path):  # a killed process may have left it so, and then reading it completes the file
             with suppress(Actr3dError, OSError):
                 await sessions.listing.one(path.stem)
     await asyncio.to_thread(recordings.tidy, keeping)
-    await asyncio.to_thread(empty_trash, sessions.folder.root)
 
 
 async def _manual(scope: Scope, receive: Receive, send: Send) -> None:

@@ -27,6 +27,8 @@ BODY_TIME = 30.0
 """Maximum time in which a request's body must arrive [s]."""
 LONGEST_PATH = 4_000
 """Maximum total length of path and query."""
+REFUSAL = "open the address with the token that the workbench printed when it was started"
+"""The answer to a request without the token."""
 _LOCAL_ORIGIN = re.compile(r"https?://(localhost|127\.0\.0\.1)(:\d{1,5})?")
 _HOST = re.compile(r"(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.\-]+)(?::(\d{1,5}))?")
 
@@ -166,7 +168,7 @@ class Guard:
         bearer = _one(headers, "authorization") or ""
         by_header = bearer.startswith("Bearer ") and gate.token.equals(bearer.removeprefix("Bearer "))
         if not by_header and not known:
-            return 401, "open the address with the token that the workbench printed when it was started"
+            return 401, REFUSAL
         if origin is not None and not gate.is_own_origin(origin, host):
             return 403, "Origin: must be that of the workbench's own page"
         if origin is None and not by_header and (socket or method not in SAFE):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import html
+import http.client
 import signal
 import socket
 import sys
@@ -13,10 +14,11 @@ import time
 import webbrowser
 import zlib
 from collections.abc import Sequence
+from contextlib import closing, suppress
 from functools import partial
 from pathlib import Path
 
-from workbench.auth import LOOPBACK, Gate, Token
+from workbench.auth import LOOPBACK, REFUSAL, Gate, Token
 from workbench.built_manual import build_manual
 from workbench.retention import MAX_MEGABYTES, MAX_RECORDINGS, Keeping
 from workbench.shipped import models_folder
@@ -26,6 +28,8 @@ READ_TIME = 20.0
 """How long a browser may take to start and to read the file that redirects it here [s]."""
 PORTS = range(20_000, 32_000)
 """The default ports of models folders: below those that operating systems give to other connections."""
+PROBE_TIME = 2.0
+"""How long a server at the usual port of a folder may take to show that it is a workbench [s]."""
 
 
 def _count(text: str) -> int:
@@ -108,6 +112,29 @@ def listen_for(folder: Path, host: str, port: int | None) -> socket.socket:
         return listen(host, 0)
 
 
+def other_port_warning(folder: Path, host: str, port: int) -> str:
+    """Returns why a workbench does not have the usual port of its models folder, and what this means for its user.
+
+    Args:
+        folder: The models folder.
+        host: Where it listens.
+        port: The port that it has instead.
+    """
+    usual = port_of(folder)
+    owner, advice = "another program", "End that program and start again"
+    with suppress(OSError, http.client.HTTPException):
+        asked = http.client.HTTPConnection(host.strip("[]"), usual, timeout=PROBE_TIME)
+        with closing(asked):
+            asked.request("GET", "/", headers={"Host": f"localhost:{usual}"})
+            if asked.getresponse().read(len(REFUSAL)).decode("utf-8", "replace") == REFUSAL:
+                owner, advice = "another workbench, most likely with the same folder", "Use that one, or end it and start again"
+    return (
+        f"port {usual}, the usual one of this folder, is taken by {owner}.\n"
+        f"This workbench has port {port} instead: its page has settings of its own, without what the browser keeps for the\n"
+        f"usual port (sizes of panels, unsaved texts), and links to the usual port do not lead here. {advice}."
+    )
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command until it is interrupted and returns its exit code."""
     options = _parser().parse_args(arguments)
@@ -125,6 +152,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"error: {_reason(error, options)}", file=sys.stderr)
         return 1
     host, port = options.host if ":" not in options.host else f"[{options.host.strip('[]')}]", listening.getsockname()[1]
+    if options.port is None and port != port_of(folder):
+        print(f"warning: {other_port_warning(folder, options.host, port)}", file=sys.stderr)
     local = host in LOOPBACK
     if not local:
         print(f"warning: others can reach {host}; anyone with the address below can run programs as you", file=sys.stderr)

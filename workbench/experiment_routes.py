@@ -113,7 +113,7 @@ async def resume_experiment(request: Request, experiment: Id, body: Continuing |
 @router.post("/experiments/{experiment}/delete")
 async def delete_experiment(request: Request, experiment: Id) -> dict[str, Any]:
     """Moves an experiment to the trash folder; 409 while it runs."""
-    return {"trash": experiments_of(request).delete(experiment)}
+    return {"trash": await experiments_of(request).delete(experiment)}
 
 
 @router.get("/experiments/{experiment}/code")

@@ -26,9 +26,9 @@ from workbench.experiment_command import (
     TriedFacts,
 )
 from workbench.experiment_folder import ExperimentFolder, as_values
-from workbench.files import OWN, move_to_trash
 from workbench.retention import begun, stamp
 from workbench.sessions import Sessions, UntrustedError
+from workbench.trash import OWN, move_to_trash
 
 E = TypeVar("E", bound=ExperimentEvent)
 MAX_RUNNING = 2
@@ -128,6 +128,8 @@ class Experiments:
         self._running: dict[str, RunningExperiment] = {}
         self._starting: set[str] = set()
         """The experiments whose commands are being started."""
+        self._deleting: set[str] = set()
+        """The experiments that are being moved to the trash folder: they do not exist any more."""
         self._closed = False
         self._counts: dict[str, tuple[Any, dict[str, Any]]] = {}
         """The numbers of finished and failed trials by name, and the stamps of the tables in which they were counted."""
@@ -144,7 +146,7 @@ class Experiments:
             NoSuchExperimentError: If there is no experiment of that name.
         """
         folder = ExperimentFolder(self._root / name)
-        if _NAME.fullmatch(name) is None or not folder.is_experiment:
+        if _NAME.fullmatch(name) is None or name in self._deleting or not folder.is_experiment:
             raise NoSuchExperimentError
         return folder
 
@@ -468,7 +470,7 @@ class Experiments:
         finally:
             await command.kill()
 
-    def delete(self, name: str) -> str:
+    async def delete(self, name: str) -> str:
         """Moves an experiment to the trash folder; returns its new path inside the models folder.
 
         Raises:
@@ -479,9 +481,12 @@ class Experiments:
         folder = self.folder(name)
         if self._runs(folder):
             raise ExperimentRunError("this experiment runs: stop it, then delete it")
-        if folder.elsewhere.is_dir():
-            move_to_trash(self._models.root, folder.elsewhere)
-        return move_to_trash(self._models.root, folder.path)
+        reports = [folder.elsewhere] if folder.elsewhere.is_dir() else []
+        self._deleting.add(name)
+        try:
+            return await asyncio.to_thread(move_to_trash, self._models.root, folder.path, *reports)
+        finally:
+            self._deleting.discard(name)
 
     def _trusted(self, name: str, *, trust: bool) -> ExperimentFolder:
         """Returns the folder of an experiment whose code may be run.

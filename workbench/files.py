@@ -7,10 +7,6 @@ import contextlib
 import hashlib
 import io
 import os
-import re
-import secrets
-import shutil
-import time
 import tokenize
 import unicodedata
 from collections.abc import Iterator
@@ -21,18 +17,12 @@ from threading import Lock
 from actr3d.actr.loading.source_text import decode_source, read_bytes
 from actr3d.errors import Actr3dError
 from actr3d.replacing import replace_file
+from workbench.trash import move_to_trash
 
 LARGEST = 1_000_000
 """Maximum size of a model file [bytes]."""
 MAX_FILES = 2_000
 """Maximum number of files that are listed."""
-OWN = ".workbench"
-"""The folder inside the models folder in which the workbench keeps recordings and deleted files."""
-TRASH = "trash"
-"""The folder in `OWN` for deleted files. Each folder in it is named by the time of deletion."""
-TRASH_DAYS = 30
-"""How long deleted files are kept [days]."""
-_STAMP = "%Y%m%d-%H%M%S"
 
 
 class FileError(Actr3dError):
@@ -260,27 +250,6 @@ def file_stamp(*paths: Path) -> tuple[int, ...]:
             now = path.stat()
             numbers += now.st_ino, now.st_mtime_ns, now.st_size
     return tuple(numbers)
-
-
-def move_to_trash(root: Path, path: Path, *companions: Path) -> str:
-    """Moves a file or folder, and the files that belong to it, to the trash folder of a models folder.
-
-    Returns its new path inside the models folder; the companions lie beside it.
-    """
-    trash = root / OWN / TRASH / time.strftime(_STAMP)
-    trash.mkdir(parents=True, exist_ok=True)
-    prefix = secrets.token_hex(2)
-    for each in (*companions, path):
-        shutil.move(each, trash / f"{prefix}-{each.name}")  # its folder may be a link to another disk
-    return (trash / f"{prefix}-{path.name}").relative_to(root).as_posix()
-
-
-def empty_trash(root: Path) -> None:
-    """Deletes what has been in the trash folder of a models folder for more than `TRASH_DAYS`."""
-    oldest = time.strftime(_STAMP, time.localtime(time.time() - TRASH_DAYS * 86_400))
-    for folder in (root / OWN / TRASH).glob("*"):
-        if re.fullmatch(r"\d{8}-\d{6}", folder.name) and folder.name < oldest:
-            shutil.rmtree(folder, ignore_errors=True)
 
 
 def is_writable(where: Path) -> bool:

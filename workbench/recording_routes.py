@@ -1,4 +1,4 @@
-"""The REST interface for recordings: lists, downloads, imports, compares, opens, replays, labels, deletes and restores them."""
+"""The REST interface for recordings: lists, downloads, imports, compares, opens, replays, labels and deletes them."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ async def import_recording(request: Request, name: Annotated[str, Query(min_leng
     summary = await sessions.listing.one(path.stem)
     if summary.problem is not None:
         await asyncio.to_thread(erase, path)
-        raise RecordingError(f"'{name}' cannot be added to the recordings: {summary.problem}")
+        raise RecordingError(f"the file cannot be read: {summary.problem}")
     await asyncio.to_thread(recordings.labels.change, path.stem, {"name": name.removesuffix(".sqlite")})
     sessions.listings_changed()
     return Response(to_json(await _recording(sessions, path.stem)), status_code=201, media_type="application/json")
@@ -265,22 +265,13 @@ async def label_recording(request: Request, recording: Id, body: Labelling) -> d
 
 @router.post("/recordings/{recording}/delete")
 async def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
-    """Moves a recording to the trash folder; 409 while a run is still writing it."""
+    """Moves a recording to the trash folder; 409 while a run is still writing it, here or in another program."""
     sessions = sessions_of(request)
     if recording in sessions.writing():
         raise SessionError("an open run still writes this recording; restart its model or close its session, then delete it")
-    await asyncio.to_thread(sessions.recordings.delete, recording)
+    trash = await asyncio.to_thread(sessions.recordings.delete, recording)
     sessions.listings_changed()
-    return {"deleted": recording}
-
-
-@router.post("/recordings/{recording}/restore")
-async def restore_recording(request: Request, recording: Id) -> dict[str, Any]:
-    """Moves a deleted recording back from the trash folder, with its label; 409 if there is a recording of that name."""
-    sessions = sessions_of(request)
-    await asyncio.to_thread(sessions.recordings.restore, recording)
-    sessions.listings_changed()
-    return {"restored": recording}
+    return {"trash": trash}
 
 
 @router.post("/compare")

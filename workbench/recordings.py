@@ -6,23 +6,17 @@ import itertools
 import os
 import re
 import secrets
-import shutil
 import time
 from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from io import FileIO
 from pathlib import Path
 
-import msgspec
-
 from actr3d.errors import Actr3dError, RecordingError
-from actr3d.replacing import replace_file
-from workbench.files import OWN, TRASH, move_to_trash
-from workbench.labels import Label, Labels
-from workbench.retention import Keeping, begun, companions, erase, stamp, superfluous, written
+from workbench.labels import Labels
+from workbench.retention import Keeping, begun, companions, erase, is_open_elsewhere, stamp, superfluous, written
+from workbench.trash import OWN, move_to_trash
 
-LABEL = ".label.json"
-"""The ending of the file in the trash folder with the label of a deleted recording."""
 LEFTOVER = 86_400.0
 """The age from which an unfinished file is that of a process that was killed [s]."""
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.\-]{0,150}")
@@ -38,7 +32,7 @@ class NoSuchRecordingError(Actr3dError):
 
 
 class Recordings:
-    """Finds, deletes and restores the recordings of a models folder.
+    """Finds and deletes the recordings of a models folder.
 
     Args:
         root: The models folder.
@@ -134,38 +128,17 @@ class Recordings:
             raise NoSuchRecordingError from None
         return FileIO(descriptor, "rb")
 
-    def delete(self, name: str) -> None:
-        """Moves a recording to the trash folder, with its label.
+    def delete(self, name: str) -> str:
+        """Moves a recording to the trash folder, with its label; returns its new path inside the models folder.
 
         Raises:
             NoSuchRecordingError: If there is no recording of that name.
+            RecordingError: If another process may still write it: without its file, it would fail.
             OSError: If it cannot be moved.
         """
-        path, label = self.path(name), self.labels.all().get(name)
-        trash = self._root / move_to_trash(self._root, path, *(each for each in companions(path) if each.exists()))
-        if label is not None:
-            replace_file(trash.with_suffix(LABEL), msgspec.json.encode(label))
+        path = self.path(name)
+        if is_open_elsewhere(path):
+            raise RecordingError("another program still writes this recording, perhaps another workbench: end its run, then delete it")
+        trash = move_to_trash(self._root, path, *(each for each in companions(path) if each.exists()), label=self.labels.all().get(name))
         self.labels.forget([name])
-
-    def restore(self, name: str) -> None:
-        """Moves a deleted recording back from the trash folder, with its label; of several of that name, the one deleted last.
-
-        Raises:
-            NoSuchRecordingError: If none of that name is in the trash folder.
-            RecordingError: If there is a recording of that name.
-            OSError: If it cannot be moved.
-        """
-        target = self._folder / f"{name}.sqlite"
-        found = sorted((self._root / OWN / TRASH).glob(f"*/????-{target.name}")) if _NAME.fullmatch(name) else []
-        if not found:
-            raise NoSuchRecordingError
-        if target.exists():
-            raise RecordingError(f"the recording cannot be restored: there is a recording '{name}' already")
-        trash = found[-1]
-        for each, to in zip((*companions(trash), trash), (*companions(target), target), strict=True):
-            if each.exists():
-                shutil.move(each, to)
-        label = trash.with_suffix(LABEL)
-        if label.is_file():
-            self.labels.change(name, msgspec.structs.asdict(msgspec.json.decode(label.read_bytes(), type=Label)))
-            label.unlink()
+        return trash

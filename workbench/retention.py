@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import re
 import secrets
 import time
@@ -22,6 +23,9 @@ MAX_BRANCHES = 20
 _BEGUN = re.compile(r"-(\d{8}-\d{6})-[0-9a-f]{4}")
 _UNNAMED = re.compile(r".*-\d{8}-\d{6}-[0-9a-f]{4}")
 """The form of the name that a run gives its recording; any other name was given by a user."""
+_SQLITE_LOCK = 510, 0x40000002
+"""The bytes of a file, their number and the first, that a process locks while it has the file open with SQLite and a write-ahead log.
+Source: https://www.sqlite.org/src/file/src/os.h (SHARED_SIZE, SHARED_FIRST)."""
 _BRANCH = re.compile(r"(.+)-at-(\d+\.\d+)s-\d{8}-\d{6}-[0-9a-f]{4}")
 
 
@@ -108,6 +112,18 @@ def size_of(path: Path) -> int:
 def stands_alone(path: Path) -> bool:
     """Returns whether a recording has no companion files, as after a run that has ended normally."""
     return not any(each.exists() for each in companions(path))
+
+
+def is_open_elsewhere(path: Path) -> bool:
+    """Returns whether another process has a recording open that is not yet complete: its writer, or for a moment a reader."""
+    if stands_alone(path):
+        return False
+    with suppress(OSError), path.open("r+b") as file:
+        try:
+            fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, *_SQLITE_LOCK)
+        except (BlockingIOError, PermissionError):
+            return True
+    return False
 
 
 def erase(path: Path) -> None:

@@ -20,6 +20,7 @@ from workbench.loader import listing_of, outline_of, undefined_in
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions
+from workbench.trash import restore_from_trash
 
 router = APIRouter(prefix="/api")
 
@@ -51,6 +52,13 @@ class Delete(PageMessage):
     """A model file to move to the trash folder."""
 
     path: FilePath
+
+
+class Restore(PageMessage):
+    """A deleted model, recording or experiment."""
+
+    trash: Annotated[str, Field(max_length=400)]
+    """Its path in the trash folder, as deleting it has returned it."""
 
 
 class Check(PageMessage):
@@ -147,6 +155,19 @@ def delete(request: Request, body: Delete) -> dict[str, Any]:
     trash = sessions.folder.delete(body.path)
     request.app.state.later(sessions.saved, sessions.folder.locate(body.path))
     return {"trash": trash}
+
+
+@router.post("/restore")
+async def restore(request: Request, body: Restore) -> dict[str, Any]:
+    """Moves a deleted model, recording or experiment back from the trash folder; 409 if there is one of its name by now."""
+    sessions = sessions_of(request)
+    deleted = await asyncio.to_thread(restore_from_trash, sessions.folder.root, body.trash)
+    path = sessions.folder.root / deleted.path
+    if deleted.label:
+        await asyncio.to_thread(sessions.recordings.labels.change, path.stem, msgspec.structs.asdict(deleted.label))
+    sessions.saved(path)
+    sessions.listings_changed()
+    return {"restored": deleted.path}
 
 
 @router.post("/check")

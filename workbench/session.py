@@ -524,7 +524,7 @@ class Session(Broadcast, Receiver):
             "version": start.version if start is not None else None,
             "cuts": list(self._cuts),
             "born": self.born,
-            "made": None if self.recorded is None else begun(self.recorded),
+            "made": None if self.recorded is None or not is_there(self.recorded) else begun(self.recorded),
             "recording": self.recording,
         }
         if facts is not None:

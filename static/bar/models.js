@@ -136,6 +136,13 @@ export function showSession({ model: path, recorded }) {
   return chooseRecording(recorded).catch((error) => complain(error.message));
 }
 
+/** Returns the open sessions other than one, of each model or recording the newest, which `showSession` shows. */
+export async function otherSessions(id) {
+  const { sessions } = await call("GET", "/api/sessions");
+  const newest = new Map(sessions.map((one) => [one.recorded ?? `model ${one.model}`, one]));
+  return [...newest.values()].filter((one) => one.id !== id);
+}
+
 followWindows(showSession);
 
 /** Runs a model from its start with the current text of its file; throws an Error with the reason if it fails. */

@@ -4,21 +4,16 @@ import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { runs } from "../runs/list.js";
 import { whenInFull } from "../runs/wording.js";
-import { call } from "../server.js";
 import { session, state } from "../store.js";
-import { before, choose, models, showSession } from "./models.js";
+import { before, choose, models, otherSessions, showSession } from "./models.js";
 
 /** The other open sessions, the newest of each model or recording. */
 function useOthers(id) {
   const others = useSignal([]);
   useEffect(() => {
     let mine = true;
-    call("GET", "/api/sessions").then(
-      ({ sessions }) => {
-        if (!mine) return;
-        const newest = new Map(sessions.map((one) => [one.recorded ?? `model ${one.model}`, one]));
-        others.value = [...newest.values()].filter((one) => one.id !== id);
-      },
+    otherSessions(id).then(
+      (list) => mine && (others.value = list),
       () => null, // without a list, only the way back is shown
     );
     return () => (mine = false);
@@ -48,7 +43,7 @@ export function RecordingBanner() {
   if (recorded === null) return null;
   const branched = recording !== null;
   const name = runs.value?.find((run) => run.id === recorded)?.label?.name;
-  const when = `made ${whenInFull(made)}`;
+  const when = made === null ? "deleted or renamed since it was opened" : `made ${whenInFull(made)}`;
   return html`<div class="recording-banner" role="status">
     <b>Recording</b>
     <div class="of">

@@ -2,6 +2,7 @@
 
 import { before, choose, listModels, models, note } from "../bar/models.js";
 import { asked, confirmed } from "../parts/dialog.js";
+import { offerRestore } from "../parts/restore.js";
 import { call, sinceNow } from "../server.js";
 import { complain, session } from "../store.js";
 import { close, open, renamed, shown } from "./documents.js";
@@ -46,14 +47,13 @@ export async function rename(path) {
 
 /** Moves a model file to the trash folder, after asking. */
 export async function remove(path, unsaved) {
-  const text = `It is moved to the trash folder inside the models folder.${unsaved ? " Its unsaved changes are lost." : ""}`;
+  const text = `It goes to the trash folder .workbench/trash.${unsaved ? " Its unsaved changes are lost." : ""}`;
   if (!(await confirmed(`Delete ${path}?`, text, "Delete"))) return;
   try {
     const { trash } = await call("POST", "/api/model/delete", { path });
     close(path);
-    complain(`${path} was deleted; it lies in ${trash} of the models folder.`, "info");
+    offerRestore(`The model «${path}» is`, [trash], listModels);
     await listModels();
-    return trash;
   } catch (error) {
     complain(error.message);
   }

@@ -1,6 +1,7 @@
 // The server's experiments, read again each second while one runs; which one is shown; and what can be done with them.
 
 import { confirmed } from "../parts/dialog.js";
+import { offerRestore } from "../parts/restore.js";
 import { remembered } from "../local_storage.js";
 import { withTrust } from "../runs/trust.js";
 import { call, isLeft, sinceNow } from "../server.js";
@@ -138,5 +139,9 @@ export function openTrial(id, number) {
 export async function deleteExperiment({ id, name, done }) {
   const text = `Its ${done.toLocaleString("en")} finished trials go to the trash folder .workbench/trash.`;
   if (!(await confirmed(`Delete the experiment ${name}?`, text, "Delete"))) return;
-  if ((await doing("Deleting …", () => call("POST", `${pathOf(id)}/delete`, {}))) && shown.value === id) shown.value = "";
+  const remove = async () => {
+    const { trash } = await call("POST", `${pathOf(id)}/delete`, {});
+    offerRestore(`The experiment ${name} is`, [trash], listExperiments);
+  };
+  if ((await doing("Deleting …", remove)) && shown.value === id) shown.value = "";
 }

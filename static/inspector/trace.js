@@ -11,6 +11,7 @@ import { askWhy } from "./asked.js";
 import { Mixed, touchEvents } from "./touches.js";
 import { seek } from "../timeline/seek.js";
 import { nothingYet, runStatus } from "../run_status.js";
+import { fetching } from "../earlier_events.js";
 import { events, session, state } from "../store.js";
 import { remembered } from "../local_storage.js";
 
@@ -117,7 +118,7 @@ export function FiringTrace() {
         : null}
       <${Groups} />
     </div>
-    ${first > 0 ? html`<p class="gap-note" role="note">${counted(first, "earlier event is", "earlier events are")} not shown</p>` : null}
+    ${first > 0 ? html`<p class="gap-note" role="note">${counted(first, "earlier event is", "earlier events are")} ${fetching.value ? "being fetched …" : "not shown"}</p>` : null}
     <${Rows}
       id="events"
       label="Firing trace"

@@ -6,8 +6,10 @@ import { remembered } from "../local_storage.js";
 import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { match } from "./fuzzy.js";
 import { hasManual, noManual } from "../bar/models.js";
+import { readParameters } from "../panels/parameters.js";
 import { readExperiments } from "./experiments.js";
 import { inManual, readManual } from "./manual_search.js";
+import { readOpenRuns } from "./open_runs.js";
 import { readRecordings } from "./recordings.js";
 
 const MAX_RECENT = 6;
@@ -30,8 +32,8 @@ const textOf = ({ text, about }) => [text, about?.()].filter(Boolean).join(": ")
 
 /** Returns the entries for a search: {of, heading, places}. */
 function found() {
-  const all = [...permanent().filter((one) => one !== opening), ...present()];
   const words = search.value.trim();
+  const all = [...permanent().filter((one) => one !== opening), ...present(words)];
   if (words === "") {
     const byName = new Map(all.map((one) => [nameOf(one), one]));
     const last = recent.value.flatMap((name) => byName.get(name) ?? []);
@@ -107,6 +109,8 @@ function Palette({ opening }) {
     readManual();
     readRecordings();
     readExperiments();
+    readParameters();
+    readOpenRuns();
   }, []);
 
   function press(event) {

@@ -1,10 +1,12 @@
 // Messages to the user: errors with their lines, warnings, output of the model's process.
 
 import { computed, html, useEffect } from "../vendor/preact.js";
+import { command } from "../commands.js";
 import { hasMore } from "../editor/marks.js";
 import { counted } from "../parts/count.js";
 import { Place, Traceback } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
+import { openTab } from "../open_tab.js";
 import { isAhead, isPresent, isSettled, notices, settle, takeAction } from "../store.js";
 
 const LEVELS = { error: "Errors", warning: "Warnings", info: "Other" };
@@ -24,6 +26,17 @@ function unseen() {
 function clear() {
   settle("cleared", kept.peek());
 }
+
+command({
+  text: "Clear the messages",
+  group: "Messages",
+  work: () => {
+    openTab.value = "messages"; // so that it is seen
+    clear();
+  },
+  ready: () => kept.value.length > 0,
+  why: () => "There are no messages.",
+});
 
 function toggle(level) {
   hidden.value = hidden.value.includes(level) ? hidden.value.filter((other) => other !== level) : [...hidden.value, level];
@@ -48,7 +61,7 @@ function Message({ notice }) {
   return html`<li class=${`${level} ${isPresent(notice) ? "" : "earlier"}`}>
     ${file ? html`<${Place} file=${file} line=${line} />` : null}
     <span class="text">${text}</span>
-    ${action ? html`<button class="bare" onClick=${() => takeAction(notice)}>${action.text}</button>` : null}
+    ${action ? html` <button class="link action" onClick=${() => takeAction(notice)}>${action.text}</button>` : null}
     ${hasMore({ message: text, detail }) ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
   </li>`;
 }

@@ -3,7 +3,10 @@
 import { html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { change } from "../bar/branch.js";
 import { seedProblem } from "../bar/seed.js";
+import { commandsOf } from "../commands.js";
 import { isMac, keyText, noteKey } from "../keys.js";
+import { openTab } from "../open_tab.js";
+import { match } from "../palette/fuzzy.js";
 import { rangeOf, read, valuesText, written } from "../parameters/values.js";
 import { valueText } from "../parts/chunk.js";
 import { Inline } from "../parts/prose.js";
@@ -223,6 +226,42 @@ function Parameters() {
     </footer>
   </form>`;
 }
+
+// -- the parameters as commands: «Set NAME» shows its field, «Set NAME to VALUE» enters the value there
+
+/** Reads the declarations, if they are not known. */
+export const readParameters = () => void (session.peek() && follow(session.peek()));
+
+/** Shows the field of a parameter, and enters a value if one is given. */
+function show(parameter, text = null) {
+  openTab.value = "parameters";
+  if (text !== null) write(parameter, text, true);
+  requestAnimationFrame(() => {
+    const field = document.getElementById(`parameter-${parameter.name}`); // once it is visible
+    field?.focus();
+    field?.select?.();
+  });
+}
+
+/** Returns whether a text is a value of a parameter. */
+function fits(parameter, text) {
+  const { takes, choices } = parameter;
+  if (takes === "switch") return ["true", "false"].includes(text);
+  if (takes === "choice") return choices.some((choice) => String(choice) === text);
+  return !read(parameter, text).problem;
+}
+
+commandsOf((search) => {
+  if (session.value?.gone) return [];
+  const [, name = "", text = ""] = /^(?:set\s+)?(.*\S)\s+(\S+)$/i.exec(search) ?? [];
+  const words = name.replace(/\s+to$/i, "");
+  return known().flatMap((parameter) => {
+    const about = () => [valueText(inForce(parameter)), parameter.unit].filter(Boolean).join(" ");
+    const given = words && match(words, parameter.name) && fits(parameter, text);
+    const setting = { text: `Set ${parameter.name} to ${text}`, about: () => (parameter.live ? "" : "from the next run on"), group: "Parameters", work: () => show(parameter, text) };
+    return [{ text: `Set ${parameter.name}`, about, group: "Parameters", work: () => show(parameter) }, ...(given ? [setting] : [])];
+  });
+});
 
 export const panel = {
   id: "parameters",

@@ -34,6 +34,7 @@ function isIdle(run) {
 function Runs() {
   const search = useSignal("");
   const withIdle = useSignal(false);
+  const dropping = useSignal(false); // whether files are held over the list
   useEffect(follow, []);
   const whole = list.value ?? [];
   const all = useMemo(() => (withIdle.value ? whole : whole.filter((run) => !isIdle(run))), [whole, withIdle.value]);
@@ -50,10 +51,19 @@ function Runs() {
     event.preventDefault();
   }
 
-  const withFiles = (event) => event.dataTransfer.types.includes("Files") && event.preventDefault(); // otherwise the browser shows the file itself
-  const drop = (event) => (withFiles(event), addFiles([...event.dataTransfer.files]));
+  function over(event) {
+    if (!event.dataTransfer.types.includes("Files")) return;
+    event.preventDefault(); // otherwise the browser shows the file itself
+    dropping.value = true;
+  }
+  const leave = (event) => event.currentTarget.contains(event.relatedTarget) || (dropping.value = false);
+  function drop(event) {
+    over(event);
+    dropping.value = false;
+    addFiles([...event.dataTransfer.files]);
+  }
 
-  return html`<div class="runs" onKeyDown=${press} onDragOver=${withFiles} onDrop=${drop}>
+  return html`<div class="runs ${dropping.value ? "dropping" : ""}" onKeyDown=${press} onDragOver=${over} onDragLeave=${leave} onDrop=${drop}>
     <div class="tools">
       <input type="search" aria-label="Search recordings" placeholder="Search: model, parameter, outcome …" value=${search.value} onInput=${(event) => (search.value = event.currentTarget.value)} />
       <span class="quiet number" role="status">${countText(shown.length, all.length, whole.length)}</span>

@@ -38,7 +38,7 @@ export function Toasts() {
     ${list.includes(shown) && isPresent(shown) && openTab.value !== "messages"
       ? html`<div class="toast ${shown.level}">
           <span>${shown.file ? html`<${Place} file=${shown.file} line=${shown.line} /> ` : null}${shown.text}</span>
-          ${shown.action ? html`<button class="bare" onClick=${act}>${shown.action.text}</button>` : null}
+          ${shown.action ? html`<button onClick=${act}>${shown.action.text}</button>` : null}
           <button class="bare" onClick=${read}>Show</button>
           <button class="bare" aria-label="Close" onClick=${() => (toast.value = null)}>✕</button>
         </div>`

@@ -4,6 +4,7 @@ import { chooseRecording } from "../bar/models.js";
 import { signal } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { confirmed } from "../parts/dialog.js";
+import { offerRestore } from "../parts/restore.js";
 import { call, sendFile, sinceNow } from "../server.js";
 import { complain, session } from "../store.js";
 import { forgetRun, listRuns } from "./list.js";
@@ -117,9 +118,9 @@ export async function deleteRuns(all) {
   for (const [n, run] of list.entries()) {
     busy.value = { text: "Deleting", done: n, of: list.length };
     try {
-      await call("POST", `/api/recordings/${run.id}/delete`, {});
+      const { trash } = await call("POST", `/api/recordings/${run.id}/delete`, {});
       forgetRun(run.id);
-      deleted.push(run.id);
+      deleted.push({ run, trash });
     } catch (error) {
       if (error.status === 404) forgetRun(run.id);
       else refused.push(`${run.model}: ${error.message}`);
@@ -130,20 +131,8 @@ export async function deleteRuns(all) {
   chosen.value = new Set([...chosen.value].filter((id) => !done.has(id))); // others may have been chosen meanwhile
   if (refused.length > 0) complain(`${refused.length} of ${list.length} not deleted. ${refused[0]}`);
   if (deleted.length > 0) {
-    const what = deleted.length === 1 ? `The recording «${nameOf(list.find(({ id }) => id === deleted[0]))}» is` : `${counted(deleted.length, "recording")} are`;
-    complain(`${what} in the trash folder.`, "info", { text: "Restore", work: () => restoreRuns(deleted) });
-  }
-  await listRuns();
-}
-
-/** Moves deleted recordings back from the trash folder. */
-async function restoreRuns(ids) {
-  for (const id of ids) {
-    try {
-      await call("POST", `/api/recordings/${id}/restore`, {});
-    } catch (error) {
-      complain(`Not restored: ${id}: ${error.message}`);
-    }
+    const what = deleted.length === 1 ? `The recording «${nameOf(deleted[0].run)}» is` : `${counted(deleted.length, "recording")} are`;
+    offerRestore(what, deleted.map(({ trash }) => trash), listRuns);
   }
   await listRuns();
 }

@@ -1,6 +1,7 @@
 // The drawn part of the timeline: the canvas, the playhead over it, and what is at the pointer.
 
 import { effect, html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
+import { fetching } from "../earlier_events.js";
 import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
 import { timeText } from "../parts/ticks.js";
 import { events, running, state, way } from "../store.js";
@@ -35,6 +36,7 @@ export function scene(whole = false) {
     end: furthest.peek(),
     present: present.peek(),
     now: whole ? null : labelOfNow(),
+    fetching: fetching.peek(),
     begin: events.peek().missing > 0 || events.peek().first > 0 ? (lanes.begin ?? 0) : 0,
   };
 }
@@ -96,7 +98,7 @@ function attend(stage) {
       painter.ask();
     }),
     effect(() => {
-      for (const one of [lanesVersion, plots, furthest]) one.value;
+      for (const one of [lanesVersion, plots, furthest, fetching]) one.value;
       painter.ask(running.value);
     }),
   ];

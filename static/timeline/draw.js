@@ -27,7 +27,8 @@ const LETTER = 7; // the width of a letter of a mark's text, rounded up [px]
  * @property {number} present The time of the playhead [s].
  * @property {number} end The end of bands that are still open [s].
  * @property {{from: number, to: number}} [now] The position of the playhead's label [px]; absent without one.
- * @property {number} begin Earlier times are no longer known [s].
+ * @property {number} begin Earlier times are not known [s].
+ * @property {boolean} fetching Whether they are being requested.
  */
 
 /** Returns the position of a time [px]. */
@@ -94,8 +95,8 @@ function drawAxis(surface, scene) {
 function drawUnknown(surface, scene) {
   const x = Math.min(scene.width, placeOf(scene.begin, scene));
   surface.fill(scene.column, AXIS, x - scene.column, scene.height - AXIS, "line", 0.5);
-  const text = cut("earlier events are no longer kept here", x - scene.column - 8);
-  if (text) surface.text(text, x - 4, scene.height - 10, "quiet", { anchor: "end" });
+  const text = cut(scene.fetching ? "earlier events are being fetched …" : "earlier events are not kept on this page", x - scene.column - 8);
+  if (text) surface.text(text, x - 4, scene.height - 10, "text", { anchor: "end" });
 }
 
 function drawLane(surface, { lane, label, height }, y, scene) {

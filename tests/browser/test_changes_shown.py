@@ -272,6 +272,10 @@ def test_each_doorway_is_changed_in_the_bar_and_in_the_palette(pages: Callable[.
     shows(page, "#status", "at its start")
     shown, slider = page.get_by_label("Aperture", exact=True), page.locator("#aperture")
     expect(shown.locator("option")).to_have_text(["near", "far"])
+    tops = page.locator(".bar > *").evaluate_all(
+        "(parts) => parts.map((part) => part.getBoundingClientRect()).map(({ top, bottom }) => [top, bottom])"
+    )
+    assert max(top for top, _ in tops) <= min(bottom for _, bottom in tops)  # all of the bar is in one row
     slider.fill("90")
     shows(page, "#width", "90 cm")
     shown.select_option("far")

@@ -426,11 +426,13 @@ def test_files_are_copied_renamed_and_deleted_while_one_runs(
     shows(page, ".former", "file of this run is gone")
     shows(page, ".side select.file", "no file")
     expect(page.get_by_label("Model", exact=True)).to_have_text(re.compile(r"sub/second.py \(not in the folder\)"))
-    open_tab(page, "Messages")
-    told = page.locator("#log li").first.inner_text()
-    (trash,) = re.findall(r"\.workbench/trash/\S+", told)
-    assert (workbench.folder / trash).read_text(encoding="utf-8") == MIND.read_text(encoding="utf-8")
+    expect(page.locator(".toast")).to_contain_text("The model «sub/second.py» is in the trash folder.")
+    (trash,) = workbench.folder.glob(".workbench/trash/*/*-second.py")
+    assert trash.read_text(encoding="utf-8") == MIND.read_text(encoding="utf-8")
     assert not (workbench.folder / "sub" / "second.py").exists()
+    page.locator(".toast").get_by_role("button", name="Restore").click()
+    expect(page.get_by_label("Model", exact=True)).to_have_value("sub/second.py")
+    assert (workbench.folder / "sub" / "second.py").read_text(encoding="utf-8") == MIND.read_text(encoding="utf-8")
 
 
 def long_after_short(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> Page:

@@ -114,6 +114,9 @@ def test_two_pages_see_an_experiment_stop_and_go_on(pages: Callable[..., Page], 
     second.get_by_role("dialog").get_by_role("button", name="Delete", exact=True).click()
     for page in (first, second):
         expect(page.locator(f"tr[data-experiment='{name}']")).to_have_count(0)
+    second.locator(".toast").get_by_role("button", name="Restore").click()
+    for page in (first, second):
+        expect(page.locator(f"tr[data-experiment='{name}']")).to_have_count(1)
 
 
 def test_numbers_that_cannot_be_run_are_named_before_anything_runs(pages: Callable[..., Page], workbench: Served, design: str) -> None:

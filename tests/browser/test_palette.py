@@ -101,6 +101,7 @@ def test_a_few_letters_find_a_command_and_the_last_ones_come_first(page: Page) -
         "Editor: Check: load the text, and list what is wrong",
         "Editor: Insert a snippet: a production",
         "Console: Clear the console",
+        "Messages: Clear the messages",
         "Change by hand: production: Forbid once …",
         "Change by hand: buffer: Set …",
         "Model: doorway.py",
@@ -182,3 +183,31 @@ def test_the_palette_finds_pages_of_the_manual_and_shows_them_as_text(pages: Cal
     with page.context.expect_page() as opened:
         found.click()
     assert opened.value.url.endswith("/manual/how-to/profile/")
+
+
+def test_the_palette_sets_parameters_clears_messages_and_switches_to_other_open_runs(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    search(page, "model doorway")
+    page.keyboard.press("Enter")
+    shows(page, "#width", "50 cm")
+    search(page, "set speed")
+    expect(options(page).first).to_have_text("Set speed: 1.2 m/sParameters")
+    page.keyboard.press("Enter")
+    expect(page.locator("#parameter-speed")).to_be_focused()
+    search(page, "set width 0.8")
+    expect(options(page).first).to_have_text("Set width to 0.8Parameters")
+    page.keyboard.press("Enter")
+    shows(page, "#width", "80 cm")
+    expect(page.locator("#parameter-width")).to_be_focused()
+    search(page, "set speed 9")  # more than it may be
+    expect(options(page).filter(has_text="Set speed to 9")).to_have_count(0)
+    page.keyboard.press("Escape")
+    page.evaluate("""async () => (await part("store.js")).complain("something")""")
+    search(page, "clear messages")
+    page.keyboard.press("Enter")
+    expect(page.locator(".messages .empty")).to_contain_text("No messages")
+    search(page, "switch counting")
+    expect(options(page).first).to_have_text("Switch to the open run of counting.py: pausedOpen runs")
+    page.keyboard.press("Enter")
+    expect(page.get_by_label("Model", exact=True)).to_have_value("counting.py")

@@ -462,3 +462,22 @@ def test_what_was_settled_does_not_come_back_with_a_reload(pages: Pages, workben
     shows(page, ".messages", "No messages")
     page.get_by_role("button", name="Run again").click()
     shows(page, "#log", "unlucky")  # but what goes wrong anew is told
+
+
+@pytest.mark.slow
+def test_a_long_recording_shows_at_its_start_what_will_happen_there(pages: Pages, workbench: Served) -> None:
+    (workbench.folder / "long.py").write_text("for n in range(70_000):\n    print('line', n)\n", encoding="utf-8")
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    name = recorded(workbench, "long.py")
+    page.goto(f"{workbench.url}/?run={name}")
+    shows(page, "#status", "at its start")
+    open_tab(page, "Productions")
+    rows = page.locator("#events tbody tr:not(.gap)")
+    until(
+        page, lambda: page.evaluate("async () => (await part('store.js')).events.value.first") == 0
+    )  # the server has sent the last 50,000
+    expect(page.locator(".gap-note")).to_have_count(0)
+    page.get_by_role("region", name="Firing trace").press("Home")
+    expect(rows.first).to_contain_text("line 0")
+    expect(rows.first).to_have_class(re.compile("ahead"))

@@ -169,6 +169,8 @@ def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, work
     for name in spare:
         expect(row(page, name)).to_be_visible()
     assert all((recordings / f"{name}.sqlite").exists() for name in spare)
+    open_tab(page, "Messages")
+    expect(page.get_by_text("in the trash folder")).to_have_count(0)  # which would no longer be true
 
 
 @pytest.mark.slow
@@ -191,7 +193,10 @@ def test_files_are_added_by_choosing_or_dropping_them(pages: Callable[..., Page]
           return all;
         }"""
     )
+    page.locator(".runs").dispatch_event("dragover", {"dataTransfer": transfer})
+    expect(page.locator(".runs")).to_have_class(re.compile("dropping"))
     page.locator(".runs").dispatch_event("drop", {"dataTransfer": transfer})
+    expect(page.locator(".runs")).not_to_have_class(re.compile("dropping"))
     expect(page.locator(".toast")).to_contain_text("two.sqlite is not added to the recordings: ")
     assert not list(recordings.glob("two*"))
 

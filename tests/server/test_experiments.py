@@ -400,8 +400,12 @@ def test_an_experiment_that_cannot_be_written_is_shown_with_its_report(workbench
     assert workbench.get(f"{path}/report/index.html").content == (made / "index.html").read_bytes()
     assert not (folder / "report").exists()
     assert workbench.post(f"{path}/trial", {"number": 1, "trust": True}).status_code == 200
-    assert workbench.post(f"{path}/delete").status_code == 200
+    deleted = workbench.post(f"{path}/delete")
+    assert deleted.status_code == 200
     assert (folder.exists(), made.exists()) == (False, False)
+    assert workbench.post("/api/restore", deleted.json()).json() == {"restored": ".workbench/experiments/archived"}
+    assert (state_of(workbench, "archived")["done"], (made / "index.html").is_file()) == (24, True)
+    assert workbench.post(f"{path}/delete").status_code == 200
 
 
 def test_errors_of_a_report_do_not_show_where_the_server_stores_it(workbench: Served, finished: str) -> None:

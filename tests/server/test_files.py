@@ -17,6 +17,7 @@ from workbench.files import LARGEST, ConflictError, FileError, ModelFolder, NoSu
 from workbench.loader import Outline, outline_of
 from workbench.run_request import RunOptions, digest_of_file, start_of
 from workbench.shipped import models_folder, shipped
+from workbench.trash import restore_from_trash
 from workbench.worker.messages import digest_of
 
 
@@ -175,6 +176,8 @@ def test_what_is_deleted_is_in_the_trash(folder: ModelFolder) -> None:
     assert folder.paths() == ["one.py"]
     with pytest.raises(NoSuchFileError):
         folder.delete("tutorial/two.py")
+    assert restore_from_trash(folder.root, trash).path == "tutorial/two.py"
+    assert folder.read("tutorial/two.py").text == "b = 2\n"
 
 
 def test_what_is_no_text_or_too_large_is_refused(folder: ModelFolder) -> None:

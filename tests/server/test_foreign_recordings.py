@@ -243,7 +243,7 @@ def test_a_recording_file_is_added_and_kept_but_none_of_its_code_is_run(
 
     answer = add("text.sqlite", [b"no recording" * 100])
     assert answer.status == 409
-    assert "'text.sqlite' cannot be added to the recordings: " in json.loads(answer.body)["error"]
+    assert "the file cannot be read: not a recording" in json.loads(answer.body)["error"]
     assert str(tmp_path) not in answer.body.decode()
     monkeypatch.setattr(recording_routes, "LARGEST_UPLOAD", 1000)
     assert add("large.sqlite", [data]).status == 413

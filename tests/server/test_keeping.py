@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
+import json
 import os
 import shutil
 import sqlite3
+import subprocess
+import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
@@ -13,12 +17,13 @@ from pathlib import Path
 import pytest
 
 from actr3d.errors import RecordingError
+from tests.helpers.asgi_client import JSON, ORIGIN, OURS
 from tests.helpers.sessions import Desk
 from workbench import app
-from workbench.files import OWN, empty_trash
 from workbench.labels import Label, Labels
-from workbench.recordings import NoSuchRecordingError, Recordings
+from workbench.recordings import Recordings
 from workbench.retention import Keeping, is_unnamed, stands_alone
+from workbench.trash import OWN, NotInTrashError, TrashError, empty_trash, move_to_trash, restore_from_trash
 
 
 @pytest.fixture
@@ -73,31 +78,106 @@ def test_what_another_server_writes_stays(recordings: Recordings, tmp_path: Path
     assert models(tmp_path) == ["model0", "model9"]
 
 
-def test_a_deleted_recording_is_restored_with_its_label_and_its_log(recordings: Recordings, tmp_path: Path) -> None:
+def test_a_deleted_recording_is_restored_with_its_label_and_its_log(recordings: Recordings, desk: Desk, tmp_path: Path) -> None:
     path = recordings.all()[0]
     path.with_name(f"{path.name}-wal").write_bytes(b"log")
     recordings.labels.change(path.stem, {"name": "mine", "tags": ("x",)})
-    recordings.delete(path.stem)
+    trash = recordings.delete(path.stem)
     assert (path.exists(), recordings.labels.all()) == (False, {})
     assert sorted(each.name[5:] for each in (tmp_path / OWN / "trash").glob("*/*")) == sorted(
-        (path.name, f"{path.name}-wal", f"{path.stem}.label.json")
+        (path.name, f"{path.name}-wal", f"{path.name}.origins.json")
     )
-    recordings.restore(path.stem)
+    answer = desk.ask(tmp_path, "/api/restore", ORIGIN, JSON, OURS, method="POST", body=json.dumps({"trash": trash}).encode())
+    assert (answer.status, json.loads(answer.body)) == (200, {"restored": f".workbench/recordings/{path.name}"})
     assert (path.read_bytes(), path.with_name(f"{path.name}-wal").read_bytes()) == (bytes(1000), b"log")
     assert recordings.labels.all() == {path.stem: Label(name="mine", tags=("x",))}
     assert list((tmp_path / OWN / "trash").glob("*/*")) == []
 
 
-def test_what_is_not_in_the_trash_or_would_replace_a_recording_is_not_restored(recordings: Recordings) -> None:
+def test_what_is_not_in_the_trash_or_would_replace_a_file_is_not_restored(recordings: Recordings, tmp_path: Path) -> None:
     path = recordings.all()[0]
-    for name in (path.stem, "..", "*", "a/b"):
-        with pytest.raises(NoSuchRecordingError):
-            recordings.restore(name)
-    recordings.delete(path.stem)
+    recording = path.relative_to(tmp_path).as_posix()
+    for name in (recording, "..", "*", "a/b", ".workbench/trash/20990101-000000/ab12-model.py", f".workbench/trash/../{recording}"):
+        with pytest.raises(NotInTrashError):
+            restore_from_trash(tmp_path, name)
+    trash = recordings.delete(path.stem)
     path.write_bytes(b"another one")
-    with pytest.raises(RecordingError, match=r"there is a recording .* already"):
-        recordings.restore(path.stem)
+    with pytest.raises(TrashError, match=r"there is a '.*sqlite' already"):
+        restore_from_trash(tmp_path, trash)
     assert path.read_bytes() == b"another one"
+    path.unlink()
+    restore_from_trash(tmp_path, trash)
+    with pytest.raises(NotInTrashError):
+        restore_from_trash(tmp_path, trash)
+    assert path.read_bytes() == bytes(1000)
+
+
+@pytest.mark.parametrize("origin", ["../outside.py", "/outside.py"])
+def test_nothing_is_restored_to_a_place_outside_the_folder(tmp_path: Path, origin: str) -> None:
+    (tmp_path / "model.py").touch()
+    trash = move_to_trash(tmp_path, tmp_path / "model.py")
+    facts = tmp_path / f"{trash}.origins.json"
+    facts.write_text(facts.read_text("utf-8").replace('model.py"}', f'{origin}"}}'), "utf-8")
+    assert origin in facts.read_text("utf-8")
+    with pytest.raises(NotInTrashError):
+        restore_from_trash(tmp_path, trash)
+    assert (tmp_path / trash).is_file()
+
+
+def test_a_folder_and_what_belongs_to_it_are_restored_though_they_have_one_name(tmp_path: Path) -> None:
+    folder, report = tmp_path / OWN / "experiments" / "mine", tmp_path / OWN / "reports" / "mine"
+    for each in (folder, report):
+        each.mkdir(parents=True)
+        (each / "file").write_text(each.parent.name, "utf-8")
+    deleted = restore_from_trash(tmp_path, move_to_trash(tmp_path, folder, report))
+    assert deleted.path == ".workbench/experiments/mine"
+    assert [(each / "file").read_text("utf-8") for each in (folder, report)] == ["experiments", "reports"]
+
+
+def test_a_recording_that_another_program_writes_is_not_deleted(tmp_path: Path) -> None:
+    recordings = Recordings(tmp_path)
+    path = recordings.new("model")
+    program = subprocess.Popen([sys.executable, "-c", WRITING, str(path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    with program:
+        assert program.stdout is not None
+        assert program.stdout.readline() == "writes\n"
+        with pytest.raises(RecordingError, match="another program still writes this recording"):
+            recordings.delete(path.stem)
+        answer, _ = program.communicate("\n")
+    assert answer == "closed\n"
+    recordings.delete(path.stem)
+    assert not path.exists()
+
+
+WRITING = """
+import sys
+from pathlib import Path
+from actr3d.recording.writer import Writer
+writer = Writer(Path(sys.argv[1]), [("kind", '"program"')])
+print("writes", flush=True)
+input()
+writer.facts.append(("more", "1"))
+writer.close()
+print("closed", flush=True)
+"""
+
+
+def test_old_deleted_files_are_removed_while_the_workbench_runs_on(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    old = tmp_path / OWN / "trash" / "20200101-000000"
+    sessions = desk.sessions(tmp_path)
+
+    async def wait() -> None:
+        closing = asyncio.Event()
+        keeping = asyncio.create_task(app.keep_tidy(sessions, Keeping(), closing))
+        for _ in range(3):
+            old.mkdir(parents=True)
+            while old.exists():
+                await asyncio.sleep(0.001)
+        closing.set()
+        await keeping
+
+    monkeypatch.setattr(app, "DAY", 0.001)
+    desk.do(wait())
 
 
 def test_what_was_deleted_long_ago_is_removed_from_the_trash(tmp_path: Path) -> None:

@@ -26,6 +26,7 @@ from websockets.typing import Subprotocol
 
 from tests.helpers.workbench_server import Served, served
 from tests.server.test_bad_input import APP, DESCRIPTION, OPERATIONS
+from workbench import cli
 from workbench.cli import listen, listen_for, main, port_of
 from workbench.page_commands import COMMANDS
 
@@ -88,6 +89,20 @@ def test_a_models_folder_has_the_same_port_each_time_and_another_one_only_if_tha
     for _ in range(2):
         with listen_for(folder, "127.0.0.1", None) as first, listen_for(folder, "127.0.0.1", None) as second:
             assert first.getsockname()[1] == port_of(folder) != second.getsockname()[1]
+
+
+def test_a_workbench_that_does_not_get_the_usual_port_says_why(server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cli, "PORTS", [server.port])
+    said = cli.other_port_warning(server.folder, "127.0.0.1", 1234)
+    assert f"port {server.port}, the usual one of this folder, is taken by another workbench, most likely with the same folder" in said
+    assert "This workbench has port 1234 instead: its page has settings of its own" in said
+    monkeypatch.setattr(cli, "PROBE_TIME", 0.01)
+    with listen("127.0.0.1", 0) as other:
+        port: int = other.getsockname()[1]
+        monkeypatch.setattr(cli, "PORTS", [port])
+        assert f"port {port}, the usual one of this folder, is taken by another program." in cli.other_port_warning(
+            tmp_path, "127.0.0.1", 1
+        )
 
 
 def _is_free(port: int) -> bool:

@@ -16,7 +16,8 @@ from actr3d.runner.replay import replay
 from tests.helpers.recording_forgery import forge
 from tests.helpers.sessions import Desk, Talk
 from tests.helpers.workbench_server import MODELS
-from workbench.files import OWN
+from workbench.trash import OWN
+from workbench.worker import known_run
 
 BUILT = """
 from actr3d.actr import *
@@ -76,6 +77,10 @@ def test_a_recording_shows_all_its_time_at_its_start_and_does_again_what_it_did(
     again = reopened(talk)
     assert again.session.log.first == 0
     assert whole(again) == events
+    assert again.say("events", most=20_000)["events"] == events[: again.state["events"]]
+    known = again.say("events", most=20_000, ahead=True)
+    assert (known["events"], known["next"], known["total"]) == (events, len(events), again.state["events"])
+    assert again.say("events", first=len(events) - 2, most=20_000, ahead=True)["events"] == events[-2:]
     assert (again.state["time"], again.state["furthest"], again.state["reason"]) == (0, end["furthest"], "at its start")
     assert again.facts["recorded"] == talk.facts["recording"]
     if curves is not None:
@@ -93,6 +98,17 @@ def test_a_recording_shows_all_its_time_at_its_start_and_does_again_what_it_did(
     }
     assert again.facts["cuts"] == []
     assert again.notices == []
+
+
+def test_any_events_of_a_recorded_run_are_read_from_their_blocks(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    talk = desk.begin(tmp_path, COUNTING, record=True, run=True, wait="ended")
+    desk.do(talk.sessions.close(talk.session.name))
+    monkeypatch.setattr(known_run, "BLOCK", 5)
+    known = known_run.KnownRun(talk.sessions.recordings.path(talk.facts["recording"]))
+    assert known.count > 20
+    events = [tuple(json.loads(event)) for event in known.events]
+    for first, end in ((0, known.count + 9), (0, 5), (4, 6), (5, 10), (7, 8), (9, 9), (known.count, known.count + 1)):
+        assert known.between(first, end) == events[first:end]
 
 
 def test_a_recording_with_values_that_no_worker_receives_is_refused(desk: Desk, tmp_path: Path) -> None:
@@ -129,6 +145,7 @@ def test_another_way_than_the_recorded_one_leaves_what_was_recorded_ahead(desk: 
     again.until("paused", time=0.2, furthest=0.2)
     assert len(whole(again)) < len(events)
     assert again.facts["cuts"] != []
+    assert again.say("events", most=20_000, ahead=True)["next"] == again.state["events"]
     again.say("step")
     again.until("paused", time=0.21, furthest=0.21)
     assert again.notices == []
@@ -284,7 +301,10 @@ def test_a_recording_that_is_deleted_while_it_is_open_is_open_still_and_a_change
     talk.until("paused", time=0.3)
     again = reopened(talk)
     name = again.facts["recorded"]
+    assert again.facts["made"] > 0
     talk.sessions.recordings.delete(name)
+    talk.sessions.listings_changed()
+    again.wait(lambda: again.facts["made"] is None)
     assert desk.do(talk.sessions.reopen(name)) is again.session
     again.say("seek", time=0.2 if ahead else 0.3)
     again.until("paused", time=0.2 if ahead else 0.3)

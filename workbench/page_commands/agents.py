@@ -119,14 +119,19 @@ class Events(Question):
     first: int = Field(default=0, ge=0)
     most: int = Field(default=5000, ge=1, le=20_000)
     kinds: tuple[Name, ...] | None = Field(default=None, max_length=50)
+    ahead: bool = False
+    """Whether also events that the run has not reached yet, but that the opened recording has, are returned."""
 
     def answer(self, run: ControlledRun) -> dict[str, Any]:
-        events = run.events(self.first, self.first + self.most)
-        wanted = [(number, event) for number, event in enumerate(events, self.first) if self.kinds is None or event.kind in self.kinds]
+        end = self.first + self.most
+        events = [(event.time_us, event.source, event.kind, event.data) for event in run.events(self.first, end)]
+        if self.ahead and len(events) < self.most:
+            events += run.events_ahead(self.first + len(events), end)
+        wanted = [(number, event) for number, event in enumerate(events, self.first) if self.kinds is None or event[2] in self.kinds]
         return {
             "first": self.first,
             "next": self.first + len(events),
             "total": len(run.trace),
             "numbers": [number for number, _ in wanted],
-            "events": [[event.time_us, event.source, event.kind, event.data] for _, event in wanted],
+            "events": [event for _, event in wanted],
         }

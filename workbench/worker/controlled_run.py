@@ -28,6 +28,8 @@ class ControlledRun(ABC):
     """The curves of the events that have been taken; None until they are needed."""
     _chunk_curves: ChunkCurves | None = None
     """Those of chosen chunks, which follow from these events."""
+    _repeated: KnownRun | None = None
+    """The recorded run that this run repeats; None if there is none, or this run continues differently."""
     ancestors: Sequence[Sequence[Any]] = ()
     """The recordings from which the run comes, the nearest first, each with the time at which the one before it left it [s]."""
 
@@ -54,6 +56,15 @@ class ControlledRun(ABC):
     def events(self, first: int, end: int) -> list[TraceEvent]:
         """Returns the events from a number on and before another one, with the times of the whole run."""
         return self.trace.since(first)[: max(0, end - first)]
+
+    def events_ahead(self, first: int, end: int) -> list[tuple[int, str, str, Any]]:
+        """Returns events that the run has not reached yet, but that the recorded run has which it repeats, as pages show them.
+
+        Args:
+            first: The number of the first, at least the number of events up to now.
+            end: The number after the last.
+        """
+        return [] if self._repeated is None else self._repeated.between(first, end)
 
     def own_time(self, source: str, time: int) -> int | None:
         """Returns the time of the model of an agent at a time of the run [us]; None if there was no such model yet.
@@ -169,11 +180,12 @@ class ControlledRun(ABC):
         return self._event_curves
 
     def repeat_recorded(self, known_run: KnownRun) -> None:
-        """Takes the curves of the events of a recorded run, which this run repeats."""
-        self._event_curves = known_run.event_curves
+        """Takes the events of a recorded run, which this run repeats, and their curves."""
+        self._repeated, self._event_curves = known_run, known_run.event_curves
 
     def cut_events(self, count: int) -> None:
-        """Removes the events from a number on from the curves of events, because the run continues differently."""
+        """Removes what is known of the events from a number on, because the run continues differently."""
+        self._repeated = None
         if self._event_curves is not None and self._event_curves.next > count:
             self._event_curves = None  # those up to now are in the trace
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import zlib
 from array import array
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from actr3d.clock import microseconds, seconds
 from actr3d.recording import Recorded
@@ -19,6 +22,10 @@ from workbench.worker.truncation import event_json
 
 MAX_EVENTS = 50_000
 """Maximum number of events that are shown before the run reaches them; the server keeps as many in memory."""
+
+BLOCK = 5_000
+"""The number of events that are compressed together."""
+_EVENT = msgspec.json.Decoder(tuple[int, str, str, Any])
 
 
 class KnownRun:
@@ -37,6 +44,9 @@ class KnownRun:
         """A hash of each event."""
         self.events: list[bytes] = []
         """The last events, as JSON for pages."""
+        self._blocks: list[bytes] = []
+        """All events as JSON for pages, a compressed text for every `BLOCK` of them."""
+        block: list[bytes] = []
         self.event_curves = EventCurves()
         """The curves of all its events."""
         with Recorded(path) as recorded:
@@ -45,7 +55,8 @@ class KnownRun:
             time = 0
             for event, timed in events_both_ways(recorded):
                 time = max(time, timed.time_us)
-                self._take(event, timed)
+                self._take(event, timed, block)
+            self._blocks.append(_compressed(block))
             if keep is not None:
                 for state in recorded.states():
                     keep(state)
@@ -62,13 +73,24 @@ class KnownRun:
         """The number of the first event in `events`."""
         return self.count - len(self.events)
 
-    def _take(self, event: TraceEvent, timed: TraceEvent) -> None:
+    def _take(self, event: TraceEvent, timed: TraceEvent, block: list[bytes]) -> None:
         self.event_curves.take([timed])
         text = event_json(event)
         self._digests.append(hash(text))
         self.events.append(text if timed == event else event_json(timed))
+        block.append(self.events[-1])
+        if len(block) == BLOCK:
+            self._blocks.append(_compressed(block))
+            block.clear()
         if len(self.events) > 2 * MAX_EVENTS:
             del self.events[:-MAX_EVENTS]
+
+    def between(self, first: int, end: int) -> list[tuple[int, str, str, Any]]:
+        """Returns the events from a number on and before another one, as pages show them: time [us], source, kind, data."""
+        blocks = self._blocks[first // BLOCK : -(-end // BLOCK)]
+        lines = [line for block in blocks for line in zlib.decompress(block).splitlines()]
+        before = first // BLOCK * BLOCK
+        return [_EVENT.decode(line) for line in lines[first - before : end - before]]
 
     def difference(self, number: int, events: Sequence[TraceEvent]) -> int | None:
         """Returns the number of the first event that differs from the recorded one; None if all agree.
@@ -79,6 +101,10 @@ class KnownRun:
         """
         known = zip(self._digests[number : number + len(events)], events, strict=False)
         return next((n for n, (digest, event) in enumerate(known, number) if hash(event_json(event)) != digest), None)
+
+
+def _compressed(events: Sequence[bytes]) -> bytes:
+    return zlib.compress(b"\n".join(events), level=1)
 
 
 def difference_notice(now: float, event: TraceEvent | None) -> Notice:

@@ -1,0 +1,22 @@
+// The other open runs and recordings, as commands that show them; they are listed when the palette is opened.
+
+import { otherSessions, showSession } from "../bar/models.js";
+import { commandsOf } from "../commands.js";
+import { session } from "../store.js";
+import { signal } from "../vendor/preact.js";
+
+const others = signal([]);
+
+/** Lists them. */
+export async function readOpenRuns() {
+  others.value = await otherSessions(session.peek()?.id).catch(() => []); // without a list, none is offered
+}
+
+commandsOf(() =>
+  others.value.map((one) => ({
+    text: one.recorded ? `Switch to the open recording ${one.recorded}` : `Switch to the open run of ${one.model}`,
+    about: () => one.status ?? "",
+    group: "Open runs",
+    work: () => showSession(one),
+  })),
+);
