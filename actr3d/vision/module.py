@@ -111,7 +111,7 @@ class Vision(WithParameters, Searching):
         self.delay_sd = delay_sd
         self.bottom_up_delay = bottom_up_delay
         self.hold = hold
-        self.rule = rule
+        self.rule: Rule = rule
         self.error_rate = error_rate
         self.edge_noise = edge_noise
         self.distance_noise = distance_noise

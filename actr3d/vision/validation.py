@@ -71,6 +71,6 @@ def encoding_of(given: Any) -> Emma | float:
         return given
     if isinstance(given, str) and given == "emma":
         return Emma()
-    if isinstance(given, Real) and not isinstance(given, bool) and is_finite(given) and 0 <= float(given) <= MAX_VALUE:
+    if not isinstance(given, bool) and isinstance(given, Real) and is_finite(given) and 0 <= float(given) <= MAX_VALUE:
         return float(given)
     raise ParameterError(f"Vision.encoding: must be a time >= 0 [s], 'emma' or an Emma (got {given!r})")

@@ -22,9 +22,9 @@ CurveName = Annotated[str, Field(min_length=1, max_length=LONGEST_TEXT)]
 def _found(run: ControlledRun, name: str | None) -> tuple[Shown, Body]:
     """Returns what is shown of a simulation, and one of its bodies; the first without a name."""
     shown = run.shown
-    bodies = {} if shown is None else shown.simulation.world.bodies
-    if shown is None or not bodies:
+    if shown is None or not shown.simulation.world.bodies:
         raise Actr3dError("the run has no body")
+    bodies = shown.simulation.world.bodies
     if name is None:
         return shown, next(iter(bodies.values()))
     if name not in bodies:

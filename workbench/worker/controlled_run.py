@@ -166,8 +166,7 @@ class ControlledRun(ABC):
             self._chunk_curves = ChunkCurves(events, self.period)
         end = self.furthest if last is None else min(microseconds(last), self.furthest)
         parts = {name: part for top in self.tops() for name, part in top.parts()} if names else {}
-        present = 0 if self.trace is None else len(self.trace)
-        chunks = self._chunk_curves.sampled(names or (), microseconds(first), end, most, parts, present)
+        chunks = self._chunk_curves.sampled(names or (), microseconds(first), end, most, parts, len(self.trace))
         return {**answer, "events": {**answer["events"], **chunks["events"]}, "basis": chunks["basis"]}
 
     def take_events(self) -> EventCurves:
