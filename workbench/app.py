@@ -32,14 +32,16 @@ from workbench.retention import Keeping, stands_alone
 from workbench.sessions import Sessions
 from workbench.trash import empty_trash
 from workbench.viser_bridge import Bridge
-from workbench.worker.spawn import MEMORY, Zygote
+from workbench.worker.spawn import MEMORY, ForkServer
 from workbench.worker.workers import Workers
 
 DAY = 86_400.0
 """How often old deleted files are removed from the trash folder [s]."""
 
 
-def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping | None = None, zygote: Zygote | None = None) -> FastAPI:
+def make_app(
+    models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping | None = None, fork_server: ForkServer | None = None
+) -> FastAPI:
     """Returns the application; its `state.leave` ends all runs and experiments.
 
     Args:
@@ -47,10 +49,10 @@ def make_app(models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping
         gate: Checks access to the server.
         memory: Maximum memory of a model [MB]; 0 for no limit.
         keeping: How many recordings are kept; None for the default.
-        zygote: The process from which workers are forked, if it has been started already.
+        fork_server: The process from which workers are forked, if it has been started already.
     """
     folder = ModelFolder(models)
-    workers = Workers(memory, zygote)
+    workers = Workers(memory, fork_server)
     sessions = Sessions(folder, Recordings(folder.root), workers)
     experiments = Experiments(sessions)
     language = LanguageServer(workers, folder.root)

@@ -159,14 +159,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"warning: others can reach {host}; anyone with the address below can run programs as you", file=sys.stderr)
     names: list[str] = [*options.name, host]
     gate = Gate(token=Token(), port=port, hosts=LOOPBACK | {name.lower() for name in names})
-    zygote = spawn()  # it loads at the same time as the server
+    fork_server = spawn()  # it loads at the same time as the server
     try:
         from workbench.app import make_app
         from workbench.server import serve
 
         keeping = Keeping(number=options.recordings, megabytes=options.recordings_size)
         started = partial(_announce, folder, f"http://{host}:{port}", gate.token, not options.no_browser)
-        app = make_app(folder, gate, memory=options.memory, keeping=keeping, zygote=zygote)
+        app = make_app(folder, gate, memory=options.memory, keeping=keeping, fork_server=fork_server)
         if interrupted.is_set():  # the import of a library may have swallowed the exception
             raise KeyboardInterrupt
         serve(app, listening, started)

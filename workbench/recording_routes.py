@@ -238,14 +238,14 @@ async def replay(request: Request, recording: Id, body: Trusting | None = None) 
     """
     sessions = sessions_of(request)
     await sessions.trusted(recording, body is not None and body.trust)
-    return await sessions.reruns.run(sessions.recordings.path(recording), request.is_disconnected)
+    return await sessions.replays.run(sessions.recordings.path(recording), request.is_disconnected)
 
 
 @router.get("/recordings/{recording}/replay")
 async def replaying(request: Request, recording: Id) -> dict[str, Any]:
     """Returns the share of a recording that has been run again, from 0 to 1; null if no replay is in progress."""
     sessions = sessions_of(request)
-    return {"share": sessions.reruns.share(sessions.recordings.path(recording))}
+    return {"share": sessions.replays.share(sessions.recordings.path(recording))}
 
 
 @router.post("/recordings/{recording}/label")

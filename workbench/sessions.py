@@ -10,9 +10,10 @@ from actr3d.errors import Actr3dError, ModelFileError
 from workbench.files import ModelFolder
 from workbench.jobs import doing
 from workbench.listing import Listing
-from workbench.readers import Readers, Reruns
+from workbench.readers import Readers
 from workbench.recorded_start import Beginning, parsed
 from workbench.recordings import Recordings
+from workbench.replays import Replays
 from workbench.run_request import RunOptions
 from workbench.scene_view import SceneView
 from workbench.session import Session
@@ -56,7 +57,7 @@ class Sessions:
         self.workers = workers
         self.readers = Readers(workers)
         self.listing = Listing(recordings, workers, folder.root)
-        self.reruns = Reruns(workers)
+        self.replays = Replays(workers)
         self._sessions: dict[str, Session] = {}
         self._views: dict[str, SceneView] = {}
         self._count = 0

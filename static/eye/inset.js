@@ -1,19 +1,24 @@
-// The retina as a small picture over the 3D view; hidden while the tab Eye shows the large one, and at first in the view through the eye.
+// The retina as a small picture over the 3D view; hidden while the tab Eye shows the large one, and closed by default in the view through the eye.
 
 import { html, signal } from "../vendor/preact.js";
 import { useAnswer } from "../parts/answer.js";
 import { Icon } from "../parts/icon.js";
-import { seeing } from "../panels/eye.js";
 import { remembered } from "../local_storage.js";
 import { openTab } from "../open_tab.js";
+import { session } from "../store.js";
 import { Retina } from "./retina.js";
 
 const overScene = remembered("retina", innerWidth >= 900);
 const overEyesView = signal(false); // there it would cover a part of the same picture
 
+/** Returns the bodies of the run that have an eye. */
+export function bodiesWithEye() {
+  return Object.entries(session.value?.world?.bodies ?? {}).filter(([, { eye: name }]) => name).map(([body]) => body);
+}
+
 export function RetinaInset({ through }) {
   const open = through ? overEyesView : overScene;
-  const body = seeing()[0];
+  const body = bodiesWithEye()[0];
   const shown = open.value && openTab.value !== "eye" && body !== undefined;
   const { answer } = useAnswer(shown ? { type: "view", body } : null, { live: true });
   if (body === undefined || openTab.value === "eye") return null;

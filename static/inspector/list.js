@@ -10,7 +10,7 @@ import { chosenText, isBare, isGone, nothing } from "../run_status.js";
 import { state } from "../store.js";
 
 /** The status of a production: [class, sign, in words]. */
-export function howItStands(reason) {
+export function statusOf(reason) {
   if (!reason) return ["", "", ""];
   if (reason.matches === null) return ["unknown", "?", "unknown here"];
   if (reason.selected) {
@@ -47,7 +47,7 @@ function isForbidden(system, name) {
 
 function Item({ item, chosen, several }) {
   const { system, name, reason } = item;
-  const [kind, sign, words] = howItStands(reason);
+  const [kind, sign, words] = statusOf(reason);
   const marked = breakpoints.value.includes(name);
   const line = useRef(null);
   useLayoutEffect(() => {

@@ -4,7 +4,7 @@ import { html } from "../vendor/preact.js";
 import { ChangeButtons } from "../changes/changes.js";
 import { valueText } from "../parts/chunk.js";
 import { runStatus } from "../run_status.js";
-import { howItStands } from "./list.js";
+import { statusOf } from "./list.js";
 import { Part } from "./part_names.js";
 
 const SIGNS = { true: ["✓", "holds"], false: ["✗", "does not hold"], null: ["?", "unknown here"] };
@@ -51,7 +51,7 @@ export function Why({ item }) {
   if (!item) return null;
   const { reason, name } = item;
   if (!reason) return runStatus.value.is === "running" ? html`<h3 class="mono">${name}</h3><p class="quiet">${runStatus.value.text}</p>` : null;
-  const [kind, , words] = howItStands(reason);
+  const [kind, , words] = statusOf(reason);
   const bound = Object.entries(reason.bindings);
   return html`<h3 class=${kind}><span class="mono">${name}</span>: ${words}</h3>
     <p><${ChangeButtons} key=${`${item.system} ${name}`} of="production" given=${{ system: item.system, production: name }} /></p>

@@ -2,21 +2,16 @@
 
 import { html, useSignal } from "../vendor/preact.js";
 import { shadeOf } from "../eye/drawing.js";
+import { bodiesWithEye } from "../eye/inset.js";
 import { Retina } from "../eye/retina.js";
 import { Waiting } from "../inspector/waiting.js";
 import { useAnswer } from "../parts/answer.js";
 import { CopyButton } from "../parts/copy.js";
 import { isGone, nothing } from "../run_status.js";
-import { session } from "../store.js";
 import { dark } from "../theme.js";
 
 const MAX_ROWS = 400;
 const KINDS = [["objects", "Objects"], ["edges", "Edges"]];
-
-/** Returns the bodies of the run that have an eye. */
-export function seeing() {
-  return Object.entries(session.value?.world?.bodies ?? {}).filter(([, { eye: name }]) => name).map(([body]) => body);
-}
 
 /** Returns a summary of a view by label: {label, extents, rows, left, right, nearest}. */
 function objectsOf({ extents }) {
@@ -87,7 +82,7 @@ function Edges({ view }) {
 
 
 function Eye() {
-  const bodies = seeing();
+  const bodies = bodiesWithEye();
   const body = useSignal(null);
   const kind = useSignal("objects");
   const pointed = useSignal(null); // the label under the pointer

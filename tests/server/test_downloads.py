@@ -149,14 +149,14 @@ def test_a_copy_is_cancelled_when_no_client_waits_for_it(desk: Desk, tmp_path: P
 @contextmanager
 def nearly_full_disk(desk: Desk, room: int) -> Generator[None]:
     """Lets no worker write a file of more than `room` bytes."""
-    zygote = desk.workers._zygote
-    assert zygote is not None
-    limits = resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE)
-    resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE, (room, limits[1]))
+    fork_server = desk.workers._fork_server
+    assert fork_server is not None
+    limits = resource.prlimit(fork_server.process.pid, resource.RLIMIT_FSIZE)
+    resource.prlimit(fork_server.process.pid, resource.RLIMIT_FSIZE, (room, limits[1]))
     try:
         yield
     finally:
-        resource.prlimit(zygote.process.pid, resource.RLIMIT_FSIZE, limits)
+        resource.prlimit(fork_server.process.pid, resource.RLIMIT_FSIZE, limits)
 
 
 def test_a_copy_that_cannot_be_written_is_reported(desk: Desk, tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ import pytest
 
 from workbench.worker import fork_server, workers
 from workbench.worker.fork_server import ANSWER, ASK, BORN, DEAD, READY
-from workbench.worker.spawn import Zygote
+from workbench.worker.spawn import ForkServer
 from workbench.worker.workers import NO_MORE, Workers
 
 
@@ -24,7 +24,7 @@ async def pool() -> AsyncGenerator[tuple[Workers, socket.socket]]:
     own_end, its_end = socket.socketpair()
     own_end.setblocking(False)
     its_end.setblocking(False)
-    there = Workers(zygote=Zygote(process=subprocess.Popen(["true"]), control=own_end))
+    there = Workers(fork_server=ForkServer(process=subprocess.Popen(["true"]), control=own_end))
     there.begin()
     its_end.sendall(ANSWER.pack(READY, 1, 0))
     yield there, its_end
@@ -90,7 +90,7 @@ def test_every_worker_has_ended_when_all_are_ended_also_one_that_was_just_born(l
 
 @pytest.mark.parametrize("unread", [False, True])
 def test_where_no_process_can_fork_workers_any_more_launching_fails(unread: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    def spawn() -> Zygote:
+    def spawn() -> ForkServer:
         raise OSError(errno.ENOMEM, "no memory")
 
     async def told() -> None:

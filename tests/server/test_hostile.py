@@ -16,7 +16,7 @@ from tests.helpers.sessions import PATIENCE, Desk
 from tests.server.test_worker import gone, of, runs_again
 from workbench.worker.memory import TOO_MUCH_MEMORY
 from workbench.worker.messages import shortened
-from workbench.worker.spawn import Zygote
+from workbench.worker.spawn import ForkServer
 from workbench.worker.truncation import LARGEST, bounded_json, cut
 
 
@@ -97,12 +97,12 @@ def test_a_child_that_holds_the_wire_does_not_hold_up_the_end(desk: Desk, tmp_pa
 def test_a_model_that_ends_the_process_all_come_from_ends_all_runs_and_no_more(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also if a user restarts before that process has been replaced."""
 
-    def end_slowly(zygote: Zygote) -> None:
+    def end_slowly(fork_server: ForkServer) -> None:
         time.sleep(1)
-        end(zygote)
+        end(fork_server)
 
-    end = Zygote.end
-    monkeypatch.setattr(Zygote, "end", end_slowly)
+    end = ForkServer.end
+    monkeypatch.setattr(ForkServer, "end", end_slowly)
     desk = Desk()
     try:
         (tmp_path / "other").mkdir()

@@ -13,25 +13,29 @@ MEMORY = 4_000
 """Default maximum memory of a model in addition to the worker's own at its start [MB]."""
 
 
+PATIENCE = 3.0
+"""Time for the fork server to end [s]."""
+
+
 @dataclass(frozen=True, kw_only=True)
-class Zygote:
+class ForkServer:
     """Holds the server's handle of the process from which workers are forked."""
 
     process: subprocess.Popen[bytes]
     control: socket.socket
     """The socket for requests to the process, which ends when the socket is closed."""
 
-    def end(self, wait: float = 3.0) -> None:
-        """Ends the process and all workers; kills it if it has not ended within `wait` [s]."""
+    def end(self) -> None:
+        """Ends the process and all workers; kills it if it has not ended within `PATIENCE`."""
         self.control.close()
         with suppress(subprocess.TimeoutExpired):
-            self.process.wait(wait)
+            self.process.wait(PATIENCE)
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait()
 
 
-def spawn() -> Zygote:
+def spawn() -> ForkServer:
     """Starts the process, which then loads in the background."""
     own_end, its_end = socket.socketpair()
     # A fixed hash seed gives all workers the same order of sets, as in `actr3d run`; numpy's threads would
@@ -43,4 +47,4 @@ def spawn() -> Zygote:
     process = subprocess.Popen(command, pass_fds=fds, env=environment, stdin=subprocess.DEVNULL, start_new_session=True)
     its_end.close()
     own_end.setblocking(False)
-    return Zygote(process=process, control=own_end)
+    return ForkServer(process=process, control=own_end)

@@ -1,4 +1,4 @@
-"""Starts and ends worker processes and receives their exit codes; the server's side of the zygote."""
+"""Starts and ends worker processes and receives their exit codes; the server's side of the fork server."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contextlib import suppress
 
 from workbench.worker.fork_server import ANSWER, ASK, BORN, DEAD, HALTED, READY
 from workbench.worker.messages import FROM_WORKER, LENGTH, LONGEST, FromWorker, Leave, Message, framed
-from workbench.worker.spawn import Zygote, spawn
+from workbench.worker.spawn import ForkServer, spawn
 
 GRACE = 0.7
 """How long a worker may take to end normally [s]; then it gets SIGTERM."""
@@ -101,12 +101,12 @@ class Workers:
 
     Args:
         memory: Maximum memory of each worker's model [MB]; 0 for no limit.
-        zygote: The process from which workers are forked, if it has been started already.
+        fork_server: The process from which workers are forked, if it has been started already.
     """
 
-    def __init__(self, memory: int = 0, zygote: Zygote | None = None) -> None:
+    def __init__(self, memory: int = 0, fork_server: ForkServer | None = None) -> None:
         self.memory = memory
-        self._zygote = zygote
+        self._fork_server = fork_server
         self._control: socket.socket | None = None
         self._alive: dict[int, Worker] = {}
         self._early: dict[int, int] = {}
@@ -120,12 +120,12 @@ class Workers:
 
     def begin(self) -> None:
         """Listens to the process from which workers are forked, and starts it if necessary."""
-        if self._zygote is None:
-            self._zygote = spawn()
-        self._control = self._zygote.control
+        if self._fork_server is None:
+            self._fork_server = spawn()
+        self._control = self._fork_server.control
         self._born = asyncio.Queue()
-        self._listening = asyncio.create_task(self._listen(self._zygote))
-        self._going = asyncio.create_task(self._keep_going(self._zygote))
+        self._listening = asyncio.create_task(self._listen(self._fork_server))
+        self._going = asyncio.create_task(self._keep_going(self._fork_server))
 
     @property
     def ready(self) -> bool:
@@ -177,16 +177,16 @@ class Workers:
             raise OSError(f"no worker can be started: {os.strerror(-pid)}" if pid else NO_MORE)
         return pid
 
-    async def _listen(self, zygote: Zygote) -> None:
+    async def _listen(self, fork_server: ForkServer) -> None:
         loop = asyncio.get_running_loop()
         rest = b""
         with suppress(OSError):  # the connection is reset if a request was left unread
-            while data := await loop.sock_recv(zygote.control, 4096):
+            while data := await loop.sock_recv(fork_server.control, 4096):
                 rest += data
                 while len(rest) >= ANSWER.size:
                     self._take(*ANSWER.unpack(rest[: ANSWER.size]))
                     rest = rest[ANSWER.size :]
-        await self._begin_again(zygote)
+        await self._begin_again(fork_server)
 
     def _take(self, what: int, pid: int, status: int) -> None:
         """Handles a reply of the process from which workers are forked."""
@@ -207,14 +207,14 @@ class Workers:
         elif not worker.exit.done():
             worker.exit.set_result(status)
 
-    async def _keep_going(self, zygote: Zygote) -> None:
+    async def _keep_going(self, fork_server: ForkServer) -> None:
         """Sends SIGCONT at intervals to the process from which workers are forked, as a model may have stopped it by a signal."""
         while True:
             await asyncio.sleep(GRACE)
             with suppress(OSError):
-                os.kill(zygote.process.pid, signal.SIGCONT)
+                os.kill(fork_server.process.pid, signal.SIGCONT)
 
-    async def _begin_again(self, zygote: Zygote) -> None:
+    async def _begin_again(self, fork_server: ForkServer) -> None:
         """Starts a new process from which workers are forked after a model has ended the previous one; all runs end with it."""
         if self._going is not None:
             self._going.cancel()
@@ -225,9 +225,9 @@ class Workers:
         else:  # a process that failed to load would fail again
             self._report_end()
         self._end_workers()
-        await asyncio.to_thread(zygote.end)
+        await asyncio.to_thread(fork_server.end)
         if useful:
-            self._zygote = None
+            self._fork_server = None
             try:
                 self.begin()
             except OSError:
@@ -256,8 +256,8 @@ class Workers:
                 task.cancel()
         self._report_end()
         self._end_workers()
-        if self._zygote is not None:
-            await asyncio.to_thread(self._zygote.end)
+        if self._fork_server is not None:
+            await asyncio.to_thread(self._fork_server.end)
 
 
 async def _stream(descriptor: int) -> Output:

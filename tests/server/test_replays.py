@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tests.helpers.sessions import PATIENCE, Desk
-from workbench.readers import BusyError, Reruns
+from workbench.replays import BusyError, Replays
 
 BUILT = """import os, time
 from pathlib import Path
@@ -55,17 +55,17 @@ def test_the_progress_of_a_replay_is_reported(desk: Desk, tmp_path: Path, source
     gate.touch()
     path = recorded(desk, tmp_path, source.format(does=HALF.format(gate=str(gate))))
     gate.unlink()
-    reruns = Reruns(desk.workers)
+    replays = Replays(desk.workers)
 
     async def run() -> tuple[float, dict[str, Any]]:
-        assert reruns.share(path) is None
-        running = asyncio.create_task(reruns.run(path, waits))
+        assert replays.share(path) is None
+        running = asyncio.create_task(replays.run(path, waits))
         share: float | None = 0.0
         end = time.monotonic() + PATIENCE
         while share is not None and share < 0.4:
             assert time.monotonic() < end
             await asyncio.sleep(0.01)
-            share = reruns.share(path)
+            share = replays.share(path)
         assert share is not None, await running
         gate.touch()
         return share, await running
@@ -74,7 +74,7 @@ def test_the_progress_of_a_replay_is_reported(desk: Desk, tmp_path: Path, source
     assert share < 0.7
     assert told["agrees"] is True
     assert told["text"].startswith("every byte agrees: ")
-    assert reruns.share(path) is None
+    assert replays.share(path) is None
 
 
 @pytest.mark.parametrize(
@@ -96,7 +96,7 @@ def test_whatever_a_model_does_in_a_replay_is_reported(
     mark.touch()
     (tmp_path / "temporary").mkdir()
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
-    told = desk.do(Reruns(desk.workers).run(path, waits))
+    told = desk.do(Replays(desk.workers).run(path, waits))
     assert told["agrees"] is agrees
     assert text in told["text"]
     assert not list((tmp_path / "temporary").iterdir())
@@ -105,7 +105,7 @@ def test_whatever_a_model_does_in_a_replay_is_reported(
 def test_what_is_no_recording_cannot_be_run_again(desk: Desk, tmp_path: Path) -> None:
     path = tmp_path / "x.sqlite"
     path.write_bytes(b"nothing" * 1000)
-    told = desk.do(Reruns(desk.workers).run(path, waits))
+    told = desk.do(Replays(desk.workers).run(path, waits))
     assert told == {"agrees": None, "text": "it is not a recording: file is not a database"}
 
 
@@ -114,18 +114,18 @@ def test_it_ends_when_no_client_waits_and_when_it_makes_no_progress(desk: Desk, 
     gate.touch()
     path = recorded(desk, tmp_path, BUILT.format(does=HALF.format(gate=str(gate))))
     gate.unlink()
-    reruns = Reruns(desk.workers)
+    replays = Replays(desk.workers)
     begin = time.monotonic()
 
     async def gone() -> bool:
         return time.monotonic() > begin + 0.5
 
     async def three() -> list[object]:
-        return await asyncio.gather(*(reruns.run(path, gone) for _ in range(3)), return_exceptions=True)
+        return await asyncio.gather(*(replays.run(path, gone) for _ in range(3)), return_exceptions=True)
 
     first, second, third = desk.do(three())
     assert first == second == {"agrees": None, "text": "cancelled"}
     assert isinstance(third, BusyError)
     monkeypatch.setattr("workbench.jobs.PATIENCE", 0.5)
-    assert desk.do(reruns.run(path, waits)) == {"agrees": None, "text": "no progress for 0.5 s"}
-    assert reruns.share(path) is None
+    assert desk.do(replays.run(path, waits)) == {"agrees": None, "text": "no progress for 0.5 s"}
+    assert replays.share(path) is None
