@@ -117,6 +117,7 @@ def main() -> None:
             prepare(address, shot)
             page.goto(f"{address}&model={shot.model}")
             page.locator("iframe[src^='/viser/']").wait_for()
+            page.locator(".scene-cover").wait_for(state="hidden")
             page.wait_for_timeout(SETTLED)
             picture = small(page.screenshot())
             if len(picture) > LARGEST:

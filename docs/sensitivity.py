@@ -88,6 +88,12 @@ class Deciding:
         }
         return compared[self.likeness]
 
+    def blended(self, far: NDArray[Any], values: NDArray[Any], noise: np.random.Generator) -> NDArray[Any]:
+        """Returns the blend of the values of memories `(n,)` for each doorway `(m,)`, from how dissimilar they are `(m, n)`."""
+        activation = noise.logistic(0, self.noise, far.shape) - far if self.noise else -far
+        weights = np.exp((activation - activation.max(axis=1, keepdims=True)) / self.temperature)
+        return (weights @ values) / weights.sum(axis=1)
+
     def critical_ratio(self, shoulders: float = CELLS[0][1], speed: float = CELLS[0][2]) -> float:
         """Returns the least ratio from which on fewer than half of the walkers turn."""
         turned = (self.turns_before(shoulders, RATIOS, speed=speed) > 0).mean(axis=0)
@@ -117,10 +123,27 @@ def expected(
             now = by.compared(np.array(ratios)[:, None] * shoulders, width, shoulders)
             apart = sum(np.abs(there[some] - here) for there, here in zip(by.compared(*passages), now, strict=True))
             far = apart / by.room + np.abs(fast[some] - pace) / by.pace
-            activation = noise.logistic(0, by.noise, far.shape) - far if by.noise else -far
-            weights = np.exp((activation - activation.max(axis=1, keepdims=True)) / by.temperature)
-            impacts[-1].append((weights @ energy[some]) / weights.sum(axis=1))
+            impacts[-1].append(by.blended(far, energy[some], noise))
     return np.array(efforts), np.array(impacts)
+
+
+def judged_boundary(by: Deciding, likely: float) -> float:
+    """Returns the least ratio from which on half of the walkers judge that they can pass as they are.
+
+    Args:
+        by: The numbers by which they blend their memories of passages at any speed.
+        likely: The probability of a passage without contact above which they judge so.
+    """
+    known = experiences(walks=by.walks)
+    free = np.array([one["free"] for one in known])
+    rooms = np.array([(one["seen"] - one["felt"]) / one["shoulders"] for one in known]) * MODEL.BODY
+    choice, noise = random.Random(1), np.random.default_rng(1)
+    judged: list[NDArray[Any]] = []
+    for _ in range(WALKERS):
+        some = choice.sample(range(len(known)), min(by.memories, len(known)))
+        far = np.abs(rooms[some] - (RATIOS[:, None] - 1) * MODEL.BODY) / by.room
+        judged.append(by.blended(far, free[some], noise) > likely)
+    return float(RATIOS[np.flatnonzero(np.mean(judged, axis=0) < 0.5)[-1] + 1])
 
 
 def effect_of_speed(shoulders: float, normal: float, fast: float) -> tuple[float, float, float]:
@@ -141,10 +164,17 @@ def share_turned(of: Deciding, *, trials: int, seed: int) -> float:
     return float((of.turns_before(shoulders, np.full(trials, FITTED), speed=normal, seed=seed) > 0).mean())
 
 
-def fitted(likeness: Likeness) -> Deciding:
-    """Returns the decision by another likeness of passages, with the cost of contacts by which half of the fitted cell is turned."""
-    of = [Deciding(likeness=likeness, contact_cost=cost) for cost in COSTS]
+def fitted(**changed: Any) -> Deciding:
+    """Returns the decision with other numbers, and with that cost among `COSTS` by which nearest to half of the fitted cell is turned."""
+    of = [Deciding(**changed, contact_cost=cost) for cost in COSTS]
     return min(of, key=lambda one: abs(share_turned(one, trials=25, seed=0) - 0.5))
+
+
+def found_by(of: Deciding) -> str:
+    """Returns the fitted cost, the share that is turned in the fitted cell, and the critical ratios of all cells, as a text."""
+    ratios = ", ".join(f"{of.critical_ratio(shoulders, speed):.2f}" for _, shoulders, *speeds in CELLS for speed in speeds)
+    share = share_turned(of, trials=25, seed=0)
+    return f"contact_cost {of.contact_cost:.1f}, {share:.0%} turned: critical ratios {ratios}"
 
 
 def large_minus_small(of: Deciding) -> float:
@@ -172,7 +202,7 @@ def found_again(cost: float) -> tuple[float, float, float]:
 
 
 def report() -> str:
-    """Returns the critical ratio with each number halved and doubled, with and without gait, and the effect of speed."""
+    """Returns how critical ratios, the judgement, the effect of speed and the fit depend on the numbers."""
     usual, lines = Deciding(), list[str]()
     lines.append(f"critical ratio of small walkers at normal speed: {usual.critical_ratio():.2f}")
     for name in ("room", "temperature", "turning", "inertia", "contact_cost", "pace", "noise", "memories"):
@@ -183,11 +213,20 @@ def report() -> str:
     for room in (0.005, 0.01, 0.02):
         walks, glides = (replace(usual, room=room, walks=walks).critical_ratio() for walks in (True, False))
         lines.append(f"  room {room:g}: walking {walks:.2f}, gliding {glides:.2f}")
+    lines.append("with contact_cost fitted again")
+    for room in (0.005, 0.01, 0.015, 0.02, 0.03, 0.04):
+        lines.append(f"  room {room:g}, {found_by(fitted(room=room))}")
+    lines.append(f"  gliding, {found_by(fitted(walks=False))}")
     for likeness in get_args(Likeness):
-        of = fitted(likeness)
-        ratios = ", ".join(f"{of.critical_ratio(shoulders, speed):.2f}" for _, shoulders, *speeds in CELLS for speed in speeds)
-        lines.append(f"alike by {likeness}, contact_cost {of.contact_cost:.1f}: critical ratios {ratios}")
-        lines.append(f"  large minus small: {large_minus_small(of):+.1f} degrees")
+        of = fitted(likeness=likeness)
+        lines.append(f"  alike by {likeness}, {found_by(of)}")
+        lines.append(f"    large minus small: {large_minus_small(of):+.1f} degrees")
+    lines.append(f"judged passable: from {judged_boundary(usual, MODEL.LIKELY):.2f}")
+    for likely in (0.3, 0.4, 0.6, 0.7, 0.8, 0.9):
+        lines.append(f"  likely {likely:g}: from {judged_boundary(usual, likely):.2f}")
+    for name, value in (("room", 0.01), ("room", 0.04), ("temperature", 0.5), ("temperature", 2.0)):
+        lines.append(f"  {name} {value:g}: from {judged_boundary(replace(usual, **{name: value}), MODEL.LIKELY):.2f}")
+    lines.append(f"  by the most similar passage alone: from {judged_boundary(replace(usual, temperature=0.001), MODEL.LIKELY):.2f}")
     for name, shoulders, normal, fast in CELLS:
         both, effort, impact = effect_of_speed(shoulders, normal, fast)
         lines.append(f"{name}, fast minus normal: {both:+.1f} degrees; by effort alone {effort:+.1f}, by impact alone {impact:+.1f}")

@@ -98,11 +98,13 @@ INERTIA = 1.5
 """Moment of inertia of a turning person about the vertical [kg m²]. Source: chosen, of the order of a standing adult's."""
 ROOM, PACE, ANGLE, TEMPERATURE = 0.02, 0.3, 5.0, 1.0
 """Differences of room [m], speed [m/s] and angle [degrees] at which the similarity of two memories is -1; and the temperature of blending.
-The first one decides how much room it wants more than any other number (docs/results.md). Source: chosen for this model."""
+At the same cost of contacts, the first one decides how much room it wants more than any other number; a fit of the cost makes up for it
+(docs/results.md). Source: chosen for this model."""
 BODY = 0.4
 """The shoulder width [m] at which the similarity of two rooms is the same in both units. Source: chosen for this model."""
 LIKELY = 0.5
-"""Probability above which it treats an event as certain. Source: chosen, as anything else would be a bias."""
+"""Probability above which it treats an event as certain. It decides from which width on a doorway is judged passable (docs/results.md).
+Source: chosen for this model."""
 DISTANCE_NOISE, EDGE_NOISE, WIDTH_NOISE = 0.02, 0.002, 0.005
 """Standard deviations, for `perceptual_noise = 1`: of seen distances, as a fraction; of seen directions of edges [rad]; of felt widths [m].
 Source: chosen for this model. They have no bias, as people's have none up to 15 m (Fukusima, Loomis & Da Silva 1997, J Exp Psychol Hum

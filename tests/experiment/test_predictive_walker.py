@@ -401,7 +401,7 @@ def test_the_decision_alone_is_that_of_the_model(model: Any, sensitivity: Any) -
     assert chosen(model, 6, aperture=0.45) == pytest.approx(alone, abs=6)
 
 
-def test_the_room_that_it_wants_follows_from_what_counts_as_similar_more_than_from_the_fitted_cost(sensitivity: Any) -> None:
+def test_at_a_fixed_cost_the_room_that_it_wants_follows_from_what_counts_as_similar_more_than_from_the_cost(sensitivity: Any) -> None:
     usual = sensitivity.Deciding()
     assert usual.critical_ratio() == pytest.approx(1.30, abs=0.02)
     by_room = replace(usual, room=0.04).critical_ratio() - replace(usual, room=0.01).critical_ratio()
@@ -411,6 +411,29 @@ def test_the_room_that_it_wants_follows_from_what_counts_as_similar_more_than_fr
     )
     assert by_room > 3 * by_cost > 0
     assert replace(usual, walks=False).critical_ratio() < usual.critical_ratio() - 0.02
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("changed", [{"room": 0.015}, {"room": 0.04}, {"walks": False}])
+def test_with_the_cost_fitted_again_neither_the_similarity_of_rooms_nor_the_gait_decides_the_critical_ratios(
+    sensitivity: Any, changed: dict[str, Any]
+) -> None:
+    usual, other = sensitivity.fitted(), sensitivity.fitted(**changed)
+    assert not 0.5 < other.contact_cost / usual.contact_cost < 2
+    for _, shoulders, *speeds in sensitivity.CELLS:
+        for speed in speeds:
+            assert other.critical_ratio(shoulders, speed) == pytest.approx(usual.critical_ratio(shoulders, speed), abs=0.035)
+
+
+def test_the_judged_boundary_follows_from_its_criterion_and_not_from_similarity_or_temperature(model: Any, sensitivity: Any) -> None:
+    def boundary(likely: float = model.LIKELY, **changed: Any) -> float:
+        return sensitivity.judged_boundary(replace(sensitivity.Deciding(), **changed), likely)
+
+    assert boundary(0.3) < boundary() - 0.03 < boundary() + 0.06 < boundary(0.8) < sensitivity.Deciding().critical_ratio()
+    for changed in ({"room": 0.01}, {"room": 0.04}, {"temperature": 0.5}, {"temperature": 2.0}):
+        assert boundary(**changed) == pytest.approx(boundary(), abs=0.015)
+    (alone,) = {boundary(likely, temperature=0.001) for likely in (0.3, 0.8)}
+    assert alone == pytest.approx(boundary(), abs=0.015), "judged by the most similar passage alone, which takes no criterion"
 
 
 def test_large_walkers_turn_as_much_as_small_ones_at_the_same_ratio_if_room_is_remembered_in_units_of_the_body(sensitivity: Any) -> None:
