@@ -13,6 +13,7 @@
     heard: [], // the data of the newest moments, with the stage of their scene; some of them are not drawn yet
     view: "follow",
     onview: null,
+    beforeFrame: null, // called before viser draws a frame
     receive(name, value) {
       this.facts[name] = value;
       if (name === "now") this.heard = [...this.heard, { ...value, stage: this.facts.stage }].slice(-MAX_HEARD);
@@ -75,6 +76,7 @@
       }
       waiting.delete(mine);
       frameBudget?.drawing();
+      window.scene.beforeFrame?.();
       draw(time);
     }
     waiting.set(mine, ask(now));
