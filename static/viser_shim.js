@@ -14,6 +14,7 @@
     view: "follow",
     kept: null,
     onview: null,
+    beforeFrame: null, // called before viser draws a frame
     receive(name, value) {
       this.facts[name] = value;
       if (name === "now") this.heard = [...this.heard, { ...value, stage: this.facts.stage }].slice(-MAX_HEARD);
@@ -77,6 +78,7 @@
       }
       waiting.delete(mine);
       frameBudget?.drawing();
+      window.scene.beforeFrame?.();
       draw(time);
     }
     waiting.set(mine, ask(now));

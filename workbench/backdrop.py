@@ -37,9 +37,10 @@ def light(client: Any, *, shadows: bool) -> None:
         client: Viser's client.
         shadows: Whether shapes cast shadows, which takes half the time of a browser without a graphics card.
     """
-    client.scene.configure_default_lights(enabled=False, cast_shadow=False)
-    for number, (place, intensity) in enumerate(LIGHTS):
-        client.scene.add_light_directional(f"/light/{number}", intensity=intensity, position=place, cast_shadow=shadows and not number)
+    with client.atomic():
+        client.scene.configure_default_lights(enabled=False, cast_shadow=False)
+        for number, (place, intensity) in enumerate(LIGHTS):
+            client.scene.add_light_directional(f"/light/{number}", intensity=intensity, position=place, cast_shadow=shadows and not number)
 
 
 def lay_grounds(server: Any, model: MjModel) -> list[str]:

@@ -12,8 +12,12 @@ import { VIEWS } from "./stage.js";
 const { scene: given } = window;
 const HIDDEN = ["/overlays/frustum", "/overlays/handles"]; // not drawn in the view through the eye
 
-/** Returns viser's own objects, once there is a scene and data for it. */
+/** Returns viser's own objects, once there is a scene and data for it. Until then nothing is drawn: pictures with viser's own lights and
+ * shadows, which nobody sees, would take a browser without a graphics card a second. */
 async function ready() {
+  given.beforeFrame = () => {
+    if (window.__viserMutable?.scene) window.__viserMutable.scene.visible = false;
+  };
   for (;;) {
     const viewer = window.__viserMutable;
     if (viewer?.scene && viewer.cameraControl && viewer.backgroundMaterial && viewer.nodeRefFromName[""] && given.facts.stage && given.facts.now) return viewer;
@@ -125,14 +129,14 @@ const PATIENCE = 10_000; // a scene is shown after this time [ms], whatever is m
 let since = null; // when a scene was first incomplete [ms]
 let waiting = false; // whether a view was chosen meanwhile
 
-/** Returns whether all shapes of the newest scene are there: viser removes those of the former scene at once, and reads new ones one
- * by one. */
+/** Returns whether the lights and all shapes of the newest scene are there: viser removes those of the former scene at once, and reads
+ * new ones one by one. */
 function isWhole() {
   const first = given.heard.find((now) => now.stage === given.facts.stage);
   if (first === undefined) return false;
   if (stage === given.facts.stage) return true;
   const number = drawnNumber();
-  if (number === null || number < first.moment) return false;
+  if (number === null || number < first.moment || !viewer.nodeRefFromName["/light/0"]) return false;
   return Object.entries(window.__viserSceneTree.getState()).every(([name, node]) => {
     if (!/Glb/.test(node?.message.type)) return true;
     let shapes = 0;
@@ -155,6 +159,8 @@ function keepFormer(renderer) {
       }
     }
     since = null;
+    given.beforeFrame = null;
+    viewer.scene.visible = true;
     if (isView && !isTaking) sharpness.before();
     render.call(renderer, scene, seenBy);
     if (isView && !isDrawn) parent.postMessage({ drawn: true }, location.origin);

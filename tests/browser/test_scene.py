@@ -17,6 +17,7 @@ from playwright.sync_api import Page, Route, WebSocket, expect
 
 from tests.helpers.page import Users, until
 from tests.helpers.workbench_server import MODELS, Served, served
+from workbench.backdrop import LIGHTS
 
 pytestmark = pytest.mark.scene
 
@@ -197,6 +198,30 @@ def test_where_the_processor_draws_there_are_no_shadows_and_edges_are_not_smooth
     assert lights[0].endswith("?shadows=off")
     smooth = "document.querySelector('canvas').getContext('webgl2').getContextAttributes().antialias"
     assert page.evaluate(smooth) is False
+
+
+NOTE_LIGHTS = """{
+  const kind = WebGL2RenderingContext.prototype;
+  const { shaderSource } = kind;
+  window.lights = [];
+  kind.shaderSource = function (shader, text) {
+    const found = /directionalLights\\[ (\\d+) \\]/.exec(text);
+    if (found) window.lights.push(Number(found[1]));
+    return shaderSource.call(this, shader, text);
+  };
+}"""
+"""Notes for how many lights each shader is made that computes light."""
+
+
+@pytest.mark.slow
+def test_nothing_is_drawn_with_the_lights_of_viser_before_those_of_the_workbench_are_there(
+    workbench: Served, page: Page, session: str
+) -> None:
+    page.add_init_script(NOTE_LIGHTS)
+    page.goto(f"{workbench.url}/viser/{session}/?panel=hidden")
+    page.wait_for_function("() => window.scene?.shown")
+    page.wait_for_function("() => window.lights.length > 0")
+    assert set(page.evaluate("lights")) == {len(LIGHTS)}
 
 
 RESTING = """async () => {

@@ -526,8 +526,8 @@ def test_each_critical_ratio_is_drawn_above_its_own_participant(tmp_path: Path) 
 def test_starts_beside_the_doorway_or_at_an_angle_have_a_figure_and_a_table(tmp_path: Path) -> None:
     def misaligned(trial: Any) -> dict[str, Any]:
         if trial.values["start_aside"] < 0.2:
-            return walk(trial)
-        return {**walk(trial), "outcome": "stopped", "clearance_left_m": None, "clearance_right_m": None}
+            return walk_through(trial)
+        return {**walk_through(trial), "outcome": "stopped", "clearance_left_m": None, "clearance_right_m": None}
 
     folder = store_rows(tmp_path / "starts", "misaligned_start", misaligned, trials=2)
     write_report(folder)
