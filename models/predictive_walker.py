@@ -303,8 +303,14 @@ class Planning(ACTR):
     production_time = CYCLE
 
     def begin(b_goal="do:walk", b_imagined=None, b_door="width:?wide", pause="state:!on"):
+        self.half = self.parent.met and self.parent.shares is not False and self.parent.always is None
+        self.consider(float(wide) / 2 if self.half else wide)
+
+    def consider(self, door):
+        """Begins to imagine turns for a doorway of a width [m]."""
         self.cheapest, self.costs = None, {}
-        b_imagined.set(f"turn:{TURNS[0] if self.parent.always is None else self.parent.always} door:{wide} state:new")
+        first = TURNS[0] if self.parent.always is None else self.parent.always
+        self.parent.b_imagined.set(f"turn:{first} door:{door} state:new")
 
     def imagine(b_imagined="turn:?turn state:new"):
         DM.request(f"torso_yaw:{self.parent.side * (1 - HIPS) * float(turn):.2f} width:? middle:?")
@@ -320,6 +326,7 @@ class Planning(ACTR):
         b_imagined.set(f"turn:{turn} door:{door} width:{width} middle:{middle} state:expected")
 
     def know_nothing(b_imagined="state:expected turn:?turn width:?width middle:?middle", experience="error:True"):
+        self.half = False
         self.decide(f"turn:{TURNS[0]} width:{width} middle:{middle} cost:0 free:1 passed:1")
 
     def compare(
@@ -334,7 +341,10 @@ class Planning(ACTR):
             felt, outcome = f"turn:{turn} width:{width} middle:{middle}", f"free:{float(free):.3f} passed:{float(passed):.3f}"
             self.cheapest = cost, f"{felt} cost:{cost:.3f} {outcome}"
         further = [other for other in TURNS if other > float(turn) and self.parent.effort(other) < self.cheapest[0]]
-        if further:
+        if self.half and cost == self.cheapest[0] and float(turn):
+            self.half = self.parent.shares = False
+            self.consider(2 * float(door))
+        elif further:
             b_imagined.set(f"turn:{further[0]} door:{door} state:new")
         else:
             self.decide(self.cheapest[1])
@@ -345,6 +355,9 @@ class Planning(ACTR):
             self.parent.b_plan.set(plan)
             self.parent.costs = self.costs
             self.parent.middle = float(self.parent.b_plan["middle"])
+            if self.half:
+                self.parent.shares = True
+                self.parent.middle += float(self.parent.b_imagined["door"]) / 2
         self.parent.b_imagined.clear()
         self.parent.pause.go(PAUSE)
 
@@ -392,6 +405,7 @@ class Person(ACTR):
         self.side = self.random.choice([1, -1])
         self.rate, self.turned, self.middle, self.obstacle, self.looks_around = 0.0, 0, 0.0, None, False
         self.taken, self.nearest, self.patient_until = 0.0, inf, 0.0
+        self.met, self.shares = False, None
         self.costs = {}
         b_goal.set("do:feel")
 
@@ -479,14 +493,14 @@ class Person(ACTR):
 
     def set_out(b_goal="do:start", b_visual="feature:opening distance:?far width:?wide direction:?aside left:?left right:?right"):
         b_visual.clear()
-        b_door.set(f"far:{far} direction:{aside} width:{wide} left:{left} right:{right} near:False free:True")
+        b_door.set(f"far:{far} direction:{aside} width:{wide} left:{left} right:{right} near:False free:True close:False")
         b_course.set("steer:yes")
         b_goal.set("do:walk")
         self.seen_at = self.now() + CYCLE  # when it will look again
         if float(far) > YIELD * self.step:
             motor.walk(self.speed)
 
-    def go(b_goal="do:walk", b_plan="passed:?passed", motor="walking:False legs_end:!blocked"):
+    def go(b_goal="do:walk", b_door="free:True", b_plan="passed:?passed", motor="walking:False legs_end:!blocked"):
         """Sets out near the doorway, once it expects to pass it."""
         if float(passed) > LIKELY:
             motor.walk(self.speed)
@@ -526,6 +540,8 @@ class Person(ACTR):
         """
         now, waits = self.now(), self.b_goal["do"] == "wait"
         obstructed = False
+        if self.nearest < inf and 0 < deep < min(NOTICE, self.nearest - self.step):
+            self.met = True
         if self.obstacle is not None:
             distance, direction, noticed, what = self.obstacle
             obstructed = now - noticed < FORGET and distance < far - BEFORE
@@ -533,16 +549,21 @@ class Person(ACTR):
             if obstructed and in_front and what not in (self.b_door["left"], self.b_door["right"]):
                 deep = distance - far
         comes = False
-        if far < YIELD * self.step and deep < far:
+        if (waits or far < YIELD * self.step) and deep < far:
             self.taken = now
             comes = deep < self.nearest - BEFORE
         elif now - self.taken > FORGET:
             self.nearest = deep if self.nearest == inf else max(self.nearest, deep)
         if comes:
             self.nearest, self.patient_until = deep, now + self.random.uniform(*PATIENCE)
-        free = now > min(self.patient_until, self.taken + FORGET) if waits else far < self.step or not (comes and self.motor.walking)
+        if waits:
+            free = now > min(self.patient_until, self.taken + FORGET)
+        else:
+            free = far < self.step or self.shares or not (comes and (self.motor.walking or self.met))
         elapsed, self.seen_at = min(now - self.seen_at, LONGEST), now
         self.b_door.modify(far=far, direction=left, near=far < STEPS * self.step, free=free)
+        if self.met:
+            self.b_door.modify(close=far + deep < YIELD * self.step)
         if waits:
             return
         if far < self.step:
@@ -560,7 +581,8 @@ class Person(ACTR):
         """Returns where the doorway must be, by its own movement since it knew it last: distance [m] and direction [degrees]."""
         far, left = float(self.b_door["far"]), radians(float(self.b_door["direction"]))
         elapsed = self.now() - self.seen_at
-        ahead = far * cos(left) - (self.forward() * elapsed if self.motor.walking else 0)
+        forward = -self.speed if self.b_goal["do"] == "wait" else self.forward()
+        ahead = far * cos(left) - (forward * elapsed if self.motor.walking else 0)
         aside = far * sin(left)
         return hypot(ahead, aside), degrees(atan2(aside, ahead) - self.rate * elapsed)
 
@@ -580,12 +602,25 @@ class Person(ACTR):
         self.turn_course(0.0)
         b_goal.set("do:wait")
 
-    def go_on(b_goal="do:wait", b_door="free:True"):
-        """Looks for a doorway again, and plans again: the way is free, or its patience is over."""
+    def back_off(b_goal="do:wait", b_door="close:True", motor="walking:False"):
+        """Walks backwards, away from somebody who comes near."""
+        motor.walk(-self.speed)
+
+    def have_room(b_goal="do:wait", b_door="close:False", motor="walking:True"):
+        motor.stop()
+
+    def go_on(b_goal="do:wait", b_door="free:True left:?left right:?right"):
+        """Looks for the doorway again, and plans again: the way is free, or its patience is over."""
+        if self.motor.walking:
+            motor.stop()
         for buffer in (b_course, b_door, b_plan, b_imagined, b_DM, b_experience):
             buffer.clear()
         self.costs = {}
-        b_goal.set("do:look")
+        if self.met:  # a gap beside the other one is no doorway
+            vision.request(DOOR, left=left, right=right)
+            b_goal.set("do:start")
+        else:
+            b_goal.set("do:look")
 
     def commit(b_goal="do:walk", b_door="width:?wide near:True free:True", b_plan="turn:?turn width:?width passed:?passed"):
         self.committed = {"seen": float(wide), "felt": float(width), "speed": self.speed}
