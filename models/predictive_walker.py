@@ -21,6 +21,16 @@ Four parallel systems:
 - *Walking* turns the shoulders in one of these two steps, about half a step before the doorway, and turns them back behind it. With
   turned hips its steps are shorter, so it walks more slowly meanwhile.
 
+Two people
+----------
+When somebody comes from the other side, the walker first plans for half of the doorway, as if a wall stood in the middle. If it is cheapest
+not to turn there, it walks through the right half and does not wait. Otherwise it waits; when its patience ends, it plans again, and waits
+again if somebody comes meanwhile. While it waits, it walks backwards from somebody who is nearer than three steps.
+
+Which doorways are wide enough for two follows from experience, as all plans do. The other rules of this scene were chosen and are not
+predictions: where the walker waits (`YIELD`), and for how long (`PATIENCE`), so also who goes first; that it keeps to the right, and backs
+off; and that it does not share a doorway for which it once had another plan.
+
 What to expect
 --------------
 - `aperture = 0.5`: turns by 10 to 40 degrees, or not at all.
@@ -34,6 +44,7 @@ What to try
 - `scene = "pillar", aperture = 1.2`: walks round a pillar.
 - `scene = "two doorways", aperture = 1.0`: chooses one of two.
 - `scene = "two people", aperture = 0.8`: somebody comes from the other side; both wait, and the one whose patience ends first goes first.
+- `scene = "two people", aperture = 1.4`: both pass, each on its right.
 - `closing = 0.065, aperture = 0.9`: the doorway closes while it walks there. It turns for a width that it saw before it decided.
 - `contact_cost = 60.0`: fears to touch the wall.
 - `gait = False`: glides, and so did all the bodies of its experience.
@@ -69,8 +80,8 @@ REPULSION, NARROWNESS, REACH = 198.0, 6.5, 0.8
 """It turns away from obstacles with the acceleration k (φ - ψ) exp(-c3 |φ - ψ|) exp(-c4 d); k [1/s²], c3 [1/rad], c4 [1/m].
 Source: Fajen & Warren (2003)."""
 NOTICE = 4.0
-"""Objects count as obstacles up to this distance [m]. Source: chosen, about the protective zone of 3.8 m that Hackney et al. (2013)
-found (docs/human-data.md)."""
+"""Objects count as obstacles up to this distance [m], and somebody who comes is noticed up to this distance behind the doorway. Source:
+chosen, about the protective zone of 3.8 m that Hackney et al. (2013) found (docs/human-data.md)."""
 BEFORE, LAG, FORGET = 0.15, 0.5, 0.5
 """An object counts as an obstacle if it is nearer than the doorway by more than the first number [m] plus the distance walked in the second
 [s] (it looks at one after the other), and for the third [s] after it was last noticed. Source: chosen for this model."""
@@ -118,7 +129,7 @@ LONGEST = 0.3
 """Upper limit of the time between two looks at the doorway that steering uses [s]. Source: chosen for this model."""
 YIELD = 3.0
 """Distance from the doorway within which it waits if somebody else is nearer to it [steps]; if it stands within this distance, it sets out
-only with a plan. Source: chosen for this model."""
+only with a plan. While it waits, it keeps this distance from somebody who comes. Source: chosen for this model."""
 PATIENCE = (0.5, 3.0)
 """The least and the greatest time that it waits while nobody comes nearer [s]. Source: chosen for this model."""
 PAUSE = 0.4
@@ -303,6 +314,7 @@ class Planning(ACTR):
     production_time = CYCLE
 
     def begin(b_goal="do:walk", b_imagined=None, b_door="width:?wide", pause="state:!on"):
+        """Begins with half of the doorway if somebody comes, unless it is known that half is not enough."""
         self.half = self.parent.met and self.parent.shares is not False and self.parent.always is None
         self.consider(float(wide) / 2 if self.half else wide)
 
@@ -341,7 +353,7 @@ class Planning(ACTR):
             felt, outcome = f"turn:{turn} width:{width} middle:{middle}", f"free:{float(free):.3f} passed:{float(passed):.3f}"
             self.cheapest = cost, f"{felt} cost:{cost:.3f} {outcome}"
         further = [other for other in TURNS if other > float(turn) and self.parent.effort(other) < self.cheapest[0]]
-        if self.half and cost == self.cheapest[0] and float(turn):
+        if self.half and cost == self.cheapest[0] and float(turn):  # half of the doorway is not enough to walk through it straight
             self.half = self.parent.shares = False
             self.consider(2 * float(door))
         elif further:
@@ -350,7 +362,8 @@ class Planning(ACTR):
             self.decide(self.cheapest[1])
 
     def decide(self, plan):
-        """Stores a plan, unless it is too late; the walker then steers so that the middle of its turned body passes through the middle."""
+        """Stores a plan, unless it is too late; the walker then steers so that the middle of its turned body passes through the middle of the
+        doorway, or of its right half."""
         if self.parent.b_goal["do"] == "walk":
             self.parent.b_plan.set(plan)
             self.parent.costs = self.costs
@@ -534,9 +547,9 @@ class Person(ACTR):
     def steer_towards(self, far, left, deep):
         """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees], with free depth behind it [m].
 
-        In the last step it keeps its course. Before, it waits for an object that approaches and is as near to the doorway as the walker; it
-        does not wait for objects that do not move. An object in front of the doorway has a negative depth. Each time the object has come
-        nearer, the patience starts again.
+        In the last step it keeps its course. Before, it waits for an object that approaches and is as near to the doorway as the walker,
+        unless they share the doorway; it does not wait for objects that do not move. An object in front of the doorway has a negative depth.
+        Each time the object has come nearer, the patience starts again. Somebody has been met if the depth became smaller by a step.
         """
         now, waits = self.now(), self.b_goal["do"] == "wait"
         obstructed = False
@@ -603,10 +616,10 @@ class Person(ACTR):
         b_goal.set("do:wait")
 
     def back_off(b_goal="do:wait", b_door="close:True", motor="walking:False"):
-        """Walks backwards, away from somebody who comes near."""
+        """Walks backwards: somebody comes near."""
         motor.walk(-self.speed)
 
-    def have_room(b_goal="do:wait", b_door="close:False", motor="walking:True"):
+    def end_backing_off(b_goal="do:wait", b_door="close:False", motor="walking:True"):
         motor.stop()
 
     def go_on(b_goal="do:wait", b_door="free:True left:?left right:?right"):
@@ -616,7 +629,7 @@ class Person(ACTR):
         for buffer in (b_course, b_door, b_plan, b_imagined, b_DM, b_experience):
             buffer.clear()
         self.costs = {}
-        if self.met:  # a gap beside the other one is no doorway
+        if self.met:  # a gap beside somebody is no doorway
             vision.request(DOOR, left=left, right=right)
             b_goal.set("do:start")
         else:
