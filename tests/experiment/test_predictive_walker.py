@@ -47,6 +47,10 @@ def room(passage: dict[str, float]) -> float:
 
 SLIVER = pytest.mark.xfail(strict=True, reason="by the noise of its eyes it still sees a sliver, keeps an earlier plan, and touches")
 """Of a walk before a doorway that has closed."""
+BRUSH = pytest.mark.xfail(
+    strict=True, reason="it walks through half of a doorway of 100 cm beside somebody who waits, and brushes the frame"
+)
+"""Of two people."""
 
 
 # -- steering
@@ -145,7 +149,7 @@ def pair(model: Any, seed: int, aperture: float) -> tuple[set[str], set[str]]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("aperture", "seed"), [(1.0, 213), (1.0, 11), (1.0, 63), (1.0, 65), (0.8, 1)])
+@pytest.mark.parametrize(("aperture", "seed"), [(1.0, 213), (1.0, 11), (1.0, 63), (1.0, 65), (0.8, 1), pytest.param(1.0, 601, marks=BRUSH)])
 def test_one_that_waits_makes_room_and_sees_who_comes_while_it_plans(model: Any, aperture: float, seed: int) -> None:
     """Once both set out at the same time, because one of them still planned; or the one that passed stopped too near to the other."""
     passed, touched = pair(model, seed, aperture)
