@@ -21,6 +21,16 @@ Four parallel systems:
 - *Walking* turns the shoulders in one of these two steps, about half a step before the doorway, and turns them back behind it. With
   turned hips its steps are shorter, so it walks more slowly meanwhile.
 
+Two people
+----------
+When somebody comes from the other side, the walker first plans for half of the doorway, as if a wall stood in the middle. If it is cheapest
+not to turn there, it walks through the right half and does not wait. Otherwise it waits; when its patience ends, it plans again, and waits
+again if somebody comes meanwhile. While it waits, it walks backwards from somebody who is nearer than three steps.
+
+Which doorways are wide enough for two follows from experience, as all plans do. The other rules of this scene were chosen and are not
+predictions: where the walker waits (`YIELD`), and for how long (`PATIENCE`), so also who goes first; that it keeps to the right, and backs
+off; and that it does not share a doorway for which it once had another plan.
+
 What to expect
 --------------
 - `aperture = 0.5`: turns by 10 to 40 degrees, or not at all.
@@ -34,6 +44,7 @@ What to try
 - `scene = "pillar", aperture = 1.2`: walks round a pillar.
 - `scene = "two doorways", aperture = 1.0`: chooses one of two.
 - `scene = "two people", aperture = 0.8`: somebody comes from the other side; both wait, and the one whose patience ends first goes first.
+- `scene = "two people", aperture = 1.4`: both pass, each on its right.
 - `closing = 0.065, aperture = 0.9`: the doorway closes while it walks there. It turns for a width that it saw before it decided.
 - `contact_cost = 60.0`: fears to touch the wall.
 - `gait = False`: glides, and so did all the bodies of its experience.
@@ -69,8 +80,8 @@ REPULSION, NARROWNESS, REACH = 198.0, 6.5, 0.8
 """It turns away from obstacles with the acceleration k (φ - ψ) exp(-c3 |φ - ψ|) exp(-c4 d); k [1/s²], c3 [1/rad], c4 [1/m].
 Source: Fajen & Warren (2003)."""
 NOTICE = 4.0
-"""Objects count as obstacles up to this distance [m]. Source: chosen, about the protective zone of 3.8 m that Hackney et al. (2013)
-found (docs/human-data.md)."""
+"""Objects count as obstacles up to this distance [m], and somebody who comes is noticed up to this distance behind the doorway. Source:
+chosen, about the protective zone of 3.8 m that Hackney et al. (2013) found (docs/human-data.md)."""
 BEFORE, LAG, FORGET = 0.15, 0.5, 0.5
 """An object counts as an obstacle if it is nearer than the doorway by more than the first number [m] plus the distance walked in the second
 [s] (it looks at one after the other), and for the third [s] after it was last noticed. Source: chosen for this model."""
@@ -120,7 +131,7 @@ LONGEST = 0.3
 """Upper limit of the time between two looks at the doorway that steering uses [s]. Source: chosen for this model."""
 YIELD = 3.0
 """Distance from the doorway within which it waits if somebody else is nearer to it [steps]; if it stands within this distance, it sets out
-only with a plan. Source: chosen for this model."""
+only with a plan. While it waits, it keeps this distance from somebody who comes. Source: chosen for this model."""
 PATIENCE = (0.5, 3.0)
 """The least and the greatest time that it waits while nobody comes nearer [s]. Source: chosen for this model."""
 PAUSE = 0.4
@@ -305,8 +316,15 @@ class Planning(ACTR):
     production_time = CYCLE
 
     def begin(b_goal="do:walk", b_imagined=None, b_door="width:?wide", pause="state:!on"):
+        """Begins with half of the doorway if somebody comes, unless it is known that half is not enough."""
+        self.half = self.parent.met and self.parent.shares is not False and self.parent.always is None
+        self.consider(float(wide) / 2 if self.half else wide)
+
+    def consider(self, door):
+        """Begins to imagine turns for a doorway of a width [m]."""
         self.cheapest, self.costs = None, {}
-        b_imagined.set(f"turn:{TURNS[0] if self.parent.always is None else self.parent.always} door:{wide} state:new")
+        first = TURNS[0] if self.parent.always is None else self.parent.always
+        self.parent.b_imagined.set(f"turn:{first} door:{door} state:new")
 
     def imagine(b_imagined="turn:?turn state:new"):
         DM.request(f"torso_yaw:{self.parent.side * (1 - HIPS) * float(turn):.2f} width:? middle:?")
@@ -322,6 +340,7 @@ class Planning(ACTR):
         b_imagined.set(f"turn:{turn} door:{door} width:{width} middle:{middle} state:expected")
 
     def know_nothing(b_imagined="state:expected turn:?turn width:?width middle:?middle", experience="error:True"):
+        self.half = False
         self.decide(f"turn:{TURNS[0]} width:{width} middle:{middle} cost:0 free:1 passed:1")
 
     def compare(
@@ -336,17 +355,24 @@ class Planning(ACTR):
             felt, outcome = f"turn:{turn} width:{width} middle:{middle}", f"free:{float(free):.3f} passed:{float(passed):.3f}"
             self.cheapest = cost, f"{felt} cost:{cost:.3f} {outcome}"
         further = [other for other in TURNS if other > float(turn) and self.parent.effort(other) < self.cheapest[0]]
-        if further:
+        if self.half and cost == self.cheapest[0] and float(turn):  # half of the doorway is not enough to walk through it straight
+            self.half = self.parent.shares = False
+            self.consider(2 * float(door))
+        elif further:
             b_imagined.set(f"turn:{further[0]} door:{door} state:new")
         else:
             self.decide(self.cheapest[1])
 
     def decide(self, plan):
-        """Stores a plan, unless it is too late; the walker then steers so that the middle of its turned body passes through the middle."""
+        """Stores a plan, unless it is too late; the walker then steers so that the middle of its turned body passes through the middle of the
+        doorway, or of its right half."""
         if self.parent.b_goal["do"] == "walk":
             self.parent.b_plan.set(plan)
             self.parent.costs = self.costs
             self.parent.middle = float(self.parent.b_plan["middle"])
+            if self.half:
+                self.parent.shares = True
+                self.parent.middle += float(self.parent.b_imagined["door"]) / 2
         self.parent.b_imagined.clear()
         self.parent.pause.go(PAUSE)
 
@@ -394,6 +420,7 @@ class Person(ACTR):
         self.side = self.random.choice([1, -1])
         self.rate, self.turned, self.middle, self.obstacle, self.looks_around = 0.0, 0, 0.0, None, False
         self.taken, self.nearest, self.patient_until = 0.0, inf, 0.0
+        self.met, self.shares = False, None
         self.costs = {}
         b_goal.set("do:feel")
 
@@ -481,14 +508,14 @@ class Person(ACTR):
 
     def set_out(b_goal="do:start", b_visual="feature:opening distance:?far width:?wide direction:?aside left:?left right:?right"):
         b_visual.clear()
-        b_door.set(f"far:{far} direction:{aside} width:{wide} left:{left} right:{right} near:False free:True")
+        b_door.set(f"far:{far} direction:{aside} width:{wide} left:{left} right:{right} near:False free:True close:False")
         b_course.set("steer:yes")
         b_goal.set("do:walk")
         self.seen_at = self.now() + CYCLE  # when it will look again
         if float(far) > YIELD * self.step:
             motor.walk(self.speed)
 
-    def go(b_goal="do:walk", b_plan="passed:?passed", motor="walking:False legs_end:!blocked"):
+    def go(b_goal="do:walk", b_door="free:True", b_plan="passed:?passed", motor="walking:False legs_end:!blocked"):
         """Sets out near the doorway, once it expects to pass it."""
         if float(passed) > LIKELY:
             motor.walk(self.speed)
@@ -522,12 +549,14 @@ class Person(ACTR):
     def steer_towards(self, far, left, deep):
         """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees], with free depth behind it [m].
 
-        In the last step it keeps its course. Before, it waits for an object that approaches and is as near to the doorway as the walker; it
-        does not wait for objects that do not move. An object in front of the doorway has a negative depth. Each time the object has come
-        nearer, the patience starts again.
+        In the last step it keeps its course. Before, it waits for an object that approaches and is as near to the doorway as the walker,
+        unless they share the doorway; it does not wait for objects that do not move. An object in front of the doorway has a negative depth.
+        Each time the object has come nearer, the patience starts again. Somebody has been met if the depth became smaller by a step.
         """
         now, waits = self.now(), self.b_goal["do"] == "wait"
         obstructed = False
+        if self.nearest < inf and 0 < deep < min(NOTICE, self.nearest - self.step):
+            self.met = True
         if self.obstacle is not None:
             distance, direction, noticed, what = self.obstacle
             obstructed = now - noticed < FORGET and distance < far - BEFORE
@@ -535,16 +564,21 @@ class Person(ACTR):
             if obstructed and in_front and what not in (self.b_door["left"], self.b_door["right"]):
                 deep = distance - far
         comes = False
-        if far < YIELD * self.step and deep < far:
+        if (waits or far < YIELD * self.step) and deep < far:
             self.taken = now
             comes = deep < self.nearest - BEFORE
         elif now - self.taken > FORGET:
             self.nearest = deep if self.nearest == inf else max(self.nearest, deep)
         if comes:
             self.nearest, self.patient_until = deep, now + self.random.uniform(*PATIENCE)
-        free = now > min(self.patient_until, self.taken + FORGET) if waits else far < self.step or not (comes and self.motor.walking)
+        if waits:
+            free = now > min(self.patient_until, self.taken + FORGET)
+        else:
+            free = far < self.step or self.shares or not (comes and (self.motor.walking or self.met))
         elapsed, self.seen_at = min(now - self.seen_at, LONGEST), now
         self.b_door.modify(far=far, direction=left, near=far < STEPS * self.step, free=free)
+        if self.met:
+            self.b_door.modify(close=far + deep < YIELD * self.step)
         if waits:
             return
         if far < self.step:
@@ -562,7 +596,8 @@ class Person(ACTR):
         """Returns where the doorway must be, by its own movement since it knew it last: distance [m] and direction [degrees]."""
         far, left = float(self.b_door["far"]), radians(float(self.b_door["direction"]))
         elapsed = self.now() - self.seen_at
-        ahead = far * cos(left) - (self.forward() * elapsed if self.motor.walking else 0)
+        forward = -self.speed if self.b_goal["do"] == "wait" else self.forward()
+        ahead = far * cos(left) - (forward * elapsed if self.motor.walking else 0)
         aside = far * sin(left)
         return hypot(ahead, aside), degrees(atan2(aside, ahead) - self.rate * elapsed)
 
@@ -582,12 +617,25 @@ class Person(ACTR):
         self.turn_course(0.0)
         b_goal.set("do:wait")
 
-    def go_on(b_goal="do:wait", b_door="free:True"):
-        """Looks for a doorway again, and plans again: the way is free, or its patience is over."""
+    def back_off(b_goal="do:wait", b_door="close:True", motor="walking:False"):
+        """Walks backwards: somebody comes near."""
+        motor.walk(-self.speed)
+
+    def end_backing_off(b_goal="do:wait", b_door="close:False", motor="walking:True"):
+        motor.stop()
+
+    def go_on(b_goal="do:wait", b_door="free:True left:?left right:?right"):
+        """Looks for the doorway again, and plans again: the way is free, or its patience is over."""
+        if self.motor.walking:
+            motor.stop()
         for buffer in (b_course, b_door, b_plan, b_imagined, b_DM, b_experience):
             buffer.clear()
         self.costs = {}
-        b_goal.set("do:look")
+        if self.met:  # a gap beside somebody is no doorway
+            vision.request(DOOR, left=left, right=right)
+            b_goal.set("do:start")
+        else:
+            b_goal.set("do:look")
 
     def commit(b_goal="do:walk", b_door="width:?wide near:True free:True", b_plan="turn:?turn width:?width passed:?passed"):
         self.committed = {"seen": float(wide), "felt": float(width), "speed": self.speed}
