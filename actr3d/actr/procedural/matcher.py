@@ -171,6 +171,15 @@ Maker = Callable[[Sequence[Buffer], Sequence[Callable[[], Any]], Sequence[tuple[
 
 def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
     """Returns a function that reads a slot of an object as text, in the fastest way for that kind of object."""
+    if reads_chunk(target, key):
+
+        def read_slot() -> str | Missing:
+            chunk = target.chunk
+            value = MISSING if chunk is None else chunk.get(key, MISSING)
+            return value if type(value) is str or value is MISSING else as_text(value)
+
+        return read_slot
+
     if isinstance(target, Model) and type(target).__getitem__ is Model.__getitem__ and isinstance(key, str) and "." not in key:
 
         def read_attribute() -> str | Missing:
