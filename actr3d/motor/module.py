@@ -546,9 +546,12 @@ class Motor(WithParameters, Port):
             self._end(ended)
             for key in [key for key, _ in over if key in self._under_way]:
                 self._halt([key], self._under_way[key].site, dict(over)[key])
-        self._remember(limbs, ended)
-        if any(movement.begun for movement in self._under_way.values()):
-            self._ask(by_itself=True)
+        if self._ended or ended or self._further or self._wanted or self._waiting:
+            self._remember(limbs, ended)
+        for movement in self._under_way.values():
+            if movement.begun:
+                self._ask(by_itself=True)
+                break
 
     def _resized(self, reading: Proprioception) -> bool:
         """Returns whether the size of the body has changed since it was last felt, such as after a grasp."""
@@ -557,8 +560,9 @@ class Motor(WithParameters, Port):
     def _update(self, limbs: Limbs, reading: Proprioception, felt: Mapping[str, float]) -> None:
         """Updates the felt positions of some joints, and the felt size of the body."""
         draw = self.random.gauss
-        noise = {"hinge": radians(self.angle_noise), "slide": self.size_noise}
-        felt = {joint: at + draw(0, sd) if (sd := noise[limbs.joints[joint].kind]) else at for joint, at in felt.items()}
+        if self.angle_noise or self.size_noise:
+            noise = {"hinge": radians(self.angle_noise), "slide": self.size_noise}
+            felt = {joint: at + draw(0, sd) if (sd := noise[limbs.joints[joint].kind]) else at for joint, at in felt.items()}
         schema = self._schema
         if schema is None:
             schema = self._schema = BodySchema(
