@@ -15,7 +15,6 @@ from actr3d.errors import WorldError, did_you_mean
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
 from actr3d.world.model_changes import Changes, ModelChanges
-from actr3d.world.motion_commands import MotionCommands
 from actr3d.world.objects import Objects, Pushes, too_deep
 from actr3d.world.physics import Physics
 from actr3d.world.scene import Scene
