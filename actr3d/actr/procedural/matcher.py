@@ -361,7 +361,8 @@ class Observed:
         """The last results of functions, by the production's name and the condition's number."""
         self.used = False
         """Whether productions read anything of that kind."""
-        self._watched: dict[str, tuple[Any, Any]] = {}
+        self._watched: dict[str, tuple[Any, Any, bool]] = {}
+        """By label: an object, a slot, and whether the trace records changes of this slot while its value is immutable."""
         self._reported: dict[str, Any] = {}
         self._listener: object = None
 
@@ -369,7 +370,7 @@ class Observed:
         """Adds one reading, and returns its label; a key of None means whether the target is empty."""
         label = f"{name}.{key}"
         if not (hasattr(target, "chunk") if key is None else reads_chunk(target, key)):
-            self._watched[label] = target, key
+            self._watched[label] = target, key, records_changes(target, key)
             self.used = True
         return label
 
@@ -390,8 +391,8 @@ class Observed:
     def everything(self) -> dict[str, Any]:
         """Returns everything that productions read, now or last, in the form of `news`."""
         known: dict[str, Any] = {}
-        for label, (target, key) in self._watched.items():
-            if not (records_changes(target, key) and _lasts(target, key)):
+        for label, (target, key, recorded) in self._watched.items():
+            if not (recorded and _lasts(target, key)):
                 value = self._reading(label, target, key)
                 if value is not UNKNOWN:
                     known[label] = value
