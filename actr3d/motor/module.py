@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from math import copysign, radians
+from operator import attrgetter
 from typing import Annotated, Any
 
 from annotated_types import Ge, Gt, Lt
@@ -37,6 +38,7 @@ Grid = Annotated[float, Ge(FINEST), Lt(HUGE)]
 
 SIZES = ("width", "depth", "height", "middle")
 """The felt sizes of the body."""
+_sizes_of: Callable[[Proprioception], tuple[float, ...]] = attrgetter(*SIZES)
 
 _NOTHING = object()
 
@@ -114,7 +116,7 @@ class Motor(WithParameters, Port):
         self._wanted: list[str] = []
         self._further: Sequence[str] = ()
         self._positions: tuple[float, ...] = ()
-        self._box: dict[str, float] = {}
+        self._sizes: tuple[float, ...] = ()
         self._felt_us = 0
         self.busy = False
         self.error = False
@@ -546,19 +548,23 @@ class Motor(WithParameters, Port):
             self._end(ended)
             for key in [key for key, _ in over if key in self._under_way]:
                 self._halt([key], self._under_way[key].site, dict(over)[key])
-        self._remember(limbs, ended)
-        if any(movement.begun for movement in self._under_way.values()):
-            self._ask(by_itself=True)
+        if self._ended or ended or self._further or self._wanted or self._waiting:
+            self._remember(limbs, ended)
+        for movement in self._under_way.values():
+            if movement.begun:
+                self._ask(by_itself=True)
+                break
 
     def _resized(self, reading: Proprioception) -> bool:
         """Returns whether the size of the body has changed since it was last felt, such as after a grasp."""
-        return any(abs(getattr(reading, name) - size) > self.size_grid for name, size in self._box.items())
+        return any(abs(now - before) > self.size_grid for now, before in zip(_sizes_of(reading), self._sizes, strict=True))
 
     def _update(self, limbs: Limbs, reading: Proprioception, felt: Mapping[str, float]) -> None:
         """Updates the felt positions of some joints, and the felt size of the body."""
         draw = self.random.gauss
-        noise = {"hinge": radians(self.angle_noise), "slide": self.size_noise}
-        felt = {joint: at + draw(0, sd) if (sd := noise[limbs.joints[joint].kind]) else at for joint, at in felt.items()}
+        if self.angle_noise or self.size_noise:
+            noise = {"hinge": radians(self.angle_noise), "slide": self.size_noise}
+            felt = {joint: at + draw(0, sd) if (sd := noise[limbs.joints[joint].kind]) else at for joint, at in felt.items()}
         schema = self._schema
         if schema is None:
             schema = self._schema = BodySchema(
@@ -574,8 +580,8 @@ class Motor(WithParameters, Port):
             new = schema.feel(felt)
         for joint in new:
             self._become(limbs.shown_as[joint], schema.at[joint])
-        self._box = {name: getattr(reading, name) for name in SIZES}
-        for name, size in self._box.items():
+        self._sizes = _sizes_of(reading)
+        for name, size in zip(SIZES, self._sizes, strict=True):
             self._become(name, schema.size(size + (draw(0, self.size_noise) if self.size_noise else 0.0)))
         self._further = schema.extremes(new)
 

@@ -162,12 +162,8 @@ class Simulation:
             Exception: What an agent raises.
         """
         self._enter()
-        if self._submitted:
-            self.carry_out_submitted()
-        if not self.ticks:
-            self._notify_limits(0)
         with self._random:
-            self.timeline.tick()
+            self._tick()
 
     def tock(self) -> None:
         """Carries out the commands to the bodies, simulates the physics of the same period, and reads the sensors.
@@ -179,7 +175,19 @@ class Simulation:
         """
         self._enter()
         with self._random:
-            self.timeline.tock()
+            self._tock()
+
+    def _tick(self) -> None:
+        """Does what `tick` does, inside a call: with the random numbers of the agents, and after the checks of `_enter`."""
+        if self._submitted:
+            self.carry_out_submitted()
+        if not self.timeline.ticks:
+            self._notify_limits(0)
+        self.timeline.tick()
+
+    def _tock(self) -> None:
+        """Does what `tock` does, inside a call."""
+        self.timeline.tock()
         self._observers.show(self._glimpse)
         self.event_log.check()
         self._notify_limits(self._period)
@@ -199,8 +207,8 @@ class Simulation:
         """
         with self._call():
             for _ in range(count_of(n, "step(n)")):
-                self.tick()
-                self.tock()
+                self._tick()
+                self._tock()
 
     def advance(self, most: int) -> Literal["stop", "done"] | None:
         """Runs up to `most` ticks, at least one unless `most` is 0; stops when the run is over, and returns `over`.
@@ -211,8 +219,8 @@ class Simulation:
         """
         with self._call():
             for _ in range(count_of(most, "advance(most)")):
-                self.tick()
-                self.tock()
+                self._tick()
+                self._tock()
                 if self.over is not None:
                     break
         return self.over
@@ -260,8 +268,8 @@ class Simulation:
             if self.ticks > begin and not lockstep.may_tick():
                 lockstep.cut()
                 return "limits"
-            self.tick()
-            self.tock()
+            self._tick()
+            self._tock()
             clock.tick()
             if agents.stopped:
                 return "stop"

@@ -56,13 +56,13 @@ class Base:
     def speed(self) -> tuple[float, float, float]:
         """Of a planar base: (forward, left, turn) in its own frame [m/s] [m/s] [rad/s]."""
         x, y, turn = self._qvel[self.v : self.v + 3].tolist()
-        c, s = math.cos(self.place[2]), math.sin(self.place[2])
+        c, s = math.cos(self.heading), math.sin(self.heading)
         return (c * x + s * y, c * y - s * x, turn)
 
     @speed.setter
     def speed(self, value: tuple[float, float, float]) -> None:
         forward, left, turn = value
-        c, s = math.cos(self.place[2]), math.sin(self.place[2])
+        c, s = math.cos(self.heading), math.sin(self.heading)
         self._qvel[self.v : self.v + 3] = (c * forward - s * left, s * forward + c * left, turn)
 
     def put(self, x: float, y: float, heading: float | None) -> None:

@@ -126,6 +126,7 @@ class Body:
         if self.anatomy.gait is not None:
             cycle = GaitCycle(*self.anatomy.gait, dofs.joints, (seed, *self.name.encode()))
         self.hold = PostureHold(physics, self.members, dofs, self.base, self.contacts, cycle)
+        self._places = np.array([joint.q for joint in self.joints.values()], dtype=np.intp)
         self._driven = [(joint, self.hold.row(joint.name)) for joint in self.joints.values() if joint.driven]
         steering = self.anatomy.steering
         self.motion = MotionCommands(physics, self.root, self.base, self.joints, self.hold, steering, self.controls.get("brake"))
@@ -211,6 +212,10 @@ class Body:
             self.noise.restore(noise)
             self.touched = touched
             self._restore_senses(senses)
+
+    def positions(self) -> tuple[float, ...]:
+        """Returns the positions of its joints, in their order [rad] or [m]."""
+        return tuple(self.physics.mj_data.qpos[self._places].tolist())
 
     def moving(self) -> tuple[str, ...]:
         """Returns the joints whose commanded speed is not 0, whether they really move or not."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from mujoco import MjData, MjModel, mjtGeom
@@ -20,8 +20,7 @@ NOTHING = np.array(((math.inf,) * 3, (-math.inf,) * 3))
 """The least and greatest coordinates of a box around nothing."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class BoundingBox:
+class BoundingBox(NamedTuple):
     """The smallest box with sides along a frame's axes."""
 
     lower: Point

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 from mujoco import MjModel, mjtJoint, mjtTrn
 
 from actr3d.world.physics import Physics
@@ -85,10 +86,10 @@ class Joint:
 
 def _servo_of(model: MjModel, joint: int) -> int | None:
     """Returns a joint's servo: an actuator whose force falls with the speed and not with the position."""
-    for number in range(int(model.nactuator)):
+    moves = (model.actuator_trntype == int(mjtTrn.mjTRN_JOINT)) & (model.actuator_trnid[:, 0] == joint)
+    for number in np.flatnonzero(moves).tolist():
         actuator: Any = model.actuator(number)
-        moves = model.actuator_trntype[number] == int(mjtTrn.mjTRN_JOINT) and model.actuator_trnid[number, 0] == joint
         gain, gear = actuator.gainprm[0], model.actuator_gear[number, 0]
-        if moves and gain > 0 and gear != 0 and actuator.biasprm[2] == -gain and actuator.biasprm[1] == 0:
+        if gain > 0 and gear != 0 and actuator.biasprm[2] == -gain and actuator.biasprm[1] == 0:
             return number
     return None

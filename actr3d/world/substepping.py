@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, cast
 
 import mujoco
@@ -66,8 +66,12 @@ class Substepping:
         for start in range(0, steps, self._tick):
             yield min(self._tick, steps - start)
 
-    def steps(self, steps: int) -> Iterator[None]:
-        """Advances the physics by whole steps, divided into parts where a body is fast; yields after each part.
+    def step(self, steps: int, watchers: Sequence[Callable[[], None]]) -> None:
+        """Advances the physics by whole steps, divided into parts where a body is fast.
+
+        Args:
+            steps: Their number.
+            watchers: Called after each part.
 
         Raises:
             WorldError: If a body is faster than the greatest number of parts permits: the physics has diverged.
@@ -88,7 +92,8 @@ class Substepping:
                         if data.ncon:
                             for hold in self._holds:
                                 hold.after_part()
-                        yield
+                        for watcher in watchers:
+                            watcher()
                 finally:
                     if parts > 1:
                         model.opt.timestep = self._whole

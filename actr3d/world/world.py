@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,12 +15,11 @@ from actr3d.errors import WorldError, alternatives, did_you_mean
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import Body, BodyState
 from actr3d.world.model_changes import Changes, ModelChanges
-from actr3d.world.motion_commands import MotionCommands
 from actr3d.world.objects import Objects, Pushes, too_deep
 from actr3d.world.physics import Physics
 from actr3d.world.scene import Scene
 from actr3d.world.scene_objects import Aperture
-from actr3d.world.sensors.touch import step_and_feel
+from actr3d.world.sensors.touch import feel_steps
 from actr3d.world.substepping import Substepping
 from actr3d.world.velocity_servo import fit_servos
 
@@ -129,26 +128,31 @@ class World:
         self._check_unobserved("step")
         if count == 0:
             return
-        commands = [body.motion for body in self.bodies.values() if body.motion]
         feeling = [body for body in self.bodies.values() if body.touched is not None]
-        parts = self._in_stretches(count, commands) if commands or self._closing else self._substepping.steps(count)
-        parts = self._watched(parts) if self.watchers else parts
         if feeling:
-            step_and_feel(parts, feeling)
+            with feel_steps(feeling) as feel:
+                self._step(count, [*self.watchers, feel])
         else:
-            for _ in parts:
-                pass
+            self._step(count, self.watchers)
         self.physics.steps += count
         self.changed()
         if self.physics.diverged:
             culprit = self.physics.diverged_object()
             raise WorldError(f"the physics diverged near {seconds(self.time)} s, at '{culprit}': forces or speeds without bounds")
 
-    def _in_stretches(self, steps: int, commands: list[MotionCommands]) -> Iterator[None]:
-        """Makes steps, and between them, every 10 ms, closes apertures and corrects the speeds of unfinished commands.
+    def _step(self, steps: int, watchers: Sequence[Callable[[], None]]) -> None:
+        """Makes steps; with unfinished commands or closing apertures, corrects the speeds and closes these between them, every 10 ms.
 
         A brake is corrected so often because with a constant force it would drive the car backwards.
+
+        Args:
+            steps: Their number.
+            watchers: Called after every physics step, or part of one.
         """
+        commands = [body.motion for body in self.bodies.values() if body.motion]
+        if not (commands or self._closing):
+            self._substepping.step(steps, watchers)
+            return
         for count in self._substepping.stretches(steps):
             for aperture in self._closing:
                 width = self.aperture_width(aperture.name)
@@ -156,16 +160,10 @@ class World:
                     self._slide(aperture.name, max(0.0, width - aperture.closing * count * self.scene.timestep))
             for motion in commands:
                 motion.before_step(count * self.scene.timestep)
-            yield from self._substepping.steps(count)
+            self._substepping.step(count, watchers)
             for motion in commands:
                 motion.after_step()
                 self.changed()
-
-    def _watched(self, parts: Iterator[None]) -> Iterator[None]:
-        for _ in parts:
-            for watcher in self.watchers:
-                watcher()
-            yield
 
     def _check_unobserved(self, what: str) -> None:
         if self.physics.observed:

@@ -34,6 +34,8 @@ def with_property_setters(inherited: Callable[[Any, str, Any], None]) -> Callabl
     def set_with_properties(self: Any, key: str, value: Any) -> None:
         if key in self._setters:
             object.__setattr__(self, key, value)
+        elif key[0] == "_":  # as `Model` does, and fast
+            self.__dict__[key] = value
         else:
             inherited(self, key, value)
 

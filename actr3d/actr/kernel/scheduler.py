@@ -129,6 +129,9 @@ class Scheduler:
     def call_after(self, delay: float, call: Callable[..., Any], args: Sequence[Any] = ()) -> Call:
         """Schedules a plain call of the library itself, which returns None; its delay is rounded independently."""
         event = Call(call, args)
+        if delay == 0:
+            self.queue.push(self.now_us, event)
+            return event
         kept, self.remainders = self.remainders, NO_REMAINDERS
         self.put(event, delay)
         self.remainders = kept

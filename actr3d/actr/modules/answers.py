@@ -11,7 +11,10 @@ from actr3d.weak_cache import weak_cache
 
 
 @weak_cache
-def _traced_fields(kind: type[Any]) -> tuple[str, ...]:
+def _traced_fields(kind: type[Any]) -> tuple[str, ...] | None:
+    """Returns the fields of a dataclass that become plain values; None if it is none, or has a summary instead."""
+    if hasattr(kind, "summary") or not is_dataclass(kind):
+        return None
     return tuple(field.name for field in fields(kind) if "not_traced" not in field.metadata)
 
 
@@ -33,11 +36,12 @@ def plain_answer(answer: Any) -> Any:
         return answer
     if kind is tuple or kind is list:  # the most frequent, and without the slow tests below
         return _plain_values(answer)
+    names = _traced_fields(kind)
+    if names is not None:
+        values = [(name, getattr(answer, name)) for name in names]
+        return {name: value if type(value) in PLAIN_TYPES else plain_answer(value) for name, value in values}
     if hasattr(answer, "summary"):
         return plain_answer(answer.summary())
-    if is_dataclass(answer):
-        values = [(name, getattr(answer, name)) for name in _traced_fields(kind)]
-        return {name: value if type(value) in PLAIN_TYPES else plain_answer(value) for name, value in values}
     if isinstance(answer, Mapping):
         items = cast("Mapping[Any, Any]", answer).items()
         return {key if isinstance(key, str) else str(plain_answer(key)): plain_answer(value) for key, value in items}

@@ -154,7 +154,10 @@ class Port(Model):
 
     def _find_embodiment(self) -> Embodiment | None:
         """Returns the connection of the agent to a body; None for an agent without one."""
-        return next((part.__dict__["_embodiment"] for part in lineage(self) if "_embodiment" in part.__dict__), None)
+        for part in lineage(self):
+            if "_embodiment" in part.__dict__:
+                return part.__dict__["_embodiment"]
+        return None
 
     def _take(self, request: Request, answer: Any) -> None:
         """Receives an answer as an event of the agent, and wakes the generators that wait for it."""

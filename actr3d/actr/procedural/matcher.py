@@ -172,6 +172,15 @@ Maker = Callable[[Sequence[Buffer], Sequence[Callable[[], Any]], Sequence[tuple[
 
 def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
     """Returns a function that reads a slot of an object as text, in the fastest way for that kind of object."""
+    if reads_chunk(target, key):
+
+        def read_slot() -> str | Missing:
+            chunk = target.chunk
+            value = MISSING if chunk is None else chunk.get(key, MISSING)
+            return value if type(value) is str or value is MISSING else as_text(value)
+
+        return read_slot
+
     if isinstance(target, Model) and type(target).__getitem__ is Model.__getitem__ and isinstance(key, str) and "." not in key:
 
         def read_attribute() -> str | Missing:
@@ -353,7 +362,8 @@ class Observed:
         """The last results of functions, by the production's name and the condition's number."""
         self.used = False
         """Whether productions read anything of that kind."""
-        self._watched: dict[str, tuple[Any, Any]] = {}
+        self._watched: dict[str, tuple[Any, Any, bool]] = {}
+        """By label: an object, a slot, and whether the trace records changes of this slot while its value is immutable."""
         self._reported: dict[str, Any] = {}
         self._listener: object = None
 
@@ -361,7 +371,7 @@ class Observed:
         """Adds one reading, and returns its label; a key of None means whether the target is empty."""
         label = f"{name}.{key}"
         if not (hasattr(target, "chunk") if key is None else reads_chunk(target, key)):
-            self._watched[label] = target, key
+            self._watched[label] = target, key, records_changes(target, key)
             self.used = True
         return label
 
@@ -382,8 +392,8 @@ class Observed:
     def everything(self) -> dict[str, Any]:
         """Returns everything that productions read, now or last, in the form of `news`."""
         known: dict[str, Any] = {}
-        for label, (target, key) in self._watched.items():
-            if not (records_changes(target, key) and _lasts(target, key)):
+        for label, (target, key, recorded) in self._watched.items():
+            if not (recorded and _lasts(target, key)):
                 value = self._reading(label, target, key)
                 if value is not UNKNOWN:
                     known[label] = value

@@ -65,12 +65,11 @@ def bounding_box(body: Body, frame: str = "body") -> Size:
 @sensor
 def proprioception(body: Body) -> Proprioception:
     """Senses at once the positions of all joints, what still moves, and width, depth and height of the body in this posture."""
-    positions: list[float] = body.physics.mj_data.qpos.tolist()
     walks = body.anatomy.walking_servos is not None
     box = body.bounding_box("body")
     depth, width, height = box.size
     return Proprioception(
-        positions=tuple([positions[joint.q] for joint in body.joints.values()]),
+        positions=body.positions(),
         moving=body.moving(),
         speed=body.base.speed if walks else (0.0, 0.0, 0.0),
         walking=walks and body.hold.base_command != (0.0, 0.0, 0.0),

@@ -6,7 +6,8 @@ that it also reports a blow that ends within the tick. The first reading is of t
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Generator, Iterable
+from contextlib import contextmanager
 
 from actr3d.world.body import Body, sensor
 from actr3d.world.contacts import Touch
@@ -26,19 +27,25 @@ def present(body: Body) -> tuple[Touch, ...]:
     return body.contacts.touches()
 
 
-def step_and_feel(steps: Iterable[None], bodies: Iterable[Body]) -> None:
-    """Makes single steps of the physics, and gives some bodies the peak force of each of their touches.
+@contextmanager
+def feel_steps(bodies: Iterable[Body]) -> Generator[Callable[[], None]]:
+    """Gives some bodies the peak force of each of their touches in the steps that the block makes.
 
     Args:
-        steps: Makes the next step with each item.
         bodies: Those that feel, all of one world.
+
+    Yields:
+        What the block calls after each step.
     """
     felt: list[tuple[Body, dict[tuple[str, str], Touch]]] = [(body, {}) for body in bodies]
-    for _ in steps:
+
+    def feel() -> None:
         for body, hardest in felt:
             for touch in body.contacts.touches():
                 known = hardest.get((touch.part, touch.other))
                 if known is None or touch.force > known.force:
                     hardest[touch.part, touch.other] = touch
+
+    yield feel
     for body, hardest in felt:
         body.touched = tuple(touch for _, touch in sorted(hardest.items()))
