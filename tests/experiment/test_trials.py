@@ -384,7 +384,7 @@ def test_a_measure_that_only_a_long_run_shows_ends_the_experiment_with_its_first
     [
         pytest.param("'half'", "math", "counts.py:7: measure 'half': must be a number, {} (got <module 'math'", id="a module"),
         pytest.param(
-            "", "[1]", "counts.py:5: measure 'half': must be a number, {} (got [1]); of a list, give Design.measures", id="a list"
+            "", "[1]", "counts.py:11: measure 'half': must be a number, {} (got [1]); of a list, give Design.measures", id="a list"
         ),
         pytest.param("'half', 'rt'", "{'a': 1}", "counts.py:7: measure 'half': must be a number, {} (got {'a': 1})", id="a dict"),
     ],
