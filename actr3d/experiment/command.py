@@ -23,7 +23,7 @@ from rich.text import Text
 
 from actr3d.errors import ExperimentError, SettingError
 from actr3d.experiment.design import OWN_COLUMNS
-from actr3d.experiment.measures import check_measures, check_row, try_measures
+from actr3d.experiment.measures import NOTHING_LEFT, check_measures, check_row, ended_early, try_measures
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import SPECIFICATION, Store, only_process, summary, write_whole
 from actr3d.experiment.table import export
@@ -108,6 +108,8 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     out.line(
         f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / (os.cpu_count() or 1):,.0f} s on this computer"
     )
+    if ended_early((first["end"], second["end"])):
+        out.line("its first trials ", (NOTHING_LEFT, "bold"))
     for number, error in failed:
         out.line(f"trial {number} failed: {error}")
     return 1 if failed else 0

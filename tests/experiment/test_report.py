@@ -10,6 +10,7 @@ import shutil
 import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -302,6 +303,16 @@ def test_failures_and_missing_trials_are_said_plainly(tmp_path: Path) -> None:
     assert "3 of 32 trials failed" in text
     assert "ValueError: &lt;b&gt;no&lt;/b&gt;" in text
     assert "The design names no human data" in text
+
+
+def test_trials_that_all_ended_with_nothing_left_to_do_are_a_caution(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, participants=10, trials=1)
+    results = read_results(store_rows(tmp_path / "out", str(path), count))
+    text = "All trials ended because no agent had anything left to do (`done`). A body that only moves on does not keep a trial going"
+    all_done = results.rows.assign(end="done")
+    assert text in cautions(what_was_run(replace(results, rows=all_done)).parts)
+    one_stopped = results.rows.assign(end=["stop", *all_done["end"][1:]])
+    assert cautions(what_was_run(replace(results, rows=one_stopped)).parts) == ""
 
 
 def test_one_participant_is_described_and_not_tested(tmp_path: Path) -> None:

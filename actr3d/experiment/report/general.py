@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from actr3d.experiment.human_data import HumanData, plain_text
+from actr3d.experiment.measures import NOTHING_LEFT, ended_early
 from actr3d.experiment.report.beside import Beside, factors_of, fit_to, matched, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
@@ -60,6 +61,8 @@ def cautions(results: Results) -> list[Caution]:
             f"{cut:,} of {done:,} trials were stopped at their limit of {results.design.until:g} simulated seconds, `until` in the design. "
             "Their measures are those of that moment."
         )
+    if len(results.rows) and ended_early(results.rows["end"]):
+        found.append(f"All trials {NOTHING_LEFT}")
     least = min(group.participants for group in results.design.groups.values())
     if least < FEWEST:
         many = "one participant" if least == 1 else f"{least} participants"
