@@ -23,6 +23,7 @@ from rich.text import Text
 
 from actr3d.errors import ExperimentError, SettingError
 from actr3d.experiment.design import OWN_COLUMNS
+from actr3d.experiment.human_data import plain_text
 from actr3d.experiment.measures import NOTHING_LEFT, check_measures, check_row, ended_early, try_measures
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import SPECIFICATION, Store, only_process, summary, write_whole
@@ -259,7 +260,10 @@ def _effects(fit: Agreement, changed: Mapping[str, Agreement]) -> list[str]:
     """Returns lines that show the effect of each change of the model: for each mean the target, the fitted model, and the changed ones."""
 
     def means(of: Agreement) -> dict[str, dict[str, Any]]:
-        return {", ".join(f"{name} {level}" for name, level in row.items() if name not in ("target", "model")): row for row in of.rows}
+        return {
+            ", ".join(f"{name} {plain_text(level)}" for name, level in row.items() if name not in ("target", "model")): row
+            for row in of.rows
+        }
 
     if not changed:
         return []
