@@ -162,6 +162,40 @@ def test_the_duration_of_a_trial_is_asked_each_time_the_form_is_shown(pages: Cal
         page.get_by_role("button", name="Experiments", exact=True).click()
 
 
+def test_the_duration_of_a_trial_is_measured_for_the_values_that_were_changed(pages: Callable[..., Page], design: str) -> None:
+    page = pages(design.partition(":")[0], tab="experiments")
+    measured: list[dict[str, Any]] = []
+
+    def answer(route: Route) -> None:
+        asked = json.loads(route.request.post_data or "")
+        if not asked.pop("trial", False):
+            return route.continue_()
+        measured.append(asked.get("values", {}))
+        return route.fulfill(
+            json={"seconds_a_trial": 4.0 if measured[-1] else 0.5, "error": "ValueError: no" if measured[-1].get("mode") else ""}
+        )
+
+    page.route("**/api/designs/check", answer)
+    page.get_by_role("button", name="New experiment").click()
+    page.get_by_label("Design", exact=True).select_option(design)
+    foot = page.locator(".foot")
+    expect(foot).to_contain_text("0.50 s a trial")
+    page.get_by_label("Levels of n").fill("9")
+    expect(foot).to_contain_text("4.00 s a trial")
+    page.get_by_label("trials a combination").fill("3")
+    expect(foot).to_contain_text("6 trials")
+    expect(foot).to_contain_text("4.00 s a trial")  # which other numbers do not change
+    page.get_by_label("Set another parameter").select_option("mode")
+    page.get_by_label("Value of mode").fill("fail")
+    expect(page.get_by_role("alert")).to_have_text("A trial fails: ValueError: no")
+    page.get_by_role("button", name="Remove mode").click()
+    page.get_by_role("button", name="Reset n").click()
+    expect(foot).to_contain_text("0.50 s a trial")
+    expect(page.get_by_role("alert")).to_have_count(0)
+    asked = [one for one in measured if one.get("mode") != "count"]  # its default, if the user pauses there
+    assert asked == [{}, {"n": [9]}, {"n": [9], "mode": "fail"}]
+
+
 TIMERS = """async () => {
   const { follow, shown } = await part("experiments/list.js");
   const later = new Set();
