@@ -288,3 +288,43 @@ def test_of_trials_that_have_all_failed_there_is_no_figure(blank: Page) -> None:
         "All 4 finished trials have failed: there is nothing to draw. The table of trials has the errors."
     )
     expect(blank.locator("#drawn canvas")).to_have_count(0)
+
+
+TWO_EXPERIMENTS = """async () => {
+    const { html, render } = await part("vendor/preact.js");
+    const { Figure } = await part("experiments/figure.js");
+    const { experiments, shown, where } = await part("experiments/list.js");
+    const column = (name, role) => ({ name, role, type: "real", unit: null, meaning: "" });
+    const columns = [column("n", "value"), column("rt", "measure"), column("wall_s", "own")];
+    const one = (id, columns) => ({ id, name: id, done: 4, failures: 0, made: 0, total: 4, columns });
+    experiments.value = [one("mine", ["n", "rt"]), one("theirs", ["n", "rt"]), one("others", ["n", "luck"])];
+    const place = document.body.appendChild(Object.assign(document.createElement("div"), { id: "drawn" }));
+    place.style.cssText = "display: flex; flex-direction: column; width: 600px; height: 400px";
+    render(html`<${Figure} experiment=${experiments.value[0]} facts=${{ factors: { n: [1, 2] } }} columns=${columns} />`, place);
+    window.chosen = () => ({ shown: shown.value, where: where.value });
+}"""
+
+
+def test_another_experiment_is_drawn_beside_the_one_that_is_shown(blank: Page) -> None:
+    def answer(route: Route) -> None:
+        mean = 0.2 if "/theirs/" in route.request.url else 0.1
+        points = [{"at": [n], "mean": mean * n, "error": None, "participants": 1, "trials": 2} for n in (1, 2)]
+        route.fulfill(json={"x": "n", "by": [], "measure": "rt", "unit": "s", "columns": [], "points": points})
+
+    blank.route("**/means?*", answer)
+    blank.evaluate(TWO_EXPERIMENTS)
+    points, legend = blank.locator("#drawn .point"), blank.locator("#drawn .legend")
+    expect(points).to_have_count(2)
+    expect(legend).to_have_text("")
+    choice = blank.get_by_label("Compare with")
+    expect(choice.locator("option")).to_have_count(2)  # without the experiment that has no such measure
+    choice.select_option("theirs")
+    expect(points).to_have_count(4)
+    expect(points.nth(0)).to_have_attribute("aria-label", re.compile(r"^Trials of n 1: 0\.1\d* s \(1 participant, 2 trials\)$"))
+    expect(points.nth(3)).to_have_attribute("aria-label", re.compile(r"^Trials of n 2 · the other experiment: 0\.4\d* s "))
+    expect(legend.locator("canvas")).to_have_count(2)
+    expect(legend).to_contain_text(re.compile("mine .*theirs "))
+    points.nth(3).press("Enter")
+    assert blank.evaluate("chosen()") == {"shown": "theirs", "where": {"n": 2}}
+    choice.select_option("")
+    expect(points).to_have_count(2)
