@@ -25,7 +25,7 @@ from actr3d.experiment.fit import load_target
 from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of
 from actr3d.experiment.report.command import write_report
-from actr3d.experiment.report.figures import LOOKS, legend_columns, svg
+from actr3d.experiment.report.figures import LOOKS, Curve, Pane, curves_figure, legend_columns, svg
 from actr3d.experiment.report.general import comparison_section, what_was_run
 from actr3d.experiment.report.libraries import pingouin
 from actr3d.experiment.report.parts import Caution, Plot, Table
@@ -303,6 +303,24 @@ def test_failures_and_missing_trials_are_said_plainly(tmp_path: Path) -> None:
     assert "3 of 32 trials failed" in text
     assert "ValueError: &lt;b&gt;no&lt;/b&gt;" in text
     assert "The design names no human data" in text
+
+
+def test_a_report_says_if_the_description_of_the_design_is_of_other_numbers(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path))
+    text = "The description is that of the design as it was written. This experiment has its own: --trials, n."
+    changed = read_results(store_rows(tmp_path / "changed", path, count, trials=1, values={"n": [1, 2]}))
+    assert text in what_was_run(changed).parts
+    written = read_results(store_rows(tmp_path / "written", path, count))
+    assert not [part for part in what_was_run(written).parts if isinstance(part, str) and "has its own" in part]
+
+
+@pytest.mark.parametrize(("label", "marker"), [("small", "o"), ("", "D")])
+def test_a_legend_has_the_markers_that_are_drawn(label: str, marker: str) -> None:
+    curves = [Curve(label=label, source=who, look=look, x=[1, 2], y=[1, 2]) for who, look in (("model", "model"), ("people", "human"))]
+    figure = curves_figure([Pane(title="", curves=curves)], "x", "y")
+    assert [line.get_marker() for line in figure.axes[0].lines] == [marker] * 2
+    shown = {handle.get_label(): handle.get_marker() for handle in figure.legends[0].legend_handles}
+    assert (shown["model"], shown["people"]) == (marker, marker)
 
 
 def test_trials_that_all_ended_with_nothing_left_to_do_are_a_caution(tmp_path: Path) -> None:

@@ -42,7 +42,11 @@ def what_was_run(results: Results) -> Section:
     rows += [("versions", text) for text in results.versions]
     rows.append(("analysed with", versions()))
     table = Table(name="design", title="Design", frame=pd.DataFrame(rows, columns=["what", "value"]))
-    parts: list[str | Table | Plot | Caution] = [*(text for text in results.description.split("\n\n")[1:]), *cautions(results), table]
+    parts: list[str | Table | Plot | Caution] = [*results.description.split("\n\n")[1:]]
+    counts = {"participants": specification.participants, "trials": specification.trials}
+    if changed := [*(f"--{name}" for name, count in counts.items() if count is not None), *specification.values]:
+        parts.append(f"The description is that of the design as it was written. This experiment has its own: {', '.join(changed)}.")
+    parts += [*cautions(results), table]
     if len(results.failures):
         parts.append(failures(results))
     return Section(title="What was run", parts=parts)
