@@ -113,11 +113,13 @@ class DesignError(ExperimentError):
     Args:
         message: What is wrong.
         name: The name in the design that is wrong, such as that of a factor; it leads to the line.
+        group: The group whose value is wrong; empty for none.
     """
 
-    def __init__(self, message: str, name: str = "") -> None:
+    def __init__(self, message: str, name: str = "", group: str = "") -> None:
         super().__init__(message)
         self.name = name
+        self.group = group
 
 
 class ModelWarning(UserWarning):

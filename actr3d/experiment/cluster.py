@@ -10,7 +10,7 @@ import logging
 import os
 import threading
 import time
-from collections import Counter
+from collections import deque
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
@@ -44,8 +44,8 @@ AHEAD = 2
 PATIENCE = 30.0
 """The maximum time to wait for a scheduler [s]. Workers may come, and go, at any time."""
 KILLS = 3
-"""The number of times that Dask gives up a single trial, each time after several workers ended while running it, until it counts as
-failed."""
+"""The number of times that Dask gives up a trial that runs alone, each time after several workers ended while running it, until it counts
+as failed."""
 PACKAGES = ("dask", "distributed")
 """Packages whose versions the client and the workers must share; no row depends on them."""
 SETTINGS: dict[str, Any] = {
@@ -174,7 +174,8 @@ class _Run:
         self._versions = ", ".join(f"{name} {text}" for name, text in experiment_versions().items())
         self._done, self._failures, self._seconds, self._sure = done, failures, BATCH, sure
         self._waiting: dict[Any, list[int]] = {}
-        self._killed: Counter[int] = Counter()
+        self._suspects: deque[int] = deque()
+        self._killed: dict[int, int] = {}
         self._shown = 0
         self._finished: SimpleQueue[Any] = SimpleQueue()
 
@@ -202,7 +203,10 @@ class _Run:
         return len(workers)
 
     def _next_batches(self, numbers: Iterator[int]) -> Iterator[list[int]]:
-        """Yields batches until each worker has enough of them; the last ones are small, so that all workers end at about the same time."""
+        """Yields batches until each worker has enough of them; the last ones are small, so that all workers end at about the same time.
+
+        Once all other trials have finished, yields the suspects, one at a time.
+        """
         workers = self._workers()
         if workers != self._shown:
             self._report()
@@ -212,8 +216,10 @@ class _Run:
             left = len(self._experiment.design) - self._done - sum(map(len, self._waiting.values()))
             batch = list(islice(numbers, max(1, min(usual, left // most))))
             if not batch:
-                return
+                break
             yield batch
+        if self._suspects and not self._waiting:
+            yield [self._suspects.popleft()]
 
     def _submit(self, batch: list[int]) -> None:
         limit = self._experiment.design.limit
@@ -230,7 +236,7 @@ class _Run:
         try:
             batch = cast("Batch", future.result(timeout=PATIENCE))
         except KilledWorker:
-            self._split(numbers)
+            self._suspect(numbers)
             return
         except (CancelledError, TimeoutError, OSError):
             if self._client.status != "running":
@@ -256,22 +262,20 @@ class _Run:
         if batch.worker:
             self._seconds = sum(one.wall_s for one in rows) / len(rows)
 
-    def _split(self, numbers: list[int]) -> None:
-        """Submits the trials of a batch one by one after its workers ended repeatedly, because one of the trials may be the cause.
+    def _suspect(self, numbers: list[int]) -> None:
+        """Adds the trials of a batch whose workers ended repeatedly to the suspects; stores a trial that ended them alone as failed.
 
-        A single trial whose workers still end is stored as failed.
+        Dask also gives up a batch that only waited on these workers, or whose workers were ended from outside. So a suspect runs again
+        after all other trials, alone, and only its ends from then on count.
         """
-        if len(numbers) > 1:
-            for number in numbers:
-                self._submit([number])
-            return
-        self._killed[numbers[0]] += 1
-        if self._killed[numbers[0]] < KILLS:
-            self._submit(numbers)
-            return
-        row = {"end": "crash", "error": "the workers that ran this trial ended repeatedly; it may need more memory than a worker has"}
-        self._add(Batch(rows=[(numbers[0], row, 0.0)], worker=""))
-        self._report()
+        for number in numbers:
+            self._killed[number] = self._killed.get(number, -1) + 1
+            if self._killed[number] < KILLS:
+                self._suspects.append(number)
+                continue
+            row = {"end": "crash", "error": "the workers that ran this trial ended repeatedly; it may need more memory than a worker has"}
+            self._add(Batch(rows=[(number, row, 0.0)], worker=""))
+            self._report()
 
     def _report(self) -> None:
         total = len(self._experiment.design)

@@ -23,7 +23,8 @@ from rich.text import Text
 
 from actr3d.errors import ExperimentError, SettingError
 from actr3d.experiment.design import OWN_COLUMNS
-from actr3d.experiment.measures import check_measures, check_row, try_measures
+from actr3d.experiment.human_data import plain_text
+from actr3d.experiment.measures import NOTHING_LEFT, check_measures, check_row, ended_early, try_measures
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import SPECIFICATION, Store, only_process, summary, write_whole
 from actr3d.experiment.table import export
@@ -108,6 +109,8 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     out.line(
         f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / (os.cpu_count() or 1):,.0f} s on this computer"
     )
+    if ended_early((first["end"], second["end"])):
+        out.line("its first trials ", (NOTHING_LEFT, "bold"))
     for number, error in failed:
         out.line(f"trial {number} failed: {error}")
     return 1 if failed else 0
@@ -241,6 +244,8 @@ def fit(
         for what, found in agreements.items():
             r2 = "none" if found.r2 is None else f"{found.r2:.3f}"
             out.line(f"{title} {what}".rstrip() + f": RMSE {found.rmse:.4g}, r2 {r2}, {found.cells} means", *_lost(found))
+    for line in _effects(result.fit, result.ablated):
+        out.line(line)
     if failing := [one for one in result.tried if one.failed]:
         counts = f"{sum(one.failed for one in failing):,} of {sum(one.trials for one in failing):,} trials"
         out.line(("warning", "bold red"), f": in {len(failing)} of {result.candidates} candidates, {counts} failed; see tried in fit.json")
@@ -249,6 +254,26 @@ def fit(
         out.line(f"simulated data {number}: {pairs}")
     out.line(f"result: {path / 'fit.json'}")
     return 0
+
+
+def _effects(fit: Agreement, changed: Mapping[str, Agreement]) -> list[str]:
+    """Returns lines that show the effect of each change of the model: for each mean the target, the fitted model, and the changed ones."""
+
+    def means(of: Agreement) -> dict[str, dict[str, Any]]:
+        return {
+            ", ".join(f"{name} {plain_text(level)}" for name, level in row.items() if name not in ("target", "model")): row
+            for row in of.rows
+        }
+
+    if not changed:
+        return []
+    models = {"fitted": means(fit), **{change: means(found) for change, found in changed.items()}}
+    targets = {where: row["target"] for rows in models.values() for where, row in rows.items()}
+    lines = [f"mean by condition: target, {', '.join(models)}"]
+    for where, target in targets.items():
+        found = [f"{rows[where]['model']:.4g}" if where in rows else "none" for rows in models.values()]
+        lines.append(f"  {where or 'all'}: {', '.join([f'{target:.4g}', *found])}")
+    return lines
 
 
 def _lost(found: Agreement) -> list[tuple[str, str]]:

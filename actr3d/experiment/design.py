@@ -486,7 +486,7 @@ class Design(Configuration):
                     try:
                         known[name].check(value)
                     except ConfigurationError as error:
-                        raise DesignError(f"Design, {participant.name}: {error}", name) from None
+                        raise DesignError(f"Design, {participant.name}: {error}", name, participant.group) from None
                 elif name not in given:
                     raise DesignError(f"Design.derive: the model has no parameter '{name}'{did_you_mean(name, known)}", "derive")
         for name in given:

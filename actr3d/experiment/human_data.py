@@ -14,7 +14,9 @@ An empty cell is a value that is missing. The table of trials of an experiment, 
 - `group`: the name of a group of the design; may be left out if the design has one group;
 - a column for each factor of the design, such as `aperture`, `ratio` or `condition`; without one, or with one that is all empty, the data
   are means over its levels;
-- a column for each measure, such as `wall_angle_deg` or `speed_m_s`; at least one. `True` counts as 1, `False` as 0.
+- a column for each measure, such as `wall_angle_deg` or `speed_m_s`; at least one. `True` counts as 1, `False` as 0;
+- columns that an analysis reads: for walks through apertures `shoulder_width` [m], or `ratio`, the aperture divided by it. Figures by A/S
+  show people at their own ratios, and only if these are known. Other columns of the table of trials are not used.
 
 **Published means** have the columns
 
@@ -94,6 +96,8 @@ class HumanData:
     """The rows: factors are numbers or texts as in the design, or None; numbers are floats or None."""
     measures: Sequence[str]
     """The measures that they have."""
+    numbers: Sequence[str] = ()
+    """The other columns of trials that an analysis reads; see `Schema.numbers`."""
     notes: Sequence[str]
     """The notes of the file."""
 
@@ -114,11 +118,13 @@ class Schema:
     absent: Mapping[str, Sequence[str]] = field(default_factory=dict[str, "Sequence[str]"])
     """Other levels that people may have; see `absent_levels`. Rows with one of them are left out."""
     parameters: Mapping[str, Parameter] = field(default_factory=dict[str, Parameter])
-    """The parameters of the model that the factors are; levels of people must be within their bounds."""
+    """The parameters of the model that the factors and `numbers` are; values of people must be within their bounds."""
     switches: Sequence[str] = ()
     """The measures that are True or False, whose means are proportions."""
+    numbers: Sequence[str] = ()
+    """Other columns with numbers that trials of people may have, because an analysis reads them, such as `shoulder_width`."""
     ignored: Sequence[str] = ()
-    """Other columns of the table of trials, which data of people may have, too."""
+    """Other columns of the table of trials, which data of people may have, too. They are not used."""
 
 
 def library_human_data() -> dict[str, Path]:
@@ -209,7 +215,10 @@ class _Reader:
         measures = [
             one for one in self._schema.measures if (any(row["measure"] == one for row in rows.values()) if published else one in head)
         ]
-        return HumanData(name=name, published=published, rows=list(rows.values()), measures=measures, notes=self._notes)
+        if unused := [name for name in head if name in self._schema.ignored]:
+            self._notes.append(f"Columns that are not used: {', '.join(unused)}.")
+        numbers = [name for name in self._schema.numbers if name in head and not published]
+        return HumanData(name=name, published=published, rows=list(rows.values()), measures=measures, numbers=numbers, notes=self._notes)
 
     def _absent_in(self, row: Mapping[str, Any]) -> str:
         """Returns a factor with its level in a row that the experiment does not have; "" for none."""
@@ -242,8 +251,8 @@ class _Reader:
     def _check_head(self, line: int, head: list[str], published: bool) -> None:
         """Checks the names of the columns."""
         schema, where = self._schema, f"{self._path}:{line}"
-        measures = [] if published else list(schema.measures)
-        known = [*(["group", *OF_MEANS] if published else ["participant", "group"]), *schema.factors, *measures]
+        measures, numbers = ([], []) if published else (list(schema.measures), list(schema.numbers))
+        known = [*(["group", *OF_MEANS] if published else ["participant", "group"]), *schema.factors, *measures, *numbers]
         accepted = known if published else [*known, *schema.ignored]
         if len(head) == 1 and (";" in head[0] or "\t" in head[0]):
             raise ExperimentError(f"{where}: the columns must be separated by commas (got {head[0]!r})")
@@ -291,6 +300,7 @@ class _Reader:
                 for name in self._schema.measures
                 if name in given
             }
+            row |= {name: self._level(line, name, given[name], ()) for name in self._schema.numbers if name in given}
         return row if len(self._errors) == before else None
 
     # -- cells

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import symtable
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import fields
 
 from actr3d.actr.compat.old_names import is_old_name
@@ -20,6 +20,11 @@ from actr3d.weak_cache import weak_cache
 
 PATIENCE = 60.0
 """The maximum time for which a first trial runs whose measures are not known before [s]."""
+NOTHING_LEFT = (
+    "ended because no agent had anything left to do (`done`). A body that only moves on does not keep a trial going: if it was to do more, "
+    "let a production wait for it, and end with `self.stop()`."
+)
+"""What a trial with a body may have ended too early for."""
 
 
 @weak_cache
@@ -86,6 +91,11 @@ def check_row(row: Row, *, sure: bool = False) -> None:
     """
     if row["end"] == WRONG_MEASURE or (row["end"] == NO_MEASURE and not sure):
         raise DesignError(row["error"].removeprefix("error: "), "measures")
+
+
+def ended_early(ends: Iterable[str]) -> bool:
+    """Returns whether all trials ended because no agent had anything left to do, which may be too early for what is measured."""
+    return set(ends) == {"done"}
 
 
 def variables_set_in(text: str) -> tuple[str, ...] | None:

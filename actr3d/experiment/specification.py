@@ -20,6 +20,7 @@ from copy import copy
 from dataclasses import asdict, dataclass, field, fields
 from importlib import import_module
 from pathlib import Path
+from traceback import extract_tb
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, cast
 
@@ -151,7 +152,8 @@ class Experiment:
     def __init__(self, specification: Specification, helpers: HelperTexts | None = None) -> None:
         self.specification = specification
         source, model = specification.design, specification.model
-        self._module = load_quietly(source, helpers)
+        with naming_the_line(source, specification.name, {}):
+            self._module = load_quietly(source, helpers)
         self.written = design_in(self._module, specification.name, source)
         """The design as its file has it, without the numbers and values of the specification."""
         with naming_the_line(source, specification.name, specification.values):
@@ -270,8 +272,11 @@ def specify(
             found = f"there are: {', '.join(marked)}; name one as '{path}:NAME'" if marked else "mark a function with @design"
             raise ExperimentError(f"{path}: must define one design (found {len(marked)}); {found}")
         chosen = marked[0]
-    of_design = design_in(load_quietly(source), chosen, source)
-    model = _model_of(of_design, path)
+    with naming_the_line(source, chosen, {}):
+        module = load_quietly(source)
+    of_design = design_in(module, chosen, source)
+    with naming_the_line(source, chosen, {}):
+        model = _model_of(of_design, path)
     specification = Specification(
         name=chosen,
         design=source,
@@ -363,7 +368,7 @@ def _model_of(of: Design, path: Path) -> Path:
     beside = path.parent / of.model
     if not beside.exists() and not shipped.exists():
         near = did_you_mean(of.model, [file.name for folder in (path.parent, library_models()) for file in folder.glob("*.py")])
-        raise ExperimentError(f"{path}: Design.model: there is no file '{of.model}' beside it or among the library's models{near}")
+        raise DesignError(f"Design.model: there is no file '{of.model}' beside it or among the library's models{near}", "model")
     return beside if beside.exists() else shipped
 
 
@@ -433,9 +438,11 @@ def naming_the_line(source: Source, function: str, replaced: Mapping[str, Any]) 
     try:
         yield
     except (ConfigurationError, DesignError) as error:
-        name = error.name if isinstance(error, DesignError) else str(error).partition(":")[0].rpartition(".")[2]
-        place = f"--set {name}" if name in replaced else f"{source.file}:{line_of(source.text, function, name)}"
-        raise (type(error) if isinstance(error, DesignError) else DesignError)(f"{place}: {error}", name) from None
+        known = error if isinstance(error, DesignError) else None
+        name = str(error).partition(":")[0].rpartition(".")[2] if known is None else known.name
+        place = f"--set {name}" if name in replaced else f"{source.file}:{_line_of(source, function, error, name)}"
+        kind, group = (DesignError, "") if known is None else (type(known), known.group)
+        raise kind(f"{place}: {error}", name, group) from None
     except TypeError as error:
         found = re.fullmatch(r"(\w+)\.__init__\(\) got an unexpected keyword argument '(\w+)'", str(error))
         kind = next((one for one in (Design, Group, Measured, Normal, Uniform) if found is not None and one.__name__ == found[1]), None)
@@ -443,19 +450,47 @@ def naming_the_line(source: Source, function: str, replaced: Mapping[str, Any]) 
             raise
         name = found[2]
         near = did_you_mean(name, [field.name for field in fields(kind)])
-        place = f"{source.file}:{line_of(source.text, function, name)}"
+        place = f"{source.file}:{_line_of(source, function, error, name)}"
         raise DesignError(f"{place}: {found[1]}.{name}: there is no such field{near}", name) from None
 
 
-def line_of(text: str, function: str, name: str) -> int:
-    """Returns the line of a file at which a design's function mentions a name, or else at which the function begins."""
-    node = next((one for one in ast.parse(text).body if isinstance(one, ast.FunctionDef) and one.name == function), None)
-    if node is None:
-        return 1
-    for one in ast.walk(node):
-        if (isinstance(one, ast.Constant) and one.value == name) or (isinstance(one, ast.keyword) and one.arg == name):
-            return one.value.lineno if isinstance(one, ast.keyword) else one.lineno
-    return node.lineno
+def _line_of(source: Source, function: str, error: Exception, name: str) -> int:
+    """Returns the line of a design that an error is about.
+
+    It is the first one that mentions the name: in the call that failed; else, if that call was not by a field's name, in the group of the
+    error, in the design's function, or anywhere in the file. If none does, it is the line of the call, or of the function.
+
+    Args:
+        source: The file of the design.
+        function: The name of the design.
+        error: The error.
+        name: The name that the error is about; empty for none.
+    """
+    tree = ast.parse(source.text)
+    own = [one for one in tree.body if isinstance(one, ast.FunctionDef) and one.name == function]
+    begin, end = next(
+        ((one.lineno or 1, one.end_lineno or 1) for one in reversed(extract_tb(error.__traceback__)) if one.filename == source.file), (0, 0)
+    )
+    of_design = isinstance(error, DesignError)
+    of_group = [_entries(nodes, error.group) for nodes in (own, [tree])] if of_design and error.group else []
+    within = [line for line in _mentions([tree], name) if begin <= line <= end]
+    elsewhere = [_mentions(nodes, name) for nodes in (*of_group, own, [tree])] if of_design or not begin else []
+    lines = next(filter(None, [within, *elsewhere]), [])
+    return min(lines, default=begin or next((one.lineno for one in own), 1))
+
+
+def _mentions(nodes: Sequence[ast.AST], name: str) -> list[int]:
+    """Returns the lines on which parts of a file mention a name as a text or as the name of an argument."""
+    inside = [one for node in nodes for one in ast.walk(node)]
+    texts = [one.lineno for one in inside if isinstance(one, ast.Constant) and name and one.value == name]
+    return texts + [one.value.lineno for one in inside if isinstance(one, ast.keyword) and one.arg == name]
+
+
+def _entries(nodes: Sequence[ast.AST], key: str) -> list[ast.expr]:
+    """Returns the values that dictionaries in parts of a file have for a key."""
+    inside = [one for node in nodes for one in ast.walk(node)]
+    pairs = [pair for one in inside if isinstance(one, ast.Dict) for pair in zip(one.keys, one.values, strict=True)]
+    return [value for name, value in pairs if isinstance(name, ast.Constant) and name.value == key]
 
 
 def _marked(source: Source) -> list[str]:

@@ -54,6 +54,9 @@ function wantedOf(design, facts) {
   return { wanted, problem, trials };
 }
 
+/** Returns how long a trial takes [s], and why it fails, as the server measured it: {seconds, error}. */
+const measured = ({ seconds_a_trial: seconds, error }) => ({ seconds, error: error ? `A trial fails: ${error.trim().split("\n").at(-1)}` : null });
+
 /** Reads the facts of a design, and then how long a trial takes [s]: the server measures it once for each version of the design's files. Returns
  * {facts, seconds, error}. */
 function useFacts(design) {
@@ -66,8 +69,7 @@ function useFacts(design) {
     async function read() {
       const facts = await ask(false);
       found.value = { ...UNKNOWN, of: design, facts };
-      const { seconds_a_trial: seconds, error } = await ask(true);
-      found.value = { of: design, facts, seconds, error: error ? `A trial fails: ${error.trim().split("\n").at(-1)}` : null };
+      found.value = { of: design, facts, ...measured(await ask(true)) };
     }
     read().catch((error) => !leave.signal.aborted && (found.value = { ...known(), of: design, error: error.message }));
     return () => leave.abort();
@@ -92,6 +94,25 @@ function useCheck(wanted, problem) {
   }, [key, changed, problem]);
   const known = found.value.of === key;
   return { error: known ? found.value.error : null, waiting: changed && !problem && !known };
+}
+
+/** Measures how long a trial takes with the values that were changed, when the user pauses; returns {seconds, error}. Without any, it is
+ * `usual`, that of the design. */
+function useDuration({ design, values }, problem, usual) {
+  const found = useSignal({ of: "", seconds: null, error: null });
+  const key = usual.facts && Object.keys(values).length > 0 ? JSON.stringify({ design, values, trial: true }) : "";
+  useEffect(() => {
+    if (!key || problem) return undefined;
+    const leave = new AbortController();
+    const timer = setTimeout(() => {
+      call("POST", "/api/designs/check", JSON.parse(key), leave.signal)
+        .then((answer) => (found.value = { of: key, ...measured(answer) }))
+        .catch((error) => !leave.signal.aborted && (found.value = { of: key, seconds: null, error: error.message }));
+    }, PAUSE);
+    return () => (clearTimeout(timer), leave.abort());
+  }, [key, problem]);
+  if (!key) return usual;
+  return found.value.of === key ? found.value : { seconds: null, error: null };
 }
 
 function DesignChoice({ design, choose }) {
@@ -181,11 +202,12 @@ function estimate(each, trials, workers) {
   return `${all < 1 ? "" : "about "}${durationText(all)} (${each < 0.1 ? each.toFixed(3) : each.toFixed(2)} s a trial)`;
 }
 
-function Foot({ design, facts, seconds, error }) {
+function Foot({ design, usual }) {
   const starting = useSignal(false);
   const refused = useSignal({ of: "", error: null });
-  const { wanted, problem, trials } = wantedOf(design, facts);
+  const { wanted, problem, trials } = wantedOf(design, usual.facts);
   const { error: wrong, waiting } = useCheck(wanted, problem);
+  const { seconds, error } = useDuration(wanted, problem, usual);
   const key = JSON.stringify(wanted);
   const last = refused.value.of === key ? refused.value.error : null;
   const full = experiments.value?.filter(isRunning).length >= 2;
@@ -204,7 +226,7 @@ function Foot({ design, facts, seconds, error }) {
   return html`
     ${trouble ? html`<pre class="trouble" role="alert">${trouble}</pre>` : null}
     <div class="foot">
-      <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${error && seconds === null ? "" : estimate(seconds, trials, wanted.workers)}${waiting ? " · checking …" : ""}</span>`}</span>
+      <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${trouble && seconds === null ? "" : estimate(seconds, trials, wanted.workers)}${waiting ? " · checking …" : ""}</span>`}</span>
       <span class="stretch"></span>
       <button class="primary" disabled=${starting.value || full || problem !== null || trials === null} title=${full ? "Two experiments are already running" : "Run all trials in the background"} onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}</button>
     </div>
@@ -228,7 +250,7 @@ export function NewExperiment() {
   const wanted = isPicked.value || own.includes(last) ? last : (own[0] ?? last);
   const chosen = wanted ?? designs.find(({ file }) => file !== null) ?? designs[0];
   const design = chosen?.id ?? "";
-  const { facts, seconds, error } = useFacts(design);
+  const usual = useFacts(design);
   return html`
     <div class="tools">
       <button class="bare" title="All experiments" onClick=${() => (shown.value = "")}><span class="back"><${Icon} name="right" /></span>Experiments</button>
@@ -237,8 +259,8 @@ export function NewExperiment() {
     ${problem.value ? html`<p class="problem bad" role="alert">The designs cannot be listed: ${problem.value}</p>` : null}
     <div class="new">
       ${chosen ? html`<div class="description"><${Prose} text=${chosen.description} /></div>` : null}
-      ${facts ? html`<${Form} key=${design} design=${design} facts=${facts} />` : null}
+      ${usual.facts ? html`<${Form} key=${design} design=${design} facts=${usual.facts} />` : null}
     </div>
-    ${chosen ? html`<${Foot} key=${design} design=${design} facts=${facts} seconds=${seconds} error=${error} />` : null}
+    ${chosen ? html`<${Foot} key=${design} design=${design} usual=${usual} />` : null}
   `;
 }

@@ -165,6 +165,40 @@ def test_the_duration_of_a_trial_is_asked_each_time_the_form_is_shown(pages: Cal
         page.get_by_role("button", name="Experiments", exact=True).click()
 
 
+def test_the_duration_of_a_trial_is_measured_for_the_values_that_were_changed(pages: Callable[..., Page], design: str) -> None:
+    page = pages(design.partition(":")[0], tab="experiments")
+    measured: list[dict[str, Any]] = []
+
+    def answer(route: Route) -> None:
+        asked = json.loads(route.request.post_data or "")
+        if not asked.pop("trial", False):
+            return route.continue_()
+        measured.append(asked.get("values", {}))
+        return route.fulfill(
+            json={"seconds_a_trial": 4.0 if measured[-1] else 0.5, "error": "ValueError: no" if measured[-1].get("mode") else ""}
+        )
+
+    page.route("**/api/designs/check", answer)
+    page.get_by_role("button", name="New experiment").click()
+    page.get_by_label("Design", exact=True).select_option(design)
+    foot = page.locator(".foot")
+    expect(foot).to_contain_text("0.50 s a trial")
+    page.get_by_label("Levels of n").fill("9")
+    expect(foot).to_contain_text("4.00 s a trial")
+    page.get_by_label("trials a combination").fill("3")
+    expect(foot).to_contain_text("6 trials")
+    expect(foot).to_contain_text("4.00 s a trial")  # which other numbers do not change
+    page.get_by_label("Set another parameter").select_option("mode")
+    page.get_by_label("Value of mode").fill("fail")
+    expect(page.get_by_role("alert")).to_have_text("A trial fails: ValueError: no")
+    page.get_by_role("button", name="Remove mode").click()
+    page.get_by_role("button", name="Reset n").click()
+    expect(foot).to_contain_text("0.50 s a trial")
+    expect(page.get_by_role("alert")).to_have_count(0)
+    asked = [one for one in measured if one.get("mode") != "count"]  # its default, if the user pauses there
+    assert asked == [{}, {"n": [9]}, {"n": [9], "mode": "fail"}]
+
+
 TIMERS = """async () => {
   const { follow, shown } = await part("experiments/list.js");
   const later = new Set();
@@ -257,3 +291,43 @@ def test_of_trials_that_have_all_failed_there_is_no_figure(blank: Page) -> None:
         "All 4 finished trials have failed: there is nothing to draw. The table of trials has the errors."
     )
     expect(blank.locator("#drawn canvas")).to_have_count(0)
+
+
+TWO_EXPERIMENTS = """async () => {
+    const { html, render } = await part("vendor/preact.js");
+    const { Figure } = await part("experiments/figure.js");
+    const { experiments, shown, where } = await part("experiments/list.js");
+    const column = (name, role) => ({ name, role, type: "real", unit: null, meaning: "" });
+    const columns = [column("n", "value"), column("rt", "measure"), column("wall_s", "own")];
+    const one = (id, columns) => ({ id, name: id, done: 4, failures: 0, made: 0, total: 4, columns });
+    experiments.value = [one("mine", ["n", "rt"]), one("theirs", ["n", "rt"]), one("others", ["n", "luck"])];
+    const place = document.body.appendChild(Object.assign(document.createElement("div"), { id: "drawn" }));
+    place.style.cssText = "display: flex; flex-direction: column; width: 600px; height: 400px";
+    render(html`<${Figure} experiment=${experiments.value[0]} facts=${{ factors: { n: [1, 2] } }} columns=${columns} />`, place);
+    window.chosen = () => ({ shown: shown.value, where: where.value });
+}"""
+
+
+def test_another_experiment_is_drawn_beside_the_one_that_is_shown(blank: Page) -> None:
+    def answer(route: Route) -> None:
+        mean = 0.2 if "/theirs/" in route.request.url else 0.1
+        points = [{"at": [n], "mean": mean * n, "error": None, "participants": 1, "trials": 2} for n in (1, 2)]
+        route.fulfill(json={"x": "n", "by": [], "measure": "rt", "unit": "s", "columns": [], "points": points})
+
+    blank.route("**/means?*", answer)
+    blank.evaluate(TWO_EXPERIMENTS)
+    points, legend = blank.locator("#drawn .point"), blank.locator("#drawn .legend")
+    expect(points).to_have_count(2)
+    expect(legend).to_have_text("")
+    choice = blank.get_by_label("Compare with")
+    expect(choice.locator("option")).to_have_count(2)  # without the experiment that has no such measure
+    choice.select_option("theirs")
+    expect(points).to_have_count(4)
+    expect(points.nth(0)).to_have_attribute("aria-label", re.compile(r"^Trials of n 1: 0\.1\d* s \(1 participant, 2 trials\)$"))
+    expect(points.nth(3)).to_have_attribute("aria-label", re.compile(r"^Trials of n 2 · the other experiment: 0\.4\d* s "))
+    expect(legend.locator("canvas")).to_have_count(2)
+    expect(legend).to_contain_text(re.compile("mine .*theirs "))
+    points.nth(3).press("Enter")
+    assert blank.evaluate("chosen()") == {"shown": "theirs", "where": {"n": 2}}
+    choice.select_option("")
+    expect(points).to_have_count(2)

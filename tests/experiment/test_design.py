@@ -357,6 +357,56 @@ def test_an_unknown_parameter_is_refused_with_its_line(tmp_path: Path) -> None:
         specify(str(path), values={"m": 3})
 
 
+FILE_OF_DESIGN = """from actr3d.experiment import *
+WIDTH = 0.4
+GROUPS = {{
+    "small": Group(
+        participants=5,
+        parameters={{"shoulder_width": {small}}},
+    ),
+    "large": Group(
+        participants={large},
+        parameters={{"shoulder_width": WIDTH, {more}}},
+    ),
+}}
+
+
+@design
+def one():
+    between = Normal(mean=1, sd=1, low={low}, high=2)
+    return Design(
+        model="{model}",
+        groups={groups},
+        settings={{"condition": "normal"}},
+    )
+"""
+GROUPS_INSIDE = """{
+            "small": Group(participants=1),
+            "large": Group(participants=1, parameters={
+                "shoulder_width": 7}),
+        }"""
+
+
+@pytest.mark.parametrize(
+    ("changed", "says"),
+    [
+        ({"large": 0}, r":9: Group\.participants: must be >= 1 \(got 0\)"),
+        ({"more": '"m": 1'}, r":10: Design: the model has no parameter 'm'"),
+        ({"small": 7}, r":6: Design, small 1: shoulder_width: must be <= \S+ \(got 7\)"),
+        ({"more": '"condition": "fast"'}, r":21: Design\.settings: 'condition' is already a factor, or a parameter of a group"),
+        ({"groups": GROUPS_INSIDE}, r":23: Design, large 1: shoulder_width: must be <= \S+ \(got 7\)"),
+        ({"low": 3}, r":17: Normal: no value lies between low 3 and high 2"),
+        ({"model": "no.py"}, r":19: Design\.model: there is no file 'no\.py' beside it"),
+    ],
+)
+def test_what_is_wrong_in_a_design_is_named_with_its_own_line(tmp_path: Path, changed: Mapping[str, Any], says: str) -> None:
+    path = tmp_path / "some_design.py"
+    fields = {"small": 0.4, "large": 5, "more": "", "low": 0, "model": "aperture_passage.py", "groups": "GROUPS", **changed}
+    path.write_text(FILE_OF_DESIGN.format(**fields), encoding="utf-8")
+    with pytest.raises(DesignError, match=rf"some_design\.py{says}"):
+        specify(str(path))
+
+
 def test_an_import_before_the_variables_ends_the_parameters(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, model="import math\nn = 1\nrt = luck = 1\n")
     says = r"the model has no parameter 'n'; it has: none \(the variables that its first lines set, before any import\)"

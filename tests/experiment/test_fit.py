@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import math
 import os
 import re
@@ -262,6 +263,11 @@ def test_failed_trials_are_shown(tmp_path: Path, capsys: Any) -> None:
     assert main([*words, "--candidates", "2", "--ablate", "noise=0"]) == 0
     told = capsys.readouterr().out
     assert "changed noise=0: RMSE" in told
+    assert re.search(r"mean by condition: target, fitted, noise=0\n  x 1: 2\.4, \S+, \S+\n  x 3: 5\.2, \S+, \S+\n", told)
+    rows = {
+        row["x"]: f"{row['model']:.4g}" for row in json.loads((tmp_path / "fit" / "fit.json").read_text())["ablated"]["noise=0"]["rows"]
+    }
+    assert re.search(rf"  x 1: 2\.4, \S+, {rows[1]}\n  x 3: 5\.2, \S+, {rows[3]}\n", told)
     assert "2 means; 4 of 20 trials failed" in told
     assert "warning: in 2 of 2 candidates, 8 of 40 trials failed" in told
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import csv
 import html
+import math
 import re
 import shutil
 import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -17,13 +19,13 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
-from actr3d.experiment.aperture.analysis import frame_of, passing_apertures, passings_of, with_greatest_angles
+from actr3d.experiment.aperture.analysis import Rotation, at_own_ratios, frame_of, passing_apertures, passings_of, with_greatest_angles
 from actr3d.experiment.aperture.constraints import Findings
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.report.analyses import ANALYSES
-from actr3d.experiment.report.beside import beside_experiment
+from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of
 from actr3d.experiment.report.command import write_report
-from actr3d.experiment.report.figures import legend_columns, svg
+from actr3d.experiment.report.figures import LOOKS, Curve, Pane, curves_figure, legend_columns, svg
 from actr3d.experiment.report.general import comparison_section, what_was_run
 from actr3d.experiment.report.libraries import pingouin
 from actr3d.experiment.report.parts import Caution, Plot, Table
@@ -196,6 +198,70 @@ def test_own_human_data_are_drawn_and_compared(walked: Path) -> None:
     assert "Human mean angles for each aperture are not available" not in page(walked)
 
 
+def beside(folder: Path, people: Path) -> list[Beside]:
+    parts = by_number(read_results(folder))
+    data, _ = human_data_of(parts[0].design, parts, people)
+    assert data is not None
+    return [beside_people(data, parts)]
+
+
+def rotation(folder: Path, people: Path) -> Rotation:
+    results = read_results(folder)
+    findings = Findings(passings_of(results))
+    return Rotation(findings, frame_of(results, findings), beside(folder, people))
+
+
+def test_people_are_drawn_by_their_own_ratios(walked: Path, tmp_path: Path) -> None:
+    def given(head: str, *rows: str) -> Path:
+        path = tmp_path / "people.csv"
+        path.write_text("\n".join([f"participant,group,condition,wall_angle_deg,{head}", *rows]), encoding="utf-8")
+        return path
+
+    def drawn(people: Path) -> tuple[list[list[float]], str]:
+        """Returns the ratios at which people of each group are drawn in the first pane, and the note of the figure."""
+        figure = next(part for part in rotation(walked, people).parts() if isinstance(part, Plot) and part.name == "rotation_by_ratio")
+        lines = [line for line in figure.figure.axes[0].lines if line.get_markersize() == LOOKS["human"]["markersize"]]
+        return [[round(x, 3) for x in line.get_xdata()] for line in lines], figure.note
+
+    small, large = "1,small,normal,30", "1,large,normal,40"
+    known, note = drawn(given("aperture,shoulder_width", f"{small},0.4,0.38", f"{small},0.5,0.38", f"{large},0.4,0.52"))
+    assert known == [[1.053, 1.316], [0.769]]
+    assert "left out" not in note
+    unknown, note = drawn(given("aperture", f"{small},0.4", f"{large},0.4"))
+    assert unknown == []
+    assert "People are left out: their data have neither `shoulder_width` nor `ratio`." in note
+
+    def ratios(head: str, *rows: str) -> list[float]:
+        return [round(x, 3) for x in at_own_ratios(*beside(walked, given(head, *rows))).frame["ratio"]]
+
+    assert ratios("ratio", f"{small},1.05", f"{small},1.3", f"{large},0.77") == [1.05, 1.3, 0.77]
+    assert ratios("aperture,shoulder_width,ratio", f"{small},0.4,0.38,1.1", f"{large},0.4,0.52,") == [1.1, 0.769], "a given ratio counts"
+    with pytest.raises(ExperimentError, match=r"column 'shoulder_width': the model's parameter shoulder_width: must be <= \S+ \(got 38\)"):
+        ratios("aperture,shoulder_width", f"{small},0.4,38")
+
+
+def test_another_experiment_is_drawn_by_the_ratios_of_its_own_participants(tmp_path: Path) -> None:
+    values = {"aperture": [0.4, 0.5], "condition": "normal", "shoulder_width": 0.5}
+    folder = store_rows(tmp_path / "walks", "warren_whang_1987", walk_through, participants=1, trials=1, values=values)
+    results = read_results(folder)
+    parts = by_number(results)
+    other = beside_experiment(parts, parts)
+    assert other is not None
+    assert sorted(set(at_own_ratios(other).frame["ratio"])) == [0.8, 1.0]
+
+
+def test_the_baseline_is_compared_with_people_too(walked: Path, people: Path) -> None:
+    agreement = {(row["means_of"], row["compared_with"]): row for row in table(walked, "agreement")}
+    model, baseline = (agreement[name, "people"] for name in ("this model", "geometry (baseline)"))
+    assert (model["cells"], baseline["cells"]) == ("6", "6")
+    means = {(row["group"], row["condition"], row["aperture"]): row for row in table(walked, "rotation")}
+    there = [means[group, "normal", wide] for group in ("small", "large") for wide in ("0.4", "0.5", "0.6")]
+    for row, column in ((model, "mean"), (baseline, "baseline")):
+        expected = math.sqrt(sum((float(cell[column]) - 31) ** 2 for cell in there) / 6)
+        assert float(row["rmse"]) == pytest.approx(expected, rel=1e-6)
+    assert not [name for name in frames(parts_on_apertures(walked))["agreement"]["compared_with"] if name == "people"]
+
+
 def test_the_entries_of_a_legend_fit_into_the_figure() -> None:
     assert legend_columns([5, 5, 10, 17, 19], 8.6) == 5
     assert legend_columns([21] * 5 + [5, 6], 6.4) == 3
@@ -237,6 +303,34 @@ def test_failures_and_missing_trials_are_said_plainly(tmp_path: Path) -> None:
     assert "3 of 32 trials failed" in text
     assert "ValueError: &lt;b&gt;no&lt;/b&gt;" in text
     assert "The design names no human data" in text
+
+
+def test_a_report_says_if_the_description_of_the_design_is_of_other_numbers(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path))
+    text = "The description is that of the design as it was written. This experiment has its own: --trials, n."
+    changed = read_results(store_rows(tmp_path / "changed", path, count, trials=1, values={"n": [1, 2]}))
+    assert text in what_was_run(changed).parts
+    written = read_results(store_rows(tmp_path / "written", path, count))
+    assert not [part for part in what_was_run(written).parts if isinstance(part, str) and "has its own" in part]
+
+
+@pytest.mark.parametrize(("label", "marker"), [("small", "o"), ("", "D")])
+def test_a_legend_has_the_markers_that_are_drawn(label: str, marker: str) -> None:
+    curves = [Curve(label=label, source=who, look=look, x=[1, 2], y=[1, 2]) for who, look in (("model", "model"), ("people", "human"))]
+    figure = curves_figure([Pane(title="", curves=curves)], "x", "y")
+    assert [line.get_marker() for line in figure.axes[0].lines] == [marker] * 2
+    shown = {handle.get_label(): handle.get_marker() for handle in figure.legends[0].legend_handles}
+    assert (shown["model"], shown["people"]) == (marker, marker)
+
+
+def test_trials_that_all_ended_with_nothing_left_to_do_are_a_caution(tmp_path: Path) -> None:
+    path = write_experiment(tmp_path, participants=10, trials=1)
+    results = read_results(store_rows(tmp_path / "out", str(path), count))
+    text = "All trials ended because no agent had anything left to do (`done`). A body that only moves on does not keep a trial going"
+    all_done = results.rows.assign(end="done")
+    assert text in cautions(what_was_run(replace(results, rows=all_done)).parts)
+    one_stopped = results.rows.assign(end=["stop", *all_done["end"][1:]])
+    assert cautions(what_was_run(replace(results, rows=one_stopped)).parts) == ""
 
 
 def test_one_participant_is_described_and_not_tested(tmp_path: Path) -> None:
@@ -345,6 +439,7 @@ def test_the_table_of_trials_can_be_the_data_of_people(tmp_path: Path) -> None:
         ("rt", "luck", "right"), ("6", 0.0)
     )
     target = load_target(str(tmp_path / "people.csv"), specify(str(path)), "right")
+    assert "Columns that are not used: trial, position, repetition, seed, " in page(folder)
     assert len(target) == 6
     assert {tuple(one.conditions) for one in target} == {("group", "n", "mode")}
 

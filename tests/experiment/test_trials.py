@@ -384,7 +384,7 @@ def test_a_measure_that_only_a_long_run_shows_ends_the_experiment_with_its_first
     [
         pytest.param("'half'", "math", "counts.py:7: measure 'half': must be a number, {} (got <module 'math'", id="a module"),
         pytest.param(
-            "", "[1]", "counts.py:5: measure 'half': must be a number, {} (got [1]); of a list, give Design.measures", id="a list"
+            "", "[1]", "counts.py:11: measure 'half': must be a number, {} (got [1]); of a list, give Design.measures", id="a list"
         ),
         pytest.param("'half', 'rt'", "{'a': 1}", "counts.py:7: measure 'half': must be a number, {} (got {'a': 1})", id="a dict"),
     ],
@@ -853,6 +853,37 @@ def test_a_design_of_the_library_runs_beside_a_folder_of_its_name(tmp_path: Path
     assert "trials in 'small', 0 finished" in capsys.readouterr().out
     assert main(["experiment", "./utility_learning", "--participants", "1"]) == 1
     assert "is an experiment, whose design is fixed" in capsys.readouterr().err
+
+
+STILL_WALKING = """from actr3d.actr import *
+from actr3d.simulation import BodyPort, Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+
+class Walker(ACTR):
+    goal = Buffer()
+    body = BodyPort()
+
+    def init():
+        goal.set("start")
+
+    def start(goal="start"):
+        body.set("walk", 1.2)
+        goal.clear()
+
+
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": Walker})
+"""
+
+
+def test_a_check_says_if_trials_end_while_a_body_still_moves(tmp_path: Path, capsys: Any) -> None:
+    (tmp_path / "walk.py").write_text(STILL_WALKING, encoding="utf-8")
+    path = tmp_path / "walk_design.py"
+    results = "results=lambda simulation: {'x': simulation.world.bodies['walker'].get('pose').x}"
+    path.write_text(f"from actr3d.experiment import *\n\n\n@design\ndef walking():\n    return Design(model='walk.py', {results})\n")
+    assert main(["experiment", str(path), "--check"]) == 0
+    assert "its first trials ended because no agent had anything left to do (`done`)." in capsys.readouterr().out
 
 
 def test_a_check_names_the_trial_that_fails_and_takes_no_options_of_a_run(tmp_path: Path, capsys: Any) -> None:

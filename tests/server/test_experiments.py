@@ -234,10 +234,20 @@ def test_an_experiment_is_stopped_and_continued_while_sessions_go_on(workbench: 
 
 
 @pytest.mark.slow
-def test_no_more_than_two_run_at_once(workbench: Served) -> None:
+def test_no_more_than_two_run_at_once_and_sessions_answer_meanwhile(workbench: Served) -> None:
     names = [started(workbench, "slow/counting_design.py:counting") for _ in range(2)]
     refused = workbench.post("/api/experiments", {"design": COUNTING})
     assert (refused.status_code, refused.json()["error"]) == (409, "2 experiments are already running: stop one, or wait for its end")
+    # A session goes on beside them.
+    for name in names:
+        awaited(workbench, name, "running", done=1)
+    session = workbench.post("/api/sessions", {"model": "counting.py"}).json()["id"]
+    for ticks in (3, 6):
+        workbench.post(f"/api/sessions/{session}/command", {"command": {"type": "step", "ticks": 3}})
+        while ((now := workbench.get(f"/api/sessions/{session}").json())["state"] or {"tick": 0})["tick"] < ticks:
+            assert now["session"]["alive"]
+    workbench.post(f"/api/sessions/{session}/close")
+    assert [state_of(workbench, name)["state"] for name in names] == ["running"] * 2
     for name in names:
         workbench.post(f"/api/experiments/{name}/stop")
     for name in names:

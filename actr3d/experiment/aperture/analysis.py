@@ -17,7 +17,7 @@ from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
 from actr3d.experiment.aperture.original import original_bar_means, original_means
 from actr3d.experiment.aperture.passing import Passing, baseline_angle
 from actr3d.experiment.report.analyses import analysis
-from actr3d.experiment.report.beside import Beside, missing
+from actr3d.experiment.report.beside import Beside, matched_means, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
@@ -106,7 +106,7 @@ def frame_of(results: Results, findings: Findings) -> Any:
     return frame
 
 
-@analysis(*OF_WALKS)
+@analysis(*OF_WALKS, people=("shoulder_width", "ratio"))
 def passing_apertures(results: Results, others: Sequence[Beside]) -> list[Section]:
     """Returns the sections on walking through apertures."""
     by = "aperture" if "aperture" in results.factors else "ratio"
@@ -203,6 +203,7 @@ class Rotation:
     def __init__(self, findings: Findings, frame: Any, others: Sequence[Beside]) -> None:
         self._findings, self._others = findings, [with_greatest_angles(one, findings.by) for one in others]
         self._by_aperture = findings.by == "aperture"
+        self._at_ratios = [at_own_ratios(one) for one in others] if self._by_aperture else []
         self._x_label = "aperture [cm]" if self._by_aperture else OF_RATIO
         self._frame = frame
         self._means = cell_means(frame, "angle", ["group", "condition", "level"])
@@ -226,13 +227,20 @@ class Rotation:
         if self._by_aperture:
             panes = [self._ratio_pane(condition) for condition in findings.conditions]
             figure = curves_figure(panes, OF_RATIO, ANGLE, from_zero=True)
-            parts.append(Plot(name="rotation_by_ratio", title="Rotation by A/S", figure=figure, note=note))
+            without = any(one.look == "human" and not len(one.frame) for one in self._at_ratios) and self._people is not None
+            left_out = " People are left out: their data have neither `shoulder_width` nor `ratio`." if without else ""
+            parts.append(Plot(name="rotation_by_ratio", title="Rotation by A/S", figure=figure, note=note + left_out))
         parts += [self._cells(), self._fit(), *self._equivalence(), *self._aic()]
-        if not any(one.look == "human" and len(one.of("wall_angle_deg")) for one in self._others):
+        if self._people is None:
             parts.append(
                 "Human mean angles for each aperture were not found as numbers, so none are drawn; give data of your own with --human."
             )
         return parts
+
+    @property
+    def _people(self) -> Any:
+        """The mean angles of people; None if there are none."""
+        return next((means for one in self._others if one.look == "human" and len(means := one.of("wall_angle_deg"))), None)
 
     @property
     def _x(self) -> str:
@@ -264,7 +272,8 @@ class Rotation:
             shoulders = self._shoulders[group]
             curves.append(_model_curve(group, (of["level"] / shoulders).tolist(), of))
             curves += self._original_curve(group, group, condition, 0.01 / shoulders)
-            curves += self._others_curves(group, group, condition, 1 / shoulders)
+            cell = {"group": group, "condition": condition}
+            curves += _curves_beside(self._at_ratios, "wall_angle_deg", cell, group, "ratio", 1.0)
         ratios = [x for curve in curves for x in curve.x]
         grid = np.linspace(min(ratios), max(ratios), 200)
         curves.append(Curve(label="", source=GEOMETRY, look="baseline", x=grid.tolist(), y=baseline_angle(grid).tolist()))
@@ -309,7 +318,20 @@ class Rotation:
         logged["original"], logged["baseline"] = self._original_of(logged), self._baseline(logged)
         angles = self._means.assign(baseline=self._baseline(self._means))
         note = "RMSE and squared correlation of the means of cells. The original's angle is the one it logged: torso plus clavicle."
-        return _agreement("agreement", logged, angles, note)
+        return _agreement("agreement", logged, angles, note, self._beside_people())
+
+    def _beside_people(self) -> Any:
+        """Returns the mean angles of the cells that people have, too: `mean` of the model, `baseline` and `people` [degrees]."""
+        if self._people is None:
+            return None
+        by = self._findings.by
+        means = self._people[self._people[by].notna()]
+        keys = [name for name in ("group", "condition", by) if name in means]
+        trials = self._frame.rename(columns={"level": by}) if by != "ratio" else self._frame.assign(ratio=self._frame["level"])
+        trials = trials.assign(baseline=baseline_angle(self._frame["ratio"].to_numpy()))
+        trials = trials[trials["angle"].notna()]
+        of_model, of_baseline = (matched_means(trials, measure, keys, means) for measure in ("angle", "baseline"))
+        return pandas().DataFrame({"mean": of_model["model"], "baseline": of_baseline["model"], "people": of_model["beside"]})
 
     def _equivalence(self) -> Parts:
         test, pair = self._findings.ratio_test, self._findings.pair
@@ -361,6 +383,28 @@ def with_greatest_angles(one: Beside, by: str) -> Beside:
     return replace(one, frame=means.rename(columns={"level": by}).assign(measure="wall_angle_deg"))
 
 
+def at_own_ratios(one: Beside) -> Beside:
+    """Returns mean angles at the wall to show by A/S: each at the mean ratio of the participants of its cell.
+
+    The ratios are those of the trials; of people, `ratio`, or else the aperture divided by their `shoulder_width`. Without these, the
+    frame is empty.
+    """
+    place = "aperture"
+    if one.results is not None and set(OF_WALKS) <= set(one.results.rows):
+        rows = frame_of(one.results, Findings(passings_of(one.results))).rename(columns={"level": "aperture"})
+    elif one.trials is not None and "wall_angle_deg" in one.trials and not {"ratio", "shoulder_width"}.isdisjoint(one.trials):
+        trials = one.trials
+        own = trials["aperture"].astype("float64") / trials["shoulder_width"] if "shoulder_width" in trials else math.nan
+        rows = trials.assign(angle=trials["wall_angle_deg"], ratio=trials["ratio"].fillna(own) if "ratio" in trials else own)
+        place = place if rows["aperture"].notna().any() else "ratio"
+    else:
+        return replace(one, frame=one.frame.iloc[:0].assign(ratio=math.nan))
+    rows = rows[rows["angle"].notna() & rows["ratio"].notna()]
+    keys = [name for name in ("group", "condition", place) if name in rows and rows[name].notna().any()]
+    ratios = cell_means(rows, "ratio", keys)["mean"]
+    return replace(one, frame=cell_means(rows, "angle", keys).assign(ratio=ratios, measure="wall_angle_deg"))
+
+
 def _curves_beside(others: Sequence[Beside], measure: str, cell: dict[str, str], label: str, x: str, scale: float) -> list[Curve]:
     """Returns the means of people and of other experiments in a cell; those of all groups or conditions count for each of them."""
     found: list[Curve] = []
@@ -379,21 +423,26 @@ def _curves_beside(others: Sequence[Beside], measure: str, cell: dict[str, str],
     return found
 
 
-def _agreement(name: str, cells: Any, own: Any, note: str = "") -> Table:
-    """Returns how well the mean angles of the model, of the original and of the baseline agree.
+def _agreement(name: str, cells: Any, own: Any, note: str = "", people: Any = None) -> Table:
+    """Returns how well the mean angles of the model, of the original, of people and of the baseline agree.
 
     Args:
         name: The name of the table.
         cells: For each cell, `mean` of the model, `original`, and `baseline` [degrees].
         own: The cells in which the baseline is compared with the model.
         note: The note below the table.
+        people: For each cell that people have, `mean` of the model, `baseline` and `people` [degrees]; None without people.
     """
     rows: list[dict[str, Any]] = []
     for what, other, frame, one, two in (
         ("this model", ORIGINAL, cells, "mean", "original"),
         (GEOMETRY, ORIGINAL, cells, "baseline", "original"),
         (GEOMETRY, "this model", own, "baseline", "mean"),
+        ("this model", "people", people, "mean", "people"),
+        (GEOMETRY, "people", people, "baseline", "people"),
     ):
+        if frame is None:
+            continue
         both = frame[frame[two].notna()]
         if len(both):
             rmse, r2 = agreement(both[one], both[two])

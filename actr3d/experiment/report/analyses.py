@@ -17,7 +17,7 @@ ANALYSES: Registry[Sections] = Registry("analysis")
 """All analyses by name."""
 
 
-def analysis(*columns: str) -> Callable[[F], F]:
+def analysis(*columns: str, people: Collection[str] = ()) -> Callable[[F], F]:
     """Registers a function that returns more sections of a report.
 
     It is called for every experiment whose trials have certain columns, whatever its design and its model are called. Its arguments are
@@ -25,6 +25,7 @@ def analysis(*columns: str) -> Callable[[F], F]:
 
     Args:
         columns: The names of the columns: measures, factors or other parameters.
+        people: Further columns that it reads in trials of people; they hold numbers.
 
     Raises:
         ValueError: If there is another analysis of this name.
@@ -32,6 +33,7 @@ def analysis(*columns: str) -> Callable[[F], F]:
 
     def register(function: F) -> F:
         function.__dict__["needed_columns"] = frozenset(columns)
+        function.__dict__["columns_of_people"] = tuple(people)
         ANALYSES.add(f"{function.__module__}.{function.__qualname__}", function)
         return function
 
@@ -46,3 +48,12 @@ def find_analyses(columns: Collection[str]) -> list[Sections]:
     """
     import_modules(actr3d.experiment.__name__, actr3d.experiment.__path__, inner=True, named="analysis")
     return [function for function in ANALYSES.values() if function.__dict__["needed_columns"] <= set(columns)]
+
+
+def columns_of_people(columns: Collection[str]) -> list[str]:
+    """Returns the further columns of trials of people that some analysis reads.
+
+    Args:
+        columns: The columns of the trials of the experiment.
+    """
+    return list(dict.fromkeys(name for function in find_analyses(columns) for name in function.__dict__["columns_of_people"]))

@@ -14,6 +14,7 @@ from scipy.special import stdtrit
 
 from actr3d.experiment.design import Design
 from actr3d.experiment.human_data import HumanData, Schema, library_human_data, read_human_data
+from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.figures import Look
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.report.results import Results
@@ -32,6 +33,8 @@ class Beside:
     None (NaN for numbers) is a mean over all."""
     results: Results | None = None
     """The trials of another experiment; None for people."""
+    trials: Any = None
+    """The trials of people, a `DataFrame` with the columns of their file that a report uses; None for published means."""
 
     def of(self, measure: str) -> Any:
         """Returns the rows of a measure."""
@@ -46,6 +49,7 @@ def factors_of(parts: Sequence[Results]) -> dict[str, list[float] | list[str]]:
 def schema_of(parts: Sequence[Results]) -> Schema:
     """Returns what human data for an experiment may hold."""
     measures, factors = [name for part in parts for name in part.measures], factors_of(parts)
+    numbers = [name for name in columns_of_people(parts[0].rows.columns) if name not in (*measures, *factors)]
     return Schema(
         groups=parts[0].groups,
         factors=factors,
@@ -53,7 +57,8 @@ def schema_of(parts: Sequence[Results]) -> Schema:
         absent=parts[0].absent,
         parameters=parts[0].parameters,
         switches=[name for part in parts for name in part.measures if name in part.columns and part.columns[name].type == "boolean"],
-        ignored=[name for name in parts[0].columns if name not in (*measures, *factors)],
+        numbers=numbers,
+        ignored=[name for name in parts[0].columns if name not in ("participant", "group", *measures, *factors, *numbers)],
     )
 
 
@@ -101,13 +106,12 @@ def beside_people(data: HumanData, parts: Sequence[Results]) -> Beside:
     rows = pd.DataFrame([dict(row) for row in data.rows])
     rows["participant"] = rows["group"] + " " + rows["participant"]
     given = [name for name in ("group", *factors) if rows[name].notna().any()]
-    pieces: list[Any] = []
-    for measure in data.measures:
-        rows[measure] = rows[measure].astype("float64")
-        if rows[measure].notna().any():
-            pieces.append(cell_means(rows, measure, given).assign(measure=measure))
+    for name in (*data.measures, *data.numbers):
+        rows[name] = rows[name].astype("float64")
+    there = [measure for measure in data.measures if rows[measure].notna().any()]
+    pieces = [cell_means(rows, measure, given).assign(measure=measure) for measure in there]
     frame = pd.concat(pieces, ignore_index=True) if pieces else pd.DataFrame(columns=columns)
-    return Beside(label="people", look="human", frame=frame.reindex(columns=columns))
+    return Beside(label="people", look="human", frame=frame.reindex(columns=columns), trials=rows)
 
 
 def beside_experiment(others: Sequence[Results], parts: Sequence[Results]) -> Beside | None:
@@ -128,10 +132,21 @@ def beside_experiment(others: Sequence[Results], parts: Sequence[Results]) -> Be
 def matched(results: Results, beside: Beside, measure: str) -> Any:
     """Returns a `DataFrame` of the cells that both have: `model`, `beside` and what makes the cell. Means over all groups or levels are
     compared with the model's means over all."""
-    keys = ["group", *results.all_factors]
+    return matched_means(results.rows, measure, ["group", *results.all_factors], beside.of(measure))
+
+
+def matched_means(trials: Any, measure: str, keys: Sequence[str], means: Any) -> Any:
+    """Returns a `DataFrame` as `matched` does.
+
+    Args:
+        trials: The trials of the model.
+        measure: The column of them whose means are compared.
+        keys: The columns that make a cell.
+        means: The means beside, with the same columns and `mean`.
+    """
     found: list[dict[str, Any]] = []
-    for given, rows in _patterns(beside.of(measure), keys):
-        model = {tuple(row[name] for name in given): row["mean"] for row in cell_means(results.rows, measure, given).to_dict("records")}
+    for given, rows in _patterns(means, keys):
+        model = {tuple(row[name] for name in given): row["mean"] for row in cell_means(trials, measure, given).to_dict("records")}
         for row in rows:
             place = tuple(row[name] for name in given)
             if place in model:

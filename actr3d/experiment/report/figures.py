@@ -170,13 +170,14 @@ def _legend(figure: Any, panes: Sequence[Pane], labels: Sequence[str]) -> None:
     for number, label in enumerate(labels):
         colour = COLOURS[number % len(COLOURS)]
         handles.append(line([], [], color=colour, linewidth=1.8, marker=MARKERS[number % len(MARKERS)], markersize=5.5, label=label))
-    sources = dict.fromkeys((curve.source, curve.look) for pane in panes for curve in pane.curves)
+    curves = [curve for pane in panes for curve in pane.curves]
+    sources = {(one.source, one.look): bool(one.label) for one in sorted(curves, key=lambda one: bool(one.label))}
     if len(sources) > 1:
-        for source, name in sources:
+        for source, name in dict.fromkeys((one.source, one.look) for one in curves):
             look = dict(LOOKS[name])
             hollow = look.pop("hollow", False)
             face = PAPER if hollow else INK
-            look = {"marker": "D" if name == "human" else "o", "markerfacecolor": face, "markeredgecolor": INK, **look}
+            look = {"marker": "o" if sources[source, name] else "D", "markerfacecolor": face, "markeredgecolor": INK, **look}
             handles.append(line([], [], color=INK, label=source, **look))
     bands = dict.fromkeys(band[2] for pane in panes for band in (pane.band, pane.level) if band is not None)
     handles += [patch(facecolor=MUTED, alpha=0.25, linewidth=0, label=text) for text in bands]

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from actr3d.experiment.human_data import HumanData, plain_text
+from actr3d.experiment.measures import NOTHING_LEFT, ended_early
 from actr3d.experiment.report.beside import Beside, factors_of, fit_to, matched, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
@@ -41,7 +42,11 @@ def what_was_run(results: Results) -> Section:
     rows += [("versions", text) for text in results.versions]
     rows.append(("analysed with", versions()))
     table = Table(name="design", title="Design", frame=pd.DataFrame(rows, columns=["what", "value"]))
-    parts: list[str | Table | Plot | Caution] = [*(text for text in results.description.split("\n\n")[1:]), *cautions(results), table]
+    parts: list[str | Table | Plot | Caution] = [*results.description.split("\n\n")[1:]]
+    counts = {"participants": specification.participants, "trials": specification.trials}
+    if changed := [*(f"--{name}" for name, count in counts.items() if count is not None), *specification.values]:
+        parts.append(f"The description is that of the design as it was written. This experiment has its own: {', '.join(changed)}.")
+    parts += [*cautions(results), table]
     if len(results.failures):
         parts.append(failures(results))
     return Section(title="What was run", parts=parts)
@@ -60,6 +65,8 @@ def cautions(results: Results) -> list[Caution]:
             f"{cut:,} of {done:,} trials were stopped at their limit of {results.design.until:g} simulated seconds, `until` in the design. "
             "Their measures are those of that moment."
         )
+    if len(results.rows) and ended_early(results.rows["end"]):
+        found.append(f"All trials {NOTHING_LEFT}")
     least = min(group.participants for group in results.design.groups.values())
     if least < FEWEST:
         many = "one participant" if least == 1 else f"{least} participants"

@@ -50,7 +50,7 @@ class Results:
     outcomes: Sequence[str]
     """The measures that are texts."""
     parameters: Mapping[str, Parameter] = field(default_factory=dict[str, Parameter])
-    """The parameters of the model that are factors, by the names of the columns of `rows`."""
+    """The parameters of the model, by the names of the columns of `rows`."""
     absent: Mapping[str, Sequence[str]] = field(default_factory=dict[str, "Sequence[str]"])
     """The levels of the factors that the file of the design has, and this experiment does not; see `absent_levels`."""
     numbers: Mapping[str, list[float]] = field(default_factory=dict[str, "list[float]"])
@@ -155,7 +155,7 @@ def read_results(folder: Path | str) -> Results:
         versions=sorted(frame["versions"].unique()),
         measures=[name for name, kind in kinds.items() if kind in NUMBERS and rows[name].notna().any()],
         outcomes=[name for name, kind in kinds.items() if kind == "text"],
-        parameters={renamed[one.name]: one for one in experiment.parameters if one.name in renamed},
+        parameters={renamed.get(one.name, one.name): one for one in experiment.parameters},
         absent={renamed[name]: absent_levels(levels, design.factors[name]) for name, levels in experiment.written.factors.items()},
     )
 
