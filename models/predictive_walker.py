@@ -282,8 +282,8 @@ class Steering(ACTR):
         self.parent.steer_towards(float(far), float(aside), float(deep))
 
     def look_around(b_course="steer:yes", vision="busy:False error:True", motor="width:?width", b_door="left:?left right:?right"):
-        """Looks for any opening that is wide enough; without one, something hides the doorway."""
-        self.parent.looks_around = b_goal["do"] == "walk" and not self.parent.looks_around
+        """Looks for any opening that is wide enough; without one, something hides the doorway. A gap beside somebody is no doorway."""
+        self.parent.looks_around = b_goal["do"] == "walk" and not (self.parent.looks_around or self.parent.met)
         if self.parent.looks_around:
             vision.request(DOOR, width=f">{width}")
         else:
@@ -550,8 +550,9 @@ class Person(ACTR):
         """Steers to the middle of a doorway at a distance [m] and a direction to the left [degrees], with free depth behind it [m].
 
         In the last step it keeps its course. Before, it waits for an object that approaches and is as near to the doorway as the walker,
-        unless they share the doorway; it does not wait for objects that do not move. An object in front of the doorway has a negative depth.
-        Each time the object has come nearer, the patience starts again. Somebody has been met if the depth became smaller by a step.
+        unless they share the doorway; it does not wait for objects that do not move. An object in front of the doorway has a negative depth,
+        one that hides it a depth of 0. Each time the object has come nearer, or somebody hides the doorway, the patience starts again.
+        Somebody has been met if the depth became smaller by a step.
         """
         now, waits = self.now(), self.b_goal["do"] == "wait"
         obstructed = False
@@ -566,7 +567,7 @@ class Person(ACTR):
         comes = False
         if (waits or far < YIELD * self.step) and deep < far:
             self.taken = now
-            comes = deep < self.nearest - BEFORE
+            comes = deep < self.nearest - BEFORE or (self.met and deep == 0)
         elif now - self.taken > FORGET:
             self.nearest = deep if self.nearest == inf else max(self.nearest, deep)
         if comes:
@@ -624,18 +625,14 @@ class Person(ACTR):
     def end_backing_off(b_goal="do:wait", b_door="close:False", motor="walking:True"):
         motor.stop()
 
-    def go_on(b_goal="do:wait", b_door="free:True left:?left right:?right"):
-        """Looks for the doorway again, and plans again: the way is free, or its patience is over."""
+    def go_on(b_goal="do:wait", b_door="free:True"):
+        """Looks for a doorway again, unless it waited for somebody; and plans again: the way is free, or its patience is over."""
         if self.motor.walking:
             motor.stop()
-        for buffer in (b_course, b_door, b_plan, b_imagined, b_DM, b_experience):
+        for buffer in (*(() if self.met else (b_course, b_door)), b_plan, b_imagined, b_DM, b_experience):
             buffer.clear()
         self.costs = {}
-        if self.met:  # a gap beside somebody is no doorway
-            vision.request(DOOR, left=left, right=right)
-            b_goal.set("do:start")
-        else:
-            b_goal.set("do:look")
+        b_goal.set("do:walk" if self.met else "do:look")
 
     def commit(b_goal="do:walk", b_door="width:?wide near:True free:True", b_plan="turn:?turn width:?width passed:?passed"):
         self.committed = {"seen": float(wide), "felt": float(width), "speed": self.speed}
