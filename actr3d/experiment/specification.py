@@ -475,7 +475,7 @@ def _line_of(source: Source, function: str, error: Exception, name: str) -> int:
     of_group = [_entries(nodes, error.group) for nodes in (own, [tree])] if of_design and error.group else []
     within = [line for line in _mentions([tree], name) if begin <= line <= end]
     elsewhere = [_mentions(nodes, name) for nodes in (*of_group, own, [tree])] if of_design or not begin else []
-    lines = next(filter(None, [within, *elsewhere]), [])
+    lines = next((found for found in (within, *elsewhere) if found), list[int]())
     return min(lines, default=begin or next((one.lineno for one in own), 1))
 
 

@@ -25,7 +25,7 @@ from actr3d.experiment.fit import load_target
 from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of
 from actr3d.experiment.report.command import write_report
-from actr3d.experiment.report.figures import LOOKS, Curve, Pane, curves_figure, legend_columns, svg
+from actr3d.experiment.report.figures import LOOKS, Curve, Look, Pane, curves_figure, legend_columns, svg
 from actr3d.experiment.report.general import comparison_section, what_was_run
 from actr3d.experiment.report.libraries import pingouin
 from actr3d.experiment.report.parts import Caution, Plot, Table
@@ -316,7 +316,8 @@ def test_a_report_says_if_the_description_of_the_design_is_of_other_numbers(tmp_
 
 @pytest.mark.parametrize(("label", "marker"), [("small", "o"), ("", "D")])
 def test_a_legend_has_the_markers_that_are_drawn(label: str, marker: str) -> None:
-    curves = [Curve(label=label, source=who, look=look, x=[1, 2], y=[1, 2]) for who, look in (("model", "model"), ("people", "human"))]
+    sources: dict[str, Look] = {"model": "model", "people": "human"}
+    curves = [Curve(label=label, source=who, look=look, x=[1, 2], y=[1, 2]) for who, look in sources.items()]
     figure = curves_figure([Pane(title="", curves=curves)], "x", "y")
     assert [line.get_marker() for line in figure.axes[0].lines] == [marker] * 2
     shown = {handle.get_label(): handle.get_marker() for handle in figure.legends[0].legend_handles}
