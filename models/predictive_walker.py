@@ -31,6 +31,9 @@ Which doorways are wide enough for two follows from experience, as all plans do.
 predictions: where the walker waits (`YIELD`), and for how long (`PATIENCE`), so also who goes first; that it keeps to the right, and backs
 off; and that it does not share a doorway for which it once had another plan.
 
+With the seeds 500 to 519, one passes and the other waits in all pairs at 60, 80 and 100 cm, and both pass in all pairs at 120 and 160 cm; at
+110 cm both pass in 5 of 20. Nobody touches anything. With the seed 601, one touches the frame at 100 cm (docs/results.md).
+
 What to expect
 --------------
 - `aperture = 0.5`: turns by 10 to 40 degrees, or not at all.

@@ -149,9 +149,10 @@ def pair(model: Any, seed: int, aperture: float) -> tuple[set[str], set[str]]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("aperture", "seed"), [(1.0, 213), (1.0, 11), (1.0, 63), (1.0, 65), (0.8, 1), pytest.param(1.0, 601, marks=BRUSH)])
+@pytest.mark.parametrize(("aperture", "seed"), [(1.0, 213), (1.0, 11), (1.0, 63), (1.0, 65), (1.0, 5), pytest.param(1.0, 601, marks=BRUSH)])
 def test_one_that_waits_makes_room_and_sees_who_comes_while_it_plans(model: Any, aperture: float, seed: int) -> None:
-    """Once both set out at the same time, because one of them still planned; or the one that passed stopped too near to the other."""
+    """Once both set out at the same time, because one of them still planned; or the one that passed stopped too near to the other; or one
+    walked into the gap beside the other one."""
     passed, touched = pair(model, seed, aperture)
     assert len(passed) == 1
     assert not touched
