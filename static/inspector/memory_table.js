@@ -40,7 +40,7 @@ function PlotButton({ memory, chunk, plots }) {
     plotAll(curves, !on);
     hidden.value = hidden.value.filter((group) => group !== "curves");
   };
-  return html`<span class="change-buttons"><button disabled=${curves.length === 0} aria-pressed=${on} title="Plot its activation and the parts of it over time, in the timeline" onClick=${press}>Plot</button></span>
+  return html`<button disabled=${curves.length === 0} aria-pressed=${on} title="Plot its activation and the parts of it over time, in the timeline" onClick=${press}>Plot</button>
     ${reasons.map((why) => html`<span key=${why} class="quiet">${why}</span>`)}`;
 }
 

@@ -306,12 +306,13 @@ def test_a_recording_stays_shown_while_its_file_is_renamed(pages: Pages, workben
 def test_a_recording_of_a_model_that_is_gone_shows_the_parameters_of_its_run(pages: Pages, workbench: Served) -> None:
     file = workbench.folder / "gone.py"
     shutil.copy(MODELS / "doorway.py", file)
+    page = pages("counting.py", tab="parameters")
     session = workbench.post("/api/sessions", {"model": "gone.py", "settings": {"width": 0.9}}).json()["id"]
     workbench.post(f"/api/sessions/{session}/command", {"command": {"type": "step"}})
+    until(page, lambda: workbench.get(f"/api/sessions/{session}").json()["state"]["tick"] == 1)  # of less, nothing is kept
     name = workbench.get(f"/api/sessions/{session}").json()["session"]["recording"]
     workbench.post(f"/api/sessions/{session}/close")
     file.unlink()
-    page = pages("counting.py", tab="parameters")
     page.goto(f"{workbench.url}/?run={name}")
     expect(page.locator(".note")).to_have_text("The model's file is gone from the folder: this run cannot be restarted with other values.")
     expect(page.get_by_role("table", name="Parameters").get_by_role("row", name="width")).to_have_text("width0.9")
