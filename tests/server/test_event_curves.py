@@ -282,6 +282,19 @@ def test_the_activation_of_a_chunk_in_each_run_of_a_program_begins_with_this_run
         assert second[f"top#2.memory{end}"]["values"][101:181] == pytest.approx(curve["values"][1:])
 
 
+def test_modules_of_one_class_are_told_apart_over_time(desk: Desk, tmp_path: Path) -> None:
+    memory, chunk = "learner.memory", "from:1 to:2"
+    two = SPREADS_BUILT.replace("goal.set", "other = DMSpreading(memory, goal)\n    goal.set", 1)
+    talk = desk.begin(tmp_path, two.replace("spread.strength = 3", "spread.strength = 3\n        other.strength = 5"))
+    talk.say("until", time=0.25)
+    talk.until("paused", time=0.25)
+    names = [f"{memory}: {chunk} {part} over time" for part in ("spreading", "spreading 2")]
+    curves = talk.say("curves", names=names)["events"]
+    (parts,) = (row["parts"] for row in talk.say("memory", memory=memory)["rows"] if row["chunk"] == chunk)
+    assert [at(curves[name], 0.25) for name in names] == [parts["DMSpreading"], parts["DMSpreading 2"]]
+    assert parts["DMSpreading"] != parts["DMSpreading 2"]
+
+
 def test_an_activation_that_does_not_follow_from_the_events_is_not_drawn_and_the_answer_says_why(desk: Desk, tmp_path: Path) -> None:
     changing = SPREADS_BUILT.replace("retrieval.clear()", "retrieval.clear()\n        base.decay = 0.5 if at == '0' else 0.9")
     talk = desk.begin(tmp_path, changing)

@@ -12,6 +12,7 @@ from actr3d.actr.declarative.activation import DMBaseLevel, DMFixed, MemorySubMo
 from actr3d.actr.declarative.association import DMAssociate, DMInhibition
 from actr3d.actr.declarative.memory import Memory, own_activation
 from actr3d.actr.declarative.spreading import DMSalience, DMSpreading
+from actr3d.actr.explain.module_reasons import numbered
 from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.errors import ChunkError
 
@@ -58,12 +59,8 @@ def _row(memory: Memory, chunk: Chunk) -> MemoryRow:
 
 
 def named_modules(memory: Memory) -> Iterator[tuple[str, MemorySubModule]]:
-    """Yields the activation modules of a memory by the names of their parts: the class, numbered if there are several of it."""
-    names: list[str] = []
-    for module in memory.adaptors:
-        name = type(module).__name__
-        names.append(name)
-        yield (name if names.count(name) == 1 else f"{name} {names.count(name)}"), module
+    """Returns the activation modules of a memory by the names of their parts."""
+    return zip(numbered([type(module).__name__ for module in memory.adaptors]), memory.adaptors, strict=True)
 
 
 def part_now(module: MemorySubModule, chunk: Chunk) -> float | None:

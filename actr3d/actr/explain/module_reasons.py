@@ -36,7 +36,7 @@ def _retrieval_reason(memory: str, time: float, data: Mapping[str, Any], outcome
         else:
             verdict = f"lost by {best - activation:.4g}"
         modules = data["modules"] if len(data["modules"]) == len(parts) else ["get_activation"]
-        named = dict(zip(_numbered(modules), parts, strict=True))
+        named = dict(zip(numbered(modules), parts, strict=True))
         if data["partial"]:
             named["partial"] = partial
         candidates.append(CandidateReason(chunk=chunk, activation=activation, parts=named, verdict=verdict))
@@ -55,8 +55,8 @@ def _retrieval_reason(memory: str, time: float, data: Mapping[str, Any], outcome
     )
 
 
-def _numbered(names: Sequence[str]) -> list[str]:
-    """Numbers modules of one class: DMNoise, DMNoise 2."""
+def numbered(names: Sequence[str]) -> list[str]:
+    """Returns the names of the parts of an activation, from the classes of the modules: DMNoise, DMNoise 2."""
     return [name if names[:i].count(name) == 0 else f"{name} {names[:i].count(name) + 1}" for i, name in enumerate(names)]
 
 

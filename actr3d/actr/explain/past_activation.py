@@ -20,6 +20,7 @@ from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.declarative.memory import Memory, keep_in, own_activation
 from actr3d.actr.declarative.spreading import DMSpreading
 from actr3d.actr.explain.memory_table import named_modules, part_now
+from actr3d.actr.explain.module_reasons import numbered
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.errors import Actr3dError
@@ -144,7 +145,7 @@ class PastMemory:
             self._chunks.clear()
         elif event.kind == "request" and data.get("candidates"):
             text, parts, *_ = data["candidates"][0]
-            self.compare(time, text, dict(zip(data["modules"], parts, strict=False)))
+            self.compare(time, text, dict(zip(numbered(data["modules"]), parts, strict=False)))
 
     def _chunk(self, contents: Mapping[str, Any]) -> Chunk:
         if self._buffers and not IMMUTABLE_TYPES.issuperset(map(type, contents.values())):
