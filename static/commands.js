@@ -21,9 +21,18 @@ export function command({ text, about = () => "", group, key = null, work, ready
   return made;
 }
 
-/** Registers commands that depend on what is shown: `list` returns them for a search, each time they are asked for. They are found by a search. */
-export function commandsOf(list) {
-  sources.push(list);
+/** Registers commands that depend on what is shown, which only a search finds.
+ *
+ * @param list Returns them for the words of a search, each time they are asked for.
+ * @param read Reads what they are about, when the palette is opened.
+ */
+export function commandsOf(list, read = () => {}) {
+  sources.push({ list, read });
+}
+
+/** Reads what the commands are about that depend on what is shown. */
+export function readPresent() {
+  for (const { read } of sources) read();
 }
 
 /** Returns the commands that are always there, in the order in which they were registered. */
@@ -33,7 +42,7 @@ export function permanent() {
 
 /** Returns the commands that depend on what is shown, and on the words of a search. */
 export function present(search = "") {
-  return sources.flatMap((list) => list(search).map((one) => ({ key: null, ready: () => true, why: () => "", ...one })));
+  return sources.flatMap(({ list }) => list(search).map((one) => ({ key: null, ready: () => true, why: () => "", ...one })));
 }
 
 /** Returns the command of a key. */

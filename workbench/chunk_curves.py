@@ -6,7 +6,7 @@ Nothing is recorded for them, and nothing is computed for a chunk that no page p
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -86,26 +86,23 @@ class ChunkCurves:
         self._known: dict[str, _Known] = {}
         """By the name of the memory."""
 
-    def sampled(self, names: Iterable[str], first: int, last: int, most: int, parts: Mapping[str, Any], present: int) -> dict[str, Any]:
+    def sampled(self, names: Sequence[str], first: int, last: int, most: int, parts: Mapping[str, Any], present: int) -> dict[str, Any]:
         """Returns the curves among `names` as `EventCurves.sampled` does, `events`, and their `basis`: if this text differs from that of
         an earlier answer, the values of that answer are no longer valid.
 
         Args:
-            names: Names of curves; others than those of chunks are ignored.
+            names: The names of the curves, which end with `SUFFIX`.
             first: Start of the interval [us].
             last: Its end, included [us].
             most: Maximum number of values of a curve.
             parts: The present parts of the run, by name.
             present: How many events the run has had up to the present.
         """
-        wanted = [name for name in names if name.endswith(SUFFIX)]
-        if not wanted:
-            return {"events": {}, "basis": ""}
         self._look(parts)
         found: dict[str, Any] = {}
         basis: list[str] = []
         for source, known in self._known.items():
-            chosen = _chosen(known.memory, source, wanted)
+            chosen = _chosen(known.memory, source, names)
             if not chosen:
                 continue
             try:

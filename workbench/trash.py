@@ -29,8 +29,6 @@ _DELETED = re.compile(rf"{re.escape(OWN)}/{TRASH}/\d{{8}}-\d{{6}}/[0-9a-f]{{4}}-
 class TrashError(Actr3dError):
     """What was deleted cannot be restored."""
 
-    status = 409
-
 
 class NotInTrashError(TrashError):
     """There is nothing of that name in the trash folder."""
@@ -104,9 +102,7 @@ def restore_from_trash(root: Path, trash: str) -> Deleted:
     except (OSError, ValueError):
         raise NotInTrashError from None
     inside = all(not PurePosixPath(origin).is_absolute() and ".." not in PurePosixPath(origin).parts for origin in deleted.origins.values())
-    if not deleted.origins or not inside:
-        raise NotInTrashError
-    if not where.exists():
+    if not (deleted.origins and inside and where.exists()):
         raise NotInTrashError
     taken = [origin for origin in deleted.origins.values() if (root / origin).exists()]
     if taken:

@@ -5,9 +5,6 @@ import { canMakeReport, canResume, canStop, experiments, listExperiments, makeRe
 import { openTab } from "../open_tab.js";
 import { whenText } from "../runs/wording.js";
 
-/** Reads the list of experiments. */
-export const readExperiments = () => void listExperiments();
-
 /** Shows an experiment; "new" for the form of a new one. */
 function show(id) {
   openTab.value = "experiments";
@@ -22,10 +19,12 @@ const ACTIONS = [
   ["Make the report of", canMakeReport, makeReport],
 ];
 
-commandsOf(() =>
-  (experiments.value ?? []).flatMap((one) => {
-    const name = `${one.name} ${whenText(one.made)}`;
-    const actions = ACTIONS.filter(([, can]) => can(one)).map(([text, , work]) => ({ text: `${text} the experiment ${name}`, group: one.id, work: () => (show(one.id), work(one)) }));
-    return [{ text: `Experiment: ${name}`, group: one.id, work: () => show(one.id) }, ...actions];
-  }),
+commandsOf(
+  () =>
+    (experiments.value ?? []).flatMap((one) => {
+      const name = `${one.name} ${whenText(one.made)}`;
+      const actions = ACTIONS.filter(([, can]) => can(one)).map(([text, , work]) => ({ text: `${text} the experiment ${name}`, group: one.id, work: () => (show(one.id), work(one)) }));
+      return [{ text: `Experiment: ${name}`, group: one.id, work: () => show(one.id) }, ...actions];
+    }),
+  listExperiments,
 );

@@ -8,15 +8,17 @@ import { signal } from "../vendor/preact.js";
 const others = signal([]);
 
 /** Lists them. */
-export async function readOpenRuns() {
+async function read() {
   others.value = await otherSessions(session.peek()?.id).catch(() => []); // without a list, none is offered
 }
 
-commandsOf(() =>
-  others.value.map((one) => ({
-    text: one.recorded ? `Switch to the open recording ${one.recorded}` : `Switch to the open run of ${one.model}`,
-    about: () => one.status ?? "",
-    group: "Open runs",
-    work: () => showSession(one),
-  })),
+commandsOf(
+  () =>
+    others.value.map((one) => ({
+      text: one.recorded ? `Switch to the open recording ${one.recorded}` : `Switch to the open run of ${one.model}`,
+      about: () => one.status ?? "",
+      group: "Open runs",
+      work: () => showSession(one),
+    })),
+  read,
 );

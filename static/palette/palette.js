@@ -1,16 +1,15 @@
 // The command palette (Ctrl K): every command of the page, found by a few letters; what was used last comes first; and the manual.
 
-import { command, permanent, present, run } from "../commands.js";
+import { command, permanent, present, readPresent, run } from "../commands.js";
 import { KEY_GROUPS, keyText } from "../keys.js";
 import { remembered } from "../local_storage.js";
 import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { match } from "./fuzzy.js";
 import { hasManual, noManual } from "../bar/models.js";
-import { readParameters } from "../panels/parameters.js";
-import { readExperiments } from "./experiments.js";
+import "./experiments.js";
 import { inManual, readManual } from "./manual_search.js";
-import { readOpenRuns } from "./open_runs.js";
-import { readRecordings } from "./recordings.js";
+import "./open_runs.js";
+import "./recordings.js";
 
 const MAX_RECENT = 6;
 const MAX_ENTRIES = 60; // entries shown
@@ -107,10 +106,7 @@ function Palette({ opening }) {
   useLayoutEffect(() => void box.current.showModal(), []);
   useEffect(() => {
     readManual();
-    readRecordings();
-    readExperiments();
-    readParameters();
-    readOpenRuns();
+    readPresent();
   }, []);
 
   function press(event) {

@@ -17,11 +17,14 @@ const MAX_RECORDINGS = 300; // the newest
 const presentRun = () => runs.value?.find(({ id }) => id === shownRecording.value);
 
 /** Lists the recordings, unless they and the present run are listed. */
-export function readRecordings() {
+function read() {
   if (runs.peek() === null || (shownRecording.peek() !== null && !presentRun())) listRuns();
 }
 
-commandsOf(() => (runs.value ?? []).slice(0, MAX_RECORDINGS).map((run) => ({ text: `Recording: ${nameOf(run)}`, group: run.id, work: () => openRun(run), ready: () => !run.problem })));
+commandsOf(
+  () => (runs.value ?? []).slice(0, MAX_RECORDINGS).map((run) => ({ text: `Recording: ${nameOf(run)}`, group: run.id, work: () => openRun(run), ready: () => !run.problem })),
+  read,
+);
 
 /** Shows a run in the list, where the progress of its action is shown, too. */
 function show({ id }) {

@@ -229,9 +229,6 @@ function Parameters() {
 
 // -- the parameters as commands: «Set NAME» shows its field, «Set NAME to VALUE» enters the value there
 
-/** Reads the declarations, if they are not known. */
-export const readParameters = () => void (session.peek() && follow(session.peek()));
-
 /** Shows the field of a parameter, and enters a value if one is given. */
 function show(parameter, text = null) {
   openTab.value = "parameters";
@@ -251,17 +248,20 @@ function fits(parameter, text) {
   return !read(parameter, text).problem;
 }
 
-commandsOf((search) => {
-  if (session.value?.gone) return [];
-  const [, name = "", text = ""] = /^(?:set\s+)?(.*\S)\s+(\S+)$/i.exec(search) ?? [];
-  const words = name.replace(/\s+to$/i, "");
-  return known().flatMap((parameter) => {
-    const about = () => [valueText(inForce(parameter)), parameter.unit].filter(Boolean).join(" ");
-    const given = words && match(words, parameter.name) && fits(parameter, text);
-    const setting = { text: `Set ${parameter.name} to ${text}`, about: () => (parameter.live ? "" : "from the next run on"), group: "Parameters", work: () => show(parameter, text) };
-    return [{ text: `Set ${parameter.name}`, about, group: "Parameters", work: () => show(parameter) }, ...(given ? [setting] : [])];
-  });
-});
+commandsOf(
+  (search) => {
+    if (session.value?.gone) return [];
+    const [, name = "", text = ""] = /^(?:set\s+)?(.*\S)\s+(\S+)$/i.exec(search) ?? [];
+    const words = name.replace(/\s+to$/i, "");
+    return known().flatMap((parameter) => {
+      const about = () => [valueText(inForce(parameter)), parameter.unit].filter(Boolean).join(" ");
+      const given = words && match(words, parameter.name) && fits(parameter, text);
+      const setting = { text: `Set ${parameter.name} to ${text}`, about: () => (parameter.live ? "" : "from the next run on"), group: "Parameters", work: () => show(parameter, text) };
+      return [{ text: `Set ${parameter.name}`, about, group: "Parameters", work: () => show(parameter) }, ...(given ? [setting] : [])];
+    });
+  },
+  () => session.peek() && follow(session.peek()), // if they are not known
+);
 
 export const panel = {
   id: "parameters",

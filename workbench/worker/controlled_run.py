@@ -12,7 +12,7 @@ from actr3d.errors import SimulationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.recording import Recording
 from actr3d.trace import Trace, TraceEvent
-from workbench.chunk_curves import ChunkCurves
+from workbench.chunk_curves import SUFFIX, ChunkCurves
 from workbench.event_curves import EventCurves
 from workbench.worker.known_run import KnownRun
 from workbench.worker.names import Names, Top
@@ -162,11 +162,14 @@ class ControlledRun(ABC):
             return {**bodies, "events": {}, "basis": ""}
         events = self.take_events()
         answer = events.added_to(bodies, names, first, last, most, seen=seen)
+        of_chunks = [name for name in names or () if name.endswith(SUFFIX)]
+        if not of_chunks:
+            return answer
         if self._chunk_curves is None or self._chunk_curves.of is not events:
             self._chunk_curves = ChunkCurves(events, self.period)
         end = self.furthest if last is None else min(microseconds(last), self.furthest)
-        parts = {name: part for top in self.tops() for name, part in top.parts()} if names else {}
-        chunks = self._chunk_curves.sampled(names or (), microseconds(first), end, most, parts, len(self.trace))
+        parts = {name: part for top in self.tops() for name, part in top.parts()}
+        chunks = self._chunk_curves.sampled(of_chunks, microseconds(first), end, most, parts, len(self.trace))
         return {**answer, "events": {**answer["events"], **chunks["events"]}, "basis": chunks["basis"]}
 
     def take_events(self) -> EventCurves:

@@ -148,8 +148,7 @@ class ProgramRun(ControlledRun):
         self._listing = listing
         self._source = with_values(start.source, start.settings)
         self._seed = fresh_seed() if start.seed is None else start.seed
-        self._trace = Trace("all")
-        self._limits = RunLimits(trace=self._trace)
+        self._limits = RunLimits(trace=Trace("all"))
         self._output: ProgramOutput | None = None
         self._clock: int = 0
         self._tick_begin: int | None = None
@@ -276,7 +275,7 @@ class ProgramRun(ControlledRun):
         self._changed = False
         self._tick_begin = None
         self._times = ProgramTimes()
-        self._trace = trace = Trace("all")
+        trace = Trace("all")
         trace.listen(self._note_time)
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
@@ -503,7 +502,9 @@ class ProgramRun(ControlledRun):
 
     @property
     def trace(self) -> Trace:
-        return self._trace
+        trace = self._limits.trace
+        assert trace is not None, "each pass has one"
+        return trace
 
     def events(self, first: int, end: int) -> list[TraceEvent]:
         times = self._times.between(first, end)  # of an event that another thread is adding there may be none yet
@@ -626,7 +627,7 @@ class ProgramRun(ControlledRun):
 
     def _hold_models(self) -> None:
         """Keeps the latest models; otherwise garbage collection would decide which are shown."""
-        for run in self._trace.runs[self._runs :]:
+        for run in self.trace.runs[self._runs :]:
             self._runs += 1
             if run.model is not None:
                 self._held.append((self._runs, run, run.model))

@@ -11,8 +11,6 @@ from dataclasses import dataclass
 
 MEMORY = 4_000
 """Default maximum memory of a model in addition to the worker's own at its start [MB]."""
-
-
 PATIENCE = 3.0
 """Time for the fork server to end [s]."""
 
