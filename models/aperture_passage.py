@@ -17,7 +17,7 @@ unit task *turn*, interrupts it before a narrow doorway:
 
 The three variants
 ------------------
-The `predictive` variant is described in predictive_walker.py: no margin, ratio or judgement is put into it.
+The `predictive` variant is described in predictive_walker.py: no margin and no ratio is put into it.
 
 The `descriptive` variant (the default) looks before it turns. It turns only if the opening is narrower than 1.30 times its width. The turn
 starts 1.6 s before the wall; hips and legs turn with the shoulders, until the room at the sides is 0.30 of the shoulder width, that

@@ -1,10 +1,11 @@
 """A person walks through a doorway, and decides from experience how far to turn the shoulders.
 
-No ratio, margin or judgement is put in. The walker has passed doorways before, with empty hands or with a bar as now. It remembers of 150
+No ratio and no margin is put in. The walker has passed doorways before, with empty hands or with a bar as now. It remembers of 150
 passages how much wider than its body the doorway looked, how fast it walked, and what came of it: nothing, a brush, or a hit, and how hard.
 For each turn of its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by blending its memories
 what the passage will cost. It chooses the turn with the smallest sum of effort and expected cost of contacts. The effort is the work of
-turning, and of walking more slowly and then fast again.
+turning, and of walking more slowly and then fast again. It judges a doorway to be passable if it expects no contact with a probability
+above 0.5 (`LIKELY`, chosen).
 
 The body walks with a gait (`actr3d.world.Gait`): it sways, and its steps vary. So it needs more room than its width, and the less room
 it has the more often it touches the wall. The eyes see the doorway with noise, less when it is near; and the felt width has noise.
@@ -16,7 +17,8 @@ Four parallel systems:
   from its own movement.
 - *Avoiding* notices objects that are nearer than the doorway; the same law turns away from them. Near the doorway the walker waits if
   an object approaches the doorway, on either side, and is as near to it as the walker. It waits as long as the object approaches, and
-  then until its patience ends. Then it looks for a doorway again, and goes on; if there is none, it gives up.
+  then until its patience ends. Then it looks for the doorway again, unless it has waited for somebody, and goes on; if there is none, it
+  gives up.
 - *Planning* imagines one turn after the other, and keeps the cheapest. It goes on until two steps before the doorway.
 - *Walking* turns the shoulders in one of these two steps, about half a step before the doorway, and turns them back behind it. With
   turned hips its steps are shorter, so it walks more slowly meanwhile.
