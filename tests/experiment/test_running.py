@@ -140,7 +140,8 @@ def test_a_batch_that_takes_long_returns_its_rows_and_the_rest_is_another(
     assert [number for number, _, _ in batch.rows] == [3]
     seen: list[Progress] = []
     assert run_here(client, path, tmp_path / "short", show=seen.append) == expected
-    assert [progress.done for progress in seen] == list(range(61))
+    assert list(dict.fromkeys(progress.done for progress in seen)) == list(range(61))
+    assert all(before != after for before, after in pairwise(seen)), "a worker that comes or goes is news, too"
 
 
 def test_batches_that_have_finished_are_kept_when_a_run_is_stopped(tmp_path: Path, client: Any) -> None:
