@@ -119,8 +119,7 @@ At the same cost of contacts, the first one decides how much room it wants more 
 BODY = 0.4
 """The shoulder width [m] at which the similarity of two rooms is the same in both units. Source: chosen for this model."""
 LIKELY = 0.5
-"""Probability above which it treats an event as certain. It decides from which width on a doorway is judged passable (docs/results.md).
-Source: chosen for this model."""
+"""The expected probability of getting through at or below which it does not set out, or stops. Source: chosen for this model."""
 DISTANCE_NOISE, EDGE_NOISE, WIDTH_NOISE = 0.02, 0.002, 0.005
 """Standard deviations, for `perceptual_noise = 1`: of seen distances, as a fraction; of seen directions of edges [rad]; of felt widths [m].
 Source: chosen for this model. They have no bias, as people's have none up to 15 m (Fukusima, Loomis & Da Silva 1997, J Exp Psychol Hum
@@ -420,8 +419,9 @@ class Person(ACTR):
         known = experiences(walks=walks, hands=hands) if always is None else ()
         for passage in self.random.sample(known, min(memories, len(known))):
             room = self.room(passage["seen"], passage["felt"], passage["shoulders"])
-            outcome = " ".join(f"{slot}:{passage[slot]}" for slot in ("speed", "energy", "free", "passed"))
-            experience.add(f"event:passage room:{room} {outcome}")
+            numbers = " ".join(f"{slot}:{passage[slot]}" for slot in ("speed", "energy", "free", "passed"))
+            outcome = "free" if passage["free"] else "touched" if passage["passed"] else "stopped"
+            experience.add(f"event:passage room:{room} {numbers} outcome:{outcome}")
         self.side = self.random.choice([1, -1])
         self.rate, self.turned, self.middle, self.obstacle, self.looks_around = 0.0, 0, 0.0, None, False
         self.taken, self.nearest, self.patient_until = 0.0, inf, 0.0
@@ -475,29 +475,31 @@ class Person(ACTR):
         self.judged = "not at all"
         self.stop()
 
-    def remember_passages(b_goal="do:judge", b_visual="feature:opening width:?wide", motor="width:?width"):
-        """Requests memories of passages through such a doorway without contact, at any speed."""
+    def remember_a_passage(b_goal="do:judge", b_visual="feature:opening width:?wide", motor="width:?width"):
+        """Requests what came of a passage through such a doorway, at any speed. Words are not blended: it is that of the most active one."""
         b_visual.clear()
-        experience.request(f"event:passage room:{self.room(wide, width, self.shoulders)} free:?")
+        experience.request(f"event:passage room:{self.room(wide, width, self.shoulders)} outcome:?")
         b_goal.set(f"do:say door:{wide}")
 
-    def say(b_goal="do:say door:?door", b_experience="free:?free"):
-        """Judges «as it is» if a passage without contact is likely; otherwise imagines the greatest turn."""
-        b_experience.clear()
-        if float(free) > LIKELY:
-            self.report("as it is")
-        else:
-            DM.request(f"torso_yaw:{self.side * (1 - HIPS) * TURNS[-1]:.2f} width:?")
-            b_goal.set(f"do:imagine door:{door}")
+    def say_as_it_is(b_goal="do:say", b_experience="outcome:free"):
+        self.report("as it is")
 
-    def remember_turned_passages(b_goal="do:imagine door:?door", b_DM="width:?width"):
-        """Requests memories of passages with the room that the greatest turn leaves, with or without contact."""
+    def imagine_the_greatest_turn(b_goal="do:say door:?door", b_experience="outcome:!free"):
+        b_experience.clear()
+        DM.request(f"torso_yaw:{self.side * (1 - HIPS) * TURNS[-1]:.2f} width:?")
+        b_goal.set(f"do:imagine door:{door}")
+
+    def remember_a_turned_passage(b_goal="do:imagine door:?door", b_DM="width:?width"):
+        """Requests what came of a passage with the room that the greatest turn leaves."""
         b_DM.clear()
-        experience.request(f"event:passage room:{self.room(door, width, self.shoulders)} passed:?")
+        experience.request(f"event:passage room:{self.room(door, width, self.shoulders)} outcome:?")
         b_goal.set("do:doubt")
 
-    def say_whether_turned(b_goal="do:doubt", b_experience="passed:?passed"):
-        self.report("turned" if float(passed) > LIKELY else "not at all")
+    def say_turned(b_goal="do:doubt", b_experience="outcome:!stopped"):
+        self.report("turned")
+
+    def say_not_at_all(b_goal="do:doubt", b_experience="outcome:stopped"):
+        self.report("not at all")
 
     def know_nothing(b_goal="do:say", experience="error:True"):
         """Without experience it judges as it would walk: it turns only if the turn is given."""
