@@ -88,9 +88,13 @@ class Deciding:
         }
         return compared[self.likeness]
 
+    def activation(self, far: NDArray[Any], noise: np.random.Generator) -> NDArray[Any]:
+        """Returns the activation of memories for each doorway `(m, n)`, from how dissimilar they are `(m, n)`."""
+        return noise.logistic(0, self.noise, far.shape) - far if self.noise else -far
+
     def blended(self, far: NDArray[Any], values: NDArray[Any], noise: np.random.Generator) -> NDArray[Any]:
         """Returns the blend of the values of memories `(n,)` for each doorway `(m,)`, from how dissimilar they are `(m, n)`."""
-        activation = noise.logistic(0, self.noise, far.shape) - far if self.noise else -far
+        activation = self.activation(far, noise)
         weights = np.exp((activation - activation.max(axis=1, keepdims=True)) / self.temperature)
         return (weights @ values) / weights.sum(axis=1)
 
@@ -127,12 +131,11 @@ def expected(
     return np.array(efforts), np.array(impacts)
 
 
-def judged_boundary(by: Deciding, likely: float) -> float:
-    """Returns the least ratio from which on half of the walkers judge that they can pass as they are.
+def judged_boundary(by: Deciding) -> float:
+    """Returns the least ratio from which on half of the walkers judge that they can pass as they are: the most active passage was free.
 
     Args:
-        by: The numbers by which they blend their memories of passages at any speed.
-        likely: The probability of a passage without contact above which they judge so.
+        by: The numbers by which they remember passages, at any speed.
     """
     known = experiences(walks=by.walks)
     free = np.array([one["free"] for one in known])
@@ -142,7 +145,7 @@ def judged_boundary(by: Deciding, likely: float) -> float:
     for _ in range(WALKERS):
         some = choice.sample(range(len(known)), min(by.memories, len(known)))
         far = np.abs(rooms[some] - (RATIOS[:, None] - 1) * MODEL.BODY) / by.room
-        judged.append(by.blended(far, free[some], noise) > likely)
+        judged.append(free[some][by.activation(far, noise).argmax(axis=1)])
     return float(RATIOS[np.flatnonzero(np.mean(judged, axis=0) < 0.5)[-1] + 1])
 
 
@@ -221,12 +224,9 @@ def report() -> str:
         of = fitted(likeness=likeness)
         lines.append(f"  alike by {likeness}, {found_by(of)}")
         lines.append(f"    large minus small: {large_minus_small(of):+.1f} degrees")
-    lines.append(f"judged passable: from {judged_boundary(usual, MODEL.LIKELY):.2f}")
-    for likely in (0.3, 0.4, 0.6, 0.7, 0.8, 0.9):
-        lines.append(f"  likely {likely:g}: from {judged_boundary(usual, likely):.2f}")
-    for name, value in (("room", 0.01), ("room", 0.04), ("temperature", 0.5), ("temperature", 2.0)):
-        lines.append(f"  {name} {value:g}: from {judged_boundary(replace(usual, **{name: value}), MODEL.LIKELY):.2f}")
-    lines.append(f"  by the most similar passage alone: from {judged_boundary(replace(usual, temperature=0.001), MODEL.LIKELY):.2f}")
+    lines.append(f"judged passable: from {judged_boundary(usual):.2f}")
+    for name, value in (("room", 0.01), ("room", 0.04), ("noise", 0.5 * usual.noise), ("noise", 2 * usual.noise), ("memories", 75)):
+        lines.append(f"  {name} {value:g}: from {judged_boundary(replace(usual, **{name: value})):.2f}")
     for name, shoulders, normal, fast in CELLS:
         both, effort, impact = effect_of_speed(shoulders, normal, fast)
         lines.append(f"{name}, fast minus normal: {both:+.1f} degrees; by effort alone {effort:+.1f}, by impact alone {impact:+.1f}")

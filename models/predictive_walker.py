@@ -1,11 +1,14 @@
 """A person walks through a doorway, and decides from experience how far to turn the shoulders.
 
 No ratio and no margin is put in. The walker has passed doorways before, with empty hands or with a bar as now. It remembers of 150
-passages how much wider than its body the doorway looked, how fast it walked, and what came of it: nothing, a brush, or a hit, and how hard.
+passages how much wider than its body the doorway looked, in widths of its own shoulders, how fast it walked, and what came of it: nothing, a
+brush, or a hit, and how hard. That room is remembered in units of the body is assumed; from this alone it follows that large and small
+people turn alike at the same ratio of doorway and shoulders (`units = "metres"` shows what happens otherwise).
+
 For each turn of its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by blending its memories
 what the passage will cost. It chooses the turn with the smallest sum of effort and expected cost of contacts. The effort is the work of
-turning, and of walking more slowly and then fast again. It judges a doorway to be passable if it expects no contact with a probability
-above 0.5 (`LIKELY`, chosen).
+turning, and of walking more slowly and then fast again. Asked whether it could pass a doorway, it says what came of the one passage that is
+most active for the room there is. It declines to walk if it expects to get through with a probability of at most 0.5 (`LIKELY`, chosen).
 
 The body walks with a gait (`actr3d.world.Gait`): it sways, and its steps vary. So it needs more room than its width, and the less room
 it has the more often it touches the wall. The eyes see the doorway with noise, less when it is near; and the felt width has noise.
