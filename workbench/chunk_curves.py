@@ -202,9 +202,13 @@ class ChunkCurves:
     def _own(self, source: str, time: int) -> float | None:
         """Returns the time of a memory's model at a time of the run [s]; None if it did not run then."""
         number = run_of(source)
-        clock = self.of.clocks[number]
-        own = None if time > clock.last and number != self.of.latest else clock.at(time)
-        return None if own is None else seconds(own)
+        times = self.of.times[number]
+        found = times.own_at(time)
+        if found is None:
+            return None
+        own, since = found
+        goes_on = not since or (number == self.of.latest and time > times.program)
+        return seconds(own + since) if goes_on else None
 
 
 def _settings(memory: Memory) -> str:

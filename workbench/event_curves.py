@@ -20,6 +20,7 @@ from actr3d.clock import microseconds, seconds
 from actr3d.trace import TraceEvent, run_of
 from workbench.curves import Curve, Shape
 from workbench.part_names import part_name
+from workbench.program_time import RunTimes
 
 LOGGED = frozenset({"add", "chunks", "buffer", "request"})
 """The kinds of the events from which activations follow."""
@@ -88,43 +89,6 @@ class LoggedEvent(NamedTuple):
     event: TraceEvent
 
 
-class RunClock:
-    """Converts times of a program, which counts all its runs, to those of one run, which starts at 0; both are the same in a
-    simulation."""
-
-    def __init__(self) -> None:
-        self.own = 0
-        """The time of the run at its last event [us]."""
-        self.last = 0
-        """The time of the program at this event [us]."""
-        self._begins = array("q")
-        """When other runs gave way to this one: the time of the program [us]."""
-        self._lags = array("q")
-        """From then on: how much the time of the program is ahead [us]."""
-
-    def advance(self, before: int, time: int) -> int:
-        """Goes on to an event; returns the time of the run [us].
-
-        Args:
-            before: The time of the program at the event before it, of whatever run [us].
-            time: The time of the program at this event [us].
-        """
-        lag = before - self.own
-        if not self._lags or self._lags[-1] != lag:
-            self._begins.append(before)
-            self._lags.append(lag)
-        self.own, self.last = time - lag, time
-        return self.own
-
-    def at(self, time: int) -> int | None:
-        """Returns the time of the run at a time of the program [us]; None if it had not begun, or if another run went on."""
-        place = bisect_right(self._begins, time)
-        if place == 0:
-            return None
-        own = time - self._lags[place - 1]
-        return own if place == len(self._begins) or own <= self._begins[place] - self._lags[place] else None
-
-
 class EventCurves:
     """The curves of the events of a run, which are taken in their order, each once."""
 
@@ -141,7 +105,7 @@ class EventCurves:
         """By attribute: when it had its first number, and this number."""
         self.logged: defaultdict[str, list[LoggedEvent]] = defaultdict(list)
         """By source: the events from which activations follow; see `workbench.chunk_curves`."""
-        self.clocks: defaultdict[int, RunClock] = defaultdict(RunClock)
+        self.times: defaultdict[int, RunTimes] = defaultdict(RunTimes)
         """By the number of the run."""
         self.latest = 1
         """The number of the run of the last event."""
@@ -156,9 +120,10 @@ class EventCurves:
             with suppress(KeyError, TypeError, ValueError, AttributeError, OverflowError):
                 if kind != "output":  # which belongs to the program, and to none of its runs
                     self.latest = run_of(source)
-                    own = self.clocks[self.latest].advance(self._now, max(self._now, time))
+                    times = self.times[self.latest]
+                    times.add(times.own + max(0, time - self._now), max(self._now, time))
                     if kind in LOGGED:
-                        self.logged[source].append(LoggedEvent(number, own, event))
+                        self.logged[source].append(LoggedEvent(number, times.own, event))
                 if time > self._now:
                     if number == 0:
                         self._since = f" since {seconds(time):.3f} s"

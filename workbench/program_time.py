@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from array import array
+from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterator
 from itertools import chain, repeat
@@ -87,3 +89,43 @@ class _Clock:
         if event.kind == "start":
             self._latest = event.run
         return self.advance(self._latest if event.kind == "output" else event.run, event.time_us)
+
+
+class RunTimes:
+    """Converts between the time of one run, which starts at 0, and the time of its program. While another run goes on, only the time of
+    the program passes."""
+
+    def __init__(self) -> None:
+        self.own = 0
+        """The time of the run at its last event [us]."""
+        self.program = 0
+        """The time of the program at this event [us]."""
+        self._own = array("q")
+        """When the run began, and when it went on after other runs: the time of the run [us]."""
+        self._program = array("q")
+        """The same moments: the time of the program [us]."""
+
+    def add(self, own: int, program: int) -> None:
+        """Adds the two times of the next event of the run [us]."""
+        if not self._own or program - own != self._program[-1] - self._own[-1]:
+            self._own.append(self.own)
+            self._program.append(self.own + program - own)
+        self.own, self.program = own, program
+
+    def own_at(self, program: int) -> tuple[int, int] | None:
+        """Returns the time of the run at a time of the program; None if the run had not begun.
+
+        Returns:
+            The time that the run had reached, at most that of its last event, and how much of the program's time has passed since [us].
+        """
+        place = bisect_right(self._program, program)
+        if place == 0:
+            return None
+        own = self._own[place - 1] + program - self._program[place - 1]
+        reached = min(own, self.own if place == len(self._own) else self._own[place])
+        return reached, own - reached
+
+    def program_at(self, own: int) -> int:
+        """Returns the time of the program at a time of the run [us]; the run has had an event."""
+        place = max(1, bisect_left(self._own, own))
+        return self._program[place - 1] + own - self._own[place - 1]

@@ -25,6 +25,7 @@ from actr3d.actr.loading.sweep import run
 from actr3d.actr.modules import MODULES
 from actr3d.actr.modules.imaginal import ImaginalModule
 from actr3d.actr.modules.motor import Motor
+from actr3d.actr.modules.port import BodyPort
 from actr3d.actr.modules.sos_vision import SOSVision
 from actr3d.actr.modules.text import TextOutput
 from actr3d.actr.modules.timer import Timer
@@ -44,6 +45,7 @@ __all__ = [
     "PMPGC",
     "PMTD",
     "BlendingMemory",
+    "BodyPort",
     "Buffer",
     "Chunk",
     "DMAssociate",

@@ -7,7 +7,7 @@ import { Icon } from "../parts/icon.js";
 import { plain, Prose } from "../parts/prose.js";
 import { call } from "../server.js";
 import { session } from "../store.js";
-import { experiments, isRunning, shown, startExperiment } from "./list.js";
+import { shown, startExperiment } from "./list.js";
 import { durationText, levelsText, readLevels } from "./wording.js";
 
 const PAUSE = 700; // how long the user has not typed before the design is checked [ms]
@@ -210,7 +210,6 @@ function Foot({ design, usual }) {
   const { seconds, error } = useDuration(wanted, problem, usual);
   const key = JSON.stringify(wanted);
   const last = refused.value.of === key ? refused.value.error : null;
-  const full = experiments.value?.filter(isRunning).length >= 2;
 
   async function start() {
     starting.value = true;
@@ -228,7 +227,7 @@ function Foot({ design, usual }) {
     <div class="foot">
       <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${trouble && seconds === null ? "" : estimate(seconds, trials, wanted.workers)}${waiting ? " · checking …" : ""}</span>`}</span>
       <span class="stretch"></span>
-      <button class="primary" disabled=${starting.value || full || problem !== null || trials === null} title=${full ? "Two experiments are already running" : "Run all trials in the background"} onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}</button>
+      <button class="primary" disabled=${starting.value || problem !== null || trials === null} title="Run all trials in the background" onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}</button>
     </div>
   `;
 }

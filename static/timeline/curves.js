@@ -17,9 +17,8 @@ const OVERVIEW = 1500; // the number of moments for a whole run of which nothing
 const PIECE = 1000; // the number of ticks per request when paused: longer stretches would delay commands
 const MAX_VALUES = 5000; // the maximum number of values of a curve per request
 const NOTHING = { times: [], values: [], slope: null, range: [Infinity, -Infinity] };
-const OVER_TIME = " over time"; // the end of the names of curves of chunks, as `workbench/chunk_curves.py` has it
 const CHUNKS = "activation over time";
-const COMPUTED = new Set(["activation", "base level", "spreading", "fixed", "inhibition"]); // the groups of the values at retrievals that are also computed over time
+const OF_CHUNK = /^.*?: (.*) (activation|base level|spreading|fixed|inhibition)( \d+)?( without noise)? over time$/s; // the names of curves of chunks, as `workbench/chunk_curves.py` has them
 
 /** The curves of bodies: [{name, unit, group, of, shape}], where `of` is the list in which a curve is offered, if it is not its group. */
 const ofBodies = signal([]);
@@ -31,9 +30,9 @@ const ofChunks = computed(() => {
   const found = new Set((kept.value ?? []).filter(isOfChunk));
   const all = new Set(ofEvents.value.map(({ name }) => name));
   for (const { name, group, shape } of ofEvents.value) {
-    if (shape !== "points" || !COMPUTED.has(group)) continue;
     const noisy = group === "activation" && all.has(name.replace(/activation$/, "noise"));
-    found.add(`${name}${noisy ? " without noise" : ""}${OVER_TIME}`);
+    const overTime = `${name}${noisy ? " without noise" : ""} over time`;
+    if (shape === "points" && isOfChunk(overTime)) found.add(overTime);
   }
   return [...found].map((name) => ({ name, unit: "", group: CHUNKS, of: null, shape: "line" }));
 });
@@ -128,8 +127,8 @@ function plotsOf(curves, seriesOf) {
 /** Returns the title of a plot that shows a single chunk over time: `item:cup over time`; null for any other plot. */
 function onlyChunk({ group, series }) {
   if (group !== CHUNKS) return null;
-  const chunks = new Set(series.map(({ name }) => /^.*?: (.*) (activation|base level|spreading|fixed|inhibition)( \d+)?( without noise)? over time$/.exec(name)?.[1]));
-  return chunks.size === 1 && !chunks.has(undefined) ? `${[...chunks][0]}${OVER_TIME}` : null;
+  const chunks = new Set(series.map(({ name }) => OF_CHUNK.exec(name)[1]));
+  return chunks.size === 1 ? `${[...chunks][0]} over time` : null;
 }
 
 /** The plots: [{title, unit, series, range}], one for each group with chosen curves. */
@@ -240,7 +239,7 @@ function gap(begin, end) {
 
 /** Whether a curve is that of a chunk over time. */
 export function isOfChunk(name) {
-  return name.endsWith(OVER_TIME);
+  return OF_CHUNK.test(name);
 }
 
 /** Why curves of chunks cannot be computed: sentences, each once. */

@@ -81,6 +81,29 @@ def test_a_folder_without_models_is_said_to_have_none(pages: Callable[..., Page]
     expect(page.locator("#scene")).to_contain_text("No model is shown.")
 
 
+OPEN_BY_COMMAND = """async (title) => {
+  const { permanent, run } = await part("commands.js");
+  run(permanent().find(({ text }) => text === `Open ${title}`));
+}"""
+
+
+def test_each_panel_has_a_title_and_is_opened_and_drawn_without_a_run(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    answers(page, "/api/models", NO_MODELS)
+    page.reload()
+    expect(page.locator("#scene")).to_contain_text("There is no model in the folder yet")
+    panels: list[dict[str, str]] = page.evaluate("async () => (await part('panels.js')).PANELS.map(({ id, title }) => ({ id, title }))")
+    assert panels
+    for panel in panels:
+        tab, drawn = page.locator(f"#tab-{panel['id']}"), page.locator(f"#panel-{panel['id']}")
+        expect(tab).to_have_text(re.compile(rf"^{re.escape(panel['title'])}"))
+        assert panel["title"].strip()
+        page.evaluate(OPEN_BY_COMMAND, panel["title"])
+        expect(tab).to_have_attribute("aria-selected", "true")
+        expect(drawn).to_have_text(re.compile(r"\S"))
+        expect(drawn).not_to_have_text(re.compile("undefined|NaN"))
+
+
 def test_its_own_faults_do_not_bury_other_messages(page: Page) -> None:
     shows(page, "#status", "paused")
     open_tab(page, "Messages")

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from actr3d.actr.explain.past_activation import PARAMETERS
 from actr3d.trace import TraceEvent
 from tests.helpers.sessions import Desk, Talk
 from tests.server.test_recorded_runs import recording
+from workbench.chunk_curves import SUFFIX
 from workbench.event_curves import EventCurves
 from workbench.exports import curves_of
+from workbench.page_files import static
+from workbench.part_names import part_name
 
 COUNTS = """
 from actr3d.actr import *
@@ -280,6 +285,16 @@ def test_the_activation_of_a_chunk_in_each_run_of_a_program_begins_with_this_run
         assert first[f"memory{end}"]["values"][101:] == [None] * 90
         assert second[f"top#2.memory{end}"]["values"][:100] == [None] * 100
         assert second[f"top#2.memory{end}"]["values"][101:181] == pytest.approx(curve["values"][1:])
+
+
+def test_the_page_knows_the_names_of_all_curves_of_chunks() -> None:
+    known = re.search(r"const OF_CHUNK = /(.*)/s;", (static() / "timeline" / "curves.js").read_text(encoding="utf-8"))
+    assert known is not None
+    parts = [part_name(module.__name__) for module in PARAMETERS]
+    for part in [*parts, *(f"{part} 2" for part in parts), "activation", "activation without noise"]:
+        found = re.fullmatch(known[1], f"memory: item:cup {part}{SUFFIX}", re.DOTALL)
+        assert found is not None, part
+        assert found[1] == "item:cup"
 
 
 def test_modules_of_one_class_are_told_apart_over_time(desk: Desk, tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from actr3d.recording import Recorded, Recording
 from actr3d.trace import TraceEvent
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.exports import EXPORTS
-from workbench.program_time import timed_events
+from workbench.program_time import RunTimes, timed_events
 from workbench.recording_diff import compare
 
 TRIALS = """
@@ -151,6 +151,26 @@ def test_a_forged_state_without_a_time_is_refused(tmp_path: Path, state: bytes) 
         recording.event_alone(TraceEvent(0, "top", "run", {}))
     with Recorded(tmp_path / "forged") as recorded, pytest.raises(RecordingError, match="a state has no time"):
         list(timed_events(recorded))
+
+
+def test_the_times_of_a_run_that_pauses_while_another_one_goes_on_convert_both_ways() -> None:
+    times = RunTimes()
+    assert times.own_at(70) is None
+    for own, program in [(0, 70), (10, 80), (10, 130), (30, 150)]:
+        times.add(own, program)
+    assert (times.own, times.program) == (30, 150)
+    assert [times.own_at(program) for program in (69, 70, 75, 80, 100, 130, 140, 150, 160)] == [
+        None,
+        (0, 0),
+        (5, 0),
+        (10, 0),
+        (10, 20),
+        (10, 0),
+        (20, 0),
+        (30, 0),
+        (30, 10),
+    ]
+    assert [times.program_at(own) for own in (0, 5, 10, 20, 30)] == [70, 75, 80, 140, 150]
 
 
 def test_explanations_have_the_times_of_the_clock(desk: Desk, tmp_path: Path) -> None:

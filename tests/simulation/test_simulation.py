@@ -32,7 +32,6 @@ from tests.helpers.walkers import Driver, digest, driving, scene_of
 MINDS: Any = load_text(
     """
 from actr3d.actr import *
-from actr3d.simulation import BodyPort
 
 class Asker(ACTR):
     goal = Buffer()

@@ -52,9 +52,14 @@ class Server:
     def get(cls) -> Server:
         """Returns the server of this process; starts it if necessary."""
         known = cls._started
-        if known is None or known._of != os.getpid() or known._process.poll() is not None:
+        if known is None or not known.is_alive:
             known = cls._started = Server()
         return known
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether it is of this process, not of one that has forked this one, and runs."""
+        return self._of == os.getpid() and self._process.poll() is None
 
     def ask(self, request: dict[str, Any], wire: socket.socket | None = None) -> dict[str, Any]:
         """Sends a request, with a socket if there is one, and returns the answer.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from array import array
+from collections import Counter, defaultdict, deque
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
@@ -29,6 +30,7 @@ from actr3d.trace import Run, Trace, TraceEvent, run_of, top_path
 from actr3d.values import to_json
 from workbench.curves import joined
 from workbench.loader import ModelListing
+from workbench.program_time import RunTimes
 from workbench.worker.change_menu import change_menu
 from workbench.worker.controlled_run import ControlledRun, nothing_to_undo
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
@@ -37,7 +39,6 @@ from workbench.worker.kept_branch import KeptBranch
 from workbench.worker.known_run import KnownRun
 from workbench.worker.messages import ENDED, Facts
 from workbench.worker.names import Names, Top, names_of_program
-from workbench.worker.program_times import ProgramTimes
 from workbench.worker.run_controller import Leaving, RunController
 from workbench.worker.shown import Shown
 from workbench.worker.state_history import MAX_SIMULATIONS, Past
@@ -153,7 +154,10 @@ class ProgramRun(ControlledRun):
         self._clock: int = 0
         self._tick_begin: int | None = None
         """While a simulation ticks: its own time at the start of the tick [us], which is the time of the clock."""
-        self._times = ProgramTimes()
+        self._event_times = array("q")
+        """The time of the clock at each event [us]."""
+        self._run_times: defaultdict[int, RunTimes] = defaultdict(RunTimes)
+        """By the number of the run."""
         self._furthest: int = 0
         self._rush: int | None = None
         """The time up to which it runs without being shown or paused [us]."""
@@ -274,7 +278,8 @@ class ProgramRun(ControlledRun):
         self._shown = self._waits = self._recorded = None
         self._changed = False
         self._tick_begin = None
-        self._times = ProgramTimes()
+        self._event_times = array("q")
+        self._run_times.clear()
         trace = Trace("all")
         trace.listen(self._note_time)
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
@@ -318,7 +323,15 @@ class ProgramRun(ControlledRun):
     def _note_time(self, event: TraceEvent) -> None:
         """Stores when an event happens: now, or within the tick of a simulation."""
         since = 0 if self._tick_begin is None else event.time_us - self._tick_begin
-        self._times.add(event, self._clock + (since if 0 <= since <= self.period else 0))
+        time = self._clock + (since if 0 <= since <= self.period else 0)
+        self._event_times.append(time)
+        if event.kind != "output":  # which belongs to the program, and to none of its runs
+            self._run_times[event.run].add(event.time_us, time)
+
+    @property
+    def _last_event(self) -> int:
+        """The time of the clock at the last event [us]."""
+        return self._event_times[-1] if self._event_times else 0
 
     def _hold_at_start(self) -> None:
         """Waits before the program begins, unless it is being run again to reach a later moment."""
@@ -353,7 +366,7 @@ class ProgramRun(ControlledRun):
             self._finish_undo(self._undoing)  # it did not get there: it differs from the first time
         self._over = True
         self._introduce()
-        self._clock = max(self._clock, self._times.last)
+        self._clock = max(self._clock, self._last_event)
         self._furthest = max(self._furthest, self._clock)
         self._controller.end(status, reason)
 
@@ -374,7 +387,7 @@ class ProgramRun(ControlledRun):
         if self._changed:  # its effects of the moment have happened
             self._changed = False
             controller.show()
-        self._clock = max(self._clock, self._times.last)  # a tick of a simulation that failed counts up to its last event
+        self._clock = max(self._clock, self._last_event)  # a tick of a simulation that failed counts up to its last event
         due = self._changes.due(sch, end)
         to = self._clock + (end if due is None else due) - sch.now_us
         self._waits = sch, sch.now_us, self._clock
@@ -442,7 +455,7 @@ class ProgramRun(ControlledRun):
         self._show(simulation)
         self._hold_models()
         self._introduce()
-        self._clock = max(self._clock + passed, self._times.last)
+        self._clock = max(self._clock + passed, self._last_event)
         self._tick_begin = simulation.ticks * self.period
         self._check_left()
         if self._rush is not None and self._clock < self._rush:
@@ -507,14 +520,15 @@ class ProgramRun(ControlledRun):
         return trace
 
     def events(self, first: int, end: int) -> list[TraceEvent]:
-        times = self._times.between(first, end)  # of an event that another thread is adding there may be none yet
+        times = self._event_times[first:end]  # of an event that another thread is adding there may be none yet
         return [TraceEvent(time, *event[1:]) for event, time in zip(super().events(first, end), times, strict=False)]
 
     def own_time(self, source: str, time: int) -> int | None:
-        return self._times.own(run_of(source), time)
+        found = self._run_times[run_of(source)].own_at(time)
+        return None if found is None else found[0]
 
     def whole_time(self, source: str, time: int) -> int:
-        return self._times.whole(run_of(source), time)
+        return self._run_times[run_of(source)].program_at(time)
 
     @property
     def shown(self) -> Shown | None:
@@ -557,7 +571,7 @@ class ProgramRun(ControlledRun):
         if known == 0:
             raise nothing_to_undo(self._clock)
         run, time, _ = changes.known[known - 1]
-        moment = self._clock if known > changes.made else self._times.whole(run, time)
+        moment = self._clock if known > changes.made else self._run_times[run].program_at(time)
         self.flush()
         self._undoing = KeptBranch(self._controller, self._recording, moment, self._furthest, drop=drop)
         self._commands = changes.known[: known - 1]
