@@ -34,7 +34,7 @@ class Walk:
 
     seed: int
     beyond: tuple[str, ...]
-    """The names of those that are behind the doorway at the end."""
+    """The names of those whose base is behind the doorway at the end."""
     side: str
     """The side on which the walker ended."""
     touched: tuple[str, ...]

@@ -25,6 +25,7 @@ from actr3d.simulation import Simulation
 ROOT = Path(__file__).parents[2]
 FILE = ROOT / "models" / "predictive_walker.py"
 SENSITIVITY = ROOT / "docs" / "sensitivity.py"
+SCENES = ROOT / "docs" / "scenes.py"
 
 
 @pytest.fixture(scope="module")
@@ -424,6 +425,19 @@ def test_no_number_of_the_walker_is_without_a_name() -> None:
     named = [node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and node.name != "Parameters"]
     within = {(of.name, node.value) for of in named for node in ast.walk(of) if isinstance(node, ast.Constant)}
     assert {value for _, value in within if type(value) in (int, float)} == {0, 1, 2, 4}
+
+
+# -- other scenes (docs/scenes.py)
+
+
+def test_the_script_of_the_other_scenes_tells_how_walks_ended() -> None:
+    scenes = load_text(SCENES.read_text(encoding="utf-8"), str(SCENES))
+    group = scenes.Group({"aperture": 0.2}, seeds=[1])
+    (walk,) = [scenes.walk(group.parameters, seed) for seed in group.seeds]
+    assert (walk.beyond, walk.touched, walk.turn) == ((), (), None)
+    assert walk.seen == pytest.approx(0.2, abs=0.03)
+    line = scenes.report(group, [walk])
+    assert line.startswith("aperture 0.2: 1 walks; 0 with one beyond the doorway; 0 with waiting; 0 with contact; seen width")
 
 
 # -- how much the chosen numbers matter (docs/sensitivity.py)
