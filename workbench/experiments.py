@@ -101,16 +101,16 @@ class RunningExperiment:
 
     def summary(self) -> dict[str, Any]:
         """Returns the state: trials, rate [1/s] and remaining time [s], None before they are known."""
-        rate = left = None
+        rate = remaining = None
         progress = self.progress
         if len(self._seen) > 1:
             (since, before), (_, now) = self._seen[0], self._seen[-1]
             if now > before:
                 rate = (now - before) / max(0.1, time.monotonic() - since)
-                left = (progress.total - now) / rate
+                remaining = (progress.total - now) / rate
         state = "stopping" if self.command.interrupted else "running"
         trials = {"done": progress.done, "failures": progress.failures, "workers": progress.workers}
-        return {"state": state, **trials, "rate": rate, "left": left}
+        return {"state": state, **trials, "rate": rate, "remaining": remaining}
 
 
 class Experiments:
@@ -202,7 +202,7 @@ class Experiments:
         problem = counted["problem"] or notes.problem
         complete = total is not None and counted["done"] >= total
         state = "finished" if complete else "elsewhere" if folder.is_locked else "failed" if problem else "stopped"
-        return {**found, **counted, "state": state, "problem": problem, "workers": 0, "rate": None, "left": None}
+        return {**found, **counted, "state": state, "problem": problem, "workers": 0, "rate": None, "remaining": None}
 
     async def _count(self, folders: Sequence[ExperimentFolder]) -> None:
         """Counts the trials of those experiments whose tables have changed."""

@@ -37,7 +37,7 @@ class BuiltOutput(TeeOutput):
         self._early: list[str] = []
         self._voice: StdoutCapture | None = None
 
-    def lead_to(self, simulation: Simulation) -> None:
+    def attach_to(self, simulation: Simulation) -> None:
         """Sends all earlier and later lines to this simulation."""
         self.finish()
         for text in self._early:

@@ -79,9 +79,9 @@ def replay(
         seed = facts["program_seed"]
         with RunLimits(seed=seed, until=facts["until"]), shared_random(seed), _sealed(recorded, within) as helpers, BuiltOutput() as output:
             simulation, parameters = _built(recorded, helpers)
-            output.lead_to(simulation)
+            output.attach_to(simulation)
             comparator = Comparator(recorded)
-            helpers.heard = partial(comparator.fact, "helpers")
+            helpers.on_load = partial(comparator.fact, "helpers")
             file = facts["file"]
             own = built_facts(file, facts["sources"][file], parameters, seed, facts["until"], helpers.loaded)
             return _replay_simulation(recorded, simulation, comparator, simulation.facts(**own), progress)

@@ -131,13 +131,13 @@ def _run_built(
     with limits, suppress(EndOfRun), shared_random(limits.program_seed), BuiltOutput() as output:
         blueprint = Blueprint(source, file, Path(file).parent, helpers)
         simulation, parameters = blueprint.build(settings(blueprint.fields) if callable(settings) else settings)
-        output.lead_to(simulation)
+        output.attach_to(simulation)
         if record is None:
             _run_to_end(simulation)
             return simulation.conclude()
         facts = built_facts(file, source, parameters, limits.program_seed, limits.until, helpers.loaded)
         with simulation.record(record, **facts) as recording:
-            helpers.heard = partial(recording.fact, "helpers")  # an agent may import one later
+            helpers.on_load = partial(recording.fact, "helpers")  # an agent may import one later
             with before_the_end(partial(_keep_all, recording, simulation.event_log.stdout)), recorded_failure(recording):
                 ended_by = _run_to_end(simulation)
                 result = simulation.conclude()
@@ -191,7 +191,7 @@ def play_program(
     Raises:
         Exception: Any error that the program raises; it is recorded, too.
     """
-    helpers.heard = partial(recording.fact, "helpers")
+    helpers.on_load = partial(recording.fact, "helpers")
     limits.recorder = recording
     left: SystemExit | None = None
     with recorded_failure(recording):

@@ -49,7 +49,7 @@ export async function listExperiments() {
 }
 
 /** Keeps the list up to date while it is shown; returns the function that stops this. */
-export function follow() {
+export function followExperiments() {
   let over = false;
   let timer = 0;
   async function again() {

@@ -10,17 +10,17 @@ import { session } from "../store.js";
 import { shown, startExperiment } from "./list.js";
 import { durationText, levelsText, readLevels } from "./wording.js";
 
-const PAUSE = 700; // how long the user has not typed before the design is checked [ms]
+const TYPING_PAUSE = 700; // how long the user has not typed before the design is checked [ms]
 const DESIGN = remembered("design", "");
 const UNKNOWN = { facts: null, seconds: null, error: null };
-const NOTHING = { values: {}, participants: "", trials: "", workers: "" };
+const EMPTY_DRAFT = { values: {}, participants: "", trials: "", workers: "" };
 
 /** The designs, and the number of processors: {designs: [{id, name, file, description}], processors, most: {participants, trials, workers}}; null before they are known. */
 const known = signal(null);
 /** What was entered, by design: {values: {name: text}, participants, trials, workers}. */
 const drafts = signal({});
 
-const draftOf = (design) => drafts.value[design] ?? NOTHING;
+const draftOf = (design) => drafts.value[design] ?? EMPTY_DRAFT;
 
 function change(design, changes) {
   drafts.value = { ...drafts.value, [design]: { ...draftOf(design), ...changes } };
@@ -32,26 +32,26 @@ function readCount(name, text) {
 }
 
 /** Returns what the server is asked for, and the number of trials; `problem` says what is wrong. */
-function wantedOf(design, facts) {
+function requestOf(design, facts) {
   const { values: texts, ...counts } = draftOf(design);
-  const wanted = { design, values: {} };
+  const request = { design, values: {} };
   let problem = null;
   for (const [name, text] of Object.entries(texts)) {
     const { levels, problem: why } = readLevels(text);
     const isFactor = Boolean(facts?.factors[name]);
     if (levels === null || (!isFactor && levels.length !== 1)) problem ??= `${name}: ${isFactor ? "levels, each once, separated by commas" : "one value"}; ${why ?? `there are ${levels.length} (got '${text}')`}`;
-    else if (!isFactor || levelsText(levels) !== levelsText(facts.factors[name])) wanted.values[name] = isFactor ? levels : levels[0];
+    else if (!isFactor || levelsText(levels) !== levelsText(facts.factors[name])) request.values[name] = isFactor ? levels : levels[0];
   }
   for (const [name, text] of Object.entries(counts)) {
     const count = readCount(name, text);
     if (Number.isNaN(count)) problem ??= `${name === "workers" ? "processes" : name}: must be a whole number from 1 to ${known.value.most[name].toLocaleString("en")} (got '${text}')`;
-    else if (count !== null) wanted[name] = count;
+    else if (count !== null) request[name] = count;
   }
-  if (!facts || problem) return { wanted, problem, trials: null };
-  const cells = Object.entries(facts.factors).map(([name, levels]) => [wanted.values[name] ?? levels].flat().length);
-  const people = Object.values(facts.groups).reduce((sum, number) => sum + (wanted.participants ?? number), 0);
-  const trials = cells.reduce((product, number) => product * number, people * (wanted.trials ?? facts.trials_a_cell));
-  return { wanted, problem, trials };
+  if (!facts || problem) return { request, problem, trials: null };
+  const cells = Object.entries(facts.factors).map(([name, levels]) => [request.values[name] ?? levels].flat().length);
+  const people = Object.values(facts.groups).reduce((sum, number) => sum + (request.participants ?? number), 0);
+  const trials = cells.reduce((product, number) => product * number, people * (request.trials ?? facts.trials_a_cell));
+  return { request, problem, trials };
 }
 
 /** Returns how long a trial takes [s], and why it fails, as the server measured it: {seconds, error}. */
@@ -61,7 +61,7 @@ const measured = ({ seconds_a_trial: seconds, error }) => ({ seconds, error: err
  * {facts, seconds, error}. */
 function useFacts(design) {
   const found = useSignal({ of: "", ...UNKNOWN });
-  const known = () => (found.value.of === design ? found.value : UNKNOWN);
+  const current = () => (found.value.of === design ? found.value : UNKNOWN);
   useEffect(() => {
     if (!design) return undefined;
     const leave = new AbortController();
@@ -71,17 +71,17 @@ function useFacts(design) {
       found.value = { ...UNKNOWN, of: design, facts };
       found.value = { of: design, facts, ...measured(await ask(true)) };
     }
-    read().catch((error) => !leave.signal.aborted && (found.value = { ...known(), of: design, error: error.message }));
+    read().catch((error) => !leave.signal.aborted && (found.value = { ...current(), of: design, error: error.message }));
     return () => leave.abort();
   }, [design]);
-  return known();
+  return current();
 }
 
 /** Checks what was changed in the server when the user pauses; returns {error, waiting}: what is wrong, or null. */
-function useCheck(wanted, problem) {
+function useCheck(request, problem) {
   const found = useSignal({ of: "", error: null });
-  const key = JSON.stringify({ ...wanted, workers: undefined });
-  const changed = Object.keys(wanted.values).length > 0 || wanted.participants !== undefined || wanted.trials !== undefined;
+  const key = JSON.stringify({ ...request, workers: undefined });
+  const changed = Object.keys(request.values).length > 0 || request.participants !== undefined || request.trials !== undefined;
   useEffect(() => {
     if (!changed || problem) return undefined;
     const leave = new AbortController();
@@ -89,11 +89,11 @@ function useCheck(wanted, problem) {
       call("POST", "/api/designs/check", JSON.parse(key), leave.signal)
         .then(() => (found.value = { of: key, error: null }))
         .catch((error) => !leave.signal.aborted && (found.value = { of: key, error: error.message }));
-    }, PAUSE);
+    }, TYPING_PAUSE);
     return () => (clearTimeout(timer), leave.abort());
   }, [key, changed, problem]);
-  const known = found.value.of === key;
-  return { error: known ? found.value.error : null, waiting: changed && !problem && !known };
+  const isChecked = found.value.of === key;
+  return { error: isChecked ? found.value.error : null, waiting: changed && !problem && !isChecked };
 }
 
 /** Measures how long a trial takes with the values that were changed, when the user pauses; returns {seconds, error}. Without any, it is
@@ -108,7 +108,7 @@ function useDuration({ design, values }, problem, usual) {
       call("POST", "/api/designs/check", JSON.parse(key), leave.signal)
         .then((answer) => (found.value = { of: key, ...measured(answer) }))
         .catch((error) => !leave.signal.aborted && (found.value = { of: key, seconds: null, error: error.message }));
-    }, PAUSE);
+    }, TYPING_PAUSE);
     return () => (clearTimeout(timer), leave.abort());
   }, [key, problem]);
   if (!key) return usual;
@@ -205,27 +205,26 @@ function estimate(each, trials, workers) {
 function Foot({ design, usual }) {
   const starting = useSignal(false);
   const refused = useSignal({ of: "", error: null });
-  const { wanted, problem, trials } = wantedOf(design, usual.facts);
-  const { error: wrong, waiting } = useCheck(wanted, problem);
-  const { seconds, error } = useDuration(wanted, problem, usual);
-  const key = JSON.stringify(wanted);
-  const last = refused.value.of === key ? refused.value.error : null;
+  const { request, problem, trials } = requestOf(design, usual.facts);
+  const check = useCheck(request, problem);
+  const duration = useDuration(request, problem, usual);
+  const key = JSON.stringify(request);
+  const error = (refused.value.of === key ? refused.value.error : null) ?? check.error ?? duration.error;
 
   async function start() {
     starting.value = true;
     try {
-      await startExperiment(wanted);
+      await startExperiment(request);
     } catch (reason) {
       refused.value = { of: key, error: reason.message };
     }
     starting.value = false;
   }
 
-  const trouble = last ?? wrong ?? error;
   return html`
-    ${trouble ? html`<pre class="trouble" role="alert">${trouble}</pre>` : null}
+    ${error ? html`<pre class="trouble" role="alert">${error}</pre>` : null}
     <div class="foot">
-      <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${trouble && seconds === null ? "" : estimate(seconds, trials, wanted.workers)}${waiting ? " · checking …" : ""}</span>`}</span>
+      <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${duration.error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${error && duration.seconds === null ? "" : estimate(duration.seconds, trials, request.workers)}${check.waiting ? " · checking …" : ""}</span>`}</span>
       <span class="stretch"></span>
       <button class="primary" disabled=${starting.value || problem !== null || trials === null} title="Run all trials in the background" onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}</button>
     </div>

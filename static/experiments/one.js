@@ -27,12 +27,12 @@ function Actions({ experiment }) {
 const processesText = ({ processes }) => (processes ? `in ${counted(processes, "process", "processes")}` : "on all processors");
 
 function Progress({ experiment }) {
-  const { done, total, failures, rate, left, state, workers } = experiment;
+  const { done, total, failures, rate, remaining, state, workers } = experiment;
   const going = state === "running" || state === "stopping";
   const facts = [
     going && done === 0 ? (workers > 0 ? "the first trials are running …" : "starting …") : null,
     rate && state === "running" ? rateText(rate) : null,
-    left !== null && state === "running" ? `${durationText(left)} left` : null,
+    remaining !== null && state === "running" ? `${durationText(remaining)} left` : null,
     going && workers > 0 && done > 0 ? `${workers} ${workers === 1 ? "process" : "processes"}` : null,
   ].filter(Boolean);
   return html`<div class="progress" role="status">

@@ -3,13 +3,13 @@
 import { html, useEffect } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { agoText, whenInFull, whenText } from "../runs/wording.js";
-import { experiments, follow, isRunning, listExperiments, problem, showExperiment, shown } from "../experiments/list.js";
+import { experiments, followExperiments, isRunning, listExperiments, problem, showExperiment, shown } from "../experiments/list.js";
 import { NewExperiment } from "../experiments/new.js";
 import { Experiment } from "../experiments/one.js";
 import { changedText, doneText, durationText, failuresText, stateText } from "../experiments/wording.js";
 
 function Row({ experiment }) {
-  const { id, name, model, made, state, done, total, failures, left, changed } = experiment;
+  const { id, name, model, made, state, done, total, failures, remaining, changed } = experiment;
   const open = () => showExperiment(id);
   const how = changedText(changed) || "as designed";
   return html`<tr data-experiment=${id} onClick=${open}>
@@ -18,7 +18,7 @@ function Row({ experiment }) {
       <small>${model ? html`<span class="path"><bdi>${model}</bdi></span>` : null}<span>${how}</span></small>
     </td>
     <td class="when" title=${whenInFull(made)}><span class="number">${whenText(made)}</span><small>${agoText(made)}</small></td>
-    <td class="state ${state}"><span>${stateText(experiment)}</span><small>${isRunning(experiment) && left !== null ? `${durationText(left)} left` : failures > 0 ? html`<span class="bad">${failuresText(failures)}</span>` : ""}</small></td>
+    <td class="state ${state}"><span>${stateText(experiment)}</span><small>${isRunning(experiment) && remaining !== null ? `${durationText(remaining)} left` : failures > 0 ? html`<span class="bad">${failuresText(failures)}</span>` : ""}</small></td>
     <td class="done"><span class="number">${doneText(experiment)}</span><progress aria-label="Finished trials" value=${done} max=${total ?? Math.max(1, done)}></progress></td>
   </tr>`;
 }
@@ -46,7 +46,7 @@ function List() {
 }
 
 function Experiments() {
-  useEffect(follow, []);
+  useEffect(followExperiments, []);
   const isThere = experiments.value?.some(({ id }) => id === shown.value);
   const view = shown.value === "new" ? html`<${NewExperiment} />` : isThere ? html`<${Experiment} />` : html`<${List} />`;
   return html`<div class="experiments">${view}</div>`;

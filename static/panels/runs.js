@@ -8,7 +8,7 @@ import { Icon } from "../parts/icon.js";
 import { Chosen } from "../runs/chosen.js";
 import { openTab } from "../open_tab.js";
 import { addFiles, chooseFiles, deleteRuns, openRun } from "../runs/actions.js";
-import { follow, listRuns, loading, problem, runs as list, total, warning } from "../runs/list.js";
+import { followRuns, listRuns, loading, problem, runs as list, total, warning } from "../runs/list.js";
 import { chosen, sorted, Table } from "../runs/table.js";
 import { textOf } from "../runs/wording.js";
 
@@ -35,7 +35,7 @@ function Runs() {
   const search = useSignal("");
   const withIdle = useSignal(false);
   const dropping = useSignal(false); // whether files are held over the list
-  useEffect(follow, []);
+  useEffect(followRuns, []);
   const whole = list.value ?? [];
   const all = useMemo(() => (withIdle.value ? whole : whole.filter((run) => !isIdle(run))), [whole, withIdle.value]);
   const idle = whole.length - all.length;

@@ -93,7 +93,7 @@ export function forgetRun(id) {
 
 /** Keeps the list up to date while it is shown: the server reports whenever a recording of any session began, ended or was changed. Returns the
  * function that stops this. */
-export function follow() {
+export function followRuns() {
   const key = computed(() => `${session.value?.id} ${session.value?.listings} ${way.value}`);
   return effect(() => {
     key.value;

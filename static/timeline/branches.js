@@ -8,7 +8,7 @@ import { openTab } from "../open_tab.js";
 import { Icon } from "../parts/icon.js";
 import { deleteRuns, openRun } from "../runs/actions.js";
 import { labelRun } from "../runs/label.js";
-import { follow, isOrphan, runs } from "../runs/list.js";
+import { followRuns, isOrphan, runs } from "../runs/list.js";
 import { outcomeText, whenText } from "../runs/wording.js";
 import { counted } from "../parts/count.js";
 import { chooseLive } from "../bar/models.js";
@@ -154,7 +154,7 @@ export function Branches() {
   const box = useRef(null);
   const [width, setWidth] = useState(600);
   const several = tree.value.length > 1;
-  useEffect(follow, []);
+  useEffect(followRuns, []);
   useLayoutEffect(() => {
     if (!box.current) return undefined;
     const watch = new ResizeObserver(() => box.current && setWidth(box.current.clientWidth));

@@ -200,7 +200,7 @@ def test_the_duration_of_a_trial_is_measured_for_the_values_that_were_changed(pa
 
 
 TIMERS = """async () => {
-  const { follow, shown } = await part("experiments/list.js");
+  const { followExperiments, shown } = await part("experiments/list.js");
   const later = new Set();
   const [set, clear] = [window.setTimeout, window.clearTimeout];
   window.setTimeout = (work, after) => {
@@ -211,7 +211,7 @@ TIMERS = """async () => {
   window.clearTimeout = (number) => (later.delete(number), clear(number));
   window.fetch = async () => new Response('{"experiments": []}');
   const read = () => new Promise((resolve) => set(resolve, 100));
-  const end = follow();
+  const end = followExperiments();
   for (const id of ["new", "", "new", ""]) shown.value = id;
   await read();
   const going = later.size;
@@ -270,7 +270,7 @@ def test_a_figure_fills_in_although_its_means_take_long_and_stays_while_the_serv
 def test_an_experiment_that_cannot_be_read_says_why(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", tab="experiments", refusals=True)
     one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "stopped", "done": 0, "total": 8, "failures": 0}
-    one |= {"changed": {}, "model": "", "left": None}
+    one |= {"changed": {}, "model": "", "remaining": None}
     page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [one]}))
     page.route("**/api/experiments/sums", lambda route: route.fulfill(status=409, json={"error": "facts.json is damaged"}))
     page.locator("tr[data-experiment=sums]").click()

@@ -27,7 +27,7 @@ from workbench.language.field_texts import text_at
 from workbench.language.language_server import LONGEST_TEXT, MAX_WAITING, LanguageServer, TooManyQuestionsError
 from workbench.language.language_worker import safe_path
 from workbench.language.model_text import ModelText
-from workbench.language.python_answers import Python
+from workbench.language.python_answers import PythonAnswers
 from workbench.language.questions import CodeUnits
 from workbench.loader import listing_of
 
@@ -440,7 +440,7 @@ def test_no_compiled_module_is_imported_even_if_it_could_be_found(tmp_path: Path
     (tmp_path / "compiled.py").unlink()
     monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
     explicit = ExplicitText(ModelText("import compiled\ncompiled."))
-    assert Python(tmp_path).complete(explicit, "model.py", len(explicit.text)) == []
+    assert PythonAnswers(tmp_path).complete(explicit, "model.py", len(explicit.text)) == []
     assert not mark.exists()
 
 

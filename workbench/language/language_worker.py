@@ -16,10 +16,10 @@ from workbench.worker.messages import Do, Leave, Reply, shortened
 def serve(channel: Channel) -> None:
     """Answers questions until the server asks to end."""
     sys.path[:] = safe_path(Path(channel.start.folder))  # before jedi is imported
-    from workbench.language.python_answers import Python
+    from workbench.language.python_answers import PythonAnswers
     from workbench.language.questions import Assistant, LanguageQuestion
 
-    assistant = Assistant(Python(Path(channel.start.folder)))
+    assistant = Assistant(PythonAnswers(Path(channel.start.folder)))
     decoder = msgspec.json.Decoder(LanguageQuestion)
     while not isinstance(request := channel.receive(), Leave):
         if isinstance(request, Do):

@@ -41,7 +41,7 @@ _IMPORTING = re.compile(r"^[ \t]*from[ \t]+(actr3d[\w.]*)[ \t]+import[ \t]+(?:\(
 
 
 class _NothingImported(InferenceStateSameProcess):
-    """jedi's access to compiled modules, which it knows by importing them: here only those that this process has already."""
+    """Gives jedi only the compiled modules that this process has already imported."""
 
     def load_module(self, dotted_name: str, sys_path: list[str]) -> Any:
         """Returns a module that is loaded already; None for any other, of which jedi then knows only what its stubs say."""
@@ -56,7 +56,7 @@ class _Environment(InterpreterEnvironment):
         return _NothingImported(inference_state)
 
 
-class Python:
+class PythonAnswers:
     """Answers questions about the texts of a folder.
 
     Args:
@@ -101,7 +101,7 @@ class Python:
         return next((_documentation(one) for one in found), None)
 
     def signatures(self, explicit: ExplicitText, path: str, at: int) -> list[Signature]:
-        """Returns how the function may be called in whose parentheses a position is."""
+        """Returns the signatures of the call whose parentheses contain a position."""
         return [_signature(one) for one in self._script(explicit.text, path).get_signatures(*explicit.place(at))][:10]
 
     def after(self, text: str, path: str) -> PythonExpressions:
@@ -153,7 +153,7 @@ class PythonExpressions:
         return self._script(code), len(lines), len(lines[-1])
 
     def attributes(self, expression: str) -> list[tuple[str, str]]:
-        """Returns its public attributes, those of its own class or with a documentation, each with that."""
+        """Returns the public attributes of an expression that its own class defines or that have a docstring, each with its docstring."""
         script, line, column = self._after(f"{expression}.")
         owners = tuple(f"{one.full_name}." for one in script.infer(line, column - 2))
         found = [one for one in script.complete(line, column) if one.type in ("statement", "instance", "property") and one.name[0] != "_"]
@@ -161,13 +161,13 @@ class PythonExpressions:
         return [(one.name, text) for one, text in said if text or (owners and (one.full_name or "").startswith(owners))]
 
     def parameters(self, expression: str) -> list[tuple[str, str]]:
-        """Returns the parameters of a call of it, each with its documentation."""
+        """Returns the parameters of the function that an expression names, each with its documentation."""
         script, line, column = self._after(f"{expression}(")
         found = [one for signature in script.get_signatures(line, column) for one in signature.params]
         return [(one.name, _field_text(one)) for one in found]
 
     def is_truth(self, expression: str) -> bool:
-        """Returns whether it is True or False."""
+        """Returns whether an expression is True or False."""
         script, line, column = self._after(expression)
         return any(one.full_name == "builtins.bool" for one in script.infer(line, column - 1))
 

@@ -15,7 +15,7 @@ from workbench.language import actr_answers
 from workbench.language.answers import Completion, Definition, Documentation, Hover, Item, LanguageError, Renaming
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.model_text import ModelText
-from workbench.language.python_answers import Python
+from workbench.language.python_answers import PythonAnswers
 
 FORMAT_TIME = 5.0
 """Maximum time that formatting may take [s]."""
@@ -43,7 +43,7 @@ class Assistant:
         python: Answers those about plain Python.
     """
 
-    def __init__(self, python: Python) -> None:
+    def __init__(self, python: PythonAnswers) -> None:
         self._python = python
 
     def answer(self, question: LanguageQuestion) -> Any:

@@ -62,7 +62,7 @@ class LiveRun(SimulationRun):
         controller.channel.post(self._first_facts())
         controller.set_run(self)
         if simulation.world.bodies:
-            controller.embodied()
+            controller.use_real_time()
         channel.events = None
         simulation.observe(self._observe)
         simulation.observe(self._rest, of_calls=True)
@@ -149,7 +149,7 @@ class LiveRun(SimulationRun):
                 early = controller.pacer.early(self.clock, self.clock)
                 if controller.status == "running" and not self._rest_due and early <= 0:
                     over = self.run_ticks()
-                    controller.passed()
+                    controller.after_ticks()
                     if over is not None:
                         controller.pause(ENDINGS[over])
             except Leaving:

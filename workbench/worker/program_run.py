@@ -200,7 +200,7 @@ class ProgramRun(ControlledRun):
         """The helper modules as they were the first time; see `actr3d.actr.loading.helper_modules`."""
 
     def play(self) -> None:
-        """Runs it, and again where a user goes back, until the worker is to leave."""
+        """Runs the program, and again if a user goes back, until the worker must stop."""
         start, controller = self._controller.channel.start, self._controller
         if not self._listing.simulates:
             self._introduce()
@@ -249,7 +249,7 @@ class ProgramRun(ControlledRun):
             self._send_facts()
             self._controller.set_run(self)
             if self._shown is not None and self._shown.simulation.world.bodies:
-                self._controller.embodied()
+                self._controller.use_real_time()
             self._show_recorded()
             if self._listing.simulates:
                 self._controller.show()
@@ -293,7 +293,7 @@ class ProgramRun(ControlledRun):
         try:
             with helpers_of(controller.channel, self._helpers) as helpers, ProgramOutput(limits) as output:
                 self._output = output
-                helpers.heard = self._keep_helpers
+                helpers.on_load = self._keep_helpers
                 if not self._again:
                     exited = self._run_text(limits, helpers)
                 if not self._left:
@@ -462,7 +462,7 @@ class ProgramRun(ControlledRun):
             return
         self._furthest = max(self._furthest, self._clock)
         if self._rush is None:
-            controller.passed()
+            controller.after_ticks()
         while True:
             if self._rush is not None:
                 if self._clock < self._rush:

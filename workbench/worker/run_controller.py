@@ -106,8 +106,8 @@ class RunController:
         """Whether the run, after going back, is still before the furthest time that it had reached."""
         return self._reached > 0 and self.run.clock < self._reached
 
-    def embodied(self) -> None:
-        """Records that the run has a body: it goes in real time unless a speed was chosen."""
+    def use_real_time(self) -> None:
+        """Sets real time for a run with a body, unless a user has chosen a speed."""
         if self.channel.start.real_time:
             self.pacer.set(1.0)
 
@@ -155,7 +155,7 @@ class RunController:
                 return False
         return True
 
-    def passed(self) -> None:
+    def after_ticks(self) -> None:
         """Checks the stop conditions after some ticks have been run, and sends the state if due."""
         self._check_events()
         if self.watch.contact is not None and self.status == "running":

@@ -71,7 +71,7 @@ class SimulationRun(ControlledRun):
         self._shown: Shown
 
     def play(self) -> None:
-        """Builds and runs it, until the worker is to leave.
+        """Builds the simulation and runs it until the worker must stop.
 
         Raises:
             Exception: What the model raises in being built.
@@ -81,11 +81,11 @@ class SimulationRun(ControlledRun):
         held = helpers_of(self._controller.channel, start.helpers)
         with limits, suppress(EndOfRun), shared_random(limits.program_seed), held as helpers, BuiltOutput() as output:
             simulation, parameters = Blueprint(start.source, start.path, Path(start.folder), helpers).build(start.settings)
-            output.lead_to(simulation)
+            output.attach_to(simulation)
             self._simulation, self._shown = simulation, Shown(simulation)
             self._prepare(limits, parameters, helpers)
             if simulation.world.bodies:
-                self._controller.embodied()
+                self._controller.use_real_time()
             try:
                 self._controller.channel.post(self._facts(limits, parameters))
                 self._controller.set_run(self)
@@ -105,7 +105,7 @@ class SimulationRun(ControlledRun):
         if start.record is not None:
             facts = built_facts(start.path, start.source, parameters, limits.program_seed, limits.until, helpers.loaded)
             self._recording = simulation.record(start.record, **{**facts, NAMED: Path(start.record).stem})
-            helpers.heard = partial(self._recording.fact, "helpers")  # an agent may import one later
+            helpers.on_load = partial(self._recording.fact, "helpers")  # an agent may import one later
         if start.recorded is not None:
             self._known_run = known_run = KnownRun(Path(start.recorded), self._shown.kept.states.add_recorded)
             if self._recording is not None:
@@ -133,7 +133,7 @@ class SimulationRun(ControlledRun):
         )
 
     def _go_on(self) -> None:
-        """Goes on by a few ticks."""
+        """Runs a few ticks, and reports the end or the failure to the controller."""
         controller, simulation = self._controller, self._simulation
         try:
             over = self.run_ticks()
@@ -146,7 +146,7 @@ class SimulationRun(ControlledRun):
             self._record_failure(failure(error))
             controller.end("failed", describe_error(error))
             return
-        controller.passed()
+        controller.after_ticks()
         if over is None:
             controller.pace(self.clock)
             return
@@ -172,7 +172,7 @@ class SimulationRun(ControlledRun):
         self._simulation.event_log.stdout.finish()
 
     def _allowance(self) -> int:
-        """Returns how many ticks to go before looking again what users want."""
+        """Returns the number of ticks until the next check for commands of users."""
         controller = self._controller
         if controller.watch.fine:
             return 1
@@ -227,7 +227,7 @@ class SimulationRun(ControlledRun):
         self._controller.end("ended", ENDINGS[self._end[1]])
 
     def _move(self, move: Callable[[], None]) -> None:
-        """Goes to another time; if the run does not repeat itself on the way, it has failed."""
+        """Goes to another time; reports a failure if the run does not repeat itself on the way."""
         try:
             move()
         except SimulationError as error:

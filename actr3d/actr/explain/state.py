@@ -1,7 +1,7 @@
 """The interface through which explanations read the state of an agent, current or past: facts, and how they are known.
 
-The tests of conditions are the same for both (`trial`). The facts have two sources. The present is read from the model and from the
-objects that it sees, because a run need not be traced to be explained. The past is read from the trace.
+The tests of conditions are the same for both (`condition_tests`). The facts have two sources. The present is read from the model and
+from the objects that it sees, because a run need not be traced to be explained. The past is read from the trace.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ class HelperTexts:
         """The packages that contain them in `sys.modules`, if they are not there by their own names."""
         self.loaded: dict[str, Sequence[str]] = {}
         """By a module's name in the program: its file, relative to the program's folder if it is inside, and its text."""
-        self.heard: Callable[[dict[str, Sequence[str]]], object] = lambda _: None
+        self.on_load: Callable[[dict[str, Sequence[str]]], object] = lambda _: None
         """Called with all of `loaded` after each new module."""
 
     def keep(self, name: str, file: str, folder: Path | None, text: str) -> None:
@@ -33,7 +33,7 @@ class HelperTexts:
         path = Path(file)
         inside = folder is not None and path.is_relative_to(folder)
         self.loaded[name] = (path.relative_to(folder).as_posix() if folder is not None and inside else file, text)
-        self.heard(self.loaded)
+        self.on_load(self.loaded)
 
     def owns(self, fullname: str) -> bool:
         """Returns whether a module belongs to the program, recorded or not."""
