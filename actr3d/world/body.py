@@ -337,7 +337,7 @@ class Body:
         Raises:
             WorldError: If there is no such frame.
         """
-        self.physics.refresh()
+        self.physics.refresh_positions()
         return self.bounds.box(*self.frame(frame), self.contacts.held())
 
     def frame(self, name: str) -> Frame:

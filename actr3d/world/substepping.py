@@ -135,7 +135,7 @@ class Substepping:
 
     def _near(self, beyond: float) -> bool:
         """Returns whether any other object is within a distance [m] beyond the reach of a body."""
-        self._physics.refresh()
+        self._physics.refresh_positions()
         boxes, data = self._physics.mj_model.geom_aabb, self._physics.mj_data
         for body, others, far in zip(self._bodies, self._others, self._radii, strict=True):
             if any_within_distance()(others, boxes, data.geom_xpos, data.geom_xmat, data.xpos[body.root], far + beyond):
