@@ -44,7 +44,7 @@ class Physics:
         self.state_number = 0
         """Number of the current state, which grows with every change; a reading made at a smaller number is out of date."""
         self._updated = 0
-        """How much of what follows from the state is up to date: 1 positions and inertia, 2 contacts too, 3 all but forces, 4 forces and accelerations."""
+        """How much of what follows from the state is up to date: 1 positions and inertia, 2 also contacts, 3 all but forces, 4 all."""
         self._scratch: MjData | None = None
         self._numbers = np.empty(mujoco.mj_stateSize(self.mj_model, INTEGRATION))
         self._warnings: NDArray[np.int32] = self.mj_data.warning.number[_DIVERGED]
