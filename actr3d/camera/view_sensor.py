@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import lru_cache
 from typing import Any, NamedTuple, TypeVar
 from weakref import WeakKeyDictionary
 
@@ -73,7 +74,7 @@ class EyeSense:
         """
         physics = self._body.physics
         if self._view is None or self._state_number != physics.state_number:
-            physics.refresh()
+            physics.refresh_positions()
             pose = eye_pose_of(self._body, physics.mj_data)
             self._view = self._camera.look(physics.mj_data, pose.heading)
             self._poses[self._view] = pose
@@ -113,7 +114,17 @@ def view(body: Body, **options: Any) -> View:
     if not options:
         return body.sense(EyeSense, USUAL).look()
     named = {name: _meant(value) for name, value in options.items()}
-    return body.sense(EyeSense, CameraParameters.from_mapping(named)).look()
+    try:
+        parameters = _parameters(**named)
+    except TypeError:  # a value has no hash, such as a list
+        parameters = CameraParameters.from_mapping(named)
+    return body.sense(EyeSense, parameters).look()
+
+
+@lru_cache(typed=True)
+def _parameters(**options: Any) -> CameraParameters:
+    """Returns the same parameters for the same options, which are checked once."""
+    return CameraParameters.from_mapping(options)
 
 
 def _meant(value: Any) -> Any:

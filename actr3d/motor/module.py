@@ -533,11 +533,10 @@ class Motor(WithParameters, Port):
         step = Step(seconds(now - self._felt_us), before, reading)
         self._felt_us = now
         if self._schema is None:
-            self._update(limbs, reading, dict(zip(limbs.order, reading.positions, strict=True)))
+            self._update(limbs, reading, before)
             check_patterns(self)
         elif before != reading.positions or self._resized(reading):
-            moved = {joint: at for joint, was, at in zip(limbs.order, before, reading.positions, strict=True) if was != at}
-            self._update(limbs, reading, moved)
+            self._update(limbs, reading, before)
         over: list[tuple[str, str]] = []
         for key, movement in self._under_way.items():
             end = movement.ended(step, self.patience) if movement.begun else None
@@ -559,13 +558,17 @@ class Motor(WithParameters, Port):
         """Returns whether the size of the body has changed since it was last felt, such as after a grasp."""
         return any(abs(now - before) > self.size_grid for now, before in zip(_sizes_of(reading), self._sizes, strict=True))
 
-    def _update(self, limbs: Limbs, reading: Proprioception, felt: Mapping[str, float]) -> None:
-        """Updates the felt positions of some joints, and the felt size of the body."""
-        draw = self.random.gauss
+    def _update(self, limbs: Limbs, reading: Proprioception, before: Sequence[float]) -> None:
+        """Updates the felt positions of the joints, which were at `before`, and the felt size of the body."""
+        draw, schema = self.random.gauss, self._schema
+        felt = dict(zip(limbs.order, reading.positions, strict=True))
         if self.angle_noise or self.size_noise:
             noise = {"hinge": radians(self.angle_noise), "slide": self.size_noise}
-            felt = {joint: at + draw(0, sd) if (sd := noise[limbs.joints[joint].kind]) else at for joint, at in felt.items()}
-        schema = self._schema
+            for (joint, at), was in zip(felt.items(), before, strict=True):
+                if schema is not None and at == was:
+                    felt[joint] = schema.felt[joint]  # what has not moved feels as it did
+                elif sd := noise[limbs.joints[joint].kind]:
+                    felt[joint] = at + draw(0, sd)
         if schema is None:
             schema = self._schema = BodySchema(
                 limbs,

@@ -49,7 +49,7 @@ class BodySchema:
         named = {joint for movement in limbs.plan.movements if movement.to is None for joint, _ in movement.joints}
         self._always = [joint for joint in limbs.order if joint in named or not named]
         self._first = dict(positions)
-        self.felt = dict(positions)
+        self.felt = positions
         """By joint, its felt position [rad] or [m]."""
         self.minimum, self.maximum = dict(positions), dict(positions)
         """By joint, the minimum and maximum of its felt positions."""
@@ -62,7 +62,7 @@ class BodySchema:
         """By joint, the least and the greatest of its positions in the postures that were stored."""
 
     def feel(self, positions: Mapping[str, float]) -> Sequence[str]:
-        """Updates the felt positions of some joints [rad] or [m], and their values on the grid.
+        """Updates the felt positions of all joints [rad] or [m], given in the order of the body, and their values on the grid.
 
         A position between two felt ones with the same grid value has that value too, and is no new extreme.
 
@@ -70,9 +70,11 @@ class BodySchema:
             The joints whose position is outside the range of felt positions with the same grid value.
         """
         least, most = self._from, self._to
-        new = {joint: at for joint, at in positions.items() if not least[joint] <= at <= most[joint]}
-        self.felt.update(positions)
-        for joint, at in new.items():
+        known = zip(positions, least.values(), positions.values(), most.values(), strict=True)
+        new = tuple([joint for joint, low, at, high in known if not low <= at <= high])
+        self.felt = positions
+        for joint in new:
+            at = positions[joint]
             if at < self.minimum[joint]:
                 self.minimum[joint] = at
             elif at > self.maximum[joint]:
@@ -85,7 +87,7 @@ class BodySchema:
                 least[joint] = at
             else:
                 most[joint] = at
-        return tuple(new)
+        return new
 
     def shown(self, joint: str, position: float) -> float:
         """Returns a joint's position on the grid: degrees, or metres for a slide."""

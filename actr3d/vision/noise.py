@@ -32,7 +32,8 @@ def blurred(view: View, edges: float, distances: float, seed: int) -> View:
         return view
     numbers = Generator(PCG64(seed))
     part = max(MIN_SEEN, 1 + distances * float(numbers.standard_normal()))
-    extents = view.extents.copy()
+    # Copied as bytes: numpy copies structured arrays field by field.
+    extents = np.frombuffer(bytearray(view.extents.tobytes()), view.extents.dtype)
     for d in ("d1", "d2", "dn"):
         extents[d] *= part
     if edges > 0:

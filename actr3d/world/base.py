@@ -55,8 +55,8 @@ class Base:
     @property
     def speed(self) -> tuple[float, float, float]:
         """Of a planar base: (forward, left, turn) in its own frame [m/s] [m/s] [rad/s]."""
-        x, y, turn = self._qvel[self.v : self.v + 3].tolist()
-        c, s = math.cos(self.heading), math.sin(self.heading)
+        (x, y, turn), heading = self._qvel[self.v : self.v + 3].tolist(), self.heading
+        c, s = math.cos(heading), math.sin(heading)
         return (c * x + s * y, c * y - s * x, turn)
 
     @speed.setter

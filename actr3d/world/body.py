@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Generator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar, cast
 
@@ -197,10 +197,16 @@ class Body:
         """
         if isinstance(word, str) and word in SENSORS and word not in self.sensors:  # pyright: ignore[reportUnnecessaryIsInstance]
             self.sensors = SENSORS.of(self)
-        with self._unchanged() if self.physics.observed else nullcontext():
-            reading = SENSORS[checked_name(word, self.sensors, self.name, "sensor")](self, *values, **options)
-            sd = self._noise.get(word) if noise is None else noise
-            return reading if sd is None else self.noise.added(word, reading, sd)
+        if self.physics.observed:
+            with self._unchanged():
+                return self._read(word, values, noise, options)
+        return self._read(word, values, noise, options)
+
+    def _read(self, word: str, values: tuple[Any, ...], noise: StandardDeviation, options: dict[str, Any]) -> Any:
+        """Returns what `get` does; the reading may change what the agent senses later."""
+        reading = SENSORS[checked_name(word, self.sensors, self.name, "sensor")](self, *values, **options)
+        sd = self._noise.get(word) if noise is None else noise
+        return reading if sd is None else self.noise.added(word, reading, sd)
 
     @contextmanager
     def _unchanged(self) -> Generator[None]:
@@ -337,7 +343,7 @@ class Body:
         Raises:
             WorldError: If there is no such frame.
         """
-        self.physics.refresh()
+        self.physics.refresh_positions()
         return self.bounds.box(*self.frame(frame), self.contacts.held())
 
     def frame(self, name: str) -> Frame:

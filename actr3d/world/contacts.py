@@ -55,7 +55,7 @@ class BodyContacts:
 
     def none(self) -> bool:
         """Returns whether neither the body nor an object that it holds touches anything else, at the present positions."""
-        self._physics.refresh()
+        self._physics.refresh_contacts()
         if self._physics.mj_data.ncon == 0:
             return True
         sides = self._sides(self.own_geoms())

@@ -18,6 +18,9 @@ INTEGRATION = mjtState.mjSTATE_INTEGRATION
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 """MuJoCo's warnings of NaN or huge positions, velocities, accelerations: it resets the state then."""
 
+_POSITIONS = (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_makeM)
+"""The first parts of `mj_fwdPosition`."""
+
 
 class Physics:
     """Holds the compiled scene (`mj_model`) and its state (`mj_data`), and updates derived quantities at most once per state.
@@ -40,8 +43,8 @@ class Physics:
         """Physics steps since the start."""
         self.state_number = 0
         """Number of the current state, which grows with every change; a reading made at a smaller number is out of date."""
-        self._refreshed = False
-        self._solved = False
+        self._updated = 0
+        """How much of what follows from the state is up to date: 1 positions and inertia, 2 also contacts, 3 all but forces, 4 all."""
         self._scratch: MjData | None = None
         self._numbers = np.empty(mujoco.mj_stateSize(self.mj_model, INTEGRATION))
         self._warnings: NDArray[np.int32] = self.mj_data.warning.number[_DIVERGED]
@@ -66,26 +69,40 @@ class Physics:
 
     def changed(self) -> None:
         """Marks derived quantities as out of date, after positions, speeds, commands or the compiled model have changed."""
-        self._refreshed = self._solved = False
+        self._updated = 0
         self.state_number += 1
 
-    def refresh(self) -> None:
-        """Updates positions, contacts and rays to the state, once per state.
+    def refresh_positions(self) -> None:
+        """Updates positions and inertia to the state, once per state: half of the cost of `refresh`.
 
         After a step, MuJoCo's geometry (`xpos`, contacts) is that of the positions before it.
         """
-        if not self._refreshed:
+        if self._updated < 1:
+            for update in _POSITIONS:
+                update(self.mj_model, self.mj_data)
+            self._updated = 1
+
+    def refresh_contacts(self) -> None:
+        """Updates positions, inertia and contacts to the state, once per state."""
+        if self._updated < 2:
+            self.refresh_positions()
+            mujoco.mj_collision(self.mj_model, self.mj_data)
+            self._updated = 2
+
+    def refresh(self) -> None:
+        """Updates all that follows from the positions, such as contacts and rays, to the state, once per state."""
+        if self._updated < 3:
             mujoco.mj_fwdPosition(self.mj_model, self.mj_data)
-            self._refreshed = True
+            self._updated = 3
 
     def solve(self) -> None:
         """Updates forces and accelerations to the state too, once per state, without an effect on later steps."""
         self.refresh()
-        if not self._solved:
+        if self._updated < 4:
             start = self.mj_data.qacc_warmstart.copy()  # part of the state, from which the next step's solver starts
             mujoco.mj_forwardSkip(self.mj_model, self.mj_data, mujoco.mjtStage.mjSTAGE_POS, 1)
             self.mj_data.qacc_warmstart[:] = start
-            self._solved = True
+            self._updated = 4
 
     def accelerations(self) -> NDArray[np.float64]:
         """Returns the accelerations (nv,) with which the coming physics step changes the speeds [m/s^2, rad/s^2].

@@ -28,9 +28,8 @@ UNHINDERED, HINDERED = (0.02, 2.0), (0.1, 0.5)
 """Time constant of corrections [s] and their greatest speed [m/s] [rad/s], while nothing touches the body and while something does:
 a fast correction against a wall would bounce off it. Source: chosen for this library."""
 
-CLOSE = 1e-6
-"""Greatest Euclidean distance of all numbers from the steady state [m] [rad] [m/s] [rad/s], below every deviation that is corrected.
-Source: chosen for this library."""
+CLOSE = SLIGHT_WAY
+"""Greatest Euclidean distance of all numbers from the steady state [m] [rad] [m/s] [rad/s]: no deviation within it is corrected."""
 
 _PARTS = int(mjtState.mjSTATE_QPOS | mjtState.mjSTATE_QVEL | mjtState.mjSTATE_CTRL)
 

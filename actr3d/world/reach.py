@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,8 @@ def radius(model: Any, root: int, geoms: NDArray[np.intp]) -> float:
         root: The MuJoCo body that carries all others of the body.
         geoms: The geoms of the body that can touch something.
     """
-    return max((_length(model, geom, root, np.zeros(3)) for geom in geoms.tolist()), default=0.0)
+    chains = (_carriers(model, geom) for geom in geoms.tolist())
+    return max((_length(np.zeros(3), *link) for chain in chains for carrier, link in chain if carrier == root), default=0.0)
 
 
 def reaches(model: Any, members: NDArray[np.bool_], geoms: NDArray[np.intp]) -> NDArray[np.float64]:
@@ -29,13 +31,12 @@ def reaches(model: Any, members: NDArray[np.bool_], geoms: NDArray[np.intp]) -> 
         geoms: The geoms of the body that can touch something.
     """
     found = np.zeros((len(geoms), model.nv))
-    joints = [joint for joint in range(model.njnt) if members[model.jnt_bodyid[joint]]]
     for row, geom in enumerate(geoms.tolist()):
-        for joint in joints:
-            if _carries(model, int(model.jnt_bodyid[joint]), int(model.geom_bodyid[geom])):
-                far = _length(model, geom, int(model.jnt_bodyid[joint]), model.jnt_pos[joint])
-                first, each = int(model.jnt_dofadr[joint]), _freedoms(int(model.jnt_type[joint]), far)
-                found[row, first : first + len(each)] = each
+        for carrier, link in _carriers(model, geom):
+            first, count = int(model.body_jntadr[carrier]), int(model.body_jntnum[carrier])
+            for joint in range(first, first + count if members[carrier] else first):
+                v, each = int(model.jnt_dofadr[joint]), _freedoms(int(model.jnt_type[joint]), _length(model.jnt_pos[joint], *link))
+                found[row, v : v + len(each)] = each
     return np.unique(found, axis=0)
 
 
@@ -52,17 +53,20 @@ def _freedoms(kind: int, far: float) -> list[float]:
             return [far]
 
 
-def _length(model: Any, geom: int, start: int, at: NDArray[np.float64]) -> float:
-    """Returns the greatest distance of a geom's points from a point on a MuJoCo body that carries it [m]."""
-    carrier = int(model.geom_bodyid[geom])
-    far = float(model.geom_rbound[geom])
-    if carrier == start:
-        return far + float(np.linalg.norm(model.geom_pos[geom] - at))
-    far += float(np.linalg.norm(model.geom_pos[geom]))
-    while int(model.body_parentid[carrier]) != start:
-        far += float(np.linalg.norm(model.body_pos[carrier])) + _slide(model, carrier)
-        carrier = int(model.body_parentid[carrier])
-    return far + float(np.linalg.norm(model.body_pos[carrier] - at)) + _slide(model, carrier)
+def _length(at: NDArray[np.float64], far: float, place: NDArray[np.float64], slide: float) -> float:
+    """Returns the greatest distance of a geom's points from a point on a MuJoCo body that carries it; see `_carriers` [m]."""
+    return far + float(np.linalg.norm(place - at)) + slide
+
+
+def _carriers(model: Any, geom: int) -> Iterator[tuple[int, tuple[float, NDArray[np.float64], float]]]:
+    """Yields each MuJoCo body that carries a geom, from the nearest on, with what is attached to it in that direction: the greatest
+    distance of the geom's points from there, the place on the body (3,), and the greatest way along slides [m]."""
+    carrier, far = int(model.geom_bodyid[geom]), float(model.geom_rbound[geom])
+    place, slide = model.geom_pos[geom], 0.0
+    while carrier:
+        yield carrier, (far, place, slide)
+        far += float(np.linalg.norm(place)) + slide
+        place, slide, carrier = model.body_pos[carrier], _slide(model, carrier), int(model.body_parentid[carrier])
 
 
 def _slide(model: Any, body: int) -> float:
@@ -70,9 +74,3 @@ def _slide(model: Any, body: int) -> float:
     first = int(model.body_jntadr[body])
     slides = [n for n in range(first, first + int(model.body_jntnum[body])) if model.jnt_type[n] == int(mjtJoint.mjJNT_SLIDE)]
     return sum(float(np.abs(model.jnt_range[n]).max()) for n in slides if model.jnt_limited[n])
-
-
-def _carries(model: Any, carrier: int, body: int) -> bool:
-    while body > carrier:
-        body = int(model.body_parentid[body])
-    return body == carrier

@@ -67,39 +67,38 @@ class Substepping:
             yield min(self._tick, steps - start)
 
     def step(self, steps: int, watchers: Sequence[Callable[[], None]]) -> None:
-        """Advances the physics by whole steps, divided into parts where a body is fast.
+        """Advances the physics by the whole steps of a stretch, divided into parts where a body is fast.
 
         Args:
-            steps: Their number.
+            steps: Their number, one of `stretches`.
             watchers: Called after each part.
 
         Raises:
             WorldError: If a body is faster than the greatest number of parts permits: the physics has diverged.
         """
         model, data = cast("Any", self._physics.mj_model), self._physics.mj_data
-        for count in self.stretches(steps):
-            pushed = bool(self._pushes)
-            fine = self._prepare(count) or pushed  # a push may make it fast at once
-            if pushed:
-                self._pushes.begin(count)
-            for _ in range(count):
-                parts = self._needed() if fine else 1
-                try:
-                    if parts > 1:
-                        model.opt.timestep = self._whole / parts
-                    for _ in range(parts):
-                        mujoco.mj_step(model, data)
-                        if data.ncon:
-                            for hold in self._holds:
-                                hold.after_part()
-                        for watcher in watchers:
-                            watcher()
-                finally:
-                    if parts > 1:
-                        model.opt.timestep = self._whole
-            if pushed:
-                self._pushes.end(count)
-            self._physics.changed()
+        pushed = bool(self._pushes)
+        fine = self._prepare(steps) or pushed  # a push may make it fast at once
+        if pushed:
+            self._pushes.begin(steps)
+        for _ in range(steps):
+            parts = self._needed() if fine else 1
+            try:
+                if parts > 1:
+                    model.opt.timestep = self._whole / parts
+                for _ in range(parts):
+                    mujoco.mj_step(model, data)
+                    if data.ncon:
+                        for hold in self._holds:
+                            hold.after_part()
+                    for watcher in watchers:
+                        watcher()
+            finally:
+                if parts > 1:
+                    model.opt.timestep = self._whole
+        if pushed:
+            self._pushes.end(steps)
+        self._physics.changed()
 
     def _prepare(self, count: int) -> bool:
         """Corrects the bodies before some steps. Returns whether these steps must be divided: a point of a body may move more than `STRIDE`
@@ -135,7 +134,7 @@ class Substepping:
 
     def _near(self, beyond: float) -> bool:
         """Returns whether any other object is within a distance [m] beyond the reach of a body."""
-        self._physics.refresh()
+        self._physics.refresh_positions()
         boxes, data = self._physics.mj_model.geom_aabb, self._physics.mj_data
         for body, others, far in zip(self._bodies, self._others, self._radii, strict=True):
             if any_within_distance()(others, boxes, data.geom_xpos, data.geom_xmat, data.xpos[body.root], far + beyond):

@@ -141,7 +141,7 @@ class World:
             raise WorldError(f"the physics diverged near {seconds(self.time)} s, at '{culprit}': forces or speeds without bounds")
 
     def _step(self, steps: int, watchers: Sequence[Callable[[], None]]) -> None:
-        """Makes steps; with unfinished commands or closing apertures, corrects the speeds and closes these between them, every 10 ms.
+        """Makes steps; between them, every 10 ms, closes apertures and corrects the speeds of unfinished commands.
 
         A brake is corrected so often because with a constant force it would drive the car backwards.
 
@@ -150,9 +150,6 @@ class World:
             watchers: Called after every physics step, or part of one.
         """
         commands = [body.motion for body in self.bodies.values() if body.motion]
-        if not (commands or self._closing):
-            self._substepping.step(steps, watchers)
-            return
         for count in self._substepping.stretches(steps):
             for aperture in self._closing:
                 width = self.aperture_width(aperture.name)

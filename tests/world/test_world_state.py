@@ -23,8 +23,7 @@ ARM = """<mujoco>
 
 DERIVED = {
     ("Physics", "state_number"),  # counts states, so that readings of an earlier one are known to be stale
-    ("Physics", "_refreshed"),
-    ("Physics", "_solved"),  # whether MuJoCo's derived numbers are up to date
+    ("Physics", "_updated"),  # whether MuJoCo's derived numbers are up to date
     ("Physics", "_scratch"),
     ("Physics", "_numbers"),  # scratch memory
     ("Physics", "renderer"),  # draws pictures of the state

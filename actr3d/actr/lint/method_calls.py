@@ -170,10 +170,9 @@ def _check_wildcards(call: ast.Call, func: Callable[..., Any], where: str, known
         names = {word for _, sign, word in parse(text) if sign in ("?", "!?")} - known
     except PatternException:
         return  # the request itself will raise this
-    everywhere = _VARIABLE.findall(source_of(func))
     for name in sorted(names):
         meant = slip_of(name, known)
-        if meant and everywhere.count(name) == 1:
+        if meant and _VARIABLE.findall(source_of(func)).count(name) == 1:
             warn_at(f"{where}'?{name}' in '{text}' matches anything; did you mean '?{meant}'?", func, call.lineno)
 
 

@@ -70,7 +70,7 @@ def pose(body: Body, part: str | None = None) -> Pose:
     Raises:
         WorldError: If it has no such part.
     """
-    body.physics.refresh()
+    body.physics.refresh_positions()
     number = body.part_number(part)
     data: Any = body.physics.mj_data
     x, y, z = data.xpos[number].tolist()
