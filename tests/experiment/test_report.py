@@ -273,7 +273,7 @@ def test_lists_are_shown_by_number_beside_people(tmp_path: Path) -> None:
     def learn(trial: Any) -> dict[str, Any]:
         luck = 0.01 * (trial.number % 7)
         accuracy = {f"accuracy_{block}": 0.1 * block + luck for block in range(1, 9)}
-        return {**accuracy, "latency_1": None, **{f"latency_{block}": 3.0 - 0.2 * block + luck for block in range(2, 9)}}
+        return {**accuracy, "latency_1": None, **{f"latency_{block}": 3.0 - (0.2 + luck) * block for block in range(2, 9)}}
 
     folder = store_rows(tmp_path / "learned", "paired_associates", learn, participants=12)
     write_report(folder)
