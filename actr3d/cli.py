@@ -326,7 +326,7 @@ def _add_report(commands: Any) -> None:
         help="write the report of an experiment",
         description="Writes a page with figures, tables and statistics of an experiment: report/index.html in its folder, which needs no "
         "network, with each figure as PNG and SVG and each table as CSV beside it.",
-        epilog="Exit codes: 0 the report is written; 1 it cannot be written, or the data are not valid; 2 a package is missing.",
+        epilog="Exit codes: 0 the report is written; 1 it is missing or incomplete, or the data are not valid; 2 a package is missing.",
     )
     report.add_argument("folder", metavar="FOLDER", help="the folder of an experiment")
     report.add_argument("--human", metavar="FILE", help="show these human data beside the model (default: those that the design names)")

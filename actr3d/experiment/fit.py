@@ -41,6 +41,7 @@ from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
 from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data, read_human_text
 from actr3d.experiment.measures import known_measures
+from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
 
@@ -608,7 +609,9 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     texts = {(shown, plain_text(level)): _in_cell(level) for shown, name in names.items() for level in design.factors.get(name, ())}
     lines = [row for row in csv.reader(io.StringIO(read_human_text(path))) if row and not row[0].lstrip().startswith("#")]
     head = [cell.strip() for cell in lines[0]] if lines else []
-    ignored = {*OWN_COLUMNS, *design.known_columns} - {"participant", "group", *names.values()}
+    trial_has = [one.name for one in design.kept] or list(known_measures(experiment) or ())
+    for_report = {*columns_of_people([*trial_has, *design.known_columns])} - {*trial_has, measure}
+    ignored = {*OWN_COLUMNS, *design.known_columns, *for_report} - {"participant", "group", *names.values()}
     if "measure" in head:
         place = head.index("measure")
         measures = [row[place].strip() for row in lines[1:] if len(row) > place]
@@ -620,9 +623,8 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
         if measure in measures:  # another one may be a text
             ignored |= {*measures} - {measure}
             measures = [measure]
-    trial_has = [one.name for one in design.kept] or list(known_measures(experiment) or ())
-    if trial_has and measure is None and len(set(measures)) == 1:
-        measures = trial_has  # the reader names the line with another one
+    if trial_has and measure is None and len(set(measures)) <= 1:
+        measures = trial_has  # the reader names the line with another one, or says which there are
     parameters = {factor_name(one.name): one for one in experiment.parameters if one.name in design.factors}
     schema = Schema(
         groups=list(design.groups),

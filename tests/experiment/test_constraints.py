@@ -206,9 +206,44 @@ def test_a_critical_ratio_that_the_trials_leave_open_is_not_tested() -> None:
     two = [one for one in GOOD if one.aperture in (0.5, 0.7) and one.participant == "small 2" and one.condition == "normal"][::2]
     found = Findings(two).critical()
     assert found.met is None
-    assert found.found == "it needs more trials or more ratios: small normal 1.485 (95 % interval −∞ to ∞)"
+    assert found.found == "cannot be decided without more trials or more ratios: small normal 1.485 (95 % interval −∞ to ∞)"
     below = Findings(replace(one, angle=20.0 if one.ratio < 1.1 else 0.0) for one in GOOD if one.aperture > 0.4)
     assert below.critical().met is False, "a ratio that is certainly too small is so, wherever it is"
+
+
+def turning_below(turns: float, *ratios: float) -> Findings:
+    """Returns the trials of eight walkers that turn before each doorway below a ratio, and before no other."""
+    return Findings(
+        (
+            replace(GOOD[0], participant=f"small {n}", shoulders=0.45, aperture=ratio * 0.45, angle=30.0 if ratio < turns else 0.0)
+            for ratio in ratios
+            for n in range(8)
+            for _ in range(10)
+        ),
+        "ratio",
+    )
+
+
+@pytest.mark.parametrize(
+    ("ratios", "turns", "met", "interval"),
+    [
+        ((0.9, 1.1, 1.3, 1.5), 1.30, None, "1.100 to 1.300"),
+        ((0.9, 1.1, 1.3, 1.5), 1.32, None, "1.300 to 1.500"),
+        ((0.9, 1.0, 1.1, 1.4), 1.12, None, "1.100 to 1.400"),
+        ((0.9, 1.24, 1.36, 1.5), 1.30, None, "1.240 to 1.360"),
+        ((0.9, 1.25, 1.35, 1.5), 1.30, True, "1.250 to 1.350"),
+        ((0.9, 1.28, 1.32, 1.5), 1.30, True, "1.280 to 1.320"),
+        ((0.9, 1.1, 1.2, 1.4), 1.15, False, "1.100 to 1.200"),
+        ((0.9, 1.1, 1.3, 1.4, 1.6), 1.5, False, "1.400 to 1.600"),
+    ],
+)
+def test_a_critical_ratio_known_as_an_interval_is_judged_by_the_whole_interval(
+    ratios: tuple[float, ...], turns: float, met: bool | None, interval: str
+) -> None:
+    """Walkers that turn abruptly show only between which two ratios they begin to: its middle says nothing about them."""
+    found = turning_below(turns, *ratios).critical()
+    assert found.met is met
+    assert found.found.endswith(f"(95 % interval {interval})")
 
 
 def held(bars: Mapping[float, float | None]) -> Findings:

@@ -520,6 +520,15 @@ def test_targets_are_means_of_human_data(tmp_path: Path) -> None:
         load_target("fan_effect", design, "speed")
 
 
+def test_columns_that_only_a_report_reads_are_no_measures_of_a_target(tmp_path: Path) -> None:
+    (path := tmp_path / "people.csv").write_text("participant,group,condition,aperture,ratio,wall_angle_deg\np,small,normal,0.4,1.0,50\n")
+    design = specify("warren_whang_1987")
+    assert [(one.measure, one.mean) for one in load_target(str(path), design)] == [("wall_angle_deg", 50.0)]
+    path.write_text("participant,group,condition,aperture,ratio\np,small,normal,0.4,1.0\n")
+    with pytest.raises(ExperimentError, match=r"people\.csv:1: no column is a measure; there may be: .*wall_angle_deg"):
+        load_target(str(path), design)
+
+
 def test_levels_may_be_lists_and_dicts(tmp_path: Path) -> None:
     factors = '{"load": [[1, 2], (3,), {"a": [4]}, None]}'
     design = str(write_experiment(tmp_path, factors=factors, model=COUNTER.replace("n = 3", "n = 3\nload = None")))

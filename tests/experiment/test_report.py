@@ -22,6 +22,7 @@ from actr3d.errors import ExperimentError
 from actr3d.experiment.aperture.analysis import Rotation, at_own_ratios, frame_of, passing_apertures, passings_of, with_greatest_angles
 from actr3d.experiment.aperture.constraints import Findings
 from actr3d.experiment.fit import load_target
+from actr3d.experiment.report import general, statistics
 from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of
 from actr3d.experiment.report.command import write_report
@@ -133,6 +134,24 @@ def test_people_are_compared_at_the_levels_that_the_experiment_has(tmp_path: Pat
     people.write_text(f"{text}1,cuont,1,0.2\n", encoding="utf-8")
     with pytest.raises(ExperimentError, match=r"people\.csv:5: column 'mode': must be one of: .*count.*\(got 'cuont'\)"):
         write_report(tmp_path / "count", human=people)
+
+
+def test_an_error_in_a_measure_ends_its_own_section_and_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def run_tests(results: Any, measure: str) -> Any:
+        return 1 / 0 if measure == "rt" else statistics.run_tests(results, measure)
+
+    monkeypatch.setattr(general, "run_tests", run_tests)
+    folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=3)), count)
+    assert main(["report", str(folder)]) == 1
+    error = capsys.readouterr().err
+    named = r"measure 'rt': ZeroDivisionError: division by zero \(general\.py, line \d+\)"
+    assert re.fullmatch(rf"error: '.*index\.html' is written, but some of its sections are not complete: {named}\n", error), error
+    text = html.unescape(page(folder))
+    assert len(re.findall(rf"The rest of this section could not be made: {named}\.", text)) == 1
+    assert len(table(folder, "means_rt")) == len(table(folder, "means_luck")), "what was made before the error is there"
+    assert table(folder, "anova_luck")
 
 
 def test_the_same_rows_give_the_same_files(tmp_path: Path) -> None:
@@ -273,7 +292,7 @@ def test_lists_are_shown_by_number_beside_people(tmp_path: Path) -> None:
     def learn(trial: Any) -> dict[str, Any]:
         luck = 0.01 * (trial.number % 7)
         accuracy = {f"accuracy_{block}": 0.1 * block + luck for block in range(1, 9)}
-        return {**accuracy, "latency_1": None, **{f"latency_{block}": 3.0 - 0.2 * block + luck for block in range(2, 9)}}
+        return {**accuracy, "latency_1": None, **{f"latency_{block}": 3.0 - (0.2 + luck) * block for block in range(2, 9)}}
 
     folder = store_rows(tmp_path / "learned", "paired_associates", learn, participants=12)
     write_report(folder)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -228,6 +230,72 @@ def test_what_a_design_does_not_allow_is_not_tested_and_says_why(tmp_path: Path)
     assert few.anova is None
     assert few.notes == ["Not tested: a group has fewer than 3 participants with a value in every cell."]
     assert run_tests(results, "luck").notes == ["Not tested: all means are the same."]
+
+
+def stored(folder: Path, rt: Callable[[Any], float], design: str = GROUPED) -> Results:
+    """Returns the results of trials whose times a function computes."""
+    folder.mkdir(exist_ok=True)
+    path = write_experiment(folder)
+    path.write_text(design, encoding="utf-8")
+    return read_results(store_rows(folder / "out", str(path), lambda trial: {"rt": rt(trial), "luck": 0.5}))
+
+
+def slower(trial: Any) -> float:
+    return 0.1 * trial.values["n"] + 0.07 * (trial.values["mode"] == "fail")
+
+
+def own(trial: Any) -> float:
+    """Returns what is a participant's own, between 0 and 0.1."""
+    return 0.1 * math.sin(1 + 7 * int(trial.participant.name.split()[1])) ** 2
+
+
+@pytest.mark.parametrize("groups", [1, 2])
+@pytest.mark.parametrize("noise", [0.0, 1e-9])
+def test_participants_without_any_difference_are_not_tested(tmp_path: Path, groups: int, noise: float) -> None:
+    """F would be an effect divided by rounding: infinite, or negative, or any number."""
+    design = GROUPED if groups == 2 else GROUPED.replace(', "old": Group(participants=4)', "")
+    draw, old = random.Random(4), 0.23
+    results = stored(tmp_path, lambda trial: slower(trial) + old * (trial.participant.group == "old") + noise * draw.gauss(0, 1), design)
+    tests = run_tests(results, "rt")
+    assert (tests.anova, tests.mixed_model, len(tests.assumptions)) == (None, None, 0)
+    assert all(note.startswith("Not tested: ") for note in tests.notes), tests.notes
+    effects = (
+        ["n_", "mode", "n_ × mode"] if groups == 1 else ["group", "n_, group × n_", "mode, group × mode", "mode × n_, group × mode × n_"]
+    )
+    assert [note.partition(", because")[0].removeprefix("Not tested: ") for note in tests.notes] == [*effects, "the mixed model"]
+
+
+def test_an_effect_in_which_participants_do_not_differ_is_not_tested_and_others_are(tmp_path: Path) -> None:
+    """Each participant has a time of its own, to which each condition adds the same."""
+    tests = run_tests(stored(tmp_path, lambda trial: slower(trial) + own(trial)), "rt")
+    assert set(tests.anova["effect"]) == {"group"}
+    assert all(0 <= eta <= 1 for eta in tests.anova["partial_eta_squared"])
+    assert tests.mixed_model is None
+    assert "sphericity of n_" not in set(tests.assumptions["assumption"])
+    assert (
+        "Not tested: n_, group × n_, because the participants of a group do not differ in the effect of n_ beyond rounding." in tests.notes
+    )
+    varied = stored(tmp_path / "other", lambda trial: (0.5 - own(trial)) * trial.values["n"], GROUPED)
+    tests = run_tests(varied, "rt")
+    assert {"group", "n_", "group × n_"} == set(tests.anova["effect"])
+    assert not [note for note in tests.notes if note.startswith("Not tested: n_")]
+
+
+@pytest.mark.parametrize("trials", [1, 2, 60])
+def test_walking_speeds_of_a_group_that_are_all_the_same_are_not_tested(tmp_path: Path, trials: int) -> None:
+    speeds = {("small", "normal"): 1.291, ("small", "fast"): 1.61, ("large", "normal"): 1.281, ("large", "fast"): 1.771}
+    results = read_results(
+        store_rows(
+            tmp_path / "walks",
+            "warren_whang_1987",
+            lambda trial: {"speed_m_s": speeds[trial.participant.group, trial.values["condition"]]},
+            trials=1,
+        )
+    )
+    results = replace(results, rows=pandas().concat([results.rows] * trials, ignore_index=True))
+    tests = run_tests(results, "speed_m_s")
+    assert (tests.anova, tests.mixed_model) == (None, None)
+    assert "Not tested: group, because the participants of a group do not differ in their means beyond rounding." in tests.notes
 
 
 def test_critical_ratios_are_found() -> None:

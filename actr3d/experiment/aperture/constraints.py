@@ -29,6 +29,8 @@ Source: chosen for this library."""
 CRITICAL = (1.25, 1.35)
 """The bounds of the ratio of aperture to shoulders at which turning begins. Source: Warren & Whang (1987), 1.28 to 1.31; bounds of
 docs/human-data.md."""
+DIGITS = 3
+"""The number of decimals of a critical ratio."""
 POINT = 1.30
 """Below this ratio people turn. Source: Warren & Whang (1987)."""
 MARGIN = (0.06, 0.08)
@@ -244,7 +246,7 @@ class Findings:
         return Constraint(number=3, says=says, met=test.p < 0.05, found=found)
 
     def critical(self) -> Constraint:
-        """4: the critical ratio of each cell, of all its trials."""
+        """4: the critical ratio of each cell, of all its trials: its whole interval is inside the bounds, outside, or neither."""
         says = f"critical ratio {CRITICAL[0]} to {CRITICAL[1]} in each cell"
         cells = {
             (group, condition): [one for who in self.people(group) for one in self.trials(group, condition, who)]
@@ -254,13 +256,11 @@ class Findings:
         if not cells or any(not of or not _spans([one.ratio for one in of], CRITICAL) for of in cells.values()):
             return _untested(4, says, f"it needs ratios below {CRITICAL[0]} and above {CRITICAL[1]} in each group and condition")
         found = {key: critical_ratio((one.ratio, (one.angle or 0.0) > TURNED) for one in of) for key, of in cells.items()}
-        known = {
-            key: ratio is not None and CRITICAL[0] <= ratio.value <= CRITICAL[1] for key, ratio in found.items() if not _left_open(ratio)
-        }
-        texts = [f"{' '.join(filter(None, key))} {_ratio_text(ratio)}" for key, ratio in found.items()]
-        if all(known.values()) and len(known) < len(found):
-            return _untested(4, says, f"it needs more trials or more ratios: {', '.join(texts)}")
-        return Constraint(number=4, says=says, met=all(known.values()), found=", ".join(texts))
+        met = {_within(ratio, CRITICAL) for ratio in found.values()}
+        text = ", ".join(f"{' '.join(filter(None, key))} {_ratio_text(ratio)}" for key, ratio in found.items())
+        if met <= {True, None} and None in met:
+            return _untested(4, says, f"cannot be decided without more trials or more ratios: {text}")
+        return Constraint(number=4, says=says, met=met == {True}, found=text)
 
     def faster_turns_more(self) -> Constraint:
         """5: fast minus normal below the critical point, by participants."""
@@ -371,19 +371,20 @@ def _spans(ratios: Sequence[float], bounds: tuple[float, float]) -> bool:
     return min(ratios) < bounds[0] and max(ratios) > bounds[1]
 
 
-def _left_open(ratio: CriticalRatio | None) -> bool:
-    """Returns whether an interval without an end overlaps the bounds: the trials then show neither that the constraint is met nor that it
-    is not."""
-    return ratio is not None and (
-        (ratio.low == -math.inf and ratio.high >= CRITICAL[0]) or (ratio.high == math.inf and ratio.low <= CRITICAL[1])
-    )
+def _within(ratio: CriticalRatio | None, bounds: tuple[float, float]) -> bool | None:
+    """Returns whether a critical ratio is within bounds: None if only a part of its interval is. Ends count as they are shown."""
+    if ratio is None:
+        return False
+    low, high = round(ratio.low, DIGITS), round(ratio.high, DIGITS)
+    if bounds[0] <= low and high <= bounds[1]:
+        return True
+    return None if bounds[0] <= high and low <= bounds[1] else False
 
 
 def _ratio_text(ratio: CriticalRatio | None) -> str:
     if ratio is None:
         return "none"
-    interval = f" (95 % interval {number(ratio.low, 3)} to {number(ratio.high, 3)})" if _left_open(ratio) else ""
-    return f"{ratio.value:.3f}{interval}"
+    return f"{ratio.value:.{DIGITS}f} (95 % interval {number(ratio.low, DIGITS)} to {number(ratio.high, DIGITS)})"
 
 
 def _sides(left: float, right: float) -> str:

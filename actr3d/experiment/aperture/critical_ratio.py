@@ -36,8 +36,8 @@ class CriticalRatio:
 def critical_ratio(trials: Iterable[tuple[float, bool]]) -> CriticalRatio | None:
     """Returns the ratio at which half of the trials are turned, by a logistic fit; None if all are, or none is.
 
-    The interval is that of the profile likelihood. If no ratio has both turned and other trials, the likelihood is flat between two
-    ratios: the value is their middle, and the interval spans them.
+    The interval is that of the profile likelihood. If all trials up to one ratio are turned, and none from the next ratio on, the critical
+    one may be anywhere between the two: the value is their middle, and the interval includes both.
 
     Args:
         trials: The ratio of each trial, and whether the walker turned, which is more likely at small ratios.
@@ -65,6 +65,9 @@ def critical_ratio(trials: Iterable[tuple[float, bool]]) -> CriticalRatio | None
     inside = profile >= best - CHI_SQUARED / 2
     within: list[float] = centres[inside].tolist()
     low, high = -np.inf if inside[0] else within[0], np.inf if inside[-1] else within[-1]
+    last, first = float(ratios[turned > 0].max()), float(ratios[turned < total].min())
+    if last < first:  # a curve steeper than the steepest may be as near to either as one likes
+        low, high = min(low, last), max(high, first)
     return CriticalRatio(value=(top[0] + top[-1]) / 2, low=low, high=high, beyond=bool(likely[0] or likely[-1]))
 
 

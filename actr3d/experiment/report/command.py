@@ -43,6 +43,7 @@ def write_report(
 
     Raises:
         ExperimentError: If a folder holds no experiment or no trials, the human data are not valid, or the report cannot be written.
+            An error in a measure ends only its section: it is named there, and raised when the report is written.
     """
     named = Path(folder) / REPORT if out is None else Path(out)
     final = named.resolve()  # a link leads to the same folder afterwards
@@ -62,6 +63,8 @@ def write_report(
         sections.append(comparison_section(results, other, parts, beside))
     sections += measure_sections(parts, others)
     _write(final, results, sections)
+    if failed := [section.failed for section in sections if section.failed]:
+        raise ExperimentError(f"'{named / PAGE}' is written, but some of its sections are not complete: {'; '.join(failed)}")
     return named / PAGE
 
 

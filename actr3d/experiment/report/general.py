@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from traceback import extract_tb
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,8 @@ from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results
 from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, in_order, participant_means, run_tests
+from actr3d.runner.traceback_report import failure
+from actr3d.warnings import is_library
 
 MAX_PANES = 6
 """A factor with more levels than this makes no panes of a figure."""
@@ -165,31 +169,40 @@ def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
 
 
 def _measure_section(results: Results, measure: str, others: Sequence[Beside]) -> Section:
+    """Returns the section of a measure; an error ends this section, and no other."""
+    parts, failed = list[str | Table | Plot | Caution](), ""
+    try:
+        for part in _measure_parts(results, measure, others):
+            parts.append(part)  # one at a time: those before an error stay
+    except Exception as error:  # noqa: BLE001 - it is shown here, and `write_report` raises it when the other sections are written
+        place = [frame for frame in extract_tb(error.__traceback__) if is_library(frame.filename)][-1]
+        failed = f"measure '{measure}': {failure(error)} ({Path(place.filename).name}, line {place.lineno})"
+        parts.append(Caution(f"The rest of this section could not be made: {failed}."))
+    human = any(one.look == "human" and len(one.of(measure)) for one in others)
+    return Section(title=results.name_with_unit(measure), parts=parts, folded=not (human or failed), failed=failed)
+
+
+def _measure_parts(results: Results, measure: str, others: Sequence[Beside]) -> Iterator[str | Table | Plot | Caution]:
     unit, meaning = results.unit(measure), results.columns[measure].meaning if measure in results.columns else ""
     by = [*(["group"] if len(results.groups) > 1 else []), *results.factors]
     means = cell_means(results.rows, measure, by)
     means = means.assign(measure=measure, unit=unit)[[*by, "measure", "unit", "mean", "sd", "low", "high", "n", "trials"]]
     lost = int(results.rows[measure].isna().sum())
-    parts: list[str | Table | Plot | Caution] = [meaning] if meaning else []
+    if meaning:
+        yield meaning
     if lost:
-        parts.append(f"{lost:,} of {len(results.rows):,} trials have no value.")
+        yield f"{lost:,} of {len(results.rows):,} trials have no value."
     figure, note = figure_of(results, measure, others)
     if figure is not None:
-        parts.append(Plot(name=f"measure_{measure}", title=f"{results.name_with_unit(measure)} by cell", figure=figure, note=note))
+        yield Plot(name=f"measure_{measure}", title=f"{results.name_with_unit(measure)} by cell", figure=figure, note=note)
     units = dict.fromkeys(("mean", "sd", "low", "high"), unit) | {name: results.unit(name) for name in by}
     note = "sd: between participants; low, high: 95 % interval; n: participants."
-    table = Table(
+    yield Table(
         name=f"means_{measure}", title="Means", frame=means, units=units, hidden=("measure", "unit"), note=note, folded=len(means) > 12
     )
-    parts += [table, *_participants(results, measure, unit), *test_parts(run_tests(results, measure), measure)]
-    human = any(one.look == "human" and len(one.of(measure)) for one in others)
-    return Section(title=results.name_with_unit(measure), parts=parts, folded=not human)
-
-
-def _participants(results: Results, measure: str, unit: str) -> list[Table]:
-    """Returns the table of the means of each participant, over all cells."""
-    frame = participant_means(results.rows, measure, []).rename(columns={"value": "mean"})
-    return [Table(name=f"participants_{measure}", title="Participants", frame=frame, units={"mean": unit}, folded=True)]
+    over_cells = participant_means(results.rows, measure, []).rename(columns={"value": "mean"})
+    yield Table(name=f"participants_{measure}", title="Participants", frame=over_cells, units={"mean": unit}, folded=True)
+    yield from test_parts(run_tests(results, measure), measure)
 
 
 def test_parts(tests: Tests, measure: str) -> list[str | Table | Plot | Caution]:

@@ -58,3 +58,5 @@ class Section:
     parts: Sequence[str | Table | Plot | Caution]
     folded: bool = False
     """Whether the page shows its parts only after a click."""
+    failed: str = ""
+    """What could not be made, and the error; the parts are those before it."""

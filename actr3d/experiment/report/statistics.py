@@ -29,6 +29,9 @@ MOST = 5_000
 """The maximum number of participants that the test of Shapiro and Wilk takes; of more, some from all groups are taken."""
 NOTHING = 1e-12
 """A standard deviation below this, relative to the values, is rounding."""
+NO_SPREAD = 1e-6
+"""Participants differ in an effect if the standard deviation of their differences is above this, relative to that of all means.
+Analyses of variance subtract sums of squares, which have 15 to 16 digits: of smaller differences, nothing but rounding is left."""
 
 
 def bootstrap_interval(values: Sequence[float]) -> tuple[float, float]:
@@ -125,7 +128,7 @@ def run_tests(results: Results, measure: str) -> Tests:
     reason = ""
     if not grouped and not factors:
         reason = "the design has one group and no factor"
-    elif len(means) < 2 or np.std(means["value"]) <= NOTHING * max(1.0, float(np.abs(means["value"]).max())):
+    elif len(means) < 2 or np.std(means["value"]) <= _rounding(means):
         reason = "all means are the same"
     elif len(sizes) < len(results.groups) or sizes.min() < FEWEST:
         reason = f"a group has fewer than {FEWEST} participants with a value in every cell"
@@ -143,10 +146,15 @@ def run_tests(results: Results, measure: str) -> Tests:
         )
     anova: list[dict[str, Any]] = []
     checks: list[dict[str, Any]] = []
+    mixed = None
     with noting_warnings() as warned:
         _analyse_variance(whole, results, anova, checks, notes)
         _check_assumptions(whole, factors, grouped, checks)
-        mixed = _mixed_model(means, factors, grouped, notes) if len(factors) + grouped > 1 else None
+        if len(factors) + grouped > 1:
+            if _spread(whole, factors) > _least_spread(whole):
+                mixed = _mixed_model(means, factors, grouped, notes)
+            else:
+                notes.append("Not tested: the mixed model, because it leaves no residual beyond rounding.")
     if mixed is not None and sizes.min() < FEW:
         notes.append(
             f"With fewer than {FEW} participants in a group, the p values of the mixed model's Wald tests are too small, above all for the "
@@ -157,25 +165,46 @@ def run_tests(results: Results, measure: str) -> Tests:
 
 
 def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]], checks: list[dict[str, Any]], notes: list[str]) -> None:
-    """Adds the rows of all analyses of variance: one factor within participants at a time, and pairs of them."""
+    """Adds the rows of all analyses of variance: one factor within participants at a time, and pairs of them.
+
+    An effect in which participants do not differ is not tested: its F would be a number divided by rounding.
+    """
     pg, factors, grouped = pingouin(), list(results.factors), len(results.groups) > 1
-    if not factors:
+    least = _least_spread(whole)
+
+    def differ(data: Any, within: Sequence[str], effects: Sequence[str]) -> bool:
+        different = _spread(data, within) > least
+        if not different:
+            whose = "the participants of a group" if grouped else "participants"
+            what = f"the effect of {' × '.join(within)}" if within else "their means"
+            notes.append(f"Not tested: {', '.join(effects)}, because {whose} do not differ in {what} beyond rounding.")
+        return different
+
+    between = grouped and differ(_over(whole, []), [], ["group"])
+    if not factors and between:
         found = pg.anova(data=_over(whole, []), dv="value", between="group")
         _add(anova, "between participants", found, {})
     for factor in factors:
-        data = _over(whole, [factor])
+        data, name = _over(whole, [factor]), f"group × {factor}"
+        within = differ(data, [factor], [factor, name] if grouped else [factor])
+        if not within and not between:
+            continue
         if grouped:
             found = pg.mixed_anova(data=data, dv="value", within=factor, subject="participant", between="group", correction=True)
-            _add(anova, f"group × {factor}", found, {"Interaction": f"group × {factor}"})
+            found = found[[between if source == "group" else within for source in found["Source"]]]
+            _add(anova, name, found, {"Interaction": name})
         else:
             found = pg.rm_anova(data=data, dv="value", within=factor, subject="participant", correction=True)
             _add(anova, factor, found, {})
-        if (levels := len(results.factors[factor])) > 2:
+        if within and (levels := len(results.factors[factor])) > 2:
             testable = data["participant"].nunique() - max(1, data["group"].nunique()) >= levels - 1
             _add_sphericity(checks, factor, found, testable=testable)
     for one, other in combinations(factors, 2):
+        data = _over(whole, [one, other])
         if not grouped:
-            found = pg.rm_anova(data=_over(whole, [one, other]), dv="value", within=[one, other], subject="participant", correction=True)
+            if not differ(data, [one, other], [f"{one} × {other}"]):
+                continue
+            found = pg.rm_anova(data=data, dv="value", within=[one, other], subject="participant", correction=True)
             found = found[found["Source"] == f"{one} * {other}"]  # the others are those of the single factors
             _add(anova, f"{one} × {other}", found, {f"{one} * {other}": f"{one} × {other}"})
             continue
@@ -185,15 +214,39 @@ def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]],
         if len(levels) != 2:
             notes.append(f"The interactions of {one} and {other} are in the mixed model only.")
             continue
-        # An interaction with a factor of two levels is an effect on the difference between them.
-        wide = _over(whole, [one, other]).pivot(index=["participant", "group", other], columns=one, values="value")
-        data = (wide[levels[1]] - wide[levels[0]]).rename("value").reset_index()
-        name = f"{_text(levels[1])} − {_text(levels[0])}"
-        if np.std(data["value"]) <= NOTHING:
+        names = {other: f"{one} × {other}", "Interaction": f"group × {one} × {other}"}
+        if not differ(data, [one, other], list(names.values())):
             continue
+        # An interaction with a factor of two levels is an effect on the difference between them.
+        wide = data.pivot(index=["participant", "group", other], columns=one, values="value")
+        data = (wide[levels[1]] - wide[levels[0]]).rename("value").reset_index()
         found = pg.mixed_anova(data=data, dv="value", within=other, subject="participant", between="group", correction=True)
         found = found[found["Source"] != "group"]  # the analysis of this factor has the same test
-        _add(anova, f"differences {name}", found, {other: f"{one} × {other}", "Interaction": f"group × {one} × {other}"})
+        _add(anova, f"differences {_text(levels[1])} − {_text(levels[0])}", found, names)
+
+
+def _rounding(means: Any) -> float:
+    """Returns the standard deviation that is rounding of values."""
+    return NOTHING * max(1.0, float(np.abs(means["value"]).max()))
+
+
+def _least_spread(whole: Any) -> float:
+    """Returns the standard deviation above which participants differ."""
+    return max(_rounding(whole), NO_SPREAD * float(np.std(whole["value"])))
+
+
+def _spread(data: Any, within: Sequence[str]) -> float:
+    """Returns the standard deviation of the differences between participants by which an effect is tested.
+
+    Args:
+        data: A value of each participant in each cell of the factors.
+        within: The factors of the effect; empty for that of group.
+    """
+    left = data["value"] - data.groupby(["group", *within], observed=True)["value"].transform("mean")
+    for factor in within:
+        cells = [data[name] for name in ("participant", *within) if name != factor]
+        left = left - left.groupby(cells, observed=True).transform("mean")
+    return float(np.std(left))
 
 
 def _over(whole: Any, factors: Sequence[str]) -> Any:
@@ -249,7 +302,7 @@ def _add_sphericity(checks: list[dict[str, Any]], factor: str, found: Any, *, te
 
 def _check_assumptions(whole: Any, factors: Sequence[str], grouped: bool, checks: list[dict[str, Any]]) -> None:
     """Adds the checks of normality, of participants' means and of their effects of each factor, and of equal variances of the groups."""
-    pg = pingouin()
+    pg, least = pingouin(), _least_spread(whole)
     scores = {"participants' means": _over(whole, [])}
     for factor in factors:
         effects = _over(whole, [factor])
@@ -260,14 +313,14 @@ def _check_assumptions(whole: Any, factors: Sequence[str], grouped: bool, checks
     for name, of in scores.items():
         residuals = (of["value"] - of.groupby("group", observed=True)["value"].transform("mean")).to_numpy()
         sample = residuals[:: -(-len(residuals) // MOST)]
-        if len(sample) <= FEWEST or np.std(sample) <= NOTHING * max(1.0, float(np.abs(whole["value"]).max())):  # the test needs four
+        if len(sample) <= FEWEST or np.std(sample) <= least:  # the test needs four
             continue
         found = pg.normality(sample).iloc[0]
         says = "yes" if found["pval"] >= LEVEL else "no: prefer the bootstrap intervals"
         checks.append(
             {"assumption": f"normality of {name}", "test": "Shapiro-Wilk", "statistic": found["W"], "p": found["pval"], "holds": says}
         )
-    if grouped:
+    if grouped and _spread(_over(whole, []), []) > least:
         found = pg.homoscedasticity(_over(whole, []), dv="value", group="group").iloc[0]
         says = "yes" if found["pval"] >= LEVEL else "no: the groups differ in their spread"
         checks.append(
