@@ -1,6 +1,6 @@
 // Draws the timeline on a surface: the axis, the lanes with their bands, the plots.
 
-import { drawCurves, drawTimes, seriesColour, valueAt } from "../parts/curve.js";
+import { drawCurves, drawTimes, valueAt } from "../parts/curve.js";
 import { cut, cutBefore, widthOf } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
 import { session } from "../store.js";
@@ -181,7 +181,7 @@ function drawPlotNames(surface, { plot, height }, y, { column, present, end }) {
   const isWide = widest(labels.slice(0, shown)) + BESIDE + widest(values) <= room - 12; // otherwise the names have the room
   values.forEach((value, n) => {
     const at = y + 25 + NAME * n;
-    surface.line([8, at, 16, at], seriesColour(n), { width: 2 });
+    surface.line([8, at, 16, at], plot.series[n].colour, { width: 2, dash: plot.series[n].dash });
     surface.text(labels[n], 20, at, "quiet", SMALL);
     if (isWide) surface.text(value, column - SCALE - 1, at, "text", { ...SMALL, anchor: "end" });
   });

@@ -777,6 +777,25 @@ Both().run(1)
 """Two agents with productions and chunks of the same names; their last conflict is at 0.25 s."""
 
 
+COLOURS = """async () => {
+  const { drawTimeline } = await part("timeline/draw.js");
+  const { scene } = await part("timeline/canvas.js");
+  const { plot, plots } = await part("timeline/curves.js");
+  const drawn = () => {
+    const lines = [];
+    const surface = { fill() {}, text() {}, polygon() {}, line: (points, name) => lines.push(name), within: (x, y, width, height, draw) => draw() };
+    drawTimeline(surface, scene());
+    const shown = plots.value.flatMap(({ series }) => series.map(({ name, colour }) => [name, colour]));
+    return [Object.fromEntries(shown), [...new Set(shown.map(([, colour]) => colour))].every((colour) => lines.includes(colour))];
+  };
+  for (const name of ["right.go learned learning", "left.go utility", "left.go learned learning", "right.go utility"]) plot(name, true);
+  const both = drawn();
+  for (const name of ["left.go utility", "left.go learned learning"]) plot(name, false);
+  return [both, drawn()];
+}"""
+"""The colours of the curves of two productions in two plots, and after one production's are no longer plotted, and whether they are drawn."""
+
+
 def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callable[..., Page], workbench: Served, tmp_path: Path) -> None:
     (workbench.folder / "twins.py").write_text(TWINS, encoding="utf-8")
     page = pages("twins.py", height=1000)
@@ -811,6 +830,15 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
     assert re.search(r"left\.go utility 0\.\d+", tips[0.16])
     assert "left.go utility –\n" in tips[0.14]  # between two conflicts it is not known
     assert "left.go utility –\n" in tips[0.4]
+    (both, drawn), (one, still_drawn) = page.evaluate(COLOURS)
+    left, right = both["left.go utility"], both["right.go utility"]
+    assert left != right
+    assert (both["left.go learned learning"], both["right.go learned learning"]) == (left, right)
+    assert (one["right.go utility"], one["right.go learned learning"]) == (right, right)
+    assert drawn
+    assert still_drawn
+    page.evaluate("async () => (await part('timeline/curves.js')).plot('left.go utility', true)")
+    becomes_true(page, ALL_CURVES)
     page.get_by_role("button", name="Save a picture").click()
     with page.expect_download() as taken:
         page.get_by_role("dialog").get_by_role("button", name="CSV").click()
