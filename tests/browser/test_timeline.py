@@ -17,7 +17,7 @@ from tests.helpers.page import becomes_true, drawn, shows, until
 from tests.helpers.workbench_server import Served
 
 NAMES = 200
-"""How wide the column of names is at first [px]."""
+"""How wide the column of names is at first where there is a body [px]."""
 MARGIN = 8
 """How far inside the left edge of the axis the earliest moment is [px]."""
 LANE = 16
@@ -33,7 +33,7 @@ def box(page: Page) -> FloatRect:
 def at(page: Page, share: float, y: float = 30) -> tuple[float, float]:
     """Returns a place of the timeline: how far from the left edge of its axis to the right one."""
     area = box(page)
-    left = NAMES + MARGIN
+    left = page.evaluate("async () => (await part('timeline/rows.js')).column.value") + MARGIN
     return area["x"] + left + share * (area["width"] - left), area["y"] + y
 
 
@@ -777,6 +777,23 @@ Both().run(1)
 """Two agents with productions and chunks of the same names; their last conflict is at 0.25 s."""
 
 
+PLOT_ROW = """async (asked) => {
+  const { title = "joints", ...others } = asked ?? {};
+  const { drawTimeline } = await part("timeline/draw.js");
+  const { scene } = await part("timeline/canvas.js");
+  const texts = [];
+  const surface = { fill() {}, line() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
+  surface.text = (text, x, y) => texts.push([y, x, text]);
+  const now = { ...scene(), ...others };
+  drawTimeline(surface, now);
+  const { y, height, plot } = now.layout.rows.find(({ label }) => label === title);
+  const top = y - now.scroll;
+  const inside = texts.filter(([at, x]) => at > top + 15 && at < top + height && x < now.column - 40);
+  return { top, height, curves: plot.series.length, texts: inside.map(([, , text]) => text) };
+}"""
+"""The row of a plot: where it is, how many curves it has, and the texts below its heading. `others` are other values of the scene."""
+
+
 COLOURS = """async () => {
   const { drawTimeline } = await part("timeline/draw.js");
   const { scene } = await part("timeline/canvas.js");
@@ -830,6 +847,18 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
     assert re.search(r"left\.go utility 0\.\d+", tips[0.16])
     assert "left.go utility –\n" in tips[0.14]  # between two conflicts it is not known
     assert "left.go utility –\n" in tips[0.4]
+    page.evaluate(
+        """async () => {
+          const { plotAll } = await part("timeline/curves.js");
+          plotAll(["activation", "base level"].map((part) => `left.memory: fact 1 2 ${part} over time`), true);
+        }"""
+    )
+    fact = {"title": "fact 1 2 over time"}
+    until(page, lambda: page.evaluate("async () => (await part('timeline/curves.js')).plots.value.some(({ title }) => title === 'fact 1 2 over time')"))
+    until(page, lambda: "–" not in page.evaluate(PLOT_ROW, fact)["texts"])
+    named = page.evaluate(PLOT_ROW, fact)["texts"]
+    assert named[::2] == ["activation", "base level"]
+    assert named[1] == named[3]  # with a base level only
     (both, drawn), (one, still_drawn) = page.evaluate(COLOURS)
     left, right = both["left.go utility"], both["right.go utility"]
     assert left != right
@@ -848,22 +877,6 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
     assert float(rows[-1]["time [s]"]) == 1
     assert rows[-1]["left.go utility"] == ""
     assert 0.1 < float(rows[-1]["left.memory busy [s]"]) < 0.5
-
-
-PLOT_ROW = """async (title) => {
-  const { drawTimeline } = await part("timeline/draw.js");
-  const { scene } = await part("timeline/canvas.js");
-  const texts = [];
-  const surface = { fill() {}, line() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
-  surface.text = (text, x, y) => texts.push([y, x, text]);
-  const now = scene();
-  drawTimeline(surface, now);
-  const { y, height, plot } = now.layout.rows.find(({ label }) => label === (title ?? "joints"));
-  const top = y - now.scroll;
-  const inside = texts.filter(([at, x]) => at > top + 15 && at < top + height && x < now.column - 40);
-  return { top, height, curves: plot.series.length, texts: inside.map(([, , text]) => text) };
-}"""
-"""The row of a plot: where it is, how many curves it has, and the texts below its heading."""
 
 
 def test_plots_are_resized_and_name_every_curve_with_its_value_at_the_playhead(pages: Callable[..., Page]) -> None:
@@ -885,7 +898,10 @@ def test_plots_are_resized_and_name_every_curve_with_its_value_at_the_playhead(p
     for time in ("0.50", "0.00"):
         page.evaluate("async (time) => (await part('timeline/seek.js')).seek(time)", float(time))
         when(page, time)
-        speeds.append(page.evaluate(PLOT_ROW, "speed")["texts"])
+        speeds.append(page.evaluate(PLOT_ROW, {"title": "speed"})["texts"])
+    for running in (True, False):  # while the run is active, the newest values are not known yet
+        later = {"title": "speed", "present": 0.7, "end": 0.7, "running": running}
+        assert page.evaluate(PLOT_ROW, later)["texts"] == ["walker", "1.20" if running else "–"]
     assert speeds == [["walker", "1.20"], ["walker", "0.000"]]
     assert (row["curves"], row["height"], len(row["texts"])) == (5, 20 + 5 * 13, 10)  # each name and its value
     page.locator("#status").click()
