@@ -712,7 +712,7 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
 
 LINES = """async () => {
   const { csvText } = await part("parts/csv.js");
-  const { valueAt } = await part("parts/curve.js");
+  const { drawCurves, valueAt } = await part("parts/curve.js");
   const long = { name: "long", unit: "m", times: [0, 1, 2, 4], values: [0, 10, null, 40] };
   const short = { name: "short", unit: "m", times: [0, 1], values: [5, 6] };
   const once = { name: "once", unit: "", times: [1.5], values: [7] };
@@ -725,7 +725,13 @@ LINES = """async () => {
   const all = [long, short, once, held, busy, gone, points, over];
   const values = Object.fromEntries(all.map((curve) => [curve.name, moments.map((time) => valueAt(curve, time))]));
   const near = [1.4, 1.6, 2].map((time) => valueAt(once, time, 0.2));
-  return { values, near, compared: csvText([long, short]), csv: csvText([long, once, held, busy, gone], 5) };
+  let clip = [];
+  const drawn = [];
+  const surface = { line() {}, text() {}, within: (x, y, width, height, draw) => (clip = [y, y + height]) && draw() };
+  surface.fill = (x, y, width, height) => drawn.push([y, y + height]);
+  drawCurves(surface, { x: 0, y: 10, width: 100, height: 50 }, { series: [points], span: { from: 0, to: 4 }, range: [1, 9] });
+  const whole = drawn.map(([top, bottom]) => top >= clip[0] && bottom <= clip[1]);
+  return { values, near, whole, compared: csvText([long, short]), csv: csvText([long, once, held, busy, gone], 5) };
 }"""
 """Values of curves at -0.5, 0, 0.5, 1, 1.5, 2, 3 and 5 s, and those curves as CSV."""
 
@@ -743,6 +749,7 @@ def test_the_value_of_a_curve_is_where_its_line_is_and_nowhere_else(blank: Page)
         "over": [None, None, None, 3, 3, 4, 4, None],
     }
     assert found["near"] == [7, 7, None]
+    assert found["whole"] == [True, True]  # the least and the greatest value
     assert found["compared"].splitlines() == ['"time [s]","long [m]","short [m]"', "0,0,5", "1,10,6", "2,,", "4,40,"]
     assert found["csv"].splitlines()[1:] == ["0,0,,,0,8", "1,10,,3,1,", "1.5,,7,3,1,", "2,,,4,1,", "4,40,,4,3,", "5,,,4,4,"]
 
