@@ -807,7 +807,8 @@ COLOURS = """async () => {
   const { plot, plots } = await part("timeline/curves.js");
   const drawn = () => {
     const lines = [];
-    const surface = { fill() {}, text() {}, polygon() {}, line: (points, name) => lines.push(name), within: (x, y, width, height, draw) => draw() };
+    const surface = { fill() {}, text() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
+    surface.line = (points, name) => lines.push(name);
     drawTimeline(surface, scene());
     const shown = plots.value.flatMap(({ series }) => series.map(({ name, colour }) => [name, colour]));
     return [Object.fromEntries(shown), [...new Set(shown.map(([, colour]) => colour))].every((colour) => lines.includes(colour))];
@@ -817,7 +818,7 @@ COLOURS = """async () => {
   for (const name of ["left.go utility", "left.go learned learning"]) plot(name, false);
   return [both, drawn()];
 }"""
-"""The colours of the curves of two productions in two plots, and after one production's are no longer plotted, and whether they are drawn."""
+"""The colours of curves of two productions, and whether they are drawn; and the same after the curves of one production were removed."""
 
 
 def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callable[..., Page], workbench: Served, tmp_path: Path) -> None:
@@ -861,7 +862,8 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
         }"""
     )
     fact = {"title": "fact 1 2 over time"}
-    until(page, lambda: page.evaluate("async () => (await part('timeline/curves.js')).plots.value.some(({ title }) => title === 'fact 1 2 over time')"))
+    is_there = "async () => (await part('timeline/curves.js')).plots.value.some(({ title }) => title === 'fact 1 2 over time')"
+    becomes_true(page, is_there)
     until(page, lambda: "–" not in page.evaluate(PLOT_ROW, fact)["texts"])
     named = page.evaluate(PLOT_ROW, fact)["texts"]
     assert named[::2] == ["activation", "base level"]
