@@ -13,7 +13,12 @@ function shownSlots({ slots }) {
   return Object.fromEntries(Object.entries(slots).filter(([name]) => !name.startsWith("_")));
 }
 
-/** Returns rows in order; unknown values come last. */
+/** Returns the sum of what is known of an activation. */
+function knownSum({ parts }) {
+  return Object.values(parts).reduce((sum, part) => sum + (typeof part === "number" ? part : 0), 0);
+}
+
+/** Returns rows in order; unknown values come last, unknown activations in the order of what is known of them. */
 export function sorted(rows, { by, down }) {
   const value = (row) => (by === "chunk" ? chunkText(shownSlots(row)) : by === "activation" ? row.activation : row.parts[by]);
   const isKnown = (row) => value(row) !== null && value(row) !== undefined;
@@ -21,6 +26,7 @@ export function sorted(rows, { by, down }) {
   const unknown = rows.filter((row) => !isKnown(row));
   const sign = down ? -1 : 1;
   known.sort((one, other) => sign * (typeof value(one) === "number" ? value(one) - value(other) : String(value(one)).localeCompare(String(value(other)), "en", { numeric: true })));
+  if (by === "activation") unknown.sort((one, other) => sign * (knownSum(one) - knownSum(other)));
   return [...known, ...unknown];
 }
 
@@ -73,7 +79,7 @@ export function MemoryTable({ answer, words }) {
 
   const row = (n) => html`<tr key=${all[n].chunk} class="${under(all[n]) ? "under" : ""} ${n === mark ? "threshold" : ""} ${n === at ? "chosen" : ""}" aria-selected=${n === at} title=${chunkText(shownSlots(all[n]))} onClick=${() => setChosen(n === at ? null : all[n].chunk)}>
     <td><${Chunk} chunk=${shownSlots(all[n])} /></td>
-    <td class="number">${all[n].activation === null ? html`<span class="quiet" title="A part of the activation is computed only at a retrieval">?</span>` : html`<span title=${all[n].activation}>${fixed(all[n].activation)}</span>`}</td>
+    <td class="number">${all[n].activation === null ? html`<span class="quiet" title="A part of the activation is computed only at a retrieval; the order is that of the other parts">?</span>` : html`<span title=${all[n].activation}>${fixed(all[n].activation)}</span>`}</td>
     ${names.map((name) => html`<td key=${name} class="number"><${Part} value=${all[n].parts[name]} /></td>`)}
   </tr>`;
   return html`<${Rows}

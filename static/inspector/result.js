@@ -16,7 +16,7 @@ export function measured(name, value) {
 export function Result({ result }) {
   const { outcome, ...rest } = result;
   return html`<section class="result" aria-label="Result">
-    <h3>Result${outcome === undefined ? "" : ": "}<b class="outcome ${outcome}">${outcome ?? ""}</b></h3>
+    <h2>Result${outcome === undefined ? "" : ": "}<b class="outcome ${outcome}">${outcome ?? ""}</b></h2>
     <dl>
       ${Object.entries(rest).map(([name, value]) => {
         const [label, text, unit] = measured(name, value);

@@ -8,6 +8,7 @@ const MIN_RANGE = 0.01; // smaller differences are drawn as a straight line, not
 const BETWEEN = 4; // the minimum distance between two labels of an axis [px]
 const SAME = 1e-6; // times that are no farther apart are the same [s]
 const GROUP = 16; // the number of values that are read as one where a pixel has more than two such groups
+const EDGES = 2; // how far what is at the least or greatest value is drawn beyond the box [px]
 const EDGE = 6; // the distance of the first and last text from the ends of an axis [px]
 
 /** Returns the name of the colour of the nth curve. */
@@ -185,7 +186,7 @@ export function drawCurves(surface, box, { series, times, span, range, until }) 
     surface.line([box.x, y, box.x + box.width, y], "line");
     if (y > box.y + 4) surface.text(numberText(value).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""), box.x - 5, y, "quiet", { size: 10, anchor: "end" });
   }
-  surface.within(box.x, box.y, box.width, box.height, () => {
+  surface.within(box.x, box.y - EDGES, box.width, box.height + 2 * EDGES, () => {
     series.forEach(({ colour, dash, ...curve }, n) => {
       const [of, name] = [{ times, until, ...curve }, colour ?? seriesColour(n)];
       if (of.shape === "points") return drawMoments(surface, of, span, box, yOf, name);

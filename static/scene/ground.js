@@ -5,6 +5,8 @@ import { palette } from "./palette.js";
 
 const MAX_SHADOWS = 64; // the maximum number of shadows
 const LIFT = 0.004; // their height above the ground [m]
+// Far away, the depth of the ground's two large triangles is less exact than that height: shadows are drawn as if they were this much nearer.
+const NEARER = { polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 };
 const RISE = 0.6; // the height over which the sky changes its colour above the horizon, as a part of the picture's
 const FADE = 0.12; // the same below the horizon
 
@@ -48,7 +50,7 @@ export class Ground {
     const corners = [];
     for (let n = 0; n < MAX_SHADOWS; n++) corners.push(...[0, 1, 2, 2, 1, 3].map((corner) => 4 * n + corner));
     geometry.setIndex(corners);
-    const material = new Material({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { strength: { value: 0 } }, transparent: true, depthWrite: false });
+    const material = new Material({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { strength: { value: 0 } }, transparent: true, depthWrite: false, ...NEARER });
     const mesh = new Mesh(geometry, material);
     mesh.frustumCulled = false;
     mesh.renderOrder = 1;

@@ -4,7 +4,7 @@ import { effect, html, signal, useEffect, useRef, useSignal } from "../vendor/pr
 import { fetching } from "../earlier_events.js";
 import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
 import { timeText } from "../parts/ticks.js";
-import { events, running, state, way } from "../store.js";
+import { events, running, session, state, way } from "../store.js";
 import { dark } from "../theme.js";
 import { chosen, names, plots } from "./curves.js";
 import { drawPresent, drawTimeline, placeOf, secondsPerPixel, timeOf } from "./draw.js";
@@ -35,6 +35,8 @@ export function scene(whole = false) {
     layout: rows,
     end: furthest.peek(),
     present: present.peek(),
+    running: running.peek(),
+    period: session.peek()?.period || 0,
     now: whole ? null : labelOfNow(),
     fetching: fetching.peek(),
     begin: events.peek().missing > 0 || events.peek().first > 0 ? (lanes.begin ?? 0) : 0,

@@ -7,6 +7,7 @@ import { rememberedByModel } from "../model_storage.js";
 import { isLeft, say } from "../server.js";
 import { alive, complain, hurried, running, session, state, way } from "../store.js";
 import { firstFrom, rangeOf } from "../parts/curve.js";
+import { Colours, subjectOf, subjectsOf } from "./colours.js";
 import { lanes } from "./record.js";
 import { furthest } from "./seek.js";
 import { span } from "./view.js";
@@ -18,7 +19,8 @@ const PIECE = 1000; // the number of ticks per request when paused: longer stret
 const MAX_VALUES = 5000; // the maximum number of values of a curve per request
 const NOTHING = { times: [], values: [], slope: null, range: [Infinity, -Infinity] };
 const CHUNKS = "activation over time";
-const OF_CHUNK = /^.*?: (.*) (activation|base level|spreading|fixed|inhibition)( \d+)?( without noise)? over time$/s; // the names of curves of chunks, as `workbench/chunk_curves.py` has them
+const OF_CHUNK = /^(.*?): (.*) ((activation|base level|spreading|fixed|inhibition)( \d+)?( without noise)?) over time$/s; // the names of curves of chunks, as `workbench/chunk_curves.py` has them
+const DASHES = { "base level": [6, 3], spreading: [2, 2], fixed: [8, 2, 2, 2], inhibition: [10, 4] }; // of the parts of activation: each is drawn in the colour of its chunk
 
 /** The curves of bodies: [{name, unit, group, of, shape}], where `of` is the list in which a curve is offered, if it is not its group. */
 const ofBodies = signal([]);
@@ -38,6 +40,23 @@ const ofChunks = computed(() => {
 });
 /** All curves that are known. */
 export const names = computed(() => [...ofBodies.value, ...ofEvents.value, ...ofChunks.value]);
+
+/** Returns the parts of the name of a curve of a chunk over time, {memory, chunk, part, kind}, with the kind of the part; null for other names. */
+export function chunkCurve(name) {
+  const [, memory, chunk, part, kind] = OF_CHUNK.exec(name) ?? [];
+  return memory === undefined ? null : { memory, chunk, part, kind };
+}
+
+/** Returns what a curve is about; for that of a chunk over time, the same as for its values at retrievals. */
+function subject(curve) {
+  const of = curve.group === CHUNKS ? chunkCurve(curve.name) : null;
+  return of ? `${of.memory}: ${of.chunk}` : subjectOf(curve);
+}
+
+/** What is known of the subjects of all curves. */
+const subjects = computed(() => subjectsOf(names.value.map((curve) => ({ subject: subject(curve), group: curve.group }))));
+const colours = new Colours();
+
 /** Whether the curves are offered to the user. */
 export const offered = signal(false);
 /** Counts the changes of what is known. */
@@ -110,16 +129,19 @@ const plotsOfEvents = computed(() => {
   });
 });
 
-/** Returns one plot for each group and unit of chosen curves. */
+/** Returns one plot for each group and unit of chosen curves, in which subjects have the same order as in other plots. */
 function plotsOf(curves, seriesOf) {
   const wanted = new Set(chosen.value);
+  const known = subjects.value;
+  const shown = new Set(names.value.filter(({ name }) => wanted.has(name)).map(subject));
+  const placeOf = (curve) => known.get(subject(curve)).place;
   const made = new Map();
-  for (const curve of curves) {
+  for (const curve of curves.filter(({ name }) => wanted.has(name)).sort((one, other) => placeOf(one) - placeOf(other))) {
     const { name, unit, group } = curve;
-    if (!wanted.has(name)) continue;
     const key = `${group} [${unit}]`;
     if (!made.has(key)) made.set(key, { title: titleOf(group), group, unit, series: [] });
-    made.get(key).series.push(seriesOf(curve));
+    const dash = DASHES[group === CHUNKS ? chunkCurve(name).kind : null];
+    made.get(key).series.push({ ...seriesOf(curve), colour: colours.of(subject(curve), known, shown), dash });
   }
   return [...made.values()].map((plot) => ({ ...plot, title: onlyChunk(plot) ?? plot.title, range: rangeOf(plot.series) }));
 }
@@ -127,11 +149,11 @@ function plotsOf(curves, seriesOf) {
 /** Returns the title of a plot that shows a single chunk over time: `item:cup over time`; null for any other plot. */
 function onlyChunk({ group, series }) {
   if (group !== CHUNKS) return null;
-  const chunks = new Set(series.map(({ name }) => OF_CHUNK.exec(name)[1]));
+  const chunks = new Set(series.map(({ name }) => chunkCurve(name).chunk));
   return chunks.size === 1 ? `${[...chunks][0]} over time` : null;
 }
 
-/** The plots: [{title, unit, series, range}], one for each group with chosen curves. */
+/** The plots: [{title, group, unit, series, range}], one for each group with chosen curves. */
 export const plots = computed(() => {
   const order = ({ group }) => (GROUPS.includes(group) ? GROUPS.indexOf(group) : GROUPS.length);
   return [...plotsOfBodies.value, ...plotsOfEvents.value].sort((one, other) => order(one) - order(other));
@@ -340,6 +362,7 @@ effect(() => {
   if (alive.value) ask();
   else if (!session.value && of !== null) {
     forget(null);
+    colours.clear();
     named = null;
     for (const known of [ofBodies, ofEvents]) known.value = [];
   }

@@ -1,10 +1,10 @@
 // Draws the timeline on a surface: the axis, the lanes with their bands, the plots.
 
-import { drawCurves, drawTimes, seriesColour, valueAt } from "../parts/curve.js";
+import { drawCurves, drawTimes, valueAt } from "../parts/curve.js";
 import { cut, cutBefore, widthOf } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
 import { session } from "../store.js";
-import { headingOf } from "./curves.js";
+import { chunkCurve, headingOf, titleOf } from "./curves.js";
 import { bandText } from "./lanes.js";
 import { firstWhere, nextWhere } from "./search.js";
 import { AXIS, MARGIN, NAME, PLOT } from "./rows.js";
@@ -14,6 +14,7 @@ const THIN = 3; // the width up to which a band is only a stroke [px]
 const ROOM = 34; // the minimum width for a text [px]
 const SMALL = { size: 10 };
 const BESIDE = 6; // between the name of a curve and its value [px]
+const VALUE = 34; // the usual width of a value [px]
 const LETTER = 7; // the width of a letter of a mark's text, rounded up [px]
 
 /**
@@ -25,6 +26,8 @@ const LETTER = 7; // the width of a letter of a mark's text, rounded up [px]
  * @property {{from: number, to: number}} span The visible times [s].
  * @property {{rows: object[]}} layout See `layout` of rows.js.
  * @property {number} present The time of the playhead [s].
+ * @property {boolean} running Whether the run is active: then the newest values of curves are on their way.
+ * @property {number} period The length of a tick [s].
  * @property {number} end The end of bands that are still open [s].
  * @property {{from: number, to: number}} [now] The position of the playhead's label [px]; absent without one.
  * @property {number} begin Earlier times are not known [s].
@@ -170,30 +173,37 @@ function drawPlotRow(surface, row, y, scene) {
 }
 
 /** Draws the heading of a plot, and the names of its curves, each with its value at the playhead if there is room. */
-function drawPlotNames(surface, { plot, height }, y, { column, present, end }) {
-  const room = column - SCALE - 8;
+function drawPlotNames(surface, { plot, height }, y, scene) {
+  const room = scene.column - SCALE - 8;
   surface.text(cut(headingOf(plot), room), 8, y + 10, "text", { bold: true });
   const lines = Math.floor((height - PLOT) / NAME);
   const shown = plot.series.length > lines ? Math.max(0, lines - 1) : plot.series.length;
-  const values = plot.series.slice(0, shown).map((curve) => numberText(present > end ? null : valueAt(curve, present)));
   const labels = labelsOf(plot, room - 12);
-  const widest = (texts) => Math.max(0, ...texts.map((text) => widthOf(text, SMALL)));
-  const isWide = widest(labels.slice(0, shown)) + BESIDE + widest(values) <= room - 12; // otherwise the names have the room
-  values.forEach((value, n) => {
+  plot.series.slice(0, shown).forEach((curve, n) => {
     const at = y + 25 + NAME * n;
-    surface.line([8, at, 16, at], seriesColour(n), { width: 2 });
+    const value = numberText(presentValue(curve, scene));
+    surface.line([8, at, 16, at], curve.colour, { width: 2, dash: curve.dash });
     surface.text(labels[n], 20, at, "quiet", SMALL);
-    if (isWide) surface.text(value, column - SCALE - 1, at, "text", { ...SMALL, anchor: "end" });
+    const isWide = widthOf(labels[n], SMALL) + BESIDE + widthOf(value, SMALL) <= room - 12; // otherwise the name has the room
+    if (isWide) surface.text(value, scene.column - SCALE - 1, at, "text", { ...SMALL, anchor: "end" });
   });
   if (shown < plot.series.length) surface.text(`${shown > 0 ? "and " : ""}${plot.series.length - shown} more`, 20, y + 25 + NAME * shown, "quiet", SMALL);
 }
 
-/** Returns the labels of a plot's curves, at most so wide: if one is too long, without the words that all begin or end with. */
+/** Returns the value of a curve at the playhead; null if there is none. A line ends at the last tick, which may be before the playhead, and
+ * while the run is active its newest values are not known yet: then the value is the last known one. */
+function presentValue(curve, { present, end, running, period }) {
+  if (present > end) return null;
+  const last = curve.shape === "points" ? present : (curve.times.at(-1) ?? present);
+  return valueAt(curve, running || present - last < period ? Math.min(present, last) : present);
+}
+
+/** Returns the labels of a plot's curves, at most so wide: if one leaves no room for a value, without the words that all begin or end with. */
 function labelsOf(plot, room) {
   const names = plot.series.map(({ name }) => shortName(name, plot));
-  if (names.every((name) => widthOf(name, SMALL) <= room)) return names;
+  if (names.every((name) => widthOf(name, SMALL) <= room - BESIDE - VALUE)) return names;
   const words = names.map((name) => name.split(" "));
-  const most = names.length > 1 ? Math.min(...words.map(({ length }) => length)) - 1 : 0;
+  const most = names.length > 1 ? Math.min(...words.map(({ length }) => length)) - 1 : Number(/^\S+: ./.test(names[0])); // of one curve, the name of its memory
   const isShared = (n) => words.every((list) => list.at(n) === words[0].at(n));
   let [first, last] = [0, 0];
   while (first < most && isShared(first)) first += 1;
@@ -202,7 +212,9 @@ function labelsOf(plot, room) {
 }
 
 /** Returns the name of a curve without redundant parts: the only body's name, and the plot's title. */
-function shortName(name, { title, series }) {
+function shortName(name, { title, group, series }) {
+  const of = chunkCurve(name);
+  if (of) return title !== titleOf(group) ? of.part : `${of.memory}: ${of.chunk}${of.kind === "activation" ? "" : ` ${of.part}`}`;
   const bodies = Object.keys(session.peek()?.world?.bodies ?? {});
   const body = bodies.length === 1 && /^[_ .]/.test(name.slice(bodies[0].length)) && name.startsWith(bodies[0]) ? bodies[0] : "";
   const rest = name.slice(body ? body.length + 1 : 0);

@@ -1,7 +1,7 @@
 // The actions of the pointer, the wheel and the keys on the timeline.
 
 import { placeOf, secondsPerPixel, timeOf } from "./draw.js";
-import { AXIS, column, plotEndingAt, resize } from "./rows.js";
+import { AXIS, chosenColumn, column, plotEndingAt, resize } from "./rows.js";
 import { furthest, goTicks, present, seek } from "./seek.js";
 import { pan, span, zoom } from "./view.js";
 
@@ -50,7 +50,7 @@ export function begin(event) {
     still &&= Math.abs(to - began) <= STILL;
     if (part === "axis" && still) return;
     if (resized) resize(resized.plot, resized.height + toY - y);
-    else if (part === "border") column.value = Math.round(Math.min(Math.max(to, COLUMN[0]), COLUMN[1]));
+    else if (part === "border") chosenColumn.value = Math.round(Math.min(Math.max(to, COLUMN[0]), COLUMN[1]));
     else if (part === "axis") pan(secondsOf(x - to, stage), present.peek(), furthest.peek());
     else seek(Math.max(0, timeOf(to, sceneOf(stage))));
     x = to;

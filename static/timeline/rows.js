@@ -1,7 +1,8 @@
 // The rows of the timeline, their order and their heights.
 
-import { signal } from "../vendor/preact.js";
+import { computed, signal } from "../vendor/preact.js";
 import { remembered } from "../local_storage.js";
+import { hasScene } from "../store.js";
 import { contacts, headingOf, names, plots } from "./curves.js";
 import { lanes } from "./record.js";
 
@@ -27,8 +28,10 @@ export const GROUPS = [
 
 /** The hidden groups. */
 export const hidden = remembered("timeline hidden", []);
-/** The width of the column of names [px]. */
-export const column = remembered("timeline names", 200);
+/** The width that the user has chosen for the column of names [px]; 0 for none. */
+export const chosenColumn = remembered("timeline names", 0);
+/** The width of the column of names [px]: without a world, the names of curves are longer. */
+export const column = computed(() => chosenColumn.value || (hasScene.value ? 200 : 240));
 /** The names of the visible lanes and plots. */
 export const filter = signal("");
 /** The scroll position of the rows [px]. */

@@ -1,7 +1,7 @@
 // A tooltip for what is at the pointer.
 
 import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
-import { seriesColour, valueAt } from "../parts/curve.js";
+import { valueAt } from "../parts/curve.js";
 import { numberText, timeText } from "../parts/ticks.js";
 import { bandText } from "./lanes.js";
 import { furthest } from "./seek.js";
@@ -37,10 +37,10 @@ function OfRow({ at }) {
 
 function OfPlot({ plot, time, near }) {
   return html`<p><b>${plot.title}</b> <span class="number quiet">at ${timeText(time)}</span></p>
-    ${plot.series.map((curve, n) => {
-      const { name, unit } = curve;
+    ${plot.series.map((curve) => {
+      const { name, unit, colour } = curve;
       const value = numberText(time > furthest.value ? null : valueAt(curve, time, near));
-      return html`<p key=${name} class="number"><span class="swatch" style=${{ background: `var(--${seriesColour(n)})` }}></span>${name} ${value} ${unit}</p>`;
+      return html`<p key=${name} class="number"><span class="swatch" style=${{ background: `var(--${colour})` }}></span>${name} ${value} ${unit}</p>`;
     })}`;
 }
 

@@ -52,7 +52,21 @@ def problems_of(page: Page, *parts: str) -> list[str]:
     return [*found, *page.evaluate(RUN_AXE, list(parts))]
 
 
-def test_all_can_be_read_named_and_reached(page: Page) -> None:
+RETURNED = """    return Simulation(scene, {"walker": agent})
+"""
+MEASURED = """    from actr3d.experiment.aperture import Passage
+
+    simulation = Simulation(scene, {"walker": agent})
+    simulation.measure(Passage("walker"))
+    return simulation
+"""
+
+
+def test_all_can_be_read_named_and_reached(pages: Callable[..., Page], workbench: Served) -> None:
+    text = (workbench.folder / "doorway.py").read_text(encoding="utf-8")
+    assert RETURNED in text
+    (workbench.folder / "measured.py").write_text(text.replace(RETURNED, MEASURED), encoding="utf-8")
+    page = pages("measured.py")
     shows(page, "#status", "at its start")
     problems: list[str] = []
 
@@ -64,6 +78,8 @@ def test_all_can_be_read_named_and_reached(page: Page) -> None:
     shows(page, "#status", "ended")
     for title in ("Buffers", "Productions", "Memory", "Eye", "Graph", "Parameters", "Editor", "Runs", "Messages"):
         open_tab(page, title)
+        if title == "Buffers":
+            expect(page.get_by_role("region", name="Result")).to_be_visible()
         if title == "Productions":
             expect(page.locator("#why-text")).to_contain_text("match")
             for view in ("Conflict set", "Retrievals"):

@@ -359,6 +359,17 @@ def test_memory_is_searched_and_sorted(pages: Pages, workbench: Served) -> None:
     expect(page.locator(".memory")).to_contain_text("No chunk has all of these words.")
 
 
+def test_chunks_whose_activation_is_unknown_are_in_the_order_of_what_is_known_of_it(blank: Page) -> None:
+    order = """async ([rows, down]) => {
+      const { sorted } = await part("inspector/memory_table.js");
+      return sorted(rows, { by: "activation", down }).map(({ chunk }) => chunk);
+    }"""
+    known: list[tuple[str, float | None, float]] = [("low", None, -1), ("known", -3, -3), ("high", None, 2), ("middle", None, 0.5)]
+    rows = [{"chunk": chunk, "activation": whole, "parts": {"base": base, "noise": None}} for chunk, whole, base in known]
+    assert blank.evaluate(order, [rows, True]) == ["known", "high", "middle", "low"]
+    assert blank.evaluate(order, [rows, False]) == ["known", "low", "middle", "high"]
+
+
 def test_the_activation_of_a_chosen_chunk_is_plotted_over_time_also_after_a_reload(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "chooses.py", CHOOSES)
     page.click("#run")

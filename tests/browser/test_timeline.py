@@ -17,7 +17,7 @@ from tests.helpers.page import becomes_true, drawn, shows, until
 from tests.helpers.workbench_server import Served
 
 NAMES = 200
-"""How wide the column of names is at first [px]."""
+"""How wide the column of names is at first where there is a body [px]."""
 MARGIN = 8
 """How far inside the left edge of the axis the earliest moment is [px]."""
 LANE = 16
@@ -33,7 +33,7 @@ def box(page: Page) -> FloatRect:
 def at(page: Page, share: float, y: float = 30) -> tuple[float, float]:
     """Returns a place of the timeline: how far from the left edge of its axis to the right one."""
     area = box(page)
-    left = NAMES + MARGIN
+    left = page.evaluate("async () => (await part('timeline/rows.js')).column.value") + MARGIN
     return area["x"] + left + share * (area["width"] - left), area["y"] + y
 
 
@@ -712,7 +712,7 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
 
 LINES = """async () => {
   const { csvText } = await part("parts/csv.js");
-  const { valueAt } = await part("parts/curve.js");
+  const { drawCurves, valueAt } = await part("parts/curve.js");
   const long = { name: "long", unit: "m", times: [0, 1, 2, 4], values: [0, 10, null, 40] };
   const short = { name: "short", unit: "m", times: [0, 1], values: [5, 6] };
   const once = { name: "once", unit: "", times: [1.5], values: [7] };
@@ -725,7 +725,13 @@ LINES = """async () => {
   const all = [long, short, once, held, busy, gone, points, over];
   const values = Object.fromEntries(all.map((curve) => [curve.name, moments.map((time) => valueAt(curve, time))]));
   const near = [1.4, 1.6, 2].map((time) => valueAt(once, time, 0.2));
-  return { values, near, compared: csvText([long, short]), csv: csvText([long, once, held, busy, gone], 5) };
+  let clip = [];
+  const drawn = [];
+  const surface = { line() {}, text() {}, within: (x, y, width, height, draw) => (clip = [y, y + height]) && draw() };
+  surface.fill = (x, y, width, height) => drawn.push([y, y + height]);
+  drawCurves(surface, { x: 0, y: 10, width: 100, height: 50 }, { series: [points], span: { from: 0, to: 4 }, range: [1, 9] });
+  const whole = drawn.map(([top, bottom]) => top >= clip[0] && bottom <= clip[1]);
+  return { values, near, whole, compared: csvText([long, short]), csv: csvText([long, once, held, busy, gone], 5) };
 }"""
 """Values of curves at -0.5, 0, 0.5, 1, 1.5, 2, 3 and 5 s, and those curves as CSV."""
 
@@ -743,6 +749,7 @@ def test_the_value_of_a_curve_is_where_its_line_is_and_nowhere_else(blank: Page)
         "over": [None, None, None, 3, 3, 4, 4, None],
     }
     assert found["near"] == [7, 7, None]
+    assert found["whole"] == [True, True]  # the least and the greatest value
     assert found["compared"].splitlines() == ['"time [s]","long [m]","short [m]"', "0,0,5", "1,10,6", "2,,", "4,40,"]
     assert found["csv"].splitlines()[1:] == ["0,0,,,0,8", "1,10,,3,1,", "1.5,,7,3,1,", "2,,,4,1,", "4,40,,4,3,", "5,,,4,4,"]
 
@@ -775,6 +782,43 @@ class Both(Model):
 Both().run(1)
 """
 """Two agents with productions and chunks of the same names; their last conflict is at 0.25 s."""
+
+
+PLOT_ROW = """async (asked) => {
+  const { title = "joints", ...others } = asked ?? {};
+  const { drawTimeline } = await part("timeline/draw.js");
+  const { scene } = await part("timeline/canvas.js");
+  const texts = [];
+  const surface = { fill() {}, line() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
+  surface.text = (text, x, y) => texts.push([y, x, text]);
+  const now = { ...scene(), ...others };
+  drawTimeline(surface, now);
+  const { y, height, plot } = now.layout.rows.find(({ label }) => label === title);
+  const top = y - now.scroll;
+  const inside = texts.filter(([at, x]) => at > top + 15 && at < top + height && x < now.column - 40);
+  return { top, height, curves: plot.series.length, texts: inside.map(([, , text]) => text) };
+}"""
+"""The row of a plot: where it is, how many curves it has, and the texts below its heading. `others` are other values of the scene."""
+
+
+COLOURS = """async () => {
+  const { drawTimeline } = await part("timeline/draw.js");
+  const { scene } = await part("timeline/canvas.js");
+  const { plot, plots } = await part("timeline/curves.js");
+  const drawn = () => {
+    const lines = [];
+    const surface = { fill() {}, text() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
+    surface.line = (points, name) => lines.push(name);
+    drawTimeline(surface, scene());
+    const shown = plots.value.flatMap(({ series }) => series.map(({ name, colour }) => [name, colour]));
+    return [Object.fromEntries(shown), [...new Set(shown.map(([, colour]) => colour))].every((colour) => lines.includes(colour))];
+  };
+  for (const name of ["right.go learned learning", "left.go utility", "left.go learned learning", "right.go utility"]) plot(name, true);
+  const both = drawn();
+  for (const name of ["left.go utility", "left.go learned learning"]) plot(name, false);
+  return [both, drawn()];
+}"""
+"""The colours of curves of two productions, and whether they are drawn; and the same after the curves of one production were removed."""
 
 
 def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callable[..., Page], workbench: Served, tmp_path: Path) -> None:
@@ -811,6 +855,28 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
     assert re.search(r"left\.go utility 0\.\d+", tips[0.16])
     assert "left.go utility –\n" in tips[0.14]  # between two conflicts it is not known
     assert "left.go utility –\n" in tips[0.4]
+    page.evaluate(
+        """async () => {
+          const { plotAll } = await part("timeline/curves.js");
+          plotAll(["activation", "base level"].map((part) => `left.memory: fact 1 2 ${part} over time`), true);
+        }"""
+    )
+    fact = {"title": "fact 1 2 over time"}
+    is_there = "async () => (await part('timeline/curves.js')).plots.value.some(({ title }) => title === 'fact 1 2 over time')"
+    becomes_true(page, is_there)
+    until(page, lambda: "–" not in page.evaluate(PLOT_ROW, fact)["texts"])
+    named = page.evaluate(PLOT_ROW, fact)["texts"]
+    assert named[::2] == ["activation", "base level"]
+    assert named[1] == named[3]  # with a base level only
+    (both, drawn), (one, still_drawn) = page.evaluate(COLOURS)
+    left, right = both["left.go utility"], both["right.go utility"]
+    assert left != right
+    assert (both["left.go learned learning"], both["right.go learned learning"]) == (left, right)
+    assert (one["right.go utility"], one["right.go learned learning"]) == (right, right)
+    assert drawn
+    assert still_drawn
+    page.evaluate("async () => (await part('timeline/curves.js')).plot('left.go utility', true)")
+    becomes_true(page, ALL_CURVES)
     page.get_by_role("button", name="Save a picture").click()
     with page.expect_download() as taken:
         page.get_by_role("dialog").get_by_role("button", name="CSV").click()
@@ -820,22 +886,6 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
     assert float(rows[-1]["time [s]"]) == 1
     assert rows[-1]["left.go utility"] == ""
     assert 0.1 < float(rows[-1]["left.memory busy [s]"]) < 0.5
-
-
-PLOT_ROW = """async (title) => {
-  const { drawTimeline } = await part("timeline/draw.js");
-  const { scene } = await part("timeline/canvas.js");
-  const texts = [];
-  const surface = { fill() {}, line() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
-  surface.text = (text, x, y) => texts.push([y, x, text]);
-  const now = scene();
-  drawTimeline(surface, now);
-  const { y, height, plot } = now.layout.rows.find(({ label }) => label === (title ?? "joints"));
-  const top = y - now.scroll;
-  const inside = texts.filter(([at, x]) => at > top + 15 && at < top + height && x < now.column - 40);
-  return { top, height, curves: plot.series.length, texts: inside.map(([, , text]) => text) };
-}"""
-"""The row of a plot: where it is, how many curves it has, and the texts below its heading."""
 
 
 def test_plots_are_resized_and_name_every_curve_with_its_value_at_the_playhead(pages: Callable[..., Page]) -> None:
@@ -857,7 +907,10 @@ def test_plots_are_resized_and_name_every_curve_with_its_value_at_the_playhead(p
     for time in ("0.50", "0.00"):
         page.evaluate("async (time) => (await part('timeline/seek.js')).seek(time)", float(time))
         when(page, time)
-        speeds.append(page.evaluate(PLOT_ROW, "speed")["texts"])
+        speeds.append(page.evaluate(PLOT_ROW, {"title": "speed"})["texts"])
+    for running in (True, False):  # while the run is active, the newest values are not known yet
+        later = {"title": "speed", "present": 0.7, "end": 0.7, "running": running}
+        assert page.evaluate(PLOT_ROW, later)["texts"] == ["walker", "1.20" if running else "–"]
     assert speeds == [["walker", "1.20"], ["walker", "0.000"]]
     assert (row["curves"], row["height"], len(row["texts"])) == (5, 20 + 5 * 13, 10)  # each name and its value
     page.locator("#status").click()

@@ -359,6 +359,7 @@ def test_the_view_is_saved_as_a_picture_with_sky_and_labels(pages: Callable[...,
     page = pages()
     frame = frame_of(page)
     in_the_middle(page, frame)
+    assert min(frame.evaluate(SHADED)) > 100, "feet and walls have shadows on the ground"
     frame.evaluate(
         """() => {
           const { now } = window.scene.facts;
@@ -386,6 +387,28 @@ def test_the_view_is_saved_as_a_picture_with_sky_and_labels(pages: Callable[...,
     inside = picture[y + 6 : y + round(2 * box["height"]) - 6, x + 16 : x + round(2 * box["width"]) - 16].min(axis=2)
     assert np.median(inside) > 200, "a label is light"
     assert inside.min() < 100, "its text is dark"
+
+
+SHADED = """() => {
+    const viewer = window.__viserMutable, place = viewer.camera.position.clone();
+    let shades = null;
+    viewer.scene.traverse((object) => { if (object.material?.uniforms?.strength) shades = object; });
+    const pixels = () => {
+        const canvas = window.scene.picture(1);
+        return canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    };
+    const found = [1, 5].map((far) => { // as far from the scene as the view begins, and five times as far
+        viewer.camera.position.copy(place).multiplyScalar(far);
+        viewer.camera.updateMatrixWorld();
+        shades.visible = false;
+        const without = pixels();
+        shades.visible = true;
+        return pixels().reduce((count, value, n) => count + (without[n] - value > 30 ? 1 : 0), 0);
+    });
+    viewer.camera.position.copy(place);
+    return found;
+}"""
+"""Counts how much of the picture is darker by the shadows on the ground, from near and from far."""
 
 
 WATCH = """() => {

@@ -294,7 +294,7 @@ def test_the_page_knows_the_names_of_all_curves_of_chunks() -> None:
     for part in [*parts, *(f"{part} 2" for part in parts), "activation", "activation without noise"]:
         found = re.fullmatch(known[1], f"memory: item:cup {part}{SUFFIX}", re.DOTALL)
         assert found is not None, part
-        assert found[1] == "item:cup"
+        assert found[2] == "item:cup"
 
 
 def test_modules_of_one_class_are_told_apart_over_time(desk: Desk, tmp_path: Path) -> None:

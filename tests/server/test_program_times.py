@@ -87,6 +87,13 @@ def ended(talk: Talk) -> float:
     return talk.until("ended")["time"]
 
 
+@pytest.mark.parametrize(("asked", "why"), [("blue", "; a retrieval from memory failed, and no production fired after it"), ("red", "")])
+def test_a_program_that_ends_after_a_failed_retrieval_says_so(desk: Desk, tmp_path: Path, asked: str, why: str) -> None:
+    text = TRIALS.replace("range(6)", "range(1)").replace("word:?what", f"word:{asked}", 1)
+    talk = desk.begin(tmp_path, text, run=True, wait="ended")
+    assert talk.state["reason"] == f"the program is over{why}"
+
+
 @pytest.mark.parametrize("source", [TRIALS, TAKING_TURNS])
 def test_events_have_the_times_of_the_clock(desk: Desk, tmp_path: Path, source: str) -> None:
     talk = desk.begin(tmp_path, source, seed=3)

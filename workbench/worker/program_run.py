@@ -158,6 +158,8 @@ class ProgramRun(ControlledRun):
         """The time of the clock at each event [us]."""
         self._run_times: defaultdict[int, RunTimes] = defaultdict(RunTimes)
         """By the number of the run."""
+        self._failed = ""
+        """The memory from which the last retrieval failed; empty if it did not, or if a production has fired since."""
         self._furthest: int = 0
         self._rush: int | None = None
         """The time up to which it runs without being shown or paused [us]."""
@@ -280,8 +282,10 @@ class ProgramRun(ControlledRun):
         self._tick_begin = None
         self._event_times = array("q")
         self._run_times.clear()
+        self._failed = ""
         trace = Trace("all")
         trace.listen(self._note_time)
+        trace.listen(self._note_failure)
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
             limits.recorder = self._recorded = again = _RecordedOnce(self._recording, self._recorded_simulations, lambda: self._left)
@@ -314,7 +318,8 @@ class ProgramRun(ControlledRun):
             return
         self._record(ended={"by": "end" if exited is None else "exit"})
         if exited is None or not exited.code:
-            self._end("ended", "the program is over")
+            failed = f"; a retrieval from {self._failed} failed, and no production fired after it" if self._failed else ""
+            self._end("ended", f"the program is over{failed}")
         else:
             self._introduce()
             controller.channel.post(notice_of(exited))
@@ -332,6 +337,13 @@ class ProgramRun(ControlledRun):
     def _last_event(self) -> int:
         """The time of the clock at the last event [us]."""
         return self._event_times[-1] if self._event_times else 0
+
+    def _note_failure(self, event: TraceEvent) -> None:
+        """Stores whether a retrieval fails to which no production reacts."""
+        if event.kind == "retrieval":
+            self._failed = event.source if event.data["failed"] else ""
+        elif event.kind == "fire":
+            self._failed = ""
 
     def _hold_at_start(self) -> None:
         """Waits before the program begins, unless it is being run again to reach a later moment."""
