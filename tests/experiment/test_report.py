@@ -619,6 +619,15 @@ def test_two_participants_are_described_and_not_tested(tmp_path: Path) -> None:
     assert "equivalence" not in found
 
 
+def test_the_original_is_named_only_beside_its_means(walked: Path, tmp_path: Path) -> None:
+    logged = "The original's angle is the one it logged"
+    assert logged in html.unescape(page(walked))
+    assert "original" in table(walked, "rotation")[0]
+    parts = parts_on_apertures(store_rows(tmp_path / "ratios", "wilmut_ratios", walk, trials=1))
+    assert "original" not in frames(parts)["rotation"]
+    assert not [part.note for part in parts if isinstance(part, Table) and logged in part.note]
+
+
 def test_each_critical_ratio_is_drawn_above_its_own_participant(tmp_path: Path) -> None:
     """That of the first is not known, as it never turns; one of a single step of apertures is not known either."""
 
