@@ -100,6 +100,8 @@ def walked(people: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_report_needs_nothing_from_elsewhere_and_its_links_lead_somewhere(walked: Path) -> None:
     text = page(walked)
     assert "<script" not in text
+    assert "&lt; 0.001" in text
+    assert "< 0.001" not in text, "a sign in a text is no tag"
     assert not re.findall(r"(?:src|href)=\"(?:https?:|//)", text)
     for link in re.findall(r"href=\"((?:figures|tables)/[^\"]+)\"", text):
         assert (walked / "report" / link).exists()
