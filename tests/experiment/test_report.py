@@ -100,6 +100,8 @@ def walked(people: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_report_needs_nothing_from_elsewhere_and_its_links_lead_somewhere(walked: Path) -> None:
     text = page(walked)
     assert "<script" not in text
+    assert "&lt; 0.001" in text
+    assert "< 0.001" not in text, "a sign in a text is no tag"
     assert not re.findall(r"(?:src|href)=\"(?:https?:|//)", text)
     for link in re.findall(r"href=\"((?:figures|tables)/[^\"]+)\"", text):
         assert (walked / "report" / link).exists()
@@ -617,6 +619,15 @@ def test_two_participants_are_described_and_not_tested(tmp_path: Path) -> None:
     results = dict(zip(found["constraints"]["number"], found["constraints"]["result"], strict=True))
     assert (results["3"], results["5"]) == ("not testable", "not testable")
     assert "equivalence" not in found
+
+
+def test_the_original_is_named_only_beside_its_means(walked: Path, tmp_path: Path) -> None:
+    logged = "The original's angle is the one it logged"
+    assert logged in html.unescape(page(walked))
+    assert "original" in table(walked, "rotation")[0]
+    parts = parts_on_apertures(store_rows(tmp_path / "ratios", "wilmut_ratios", walk, trials=1))
+    assert "original" not in frames(parts)["rotation"]
+    assert not [part.note for part in parts if isinstance(part, Table) and logged in part.note]
 
 
 def test_each_critical_ratio_is_drawn_above_its_own_participant(tmp_path: Path) -> None:

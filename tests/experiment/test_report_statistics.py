@@ -160,6 +160,7 @@ def test_with_few_participants_the_tests_of_the_mixed_model_say_that_their_p_is_
     tests = run_tests(read_results(folder), "rt")
     assert tests.mixed_model is not None
     assert not [note for note in tests.notes if says in note]
+    assert not [note for note in tests.notes if "optimization" in note], "of attempts to fit, only the last one counts"
 
 
 def test_the_mixed_model_tests_an_effect_by_how_much_it_varies_between_participants(tmp_path: Path) -> None:

@@ -294,6 +294,8 @@ class Rotation:
         frame = self._means.copy()
         frame["original"], frame["baseline"] = self._original_of(frame), self._baseline(frame)
         frame = frame.rename(columns={"level": self._findings.by})
+        if not self._original:
+            frame = frame.drop(columns="original")
         units: dict[str, str] = dict.fromkeys(("mean", "sd", "low", "high", "original", "baseline"), "degrees")
         units |= {"aperture": "m"} if self._by_aperture else {}
         note = "Angles at the wall; of trials that did not reach it, the greatest angle until then. "
@@ -318,7 +320,9 @@ class Rotation:
         logged = cell_means(self._frame, measure, ["group", "condition", "level"])
         logged["original"], logged["baseline"] = self._original_of(logged), self._baseline(logged)
         angles = self._means.assign(baseline=self._baseline(self._means))
-        note = "RMSE and squared correlation of the means of cells. The original's angle is the one it logged: torso plus clavicle."
+        note = "RMSE and squared correlation of the means of cells."
+        if logged["original"].notna().any():
+            note += " The original's angle is the one it logged: torso plus clavicle."
         return _agreement("agreement", logged, angles, note, self._beside_people())
 
     def _beside_people(self) -> Any:

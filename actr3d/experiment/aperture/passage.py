@@ -50,7 +50,8 @@ class PassageResult:
     contacts: int
     """Number of contacts of a part of the body with an object."""
     max_force_n: float
-    """Greatest force of a contact [N]."""
+    """Greatest force of a contact in one step of the physics [N]. It depends on the length of the step and on how stiff contacts are;
+    the impulse and the energy below depend on them much less."""
     impulse_n_s: float
     """The forces of all contacts, summed over time [N s]."""
     impact_j: float

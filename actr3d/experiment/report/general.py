@@ -215,7 +215,7 @@ def test_parts(tests: Tests, measure: str) -> list[str | Table | Plot | Caution]
         )
         parts.append(Table(name=f"anova_{measure}", title="Analysis of variance", frame=tests.anova, note=note))
     if tests.mixed_model is not None:
-        note = "Linear mixed model of the means of participants, all effects crossed, random intercept of participants; Wald tests."
+        note = "Linear mixed model of the means of participants, all effects crossed, with the random effects named below; Wald tests."
         parts.append(Table(name=f"mixed_model_{measure}", title="Mixed model", frame=tests.mixed_model, note=note))
     if tests.assumptions is not None and len(tests.assumptions):
         parts.append(Table(name=f"assumptions_{measure}", title="Assumptions", frame=tests.assumptions))

@@ -141,7 +141,7 @@ def _head(name: str, table: Table) -> str:
 
 def _cell(name: str, value: Any, numeric: set[str], table: Table) -> str:
     if name in numeric:
-        return f'<td class="number">{number(value, table.digits.get(name), p=name.partition("_")[0] == "p")}</td>'
+        return f'<td class="number">{_text(number(value, table.digits.get(name), p=name.partition("_")[0] == "p"))}</td>'
     text = "" if value is None or (isinstance(value, float) and math.isnan(value)) else str(value)
     kind = MET.get(text, "short" if len(text) <= SHORT else "text")
     return f'<td class="{kind}">{_text(text)}</td>'

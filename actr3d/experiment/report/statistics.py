@@ -160,7 +160,8 @@ def run_tests(results: Results, measure: str) -> Tests:
             f"With fewer than {FEW} participants in a group, the p values of the mixed model's Wald tests are too small, above all for the "
             "effect of group. Where the analysis of variance tests the same effect, prefer it."
         )
-    notes += [f"Note of a library: {text}" for text in warned if "etrying" not in text]
+    # Of its attempts to fit, only the end matters: `_mixed_model` says if it is not known.
+    notes += [f"Note of a library: {text}" for text in warned if "optimization" not in text]
     return Tests(anova=pd.DataFrame(anova) if anova else None, mixed_model=mixed, assumptions=pd.DataFrame(checks), notes=notes)
 
 
@@ -361,7 +362,7 @@ def _mixed_model(means: Any, factors: Sequence[str], grouped: bool, notes: list[
     notes.append(
         f"Mixed model: standard deviations of random effects: {deviations}. It assumes that effects vary between participants by the same "
         "amount at all levels of a factor (sphericity): where that does not hold, prefer the corrected p of the analysis of variance."
-        + ("" if fitted.converged else " The fit did not converge, so read it with care.")
+        + ("" if fitted.converged else " The fit did not converge: where the analysis of variance tests the same effect, prefer it.")
     )
     return pandas().DataFrame(found)
 
