@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import random
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -114,6 +116,26 @@ def test_a_limb_that_was_pushed_away_comes_back() -> None:
     world.step(2000)
     assert bent > 0.05
     assert max(abs(joint.position) for joint in body.joints.values()) < 1e-3
+
+
+@pytest.mark.parametrize("seed", [10, 12, 15])
+def test_how_it_stops_does_not_depend_on_whether_somebody_has_looked(seed: int) -> None:
+    def stopped(*, looked: bool) -> list[float]:
+        draw = random.Random(seed)
+        world = World(Scene(parts=(Floor(), Mannequin(name="m"))))
+        body = world.bodies["m"]
+        for joint in draw.sample(list(body.joints), 8):
+            with suppress(WorldError):  # some joints are too slow for it
+                body.set("joint", joint, draw.uniform(-6, 6))
+        world.step(draw.randrange(20, 90))
+        if looked:
+            body.get("pose")
+        for joint in draw.sample(list(body.joints), 4):
+            body.set("joint", joint, 0.0)
+        world.step(10)
+        return world.mj_data.qpos.tolist()
+
+    assert stopped(looked=True) == stopped(looked=False)
 
 
 def test_after_a_limit_it_is_at_rest() -> None:
