@@ -287,6 +287,7 @@ def test_a_breakpoint_is_a_dot_that_can_be_seen(pages: Pages, workbench: Served,
     wanted = tuple(int(number) for number in re.findall(r"\d+", colour)[:3])
     counts: list[int] = []
     for dot in dots:
+        expect(dot).to_be_visible()
         box = dot.bounding_box()
         assert box is not None
         picture = Image.open(BytesIO(page.screenshot(clip=box))).convert("RGB")  # pyright: ignore[reportArgumentType]
