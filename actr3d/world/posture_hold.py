@@ -28,9 +28,6 @@ UNHINDERED, HINDERED = (0.02, 2.0), (0.1, 0.5)
 """Time constant of corrections [s] and their greatest speed [m/s] [rad/s], while nothing touches the body and while something does:
 a fast correction against a wall would bounce off it. Source: chosen for this library."""
 
-CLOSE = SLIGHT_WAY
-"""Greatest Euclidean distance of all numbers from the steady state [m] [rad] [m/s] [rad/s]: no deviation within it is corrected."""
-
 _PARTS = int(mjtState.mjSTATE_QPOS | mjtState.mjSTATE_QVEL | mjtState.mjSTATE_CTRL)
 
 
@@ -57,7 +54,7 @@ class SteadyState:
             self._heading = int(dofs.q[2])
             self._speed = math.hypot(*commanded[:2])
             self._direction = math.atan2(commanded[1], commanded[0]) + dofs.faces
-        self.fastest = dofs.fastest(np.abs(commanded) + CLOSE)
+        self.fastest = dofs.fastest(np.abs(commanded) + SLIGHT_WAY)
         """Upper bound of the speed of any point of the body in this state [m/s]; infinite if not all of it is actuated."""
 
     def is_reached(self) -> bool:
@@ -68,7 +65,7 @@ class SteadyState:
             direction = self._direction + state.item(self._heading)
             numbers[self._first] = self._speed * math.cos(direction)
             numbers[self._first + 1] = self._speed * math.sin(direction)
-        return math.dist(state[self._rows].tolist(), numbers) < CLOSE
+        return math.dist(state[self._rows].tolist(), numbers) < SLIGHT_WAY  # the distance of all numbers: none of them deviates by more
 
 
 class PostureHold:

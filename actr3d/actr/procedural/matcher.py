@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from actr3d.actr.chunks.chunk import IMMUTABLE_TYPES, as_text, plain_text
-from actr3d.actr.chunks.pattern import MISSING, Bindings, Condition, Missing, function_matches, is_empty, look_up, slot_named
+from actr3d.actr.chunks.pattern import MISSING, Bindings, Condition, Missing, function_matches, get_attribute, is_empty, look_up, slot_named
 from actr3d.actr.kernel.buffer import UNKNOWN, Buffer, plain_empty, plain_value, reads_chunk
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.tracing import UNWATCHED
@@ -184,11 +184,8 @@ def reader_of(target: Any, key: Any) -> Callable[[], str | Missing]:
     if isinstance(target, Model) and type(target).__getitem__ is Model.__getitem__ and isinstance(key, str) and "." not in key:
 
         def read_attribute() -> str | Missing:
-            try:  # as `get_attribute` does, without another call
-                value = getattr(target, key)
-            except (AttributeError, TypeError, KeyError):
-                return MISSING
-            return value if type(value) is str else as_text(value)
+            value = get_attribute(target, key)
+            return value if type(value) is str or value is MISSING else as_text(value)
 
         return read_attribute
 
@@ -396,7 +393,7 @@ class Observed:
         """Returns everything that productions read, now or last, in the form of `news`."""
         known: dict[str, Any] = {}
         for label, (target, key, recorded) in self._watched.items():
-            if not (recorded and type(target.__dict__.get(key, MISSING)) in IMMUTABLE_TYPES):  # as `_lasts`
+            if not (recorded and _lasts(target, key)):
                 value = self._reading(label, target, key)
                 if value is not UNKNOWN:
                     known[label] = value

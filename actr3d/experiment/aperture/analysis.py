@@ -173,8 +173,8 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
         parts += _left_out(people, "boundary")
     parts.append(
         "The boundary of the descriptive and of the replication variant is a parameter of the model (1.16, 1.139): only its spread follows "
-        "from the noise of vision. That of the predictive variant follows from its experiences: it "
-        "says what came of the one that is most active."
+        "from the noise of vision. That of the predictive variant follows from its experiences: it says what came of the one that is most "
+        "active."
     )
     return [
         Section(title="Constraints on a model of people", parts=[_constraints(constraints)]),
