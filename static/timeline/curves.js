@@ -55,6 +55,11 @@ function subject(curve) {
 
 /** What is known of the subjects of all curves. */
 const subjects = computed(() => subjectsOf(names.value.map((curve) => ({ subject: subject(curve), group: curve.group }))));
+/** The subjects of plotted curves. */
+const plotted = computed(() => {
+  const wanted = new Set(chosen.value);
+  return new Set(names.value.filter(({ name }) => wanted.has(name)).map(subject));
+});
 const colours = new Colours();
 
 /** Whether the curves are offered to the user. */
@@ -133,15 +138,14 @@ const plotsOfEvents = computed(() => {
 function plotsOf(curves, seriesOf) {
   const wanted = new Set(chosen.value);
   const known = subjects.value;
-  const shown = new Set(names.value.filter(({ name }) => wanted.has(name)).map(subject));
-  const placeOf = (curve) => known.get(subject(curve)).place;
+  const shown = curves.filter(({ name }) => wanted.has(name)).map((curve) => ({ curve, of: subject(curve) }));
   const made = new Map();
-  for (const curve of curves.filter(({ name }) => wanted.has(name)).sort((one, other) => placeOf(one) - placeOf(other))) {
+  for (const { curve, of } of shown.sort((one, other) => known.get(one.of).place - known.get(other.of).place)) {
     const { name, unit, group } = curve;
     const key = `${group} [${unit}]`;
     if (!made.has(key)) made.set(key, { title: titleOf(group), group, unit, series: [] });
     const dash = DASHES[group === CHUNKS ? chunkCurve(name).kind : null];
-    made.get(key).series.push({ ...seriesOf(curve), colour: colours.of(subject(curve), known, shown), dash });
+    made.get(key).series.push({ ...seriesOf(curve), colour: colours.of(of, known, plotted.value), dash });
   }
   return [...made.values()].map((plot) => ({ ...plot, title: onlyChunk(plot) ?? plot.title, range: rangeOf(plot.series) }));
 }
