@@ -78,10 +78,10 @@ def model() -> Any:
     return load_text(FILE.read_text(encoding="utf-8"), str(FILE))
 
 
-def walk(parameters: dict[str, Any], seed: int) -> Walk:
-    """Returns how the walk with a seed ended."""
+def walk(parameters: dict[str, Any], seed: int, *, longest: float = LONGEST) -> Walk:
+    """Returns how the walk with a seed ended, after a duration [s] at the latest."""
     told, touched = io.StringIO(), set[str]()
-    with RunLimits(seed=seed, until=LONGEST), redirect_stdout(told):
+    with RunLimits(seed=seed, until=longest), redirect_stdout(told):
         simulation = model().build(model().Parameters(**parameters))
         bodies = simulation.world.bodies
         simulation.world.watchers.append(
