@@ -12,10 +12,11 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from actr3d.values import escape_surrogates, to_json
 from workbench.design_files import MOST, Checking, Level, Starting, Workers, designs_of
+from workbench.disconnects import while_connected
 from workbench.experiment_command import ExperimentRunError
 from workbench.experiment_folder import PAGE, REPORT_FILES
 from workbench.experiments import Experiments
-from workbench.open_file import OpenFile, while_wanted
+from workbench.open_file import OpenFile
 from workbench.protocol import problem_of
 from workbench.recording_routes import Trusting
 from workbench.routes import Id, sessions_of
@@ -70,7 +71,7 @@ def designs(request: Request) -> dict[str, Any]:
 async def check_design(request: Request, body: Checking) -> Response:
     """Checks a design and returns its facts; with `trial`, also `seconds_a_trial`, which takes longer. 422 if it is not valid."""
     work = experiments_of(request).check(body)
-    return _json(await while_wanted(work, request.receive))
+    return _json(await while_connected(work, request.receive))
 
 
 # -- experiments
@@ -168,13 +169,13 @@ async def means(
 async def record_trial(request: Request, experiment: Id, body: TrialWanted) -> dict[str, Any]:
     """Runs a trial again, records it, and returns the name of the recording; 403 as for `resume`."""
     work = experiments_of(request).record(experiment, body.number, trust=body.trust)
-    return {"recording": await while_wanted(work, request.receive)}
+    return {"recording": await while_connected(work, request.receive)}
 
 
 @router.post("/experiments/{experiment}/report")
 async def make_report(request: Request, experiment: Id, body: Trusting | None = None) -> dict[str, Any]:
     """Makes the report of an experiment with `actr3d report`; 409 if that fails; 403 as for `resume`."""
-    await while_wanted(experiments_of(request).make_report(experiment, trust=body is not None and body.trust), request.receive)
+    await while_connected(experiments_of(request).make_report(experiment, trust=body is not None and body.trust), request.receive)
     return {"report": experiment}
 
 
@@ -206,7 +207,7 @@ async def _made(request: Request, form: str, name: str, empty: dict[str, Any], *
     if table is None:
         return _json(empty)
     work = experiments.readers.make(form, table, **options)
-    return OpenFile(await while_wanted(work, request.receive), "application/json")
+    return OpenFile(await while_connected(work, request.receive), "application/json")
 
 
 def _where(text: str) -> dict[str, Any]:

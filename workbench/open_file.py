@@ -1,27 +1,20 @@
-"""Sends a file that is already open, complete even if it is renamed or deleted meanwhile; and ends work whose client has disconnected."""
+"""Sends a file that is already open, complete even if it is renamed or deleted meanwhile."""
 
 from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Coroutine, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from io import FileIO
-from typing import Any, TypeVar
 
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
-from actr3d.errors import Actr3dError
-
-T = TypeVar("T")
+from workbench.disconnects import DisconnectedError, while_connected
 
 PART = 256 * 1024
 """How much is read and sent at a time [bytes]."""
-
-
-class DisconnectedError(Actr3dError):
-    """The client of a request has disconnected."""
 
 
 class OpenFile(Response):
@@ -46,7 +39,7 @@ class OpenFile(Response):
         """Sends the response."""
         try:
             with suppress(DisconnectedError):
-                await while_wanted(self._send(send), receive)
+                await while_connected(self._send(send), receive)
         finally:
             self._file.close()
 
@@ -66,31 +59,3 @@ class OpenFile(Response):
             left -= len(part)
             await send({"type": "http.response.body", "body": part, "more_body": True})
         await send({"type": "http.response.body", "body": b"", "more_body": False})
-
-
-async def while_wanted(work: Coroutine[Any, Any, T], receive: Receive) -> T:
-    """Returns the result of some work, which is cancelled when the client of a request disconnects.
-
-    Args:
-        work: The work.
-        receive: Receives messages of the request.
-
-    Raises:
-        DisconnectedError: If the client has disconnected.
-    """
-    working, leaving = asyncio.create_task(work), asyncio.create_task(_gone(receive))
-    try:
-        await asyncio.wait([working, leaving], return_when=asyncio.FIRST_COMPLETED)
-        if working.done():
-            return working.result()
-        raise DisconnectedError("nobody waits for it any more")
-    finally:
-        working.cancel()
-        leaving.cancel()
-        await asyncio.gather(working, leaving, return_exceptions=True)
-
-
-async def _gone(receive: Receive) -> None:
-    """Waits until the client of a request has disconnected."""
-    while (await receive())["type"] != "http.disconnect":
-        pass

@@ -17,9 +17,10 @@ from starlette.requests import ClientDisconnect
 from actr3d.errors import RecordingError
 from actr3d.values import escape_surrogates, to_json
 from workbench.auth import BODY_TIME, LARGEST_UPLOAD, UPLOAD_TYPE, too_large
+from workbench.disconnects import DisconnectedError, while_connected
 from workbench.labels import Label
 from workbench.listing import MAX_LISTED
-from workbench.open_file import DisconnectedError, OpenFile, while_wanted
+from workbench.open_file import OpenFile
 from workbench.page_commands import Name, PageMessage
 from workbench.recording_index import Summary
 from workbench.retention import erase, stands_alone
@@ -182,7 +183,7 @@ async def download(request: Request, recording: Id, form: File = "sqlite") -> Re
 
 async def _made(request: Request, kind: str, *paths: Path, **options: Any) -> FileIO:
     """Returns an open file that a worker makes from recordings; the work is cancelled if the client disconnects."""
-    return await while_wanted(sessions_of(request).readers.make(kind, *paths, **options), request.receive)
+    return await while_connected(sessions_of(request).readers.make(kind, *paths, **options), request.receive)
 
 
 @router.get("/recordings/{recording}/curves")
