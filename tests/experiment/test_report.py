@@ -148,7 +148,7 @@ def test_an_error_in_a_measure_ends_its_own_section_and_is_named(
     folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=3)), count)
     assert main(["report", str(folder)]) == 1
     error = capsys.readouterr().err
-    named = r"measure 'rt': ZeroDivisionError: division by zero \(general\.py, line \d+\)"
+    named = r"measure 'rt': ZeroDivisionError: division by zero \(test_report\.py, line \d+\)"
     assert re.fullmatch(rf"error: '.*index\.html' is written, but some of its sections are not complete: {named}\n", error), error
     text = html.unescape(page(folder))
     assert len(re.findall(rf"The rest of this section could not be made: {named}\.", text)) == 1
@@ -594,6 +594,33 @@ def speed(results, others):
     finally:
         ANALYSES.clear()
         ANALYSES.update(before)
+
+
+def test_an_error_in_an_analysis_ends_its_own_sections_and_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write_experiment(tmp_path, participants=1)
+    own = """
+from actr3d.experiment.report import analysis
+
+
+@analysis("rt")
+def speed_of_counting(results, others):
+    return results.rows["tr"]
+"""
+    path.write_text(path.read_text(encoding="utf-8") + own, encoding="utf-8")
+    before = dict(ANALYSES)
+    try:
+        folder = store_rows(tmp_path / "out", str(path), count)
+        assert main(["report", str(folder)]) == 1
+    finally:
+        ANALYSES.clear()
+        ANALYSES.update(before)
+    line = path.read_text(encoding="utf-8").splitlines().index('    return results.rows["tr"]') + 1
+    named = rf"analysis 'speed_of_counting': KeyError: 'tr' \({re.escape(path.name)}, line {line}\)"
+    assert re.search(rf"is written, but some of its sections are not complete: {named}", capsys.readouterr().err)
+    text = html.unescape(page(folder))
+    assert "Speed of counting" in text
+    assert re.search(rf"The rest of this section could not be made: {named}\.", text)
+    assert table(folder, "means_rt")
 
 
 def test_levels_that_are_texts_switches_or_none_are_kept_apart(tmp_path: Path) -> None:

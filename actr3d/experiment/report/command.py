@@ -11,10 +11,9 @@ from contextlib import suppress
 from pathlib import Path
 
 from actr3d.errors import ExperimentError
-from actr3d.experiment.report.analyses import find_analyses
 from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of
 from actr3d.experiment.report.figures import png, svg
-from actr3d.experiment.report.general import comparison_section, human_section, measure_sections, what_was_run
+from actr3d.experiment.report.general import analysis_sections, comparison_section, human_section, measure_sections, what_was_run
 from actr3d.experiment.report.page import MADE_BY, page
 from actr3d.experiment.report.parts import Plot, Section, Table
 from actr3d.experiment.report.results import Results, by_number, read_results
@@ -43,7 +42,7 @@ def write_report(
 
     Raises:
         ExperimentError: If a folder holds no experiment or no trials, the human data are not valid, or the report cannot be written.
-            An error in a measure ends only its section: it is named there, and raised when the report is written.
+            An error in a measure or an analysis ends only its own sections: it is named there, and raised when the report is written.
     """
     named = Path(folder) / REPORT if out is None else Path(out)
     final = named.resolve()  # a link leads to the same folder afterwards
@@ -55,10 +54,7 @@ def write_report(
     other = None if compare is None else read_results(compare)
     beside = None if other is None else beside_experiment(by_number(other), parts)
     others: list[Beside] = [one for one in (people, beside) if one is not None]
-    sections = [what_was_run(results)]
-    for make in find_analyses(results.rows.columns):
-        sections += make(results, others)
-    sections.append(human_section(parts, data, why, people))
+    sections = [what_was_run(results), *analysis_sections(results, others), human_section(parts, data, why, people)]
     if other is not None:
         sections.append(comparison_section(results, other, parts, beside))
     sections += measure_sections(parts, others)

@@ -13,13 +13,14 @@ import numpy as np
 
 from actr3d.experiment.human_data import HumanData, plain_text
 from actr3d.experiment.measures import NOTHING_LEFT, ended_early
+from actr3d.experiment.report.analyses import find_analyses
 from actr3d.experiment.report.beside import Beside, factors_of, fit_to, matched, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results
 from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, in_order, participant_means, run_tests
-from actr3d.runner.traceback_report import failure
+from actr3d.runner.traceback_report import PYTHON, failure
 from actr3d.warnings import is_library
 
 MAX_PANES = 6
@@ -99,6 +100,28 @@ def failures(results: Results) -> Table:
     return Table(name="failures", title="Failures", frame=table, note=note)
 
 
+def analysis_sections(results: Results, others: Sequence[Beside]) -> list[Section]:
+    """Returns the sections of the analyses that can be made of an experiment; an error ends those of its own analysis, and no other."""
+    found = list[Section]()
+    for make in find_analyses(results.rows.columns):
+        try:
+            found += make(results, others)
+        except Exception as error:  # noqa: BLE001 - as in `_measure_section`
+            name, parts = make.__name__, list[str | Table | Plot | Caution]()
+            failed = _failed(f"analysis '{name}'", error, parts)
+            found.append(Section(title=name.replace("_", " ").capitalize(), parts=parts, failed=failed))
+    return found
+
+
+def _failed(what: str, error: Exception, parts: list[str | Table | Plot | Caution]) -> str:
+    """Adds to a section that the rest of it could not be made, and returns why: the error, and the line of the library or of the design."""
+    frames = extract_tb(error.__traceback__)
+    place = [frame for frame in frames if is_library(frame.filename) or not frame.filename.startswith(PYTHON)][-1]
+    why = f"{what}: {failure(error)} ({Path(place.filename).name}, line {place.lineno})"
+    parts.append(Caution(f"The rest of this section could not be made: {why}."))
+    return why
+
+
 def human_section(parts: Sequence[Results], data: HumanData | None, why: str, beside: Beside | None) -> Section:
     """Returns the section on human data: what there is, where it is from, and how well the model agrees with it."""
     if data is None or beside is None:
@@ -175,9 +198,7 @@ def _measure_section(results: Results, measure: str, others: Sequence[Beside]) -
         for part in _measure_parts(results, measure, others):
             parts.append(part)  # one at a time: those before an error stay
     except Exception as error:  # noqa: BLE001 - it is shown here, and `write_report` raises it when the other sections are written
-        place = [frame for frame in extract_tb(error.__traceback__) if is_library(frame.filename)][-1]
-        failed = f"measure '{measure}': {failure(error)} ({Path(place.filename).name}, line {place.lineno})"
-        parts.append(Caution(f"The rest of this section could not be made: {failed}."))
+        failed = _failed(f"measure '{measure}'", error, parts)
     human = any(one.look == "human" and len(one.of(measure)) for one in others)
     return Section(title=results.name_with_unit(measure), parts=parts, folded=not (human or failed), failed=failed)
 
