@@ -8,7 +8,7 @@ and small people turn alike at the same ratio of doorway and shoulders (`units =
 For each turn of its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by blending its memories
 what the passage will cost. It chooses the turn with the smallest sum of effort and expected cost of contacts. The effort is the work of
 turning, and of walking more slowly and then fast again. Asked whether it could pass a doorway, it says what came of the one passage that is
-most active for the room there is. It declines to walk if it expects to get through with a probability of at most 0.5 (`LIKELY`, chosen).
+most active for the room there is. In the same way it declines to walk: if the passage that is most active for the cheapest turn was stopped.
 
 The body walks with a gait (`actr3d.world.Gait`): it sways, and its steps vary. So it needs more room than its width, and the less room
 it has the more often it touches the wall. The eyes see the doorway with noise, less when it is near; and the felt width has noise.
@@ -121,8 +121,6 @@ At the same cost of contacts, the first one decides how much room it wants more 
 (docs/results.md). Source: chosen for this model."""
 BODY = 0.4
 """The shoulder width [m] at which the similarity of two rooms is the same in both units. Source: chosen for this model."""
-LIKELY = 0.5
-"""The expected probability of getting through at or below which it does not set out, or stops. Source: chosen for this model."""
 DISTANCE_NOISE, EDGE_NOISE, WIDTH_NOISE = 0.02, 0.002, 0.005
 """Standard deviations, for `perceptual_noise = 1`: of seen distances, as a fraction; of seen directions of edges [rad]; of felt widths [m].
 Source: chosen for this model. They have no bias, as people's have none up to 15 m (Fukusima, Loomis & Da Silva 1997, J Exp Psychol Hum
@@ -340,27 +338,26 @@ class Planning(ACTR):
     def expect(b_imagined="state:felt turn:?turn door:?door", b_DM="width:?width middle:?middle"):
         b_DM.clear()
         if self.parent.always is not None:
-            self.decide(f"turn:{turn} width:{width} middle:{middle} cost:0 free:1 passed:1")
+            self.decide(f"turn:{turn} width:{width} middle:{middle} cost:0 outcome:free")
             return
         room = self.parent.room(door, width, self.parent.shoulders)
-        experience.request(f"event:passage room:{room} speed:{self.parent.speed:.2f} energy:? free:? passed:?")
+        experience.request(f"event:passage room:{room} speed:{self.parent.speed:.2f} energy:? free:? outcome:?")
         b_imagined.set(f"turn:{turn} door:{door} width:{width} middle:{middle} state:expected")
 
     def know_nothing(b_imagined="state:expected turn:?turn width:?width middle:?middle", experience="error:True"):
         self.half = False
-        self.decide(f"turn:{TURNS[0]} width:{width} middle:{middle} cost:0 free:1 passed:1")
+        self.decide(f"turn:{TURNS[0]} width:{width} middle:{middle} cost:0 outcome:free")
 
     def compare(
         b_imagined="state:expected turn:?turn door:?door width:?width middle:?middle",
-        b_experience="energy:?energy free:?free passed:?passed",
+        b_experience="energy:?energy free:?free outcome:?outcome",
     ):
         b_experience.clear()
         expected = float(energy) if self.parent.impact == "energy" else ANY * (1 - float(free))
         cost = self.parent.effort(float(turn)) + self.parent.contact_cost * expected
         self.costs[float(turn)] = cost
         if self.cheapest is None or cost < self.cheapest[0]:
-            felt, outcome = f"turn:{turn} width:{width} middle:{middle}", f"free:{float(free):.3f} passed:{float(passed):.3f}"
-            self.cheapest = cost, f"{felt} cost:{cost:.3f} {outcome}"
+            self.cheapest = cost, f"turn:{turn} width:{width} middle:{middle} cost:{cost:.3f} outcome:{outcome}"
         further = [other for other in TURNS if other > float(turn) and self.parent.effort(other) < self.cheapest[0]]
         if self.half and cost == self.cheapest[0] and float(turn):  # half of the doorway is not enough to walk through it straight
             self.half = self.parent.shares = False
@@ -422,7 +419,7 @@ class Person(ACTR):
         known = experiences(walks=walks, hands=hands) if always is None else ()
         for passage in self.random.sample(known, min(memories, len(known))):
             room = self.room(passage["seen"], passage["felt"], passage["shoulders"])
-            numbers = " ".join(f"{slot}:{passage[slot]}" for slot in ("speed", "energy", "free", "passed"))
+            numbers = " ".join(f"{slot}:{passage[slot]}" for slot in ("seen", "felt", "turn", "speed", "energy", "free"))
             outcome = "free" if passage["free"] else "touched" if passage["passed"] else "stopped"
             experience.add(f"event:passage room:{room} {numbers} outcome:{outcome}")
         self.side = self.random.choice([1, -1])
@@ -525,12 +522,13 @@ class Person(ACTR):
         if float(far) > YIELD * self.step:
             motor.walk(self.speed)
 
-    def go(b_goal="do:walk", b_door="free:True", b_plan="passed:?passed", motor="walking:False legs_end:!blocked"):
+    def go(b_goal="do:walk", b_door="free:True", b_plan="outcome:!stopped", motor="walking:False legs_end:!blocked"):
         """Sets out near the doorway, once it expects to pass it."""
-        if float(passed) > LIKELY:
-            motor.walk(self.speed)
-        else:
-            b_goal.set("do:decline")
+        motor.walk(self.speed)
+
+    def stay(b_goal="do:walk", b_door="free:True", b_plan="outcome:stopped", motor="walking:False legs_end:!blocked"):
+        """Does not set out: it remembers that it was stopped in such a doorway."""
+        b_goal.set("do:decline")
 
     def change_pace(pace="wanted:?wanted kept:!?wanted"):
         """Walks at another speed from now on."""
@@ -644,9 +642,9 @@ class Person(ACTR):
         self.costs = {}
         b_goal.set("do:walk" if self.met else "do:look")
 
-    def commit(b_goal="do:walk", b_door="width:?wide near:True free:True", b_plan="turn:?turn width:?width passed:?passed"):
+    def commit(b_goal="do:walk", b_door="width:?wide near:True free:True", b_plan="turn:?turn width:?width outcome:?outcome"):
         self.committed = {"seen": float(wide), "felt": float(width), "speed": self.speed}
-        b_goal.set("do:decline" if float(passed) <= LIKELY else f"do:turn turn:{turn}")
+        b_goal.set("do:decline" if outcome == "stopped" else f"do:turn turn:{turn}")
 
     def decline(b_goal="do:decline"):
         motor.stop()

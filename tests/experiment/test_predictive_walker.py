@@ -256,6 +256,32 @@ def test_what_it_expects_to_hit_in_any_posture_it_declines(model: Any, capsys: A
     assert "cannot pass" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(("nearest", "others", "judged"), [("stopped", "free", "not at all"), ("free", "stopped", "as it is")])
+def test_it_declines_if_the_passage_that_is_most_active_was_stopped(
+    model: Any, monkeypatch: pytest.MonkeyPatch, nearest: str, others: str, judged: str
+) -> None:
+    """Whatever came of most others."""
+
+    def passage(seen: float, outcome: str) -> dict[str, float]:
+        passed = float(outcome == "free")
+        body = {"felt": 0.4, "shoulders": 0.404, "turn": 0.0, "speed": 1.29}
+        return {**body, "seen": seen, "energy": 0.0, "free": passed, "passed": passed}
+
+    known = [passage(0.6, nearest), *[passage(0.62, others)] * 20]
+    monkeypatch.setattr(model, "experiences", lambda **_: known)
+    _, walker = walked(model, aperture=0.6, memory_noise=0, perceptual_noise=0)
+    assert walker.judged == judged
+
+
+def test_a_memory_holds_both_widths_the_turn_and_what_came_of_it(model: Any) -> None:
+    _, walker = walked(model, task="judge", aperture=1.5)
+    known = {(one["seen"], one["felt"], one["turn"], one["speed"], one["energy"]) for one in experiences()}
+    for chunk in walker.experience.find_matching_chunks("event:passage"):
+        assert tuple(float(chunk[slot]) for slot in ("seen", "felt", "turn", "speed", "energy")) in known
+        assert chunk["outcome"] in ("free", "touched", "stopped")
+        assert (float(chunk["free"]) == 1) == (chunk["outcome"] == "free")
+
+
 def test_it_judges_from_experience_whether_it_can_pass_as_it_is(model: Any) -> None:
     judged = {aperture: walked(model, task="judge", aperture=aperture)[1].judged for aperture in (0.1, 0.38, 0.6)}
     assert judged == {0.1: "not at all", 0.38: "turned", 0.6: "as it is"}
