@@ -754,6 +754,19 @@ def test_the_value_of_a_curve_is_where_its_line_is_and_nowhere_else(blank: Page)
     assert found["csv"].splitlines()[1:] == ["0,0,,,0,8", "1,10,,3,1,", "1.5,,7,3,1,", "2,,,4,1,", "4,40,,4,3,", "5,,,4,4,"]
 
 
+def test_parts_of_an_activation_of_one_kind_have_different_dashes(blank: Page) -> None:
+    parts = ["activation", "base level", "base level 2", "spreading", "spreading 2"]
+    dashes = blank.evaluate(
+        """async (names) => {
+          const { plotAll, plots } = await part("timeline/curves.js");
+          plotAll(names, true);
+          return plots.value.flatMap(({ series }) => series.map(({ dash }) => dash ?? []));
+        }""",
+        [f"memory: cat {part} over time" for part in parts],
+    )
+    assert dashes == [[], [6, 3], [12, 6], [2, 2], [4, 4]]
+
+
 TWINS = """
 from actr3d.actr import *
 
@@ -821,6 +834,22 @@ COLOURS = """async () => {
 """The colours of curves of two productions, and whether they are drawn; and the same after the curves of one production were removed."""
 
 
+BANDS = """async () => {
+  const { drawTimeline } = await part("timeline/draw.js");
+  const { scene } = await part("timeline/canvas.js");
+  const { rows } = scene(true).layout;
+  const found = {};
+  const surface = { line() {}, text() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
+  surface.fill = (x, y, width, height, name) => {
+    const row = rows.find((row) => row.lane?.group === "productions" && y > row.y && y < row.y + row.height);
+    if (row) found[row.label] = [...new Set([...(found[row.label] ?? []), name])];
+  };
+  drawTimeline(surface, scene(true));
+  return found;
+}"""
+"""The colours of the bands of each agent's productions."""
+
+
 def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callable[..., Page], workbench: Served, tmp_path: Path) -> None:
     (workbench.folder / "twins.py").write_text(TWINS, encoding="utf-8")
     page = pages("twins.py", height=1000)
@@ -876,7 +905,13 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
     assert drawn
     assert still_drawn
     page.evaluate("async () => (await part('timeline/curves.js')).plot('left.go utility', true)")
-    becomes_true(page, ALL_CURVES)
+    for reloaded in (False, True):
+        if reloaded:
+            page.reload()
+        becomes_true(page, ALL_CURVES)
+        shown = {curve["name"]: curve["colour"] for _, series in page.evaluate(PLOTTED) for curve in series}
+        assert (shown["left.go utility"], shown["right.go utility"]) == (left, right)
+        assert page.evaluate(BANDS) == {"left": [left], "right": [right]}
     page.get_by_role("button", name="Save a picture").click()
     with page.expect_download() as taken:
         page.get_by_role("dialog").get_by_role("button", name="CSV").click()
