@@ -135,7 +135,7 @@ function drawBands(surface, bands, y, height, scene) {
     drawThin();
     if (band.mark) {
       const next = bands[n + 1] ? placeOf(bands[n + 1].from, scene) : width;
-      written = drawMark(surface, band, from, { next, written, last: n === bands.length - 1 }, y, height);
+      written = drawMark(surface, band, from, { next, written, last: n === bands.length - 1, end: placeOf(end, scene) }, y, height);
     } else drawBand(surface, band, from, to, y, height);
   }
   drawThin();
@@ -155,14 +155,17 @@ function drawBand(surface, band, from, to, y, height) {
   if (text) surface.text(text, from + 5, y + height / 2, "text", { mono: true });
 }
 
-/** Draws a mark with its text up to the next one; the text of the last one is on its left if there is more room. Returns where it ends. */
-function drawMark(surface, band, x, { next, written, last }, y, height) {
+/** Draws a mark with its text up to the next one; the text of the last one is on its left if there is more room, or if the playhead at the
+ * newest moment would cross it on the right. Returns where it ends. */
+function drawMark(surface, band, x, { next, written, last, end }, y, height) {
   const middle = y + height / 2;
   if (band.tick) surface.fill(x - 1, y + 1.5, 2, height - 3, toneOf(band));
   else surface.polygon([x, middle - 4, x + 4, middle, x, middle + 4, x - 4, middle], band.tone === "text" ? "quiet" : band.tone);
   const style = { mono: true };
   const [right, left] = [next - x - 14, last ? x - written - 18 : 0];
-  const isLeft = left > right && right < widthOf(bandText(band), style);
+  const wide = last ? widthOf(bandText(band), style) : 0;
+  const isCrossed = end > x + 7 && end < x + 7 + wide;
+  const isLeft = (left > right && right < wide) || (isCrossed && left >= wide);
   const room = isLeft ? left : right;
   if (room < ROOM - 8) return x;
   const text = cut(bandText(band), room, style);

@@ -385,6 +385,27 @@ def test_many_events_are_taken_in_one_by_one(blank: Page) -> None:
     assert counts["calls"] < 3 * 900
 
 
+MARKED = """async (ends) => {
+  const { Lanes } = await part("timeline/lanes.js");
+  const { drawTimeline } = await part("timeline/draw.js");
+  const lanes = new Lanes();
+  lanes.take([5e6, "simulation", "output", { text: "can pass as it is" }]);
+  const layout = { rows: [{ lane: lanes.lanes.get("said"), label: "printed", y: 20, height: 16 }] };
+  return ends.map((end) => {
+    let anchor = null;
+    const surface = { fill() {}, line() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
+    surface.text = (text, x, y, name, style = {}) => text === "can pass as it is" && (anchor = style.anchor ?? "start");
+    drawTimeline(surface, { width: 1000, height: 60, column: 100, scroll: 0, span: { from: 0, to: 10 }, layout, end, begin: 0 });
+    return anchor;
+  });
+}"""
+"""Where the text of a mark at 5 s begins or ends at it, by the newest moments of the run; a second is 89 px long."""
+
+
+def test_the_text_of_the_last_mark_is_not_crossed_by_the_line_at_the_newest_moment(blank: Page) -> None:
+    assert blank.evaluate(MARKED, [5, 5.5, 9]) == ["start", "end", "start"]
+
+
 EARLIER = """async () => {
   const { events } = await part("store.js");
   const { lanes } = await part("timeline/record.js");
