@@ -4,7 +4,6 @@
 import { commandsOf } from "../commands.js";
 import { compareRuns } from "../compare/compare.js";
 import { remembered } from "../local_storage.js";
-import { openTab } from "../open_tab.js";
 import { Icon } from "../parts/icon.js";
 import { deleteRuns, openRun } from "../runs/actions.js";
 import { labelRun } from "../runs/label.js";
@@ -114,7 +113,6 @@ function beginAt({ id }, moment) {
 }
 
 function compare(run) {
-  openTab.value = "runs";
   compareRuns(run.id, shown.value);
 }
 
