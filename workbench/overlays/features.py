@@ -60,7 +60,8 @@ class Features(Overlay):
         # If there are too many, features that received attention come first.
         first = sorted(found, key=lambda feature: not feature["chosen"])[:MAX_LABELS]
         labels = [
-            {"text": one["text"], "place": [float(x) for x in one["place"]], "line": one["lines"][0], "chosen": one["chosen"]} for one in first
+            {"text": one["text"], "place": [float(x) for x in one["place"]], "line": one["lines"][0], "chosen": one["chosen"]}
+            for one in first
         ]
         self.labels = [label for label in labels if np.isfinite(label["place"]).all()]
 
