@@ -3,7 +3,7 @@
 import { addressed } from "./address.js";
 import { command } from "./commands.js";
 import { remembered } from "./local_storage.js";
-import { computed, effect, signal } from "./vendor/preact.js";
+import { computed, effect } from "./vendor/preact.js";
 import { hasScene, session } from "./store.js";
 import { embedded } from "./windows.js";
 
@@ -32,7 +32,7 @@ function ofKind(name, otherwise) {
 
 /** Whether this is the whole page: a window of its own has one panel. */
 const isWhole = addressed("panel") === null;
-const isThere = (area) => isWhole && (area !== "scene" || hasWorld.value);
+const isThere = (area) => isWhole && area in AREAS && (area !== "scene" || hasWorld.value);
 
 const ROWS = 336; // the height of the default rows of a model with a body [px]
 /** The width of the panels [px]. By default, all tabs can be seen, and wide windows give the panels more room too. */
@@ -42,9 +42,9 @@ export const timelineHeight = ofKind("timeline height", Math.round(Math.min(0.42
 /** Whether the panels are on the left. */
 export const swapped = remembered("swapped sides", false);
 const collapsed = ofKind("collapsed", []);
-const largest = signal(null);
+const largest = remembered("maximised", ""); // a part; or none
 /** The part that fills the page; null for none. */
-export const maximised = computed(() => (largest.value !== null && isThere(largest.value) ? largest.value : null));
+export const maximised = computed(() => (isThere(largest.value) ? largest.value : null));
 
 /** Returns whether a part is collapsed: a strip at the edge of the page. */
 export function isCollapsed(area) {
@@ -57,7 +57,7 @@ export function canCollapse(area) {
 }
 
 export function collapse(area) {
-  largest.value = null;
+  largest.value = "";
   collapsed.value = [...collapsed.value.filter((other) => other !== area), area];
 }
 
@@ -67,7 +67,7 @@ export function expand(area) {
 
 /** Lets a part fill the page, or no longer. */
 export function maximise(area) {
-  largest.value = maximised.value === area ? null : area;
+  largest.value = maximised.value === area ? "" : area;
 }
 
 const KEYS = { panels: "m", scene: "Shift+m", timeline: null };
@@ -90,4 +90,4 @@ export const layoutCommands = Object.fromEntries(
 /** Swaps the 3D view and the panels. */
 export const swap = command({ text: "Swap the sides of the 3D view and the panels", group: "Page", work: () => (swapped.value = !swapped.value), ready: () => isThere("scene") });
 
-command({ text: "All parts of the page again, after one was maximised", key: "Escape", group: "Page", work: () => (largest.value = null), ready: () => maximised.value !== null });
+command({ text: "All parts of the page again, after one was maximised", key: "Escape", group: "Page", work: () => (largest.value = ""), ready: () => maximised.value !== null });

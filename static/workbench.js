@@ -9,6 +9,7 @@ import { StatusLine } from "./bar/status.js";
 import { Transport } from "./bar/transport.js";
 import "./changes/undo.js";
 import { command, run } from "./commands.js";
+import { Comparison } from "./compare/compare.js";
 import { noteKey } from "./keys.js";
 import { AREAS, hasWorld, isCollapsed, layoutCommands, maximised, panelsWidth, swapped, timelineHeight } from "./layout.js";
 import { openTab } from "./open_tab.js";
@@ -109,6 +110,7 @@ function NotebookBar() {
 
 export function Workbench() {
   return html`${alone === null ? html`<${WholePage} />` : html`<${OnePanel} />`}
+    <${Comparison} />
     <${Dialogs} />
     <${CommandPalette} />
     <${Toasts} />`;

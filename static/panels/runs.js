@@ -2,7 +2,6 @@
 
 import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { command } from "../commands.js";
-import { Comparison } from "../compare/compare.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Chosen } from "../runs/chosen.js";
@@ -75,8 +74,7 @@ function Runs() {
     ${body(all, ordered, search)}
     ${idle > 0 ? html`<p class="left-out">${counted(idle, "recording")} without a step ${idle === 1 ? "is" : "are"} not listed <button class="bare" onClick=${() => (withIdle.value = true)}>Show</button></p>` : null}
     <${Chosen} list=${picked} />
-  </div>
-  <${Comparison} />`;
+  </div>`;
 }
 
 function body(all, ordered, search) {

@@ -5,30 +5,40 @@ const LIFT = 10; // the height of a label above its point [px]
 const STEPS = 40; // the number of positions tried for each
 const AWAY = 26; // a label farther from its point than this has a line to it [px]
 
+/** Returns the rectangle around positions in the picture [px]; null if one of them is behind the camera. */
+function around(positions, { width, height }) {
+  if (positions.some(({ depth }) => depth <= 0)) return null;
+  const [xs, ys] = [positions.map(({ x }) => x * width), positions.map(({ y }) => y * height)];
+  const [left, top] = [Math.min(...xs), Math.min(...ys)];
+  return { left, top, width: Math.max(...xs) - left, height: Math.max(...ys) - top };
+}
+
 const overlap = (a, b) => a.left < b.left + b.width && b.left < a.left + a.width && a.top < b.top + b.height && b.top < a.top + a.height;
 
 /**
  * Returns the rectangle of each label, or null if there is no room; earlier labels have priority.
- * @param wanted Labels: `x` and `y` of their points, `width` and `height` [px].
+ * @param wanted Labels: `x` and `y` of their points, `width` and `height` [px]; `about`: a rectangle that stays free if there is room.
  * @param blocked Rectangles that stay free.
  * @param size Width and height of the picture [px].
  */
 export function placed(wanted, blocked, size) {
   const taken = [...blocked];
-  return wanted.map(({ x, y, width, height }) => {
+  return wanted.map(({ x, y, width, height, about }) => {
     if (x < 0 || x > size.width || y < 0 || y > size.height || width > size.width) return null;
     const left = Math.max(0, Math.min(size.width - width, x - width / 2));
-    for (let step = 0; step < STEPS; step++) {
-      // Above its point, higher and higher; then below, lower and lower.
-      for (const top of [y - LIFT - height - step * 6, y + LIFT + step * 6]) {
-        const box = { left: left - GAP, top: top - GAP, width: width + 2 * GAP, height: height + 2 * GAP };
-        if (top < 0 || top + height > size.height || taken.some((other) => overlap(box, other))) continue;
-        const found = { left, top, width, height };
-        taken.push(found);
-        return found;
+    const free = (taken) => {
+      for (let step = 0; step < STEPS; step++) {
+        // Above its point, higher and higher; then below, lower and lower.
+        for (const top of [y - LIFT - height - step * 6, y + LIFT + step * 6]) {
+          const box = { left: left - GAP, top: top - GAP, width: width + 2 * GAP, height: height + 2 * GAP };
+          if (top >= 0 && top + height <= size.height && !taken.some((other) => overlap(box, other))) return { left, top, width, height };
+        }
       }
-    }
-    return null;
+      return null;
+    };
+    const found = (about && free([...taken, about])) ?? free(taken);
+    if (found) taken.push(found);
+    return found;
   });
 }
 
@@ -41,7 +51,7 @@ export class Captions {
   }
 
   /**
-   * @param labels The labels: `text`, `place` in the world, whether the agent attends to it (`chosen`).
+   * @param labels The labels: `text`, `place` in the world, whether the agent attends to it (`chosen`), the ends of the measured `line`, if any.
    * @param heads Spheres that no label covers: x, y, z, radius.
    * @param covered Returns the rectangles of the picture that the page covers [px].
    */
@@ -57,7 +67,7 @@ export class Captions {
       const half = radius * camera.scaleAt(at.depth) * size.height;
       return at.depth > 0 ? { left: at.x * size.width - half, top: at.y * size.height - half, width: 2 * half, height: 2 * half } : null;
     });
-    const wanted = labels.map(({ text, place, chosen }, n) => {
+    const wanted = labels.map(({ text, place, chosen, line }, n) => {
       const one = this.shown[n];
       if (one.text !== text) {
         one.text = one.label.textContent = text;
@@ -65,7 +75,7 @@ export class Captions {
       }
       one.label.classList.toggle("chosen", chosen);
       const at = camera.at(place);
-      return { x: at.depth > 0 ? at.x * size.width : -1, y: at.y * size.height, width: one.width, height: one.height };
+      return { x: at.depth > 0 ? at.x * size.width : -1, y: at.y * size.height, width: one.width, height: one.height, about: line && around(line.map((end) => camera.at(end)), size) };
     });
     const boxes = placed(wanted, [...blocked.filter(Boolean), ...(labels.length > 0 ? covered() : [])], size);
     this.shown.forEach((one, n) => {

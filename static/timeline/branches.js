@@ -4,7 +4,6 @@
 import { commandsOf } from "../commands.js";
 import { compareRuns } from "../compare/compare.js";
 import { remembered } from "../local_storage.js";
-import { openTab } from "../open_tab.js";
 import { Icon } from "../parts/icon.js";
 import { deleteRuns, openRun } from "../runs/actions.js";
 import { labelRun } from "../runs/label.js";
@@ -12,7 +11,7 @@ import { followRuns, isOrphan, runs } from "../runs/list.js";
 import { outcomeText, whenText } from "../runs/wording.js";
 import { counted } from "../parts/count.js";
 import { chooseLive } from "../bar/models.js";
-import { alive, complain, isShared, session, shownRecording as shown, state } from "../store.js";
+import { alive, complain, isShared, session, shownRecording as shown } from "../store.js";
 import { computed, effect, html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { placeOf } from "./draw.js";
 import { column } from "./rows.js";
@@ -78,6 +77,14 @@ export function sameUntil(list, one, other) {
 
 const tree = computed(() => treeOf(runs.value ?? [], shown.value));
 
+/** Returns the newest time of a run of the tree [s]; of the one that is shown, the list may not have it yet. */
+function endOf(run) {
+  return run.id === shown.value && run.session === session.value?.id ? furthest.value : run.time;
+}
+
+/** The newest time of the run and of the branches that are shown [s]: the axis goes as far. */
+export const reach = computed(() => Math.max(furthest.value, ...(open.value && tree.value.length > 1 ? tree.value.map(endOf) : [])));
+
 /** Shows another branch: the open session that writes it, where it is, or its recording. */
 async function show(run) {
   const moment = run.session ? null : sameUntil(runs.value ?? [], run.id, shown.value);
@@ -106,7 +113,6 @@ function beginAt({ id }, moment) {
 }
 
 function compare(run) {
-  openTab.value = "runs";
   compareRuns(run.id, shown.value);
 }
 
@@ -131,7 +137,7 @@ function Row({ run, depth, width }) {
   const mine = run.id === shown.value;
   const view = { column: column.value, width, span: span.value };
   const inside = (x) => Math.min(Math.max(x, view.column), width);
-  const end = mine && run.session === session.value?.id ? Math.max(furthest.value, state.value?.time ?? 0) : run.time;
+  const end = endOf(run);
   const [from, to] = [inside(placeOf(run.branched ?? 0, view)), inside(placeOf(end, view))];
   const name = branchName(run);
   const title = `${name}: ${outcomeText(run)}, ${end.toFixed(2)} s${isOrphan(run) ? "\nthe recording that it is a branch of was deleted" : ""}${run.label?.note ? `\n${run.label.note}` : ""}`;

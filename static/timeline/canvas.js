@@ -6,6 +6,7 @@ import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
 import { timeText } from "../parts/ticks.js";
 import { events, running, session, state, way } from "../store.js";
 import { dark } from "../theme.js";
+import { reach } from "./branches.js";
 import { chosen, names, plots } from "./curves.js";
 import { drawPresent, drawTimeline, placeOf, secondsPerPixel, timeOf } from "./draw.js";
 import { begin, partAt, press, turn } from "./pointer.js";
@@ -93,7 +94,7 @@ function attend(stage) {
   watch.observe(stage.parentElement.parentElement);
   stage.addEventListener("wheel", turn, { passive: false });
   const ends = [
-    effect(() => settle(present.value, furthest.value, running.value)),
+    effect(() => settle(present.value, reach.value, running.value)),
     effect(() => place(stage)),
     effect(() => {
       for (const one of [dark, span, size, scroll, filter, hidden, column, heights, chosen, names]) one.value;

@@ -3,6 +3,7 @@
 
 import { COLOURS, seriesColour } from "../parts/curve.js";
 
+const ALL = Array.from({ length: COLOURS }, (_, n) => seriesColour(n));
 const SHOWN = 1000; // how much worse a colour is that a plotted curve has, compared with one that is not plotted any more
 
 /** Returns what a curve is about: its name without the quantity, which is its group or the last word of it. */
@@ -24,28 +25,26 @@ export function subjectsOf(curves) {
   return found;
 }
 
-/** The colours of subjects, each chosen when a curve of the subject is plotted for the first time. */
-export class Colours {
-  #numbers = new Map(); // by subject
-
-  /**
-   * Returns the name of a subject's colour: at first, the one that the fewest other subjects have of which a curve may be in the same plot.
-   *
-   * @param known The subjects, as `subjectsOf` returns them.
-   * @param shown The subjects of plotted curves.
-   */
-  of(subject, known, shown) {
-    if (!this.#numbers.has(subject)) {
-      const uses = new Array(COLOURS).fill(0);
-      for (const [other, number] of this.#numbers) {
-        if ([...known.get(subject).groups].some((group) => known.get(other)?.groups.has(group))) uses[number] += shown.has(other) ? SHOWN : 1;
-      }
-      this.#numbers.set(subject, uses.indexOf(Math.min(...uses)));
+/**
+ * Returns the names of the colours of subjects, by subject. A new one has the colour that the fewest other subjects have of which a curve
+ * may be in the same plot; of several such colours, the preferred one.
+ *
+ * @param colours Those that are known.
+ * @param subjects The subjects of all curves, as `subjectsOf` returns them.
+ * @param shown The subjects of plotted curves: all of them have a colour then.
+ * @param preferred Returns the preferred colour of a subject; undefined for none.
+ */
+export function withColours(colours, subjects, shown, preferred) {
+  const found = new Map(colours);
+  for (const subject of shown) {
+    if (found.has(subject)) continue;
+    const uses = new Map(ALL.map((colour) => [colour, 0]));
+    for (const [other, colour] of found) {
+      if ([...subjects.get(subject).groups].some((group) => subjects.get(other)?.groups.has(group))) uses.set(colour, uses.get(colour) + (shown.has(other) ? SHOWN : 1));
     }
-    return seriesColour(this.#numbers.get(subject));
+    const best = ALL.filter((colour) => uses.get(colour) === Math.min(...uses.values()));
+    const wish = preferred(subject);
+    found.set(subject, best.includes(wish) ? wish : best[0]);
   }
-
-  clear() {
-    this.#numbers.clear();
-  }
+  return found;
 }

@@ -7,7 +7,7 @@ import { rememberedByModel } from "../model_storage.js";
 import { isLeft, say } from "../server.js";
 import { alive, complain, hurried, running, session, state, way } from "../store.js";
 import { firstFrom, rangeOf } from "../parts/curve.js";
-import { Colours, subjectOf, subjectsOf } from "./colours.js";
+import { subjectOf, subjectsOf, withColours } from "./colours.js";
 import { lanes } from "./record.js";
 import { furthest } from "./seek.js";
 import { span } from "./view.js";
@@ -41,10 +41,17 @@ const ofChunks = computed(() => {
 /** All curves that are known. */
 export const names = computed(() => [...ofBodies.value, ...ofEvents.value, ...ofChunks.value]);
 
-/** Returns the parts of the name of a curve of a chunk over time, {memory, chunk, part, kind}, with the kind of the part; null for other names. */
+/** Returns the parts of the name of a curve of a chunk over time, {memory, chunk, part, kind, number}, with the kind of the part and its number
+ * among parts of this kind; null for other names. */
 export function chunkCurve(name) {
-  const [, memory, chunk, part, kind] = OF_CHUNK.exec(name) ?? [];
-  return memory === undefined ? null : { memory, chunk, part, kind };
+  const [, memory, chunk, part, kind, number] = OF_CHUNK.exec(name) ?? [];
+  return memory === undefined ? null : { memory, chunk, part, kind, number: Number(number ?? 1) };
+}
+
+/** Returns the dashes of the curve of a chunk over time; of several parts of one kind, the second has dashes twice as long, and so on. */
+function dashOf(name) {
+  const { kind, number } = chunkCurve(name);
+  return DASHES[kind]?.map((length) => length * number);
 }
 
 /** Returns what a curve is about; for that of a chunk over time, the same as for its values at retrievals. */
@@ -60,7 +67,16 @@ const plotted = computed(() => {
   const wanted = new Set(chosen.value);
   return new Set(names.value.filter(({ name }) => wanted.has(name)).map(subject));
 });
-const colours = new Colours();
+
+/** The colours of subjects as [subject, colour], remembered for the model: after a reload they are the same. */
+const { kept: keptColours, keep: keepColours } = rememberedByModel("curve colours of models", "colours");
+/** The colours of subjects of which a curve was plotted. */
+const colours = computed(() => withColours(keptColours.value, subjects.value, plotted.value, (subject) => lanes.tones.get(subject.split(".").at(-1))));
+
+/** Returns the colour of what curves are about, such as a production; undefined if none of its curves was plotted. */
+export function colourOf(subject) {
+  return colours.value.get(subject);
+}
 
 /** Whether the curves are offered to the user. */
 export const offered = signal(false);
@@ -144,8 +160,7 @@ function plotsOf(curves, seriesOf) {
     const { name, unit, group } = curve;
     const key = `${group} [${unit}]`;
     if (!made.has(key)) made.set(key, { title: titleOf(group), group, unit, series: [] });
-    const dash = DASHES[group === CHUNKS ? chunkCurve(name).kind : null];
-    made.get(key).series.push({ ...seriesOf(curve), colour: colours.of(of, known, plotted.value), dash });
+    made.get(key).series.push({ ...seriesOf(curve), colour: colourOf(of), dash: group === CHUNKS ? dashOf(name) : undefined });
   }
   return [...made.values()].map((plot) => ({ ...plot, title: onlyChunk(plot) ?? plot.title, range: rangeOf(plot.series) }));
 }
@@ -359,6 +374,10 @@ async function askOnce() {
 
 document.addEventListener("visibilitychange", () => alive.peek() && ask());
 
+effect(() => {
+  if (session.value && colours.value.size > (keptColours.value?.length ?? 0)) keepColours([...colours.value]);
+});
+
 const eventCount = computed(() => state.value?.events);
 
 effect(() => {
@@ -366,7 +385,6 @@ effect(() => {
   if (alive.value) ask();
   else if (!session.value && of !== null) {
     forget(null);
-    colours.clear();
     named = null;
     for (const known of [ofBodies, ofEvents]) known.value = [];
   }

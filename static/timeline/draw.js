@@ -4,7 +4,7 @@ import { drawCurves, drawTimes, valueAt } from "../parts/curve.js";
 import { cut, cutBefore, widthOf } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
 import { session } from "../store.js";
-import { chunkCurve, headingOf, titleOf } from "./curves.js";
+import { chunkCurve, colourOf, headingOf, titleOf } from "./curves.js";
 import { bandText } from "./lanes.js";
 import { firstWhere, nextWhere } from "./search.js";
 import { AXIS, MARGIN, NAME, PLOT } from "./rows.js";
@@ -127,36 +127,45 @@ function drawBands(surface, bands, y, height, scene) {
     const to = endOf(band);
     last = Math.max(to, from + 1);
     if (!band.mark && to - from <= THIN) {
-      if (thin?.tone !== band.tone || from > thin.to + 0.7) drawThin();
-      thin = { from: thin?.from ?? from, to: last, tone: band.tone };
+      const tone = toneOf(band);
+      if (thin?.tone !== tone || from > thin.to + 0.7) drawThin();
+      thin = { from: thin?.from ?? from, to: last, tone };
       continue;
     }
     drawThin();
     if (band.mark) {
       const next = bands[n + 1] ? placeOf(bands[n + 1].from, scene) : width;
-      written = drawMark(surface, band, from, { next, written, last: n === bands.length - 1 }, y, height);
+      written = drawMark(surface, band, from, { next, written, last: n === bands.length - 1, end: placeOf(end, scene) }, y, height);
     } else drawBand(surface, band, from, to, y, height);
   }
   drawThin();
 }
 
+/** Returns the colour of a band: that of the curves about the same subject, if there are any. */
+function toneOf({ subject, tone }) {
+  return colourOf(subject) ?? tone;
+}
+
 function drawBand(surface, band, from, to, y, height) {
-  const wide = to - from;
-  surface.fill(from, y + 1.5, wide - 0.5, height - 3, band.tone, wide < 4 ? 0.75 : 0.26);
-  if (wide >= 4) surface.fill(from, y + 1.5, 2, height - 3, band.tone);
+  const [wide, tone] = [to - from, toneOf(band)];
+  surface.fill(from, y + 1.5, wide - 0.5, height - 3, tone, wide < 4 ? 0.75 : 0.26);
+  if (wide >= 4) surface.fill(from, y + 1.5, 2, height - 3, tone);
   if (wide < ROOM) return;
   const text = cut(bandText(band), wide - 8, { mono: true });
   if (text) surface.text(text, from + 5, y + height / 2, "text", { mono: true });
 }
 
-/** Draws a mark with its text up to the next one; the text of the last one is on its left if there is more room. Returns where it ends. */
-function drawMark(surface, band, x, { next, written, last }, y, height) {
+/** Draws a mark with its text up to the next one; the text of the last one is on its left if there is more room, or if the playhead at the
+ * newest moment would cross it on the right. Returns where it ends. */
+function drawMark(surface, band, x, { next, written, last, end }, y, height) {
   const middle = y + height / 2;
-  if (band.tick) surface.fill(x - 1, y + 1.5, 2, height - 3, band.tone);
+  if (band.tick) surface.fill(x - 1, y + 1.5, 2, height - 3, toneOf(band));
   else surface.polygon([x, middle - 4, x + 4, middle, x, middle + 4, x - 4, middle], band.tone === "text" ? "quiet" : band.tone);
   const style = { mono: true };
   const [right, left] = [next - x - 14, last ? x - written - 18 : 0];
-  const isLeft = left > right && right < widthOf(bandText(band), style);
+  const wide = last ? widthOf(bandText(band), style) : 0;
+  const isCrossed = end > x + 7 && end < x + 7 + wide;
+  const isLeft = (left > right && right < wide) || (isCrossed && left >= wide);
   const room = isLeft ? left : right;
   if (room < ROOM - 8) return x;
   const text = cut(bandText(band), room, style);

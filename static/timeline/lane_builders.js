@@ -25,8 +25,13 @@ function productions(lanes, source) {
   return lanes.lane(`productions ${source}`, "productions", source);
 }
 
+/** Returns a band of a production: its curves are about the same subject. */
+function ofProduction(lanes, source, production, more) {
+  return { text: production, tone: lanes.tone(production), subject: source === "top" ? production : `${source}.${production}`, more };
+}
+
 function select(lanes, time, source, { production }) {
-  productions(lanes, source).begin(time, { text: production, tone: lanes.tone(production), more: "chosen, fires at the end" });
+  productions(lanes, source).begin(time, ofProduction(lanes, source, production, "chosen, fires at the end"));
 }
 
 function fire(lanes, time, source, { production, bound }) {
@@ -39,13 +44,13 @@ function fire(lanes, time, source, { production, bound }) {
     lane.close(time, "fired");
   } else {
     if (open) lane.close(time);
-    lane.mark(time, { text: production, tone: lanes.tone(production), more: more || "fired", tick: true });
+    lane.mark(time, { ...ofProduction(lanes, source, production, more || "fired"), tick: true });
   }
 }
 
 function changed(lanes, time, source) {
   const lane = productions(lanes, source);
-  if (lane.open) Object.assign(lane.open, { tone: "quiet", more: "" });
+  if (lane.open) Object.assign(lane.open, { tone: "quiet", subject: null, more: "" });
   lane.close(time, "no longer matched, did not fire");
 }
 

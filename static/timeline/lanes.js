@@ -13,6 +13,7 @@ import { TAKERS } from "./lane_builders.js";
  * @property {string} [text] Its text; or else `chunk`, whose text is made when it is first shown.
  * @property {object} [chunk]
  * @property {string} tone The name of a colour.
+ * @property {string} [subject] What curves may be about, too: then the band has their colour.
  * @property {string} [end] How it ended, if this is worth showing.
  */
 
@@ -97,7 +98,7 @@ export class Lanes {
   /** Removes everything. */
   clear() {
     this.lanes = new Map();
-    this.tones = new Map();
+    this.tones = new Map(); // the names of colours by name
     this.asked = new Map();
     this.former = new Former();
     this.learns = false; // whether utilities are learned

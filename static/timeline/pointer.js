@@ -1,5 +1,6 @@
 // The actions of the pointer, the wheel and the keys on the timeline.
 
+import { reach } from "./branches.js";
 import { placeOf, secondsPerPixel, timeOf } from "./draw.js";
 import { AXIS, chosenColumn, column, plotEndingAt, resize } from "./rows.js";
 import { furthest, goTicks, present, seek } from "./seek.js";
@@ -51,7 +52,7 @@ export function begin(event) {
     if (part === "axis" && still) return;
     if (resized) resize(resized.plot, resized.height + toY - y);
     else if (part === "border") chosenColumn.value = Math.round(Math.min(Math.max(to, COLUMN[0]), COLUMN[1]));
-    else if (part === "axis") pan(secondsOf(x - to, stage), present.peek(), furthest.peek());
+    else if (part === "axis") pan(secondsOf(x - to, stage), present.peek(), reach.peek());
     else seek(Math.max(0, timeOf(to, sceneOf(stage))));
     x = to;
   };
@@ -76,8 +77,8 @@ export function turn(event) {
   event.preventDefault();
   const unit = event.deltaMode === 1 ? LINE : 1;
   const sideways = Math.abs(event.deltaX) > Math.abs(event.deltaY);
-  if (sideways || event.shiftKey) pan(secondsOf((sideways ? event.deltaX : event.deltaY) * unit, stage), present.peek(), furthest.peek());
-  else zoom(Math.exp(event.deltaY * unit * NOTCH), timeOf(Math.max(x, column.peek()), sceneOf(stage)), present.peek(), furthest.peek());
+  if (sideways || event.shiftKey) pan(secondsOf((sideways ? event.deltaX : event.deltaY) * unit, stage), present.peek(), reach.peek());
+  else zoom(Math.exp(event.deltaY * unit * NOTCH), timeOf(Math.max(x, column.peek()), sceneOf(stage)), present.peek(), reach.peek());
 }
 
 /** Goes to another time by keys, or scrolls. */

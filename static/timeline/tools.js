@@ -9,6 +9,7 @@ import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
 import { order } from "../server.js";
 import { alive, running, session } from "../store.js";
+import { reach } from "./branches.js";
 import { CurveChoice } from "./choice.js";
 import { chosen as plotted, names, plot } from "./curves.js";
 import { lanesVersion } from "./record.js";
@@ -32,7 +33,7 @@ function Groups() {
 }
 
 function near(factor) {
-  zoom(factor, present.peek(), present.peek(), furthest.peek());
+  zoom(factor, present.peek(), present.peek(), reach.peek());
 }
 
 /** Registers a command of the timeline. */

@@ -1,4 +1,5 @@
-// The stretch of time that the timeline shows: the whole run, the present, or the user's choice.
+// The stretch of time that the timeline shows: the whole run with its branches, the present, or the user's choice. `furthest` is the newest
+// time of any of them [s].
 
 import { session } from "../store.js";
 import { effect, signal } from "../vendor/preact.js";

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.page import open_tab, shows, until
+from tests.helpers.page import becomes_true, open_tab, shows, until
 from tests.helpers.workbench_server import Served
 
 
@@ -173,6 +173,7 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
     rows = page.locator(".branches li")
     expect(rows).to_have_count(2)
     expect(rows.nth(1)).to_contain_text("at 0.12 s")
+    becomes_true(page, "async () => (await part('timeline/view.js')).span.value.to >= 0.3")  # the branch is shown to its end
     branch = rows.nth(1).get_attribute("data-branch")
     workbench.post(f"/api/recordings/{branch}/label", {"note": "as it was"})  # by another browser, which this page does not know
     rows.nth(1).get_by_role("button", name="Name at 0.12 s").click()

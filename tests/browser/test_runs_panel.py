@@ -289,9 +289,8 @@ IN_ITS_BOX = """row => {
 
 
 def test_runs_without_a_body_are_compared_by_what_their_agents_did(pages: Callable[..., Page]) -> None:
-    page = pages("counting.py")
+    page = pages("counting.py")  # its tab Runs is not open
     expect(page.locator("#status")).to_contain_text("at its start")
-    open_tab(page, "Runs")
     runs = page.evaluate(
         """async () => {
           const { say } = await part("server.js");

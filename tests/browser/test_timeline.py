@@ -385,6 +385,27 @@ def test_many_events_are_taken_in_one_by_one(blank: Page) -> None:
     assert counts["calls"] < 3 * 900
 
 
+MARKED = """async (ends) => {
+  const { Lanes } = await part("timeline/lanes.js");
+  const { drawTimeline } = await part("timeline/draw.js");
+  const lanes = new Lanes();
+  lanes.take([5e6, "simulation", "output", { text: "can pass as it is" }]);
+  const layout = { rows: [{ lane: lanes.lanes.get("said"), label: "printed", y: 20, height: 16 }] };
+  return ends.map((end) => {
+    let anchor = null;
+    const surface = { fill() {}, line() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
+    surface.text = (text, x, y, name, style = {}) => text === "can pass as it is" && (anchor = style.anchor ?? "start");
+    drawTimeline(surface, { width: 1000, height: 60, column: 100, scroll: 0, span: { from: 0, to: 10 }, layout, end, begin: 0 });
+    return anchor;
+  });
+}"""
+"""Where the text of a mark at 5 s begins or ends at it, by the newest moments of the run; a second is 89 px long."""
+
+
+def test_the_text_of_the_last_mark_is_not_crossed_by_the_line_at_the_newest_moment(blank: Page) -> None:
+    assert blank.evaluate(MARKED, [5, 5.5, 9]) == ["start", "end", "start"]
+
+
 EARLIER = """async () => {
   const { events } = await part("store.js");
   const { lanes } = await part("timeline/record.js");
@@ -754,6 +775,19 @@ def test_the_value_of_a_curve_is_where_its_line_is_and_nowhere_else(blank: Page)
     assert found["csv"].splitlines()[1:] == ["0,0,,,0,8", "1,10,,3,1,", "1.5,,7,3,1,", "2,,,4,1,", "4,40,,4,3,", "5,,,4,4,"]
 
 
+def test_parts_of_an_activation_of_one_kind_have_different_dashes(blank: Page) -> None:
+    parts = ["activation", "base level", "base level 2", "spreading", "spreading 2"]
+    dashes = blank.evaluate(
+        """async (names) => {
+          const { plotAll, plots } = await part("timeline/curves.js");
+          plotAll(names, true);
+          return plots.value.flatMap(({ series }) => series.map(({ dash }) => dash ?? []));
+        }""",
+        [f"memory: cat {part} over time" for part in parts],
+    )
+    assert dashes == [[], [6, 3], [12, 6], [2, 2], [4, 4]]
+
+
 TWINS = """
 from actr3d.actr import *
 
@@ -821,6 +855,22 @@ COLOURS = """async () => {
 """The colours of curves of two productions, and whether they are drawn; and the same after the curves of one production were removed."""
 
 
+BANDS = """async () => {
+  const { drawTimeline } = await part("timeline/draw.js");
+  const { scene } = await part("timeline/canvas.js");
+  const { rows } = scene(true).layout;
+  const found = {};
+  const surface = { line() {}, text() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
+  surface.fill = (x, y, width, height, name) => {
+    const row = rows.find((row) => row.lane?.group === "productions" && y > row.y && y < row.y + row.height);
+    if (row) found[row.label] = [...new Set([...(found[row.label] ?? []), name])];
+  };
+  drawTimeline(surface, scene(true));
+  return found;
+}"""
+"""The colours of the bands of each agent's productions."""
+
+
 def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callable[..., Page], workbench: Served, tmp_path: Path) -> None:
     (workbench.folder / "twins.py").write_text(TWINS, encoding="utf-8")
     page = pages("twins.py", height=1000)
@@ -876,7 +926,13 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
     assert drawn
     assert still_drawn
     page.evaluate("async () => (await part('timeline/curves.js')).plot('left.go utility', true)")
-    becomes_true(page, ALL_CURVES)
+    for reloaded in (False, True):
+        if reloaded:
+            page.reload()
+        becomes_true(page, ALL_CURVES)
+        shown = {curve["name"]: curve["colour"] for _, series in page.evaluate(PLOTTED) for curve in series}
+        assert (shown["left.go utility"], shown["right.go utility"]) == (left, right)
+        assert page.evaluate(BANDS) == {"left": [left], "right": [right]}
     page.get_by_role("button", name="Save a picture").click()
     with page.expect_download() as taken:
         page.get_by_role("dialog").get_by_role("button", name="CSV").click()

@@ -161,6 +161,32 @@ def test_labels_never_cover_each_other_or_a_head_or_leave_the_picture(blank: Pag
     assert found > 200
 
 
+CAPTION = """async (lines) => {
+  const { Captions } = await part("scene/captions.js");
+  const captions = new Captions();
+  captions.layer.style = "position: fixed; inset: 0";
+  const camera = { at: ([x, y]) => ({ x, y, depth: 1 }), scaleAt: () => 1 };
+  return lines.map((line) => {
+    const place = line[0].map((x, n) => (x + line[1][n]) / 2);
+    captions.draw([{ text: "opening 50 cm", place, line, chosen: false }], [], camera);
+    const [label] = captions.layer.children;
+    Object.assign(label.style, { position: "absolute", margin: 0 });
+    captions.shown[0].text = "";  // measured as it is now
+    captions.draw([{ text: "opening 50 cm", place, line, chosen: false }], [], camera);
+    return [label.style.visibility !== "hidden", new DOMMatrix(label.style.transform).f + label.offsetHeight];
+  });
+}"""
+"""Whether labels of measured lines are shown, and where they end [px]; lines are parts of the picture."""
+
+
+def test_a_label_does_not_cover_the_line_that_was_measured_if_there_is_room(blank: Page) -> None:
+    blank.set_viewport_size({"width": 600, "height": 400})
+    beside, over = blank.evaluate(CAPTION, [[[0.5, 0.4, 0], [0.5, 0.6, 0]], [[0.5, 0.0, 0], [0.5, 1.0, 0]]])
+    assert beside[0]
+    assert beside[1] < 0.4 * 400
+    assert over[0]  # there is no room beside it
+
+
 def test_the_retina_pales_colours_with_distance(blank: Page) -> None:
     shades = """async () => {
         const { shadeOf } = await part("eye/drawing.js");

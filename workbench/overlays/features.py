@@ -59,7 +59,10 @@ class Features(Overlay):
             lines.set(np.array(parts, dtype=np.float32).reshape(-1, 2, 3))
         # If there are too many, features that received attention come first.
         first = sorted(found, key=lambda feature: not feature["chosen"])[:MAX_LABELS]
-        labels = [{"text": one["text"], "place": [float(x) for x in one["place"]], "chosen": one["chosen"]} for one in first]
+        labels = [
+            {"text": one["text"], "place": [float(x) for x in one["place"]], "line": one["lines"][0], "chosen": one["chosen"]}
+            for one in first
+        ]
         self.labels = [label for label in labels if np.isfinite(label["place"]).all()]
 
     def switch(self) -> None:

@@ -62,8 +62,8 @@ class Overlay(ABC):
     shown_at_first: ClassVar[bool]
     visible = False
     labels: Sequence[dict[str, Any]] = ()
-    """Labels that it wants, each with `text`, `place` [m] and whether it is about what an agent attends to (`chosen`); each browser places
-    them where they cover nothing."""
+    """Labels that it wants, each with `text`, `place` [m], whether it is about what an agent attends to (`chosen`), and perhaps the ends of
+    a measured `line` [m]; each browser places them where they cover nothing."""
 
     @abstractmethod
     def __init__(self, drawn: Drawn) -> None: ...
