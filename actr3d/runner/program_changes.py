@@ -123,7 +123,7 @@ class ProgramChanges:
             raise
         number, limits = self._number(sch), self._limits
         if limits.trace is not None and limits.trace.production:
-            limits.trace.emit(time, top_path(number), "command", {"command": data["command"], "data": given})
+            limits.trace.emit(time, top_path(number), "command", data)
         if limits.recorder is not None:
             limits.recorder.command(number, time, data)
 

@@ -30,15 +30,12 @@ class Command:
     body: str | None = None
     """The body that receives it; None for the world or the agents."""
     by: str | None = None
-    """Who gives it, if a recording distinguishes this: `user` for the user of a program whose simulation it is; None for the program."""
-
-    def to_event(self) -> dict[str, Any]:
-        """Returns the data of its trace event."""
-        return {"command": self.word, "data": {"values": list(self.values), "named": dict(self.named), "body": self.body}}
+    """In a program: `user` if its user gives it, None if the program gives it itself."""
 
     def to_data(self) -> dict[str, Any]:
-        """Returns the command as plain values, for a recording."""
-        return self.to_event() | ({} if self.by is None else {"by": self.by})
+        """Returns the command as plain values."""
+        data = {"command": self.word, "data": {"values": list(self.values), "named": dict(self.named), "body": self.body}}
+        return data if self.by is None else {**data, "by": self.by}
 
     @classmethod
     def from_data(cls, tick: int, data: Mapping[str, Any]) -> Command:

@@ -176,7 +176,7 @@ class Lockstep:
     def trace_command(self, command: Command) -> None:
         """Traces a command that has been carried out."""
         if self.trace is not None and self.trace.production:
-            self.trace.emit(self.agents.time, "top", "command", command.to_event())
+            self.trace.emit(self.agents.time, "top", "command", command.to_data())
 
     def repeat_commands(self, known: Sequence[Command], *, only_agents: bool = False) -> None:
         """Carries out the known commands of this tick again."""

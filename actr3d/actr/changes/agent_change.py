@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import fields
+from inspect import signature
 from typing import Any, TypeVar
 
 from actr3d.actr.chunks.chunk import Chunk
@@ -72,7 +72,7 @@ class AgentChange(Change):
             named: Its keyword arguments.
             name: Returns the other path of a part.
         """
-        path = fields(cls)[0].name
+        path = next(iter(signature(cls).parameters))
         return [*map(name, values[:1]), *values[1:]], {key: name(value) if key == path else value for key, value in named.items()}
 
 
