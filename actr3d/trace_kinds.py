@@ -96,7 +96,7 @@ trace_kind(
     meaning="the trace of a run begins: the model's class, its seed and profile",
     group="run",
 )
-trace_kind("command", level="production", source="top model", data="command data", meaning="a user changes the run", group="command")
+trace_kind("command", level="production", source="top model", data="command data [by]", meaning="a user changes the run", group="command")
 trace_kind(
     "select",
     level="production",

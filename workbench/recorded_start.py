@@ -28,7 +28,8 @@ class Beginning(msgspec.Struct, frozen=True, kw_only=True):
     helpers: dict[str, tuple[str, str]]
     """The file and text of each helper module, by name."""
     commands: list[tuple[int, int, dict[str, Any]]]
-    """The commands of users: the run, the tick after which each was given (for a program: the time [us]), and the command."""
+    """The commands of users: the run, the tick after which each was given (for an agent without a simulation: the time [us]), and the
+    command."""
 
 
 def beginning_of(path: Path) -> Beginning:

@@ -13,6 +13,8 @@ from actr3d.clock import seconds
 from actr3d.errors import RecordingError
 from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
+from actr3d.recording.schema import is_of_simulation
+from actr3d.runner.program_changes import USER, of_user
 from actr3d.trace import TraceEvent
 from workbench.live_parameters import parameter_set_by
 from workbench.loader import listing_of
@@ -75,29 +77,35 @@ def _settings_of(facts: dict[str, Any]) -> dict[str, Any]:
 
 def _units(recorded: Recorded, parameters: Iterable[Parameter]) -> dict[str, str]:
     """Returns the units of the model's parameters that have one, and of the widths of apertures, by name."""
-    world: dict[str, Any] = recorded.facts.get("world") or {}
-    units: dict[str, str] = dict.fromkeys(world.get("apertures", ()), "m")
+    facts = recorded.facts
+    worlds = [facts.get("world"), *(fact.get("world") for name, fact in facts.items() if is_of_simulation(name) and fact is not None)]
+    units = {aperture: "m" for world in worlds if world is not None for aperture in world.get("apertures", ())}
     return units | {one.name: one.unit for one in parameters if one.unit is not None}
 
 
 def _changed(recorded: Recorded, parameters: Sequence[Parameter]) -> dict[str, list[list[Any]]]:
-    """Returns the parameters and apertures that users changed during the run, as pairs of time [s] and new value.
-
-    In a program, users can change neither; it gives its simulations commands itself.
-    """
-    if recorded.facts["kind"] == "program":
-        return {}
+    """Returns the parameters and apertures that users changed during the run, as pairs of time [s] and new value."""
     from actr3d.simulation import Command  # takes long to import; the server needs only the names in this module
 
-    period = recorded.facts.get("period_us", 0)
     found: dict[str, list[list[Any]]] = {}
-    for one in (Command.from_data(command.tick, command.data) for command in recorded.commands()):
+    for time, one in ((time, Command.from_data(0, data)) for time, data in _commands(recorded)):
         set_by = parameter_set_by(parameters, one.word, one.values, one.named, one.body)
         if set_by is not None:
-            found.setdefault(set_by[0].name, []).append([seconds(one.tick * period), set_by[1]])
+            found.setdefault(set_by[0].name, []).append([time, set_by[1]])
         elif one.word == "aperture" and one.values:
-            found.setdefault(str(one.named.get("name", one.word)), []).append([seconds(one.tick * period), one.values[0]])
+            found.setdefault(str(one.named.get("name", one.word)), []).append([time, one.values[0]])
     return found
+
+
+def _commands(recorded: Recorded) -> Iterator[tuple[float, dict[str, Any]]]:
+    """Yields the time [s] and the data of each command of a user; those that a program gives its simulations itself are left out."""
+    if recorded.facts["kind"] != "program":
+        period = recorded.facts.get("period_us", 0)
+        yield from ((seconds(tick * period), data) for _, tick, data in recorded.commands())
+    elif of_user(recorded.commands()):
+        yield from (
+            (event.time, event.data) for event in timed_events(recorded) if event.kind == "command" and event.data.get("by") == USER
+        )
 
 
 def _source(facts: dict[str, Any]) -> str:

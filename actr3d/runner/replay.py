@@ -119,7 +119,7 @@ def _replay_program(recorded: Recorded, helpers: HelperTexts, progress: Progress
     limits = RunLimits(seed=facts["seed"], until=facts["until"], trace=trace)
     changes = ProgramChanges(limits, of_user(recorded.commands()))
     if changes.known:
-        limits.passing = changes.repeat
+        limits.passing, limits.ticked = changes.repeat, changes.ticked
     trouble = ""
     try:
         with ProgramOutput(limits) as output:

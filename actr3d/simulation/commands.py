@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Any, cast
@@ -29,17 +29,20 @@ class Command:
     """Its keyword arguments."""
     body: str | None = None
     """The body that receives it; None for the world or the agents."""
+    by: str | None = None
+    """In a program: `user` if its user gives it, None if the program gives it itself."""
 
     def to_data(self) -> dict[str, Any]:
         """Returns the command as plain values."""
-        return {"command": self.word, "data": {"values": list(self.values), "named": dict(self.named), "body": self.body}}
+        data = {"command": self.word, "data": {"values": list(self.values), "named": dict(self.named), "body": self.body}}
+        return data if self.by is None else {**data, "by": self.by}
 
     @classmethod
     def from_data(cls, tick: int, data: Mapping[str, Any]) -> Command:
         """Returns the command that `to_data` described."""
         given = data["data"]
         named = {name: _fixed(value) for name, value in given["named"].items()}
-        return cls(tick, data["command"], tuple(map(_fixed, given["values"])), named, given["body"])
+        return cls(tick, data["command"], tuple(map(_fixed, given["values"])), named, given["body"], data.get("by"))
 
     def carry_out(self, world: World, agents: Agents, *, only_agents: bool = False) -> None:
         """Carries it out.
@@ -64,7 +67,9 @@ class Command:
             change.carry_out(world)
 
 
-def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, world: World) -> Command:
+def command_of(
+    tick: int, word: str, values: Sequence[Any], named: Mapping[str, Any], body: str | None, by: str | None, world: World
+) -> Command:
     """Returns a command, with the body that receives it.
 
     Raises:
@@ -82,7 +87,7 @@ def command_of(tick: int, word: str, values: tuple[Any, ...], named: Mapping[str
         (body,) = bodies
     if body is not None and body not in bodies:
         raise SimulationError(f"command '{word}': no body '{body}'{alternatives(body, bodies)}")
-    return Command(tick, word, tuple(map(_fixed, values)), {name: _fixed(value) for name, value in named.items()}, body)
+    return Command(tick, word, tuple(map(_fixed, values)), {name: _fixed(value) for name, value in named.items()}, body, by)
 
 
 def _fixed(value: Any) -> Any:

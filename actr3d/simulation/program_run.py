@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from actr3d.actr.changes import AgentChange
 from actr3d.actr.kernel.run_limits import Contacts, Recorder
 from actr3d.actr.modules.port import Request
+from actr3d.change import CHANGES
 from actr3d.recording.schema import SIMULATION
 from actr3d.simulation.commands import Command
 from actr3d.simulation.surroundings import scene_facts
-from actr3d.trace import Run, Trace, TraceEvent, with_number
+from actr3d.trace import Run, Trace, TraceEvent, renumbered, with_number
 from actr3d.trace_kinds import KINDS, LEVELS
 from actr3d.world import World
 
@@ -73,7 +75,7 @@ class ProgramRun:
         return self._run_number
 
     def _pass_on(self, event: TraceEvent, trace: Trace) -> None:
-        trace.emit(*with_number(event, self.number))
+        trace.emit(*with_number(_with_path(event, self.number), self.number))
 
     # -- for the trace
 
@@ -101,3 +103,14 @@ class ProgramRun:
         present = self._present()
         if present is not None:
             present.stop()
+
+
+def _with_path(event: TraceEvent, number: int) -> TraceEvent:
+    """Returns an event; if it is a change of an agent, with the path of the changed part in the trace of the program."""
+    if number == 1 or event.kind != "command":
+        return event
+    change, given = CHANGES.get(event.data["command"]), event.data["data"]
+    if change is None or not issubclass(change, AgentChange) or "values" not in given:  # `Trace.command` takes any data
+        return event
+    values, named = change.renamed(given["values"], given["named"], lambda path: renumbered(path, number))
+    return TraceEvent(event.time_us, event.source, event.kind, {**event.data, "data": {**given, "values": values, "named": named}})

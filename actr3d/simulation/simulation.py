@@ -317,8 +317,24 @@ class Simulation:
             SimulationError: If there is no such command or body, or a tick waits for its tock.
             Exception: What the world or the body raises; then nothing was done.
         """
+        self.carry_out(word, values, named, body)
+
+    def carry_out(self, word: str, values: Sequence[Any], named: Mapping[str, Any], body: str | None, *, by: str | None = None) -> None:
+        """Does what `command` does; for runners.
+
+        Args:
+            word: The command.
+            values: Its values.
+            named: More values, by name.
+            body: The body that carries it out; None for the only one.
+            by: Who gives it; see `Command.by`.
+
+        Raises:
+            SimulationError: As `command` does.
+            Exception: As `command` does.
+        """
         with self._call():
-            self.timeline.command(word, values, named, body)
+            self.timeline.command(word, values, named, body, by)
         self.event_log.check()
 
     def plan(self, commands: Sequence[Command], ticks: int = 0) -> None:

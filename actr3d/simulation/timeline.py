@@ -185,7 +185,7 @@ class Timeline:
                 history.keep(ticks, self._world.state())
         self._log.state(ticks)
 
-    def command(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None) -> None:
+    def command(self, word: str, values: Sequence[Any], named: Mapping[str, Any], body: str | None, by: str | None) -> None:
         """Carries out a new command of a user; after the run went back, its former future is forgotten.
 
         Raises:
@@ -193,7 +193,7 @@ class Timeline:
             Exception: What the world or the body raises; then nothing is forgotten.
         """
         lockstep, history = self.lockstep, self._history
-        command, before = command_of(lockstep.ticks, word, values, named, body, self._world), lockstep.commands
+        command, before = command_of(lockstep.ticks, word, values, named, body, by, self._world), lockstep.commands
         with self._log.holding():
             lockstep.command(command)
             if lockstep.ticks < history.ticks or before < len(history.commands):

@@ -62,7 +62,7 @@ export function Aperture() {
   const { bodies = {}, widths = {} } = session.value?.world ?? {};
   const shoulders = Object.values(bodies).find((body) => body.shoulders)?.shoulders;
   const reading = html`<output id="width">${cm.toFixed(0)} cm${shoulders ? html` <span class="quiet">A/S ${(cm / 100 / shoulders).toFixed(2)}</span>` : null}</output>`;
-  if (!widths[name.value]) return html`<span class="aperture" title="The free width of the doorway; that of a program cannot be changed by hand"><${Name} /> ${reading}</span>`;
+  if (!widths[name.value]) return html`<span class="aperture" title="The free width of the doorway"><${Name} /> ${reading}</span>`;
   const [least, most] = widths[name.value];
   return html`<span class="aperture" title="The free width of the doorway; it changes while the run goes on, and is recorded">
     <${Name} />

@@ -19,15 +19,6 @@ export function changesOf(of) {
   return changes.value.filter((one) => one.of === of);
 }
 
-/** What a program that has made its own simulation does not accept, and why. */
-export const OF_PROGRAM = "A program that makes its own Simulation changes its agents and its world itself, with simulation.command. With a function build that returns the Simulation, they can be changed here by hand.";
-
-/** The note in a panel whose contents can be changed by hand in other runs, but not in this one. */
-export function NotByHand() {
-  if (!alive.value || session.value.kind !== "program" || changes.value.length > 0) return null;
-  return html`<p class="at-start quiet">${OF_PROGRAM}</p>`;
-}
-
 /** Makes a change; returns {made, problem}: whether it is made, and why it cannot be. The user may also decide against it: then there is no problem. */
 async function make(word, named) {
   try {

@@ -5,14 +5,14 @@ import { command } from "../commands.js";
 import { isLeft } from "../server.js";
 import { runStatus } from "../run_status.js";
 import { alive, complain, events } from "../store.js";
-import { commandText } from "../timeline/commands.js";
+import { commandText, isOfUser } from "../timeline/commands.js";
 import { present } from "../timeline/seek.js";
 import { changes } from "./changes.js";
 
 /** Returns the event of the last change by hand up to the present moment; undefined if none is known. */
 function latest() {
   const now = present.peek() * 1e6 + 0.5;
-  return events.peek().list.findLast(([time, , kind]) => kind === "command" && time <= now);
+  return events.peek().list.findLast((event) => event[2] === "command" && event[0] <= now && isOfUser(event));
 }
 
 /** Whether there may be a change to undo: one that is known, or one that is no longer kept here. */

@@ -1,7 +1,7 @@
 // Events as text: groups of kinds, and each event as a line.
 
 import { chunkText, requestText, valueText } from "../parts/chunk.js";
-import { commandText } from "../timeline/commands.js";
+import { commandText, isOfUser } from "../timeline/commands.js";
 import { GROUPS as REGISTERED, TEXTS } from "../trace_kinds.js";
 
 
@@ -20,7 +20,7 @@ export function isInGroups(names) {
 /** Texts that need more than the data's values. */
 const OWN_TEXTS = {
   compile: (data) => ["compiled", `${data.production} from ${(data.parents ?? []).join(" and ")}`],
-  command: (_data, event) => ["user", commandText(event).join(" ")],
+  command: (_data, event) => [isOfUser(event) ? "user" : "program", commandText(event).join(" ")],
   contact: ({ force, lasts }) => ["touch", `begins: ${(1000 * lasts).toFixed(0)} ms, with up to ${force.toFixed(0)} N`],
   planning_unit: (data) => ["plan", `${data.name} ${data.what}${data.by ? ` by ${data.by}` : ""}`],
   conflict: (data) => ["matching", Object.keys(data.utilities ?? {}).join(", ") || "none"],

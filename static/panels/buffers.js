@@ -9,7 +9,7 @@ import { Module, Plain, useRequests } from "../inspector/modules.js";
 import { Result } from "../inspector/result.js";
 import { Icon } from "../parts/icon.js";
 import { chunkText, slotsOf, writtenChunk } from "../parts/chunk.js";
-import { changesOf, NotByHand, useChange } from "../changes/changes.js";
+import { changesOf, useChange } from "../changes/changes.js";
 import { Problem } from "../parts/problem.js";
 import { counted } from "../parts/count.js";
 import { nothing, runStatus } from "../run_status.js";
@@ -177,7 +177,6 @@ function Buffers() {
   const run = `${session.value?.id} ${session.value?.run}`;
   return html`<div class="agent-parts" key=${run}>
     <${AtStart} />
-    <${NotByHand} />
     ${state.value.result ? html`<${Result} result=${state.value.result} />` : null}
     ${groups.map(([agent, own]) => html`<${Agent} key=${agent} agent=${agent} paths=${own} parts=${parts} requests=${requests} several=${groups.length > 1} />`)}
   </div>`;

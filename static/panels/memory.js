@@ -1,7 +1,7 @@
 // Declarative memory: its chunks with their activations, the body schema in it, and what the eyes found last.
 
 import { html, signal, useEffect, useState } from "../vendor/preact.js";
-import { changesOf, NotByHand, useChange } from "../changes/changes.js";
+import { changesOf, useChange } from "../changes/changes.js";
 import { Problem } from "../parts/problem.js";
 import { AtStart } from "../inspector/at_start.js";
 import { MemoryTable } from "../inspector/memory_table.js";
@@ -95,7 +95,6 @@ function Memory() {
   const memory = memories.includes(wanted.value) ? wanted.value : memories[0];
   return html`<div class="memory" key="${session.value?.id} ${session.value?.run}">
     <${AtStart} />
-    <${NotByHand} />
     ${views.length > 1 || memories.length > 1
       ? html`<div class="tools heads">
           ${views.length > 1

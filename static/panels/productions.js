@@ -1,7 +1,6 @@
 // The productions: the firing trace above, and the explanations below: conditions, the conflict set, retrievals.
 
 import { html, useLayoutEffect, useState } from "../vendor/preact.js";
-import { NotByHand } from "../changes/changes.js";
 import { AtStart } from "../inspector/at_start.js";
 import { at, question, shownReasons } from "../inspector/asked.js";
 import { HeldNote, held } from "../inspector/breakpoints.js";
@@ -88,7 +87,6 @@ function Reasons() {
       ${shown === "why" ? html`<${ProductionList} all=${all} chosen=${chosen} />` : null}
       <div class="reasons-text" tabindex="0" role="region" aria-label="Explanation">
         <${AtStart} />
-        <${NotByHand} />
         <${Waiting} answer=${result} />
         ${result.error && at.value !== null ? html`<${Elsewhere} />` : null}
         ${shown === "why" ? html`<div id="why-text">${result.error ? null : html`<${Why} item=${chosen} />`}</div>` : null}

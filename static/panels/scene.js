@@ -1,7 +1,7 @@
 // The 3D view: viser's page in a frame that never moves, because moving it would reload it; and the buttons on its edge.
 
 import { html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
-import { askAndMake, changesOf, OF_PROGRAM } from "../changes/changes.js";
+import { askAndMake, changesOf } from "../changes/changes.js";
 import { RetinaInset } from "../eye/inset.js";
 import { command, commandsOf } from "../commands.js";
 import { hearKeys, noteKey, buttonTitle } from "../keys.js";
@@ -54,7 +54,7 @@ function ViewBar() {
         ${Object.entries(VIEWS).map(([id, title]) => html`<option key=${id} value=${id}>${title}</option>`)}
       </select>
       <button aria-label="Reset view" title=${buttonTitle(reset)} onClick=${resetView}><${Icon} name="restart" /></button>
-      ${canMove() || isOfProgram() ? html`<button disabled=${!canMove()} aria-label="Move, push …" title=${canMove() ? MOVES : OF_PROGRAM} onClick=${moveOrPush}><span class="in-words">Move, push …</span><${Icon} name="move" /></button>` : null}
+      ${canMove() ? html`<button aria-label="Move, push …" title="Move or push a body or an object of the scene" onClick=${moveOrPush}><span class="in-words">Move, push …</span><${Icon} name="move" /></button>` : null}
       <button aria-expanded=${open.value} aria-label="Overlays" title="Overlays: what is drawn over the scene" onClick=${() => (open.value = !open.value)} onKeyDown=${hideByEscape}><span class="in-words">Overlays</span><${Icon} name="layers" /></button>
       <button aria-label="Save the 3D view as a picture" title=${buttonTitle(keep)} onClick=${keepPicture}><${Icon} name="download" /></button>
       <button aria-label="Make a video of the 3D view" title=${buttonTitle(film)} onClick=${makeVideo}><${Icon} name="film" /></button>
@@ -69,13 +69,6 @@ function ViewBar() {
         </label>`,
       )}
     </div>`}</div>`;
-}
-
-const MOVES = "Move or push a body or an object of the scene";
-
-/** Whether the scene is that of a program. */
-function isOfProgram() {
-  return alive.value && session.value.kind === "program";
 }
 
 function canMove() {

@@ -20,7 +20,8 @@ export class Former {
   take(event) {
     const setting = settingOf(event[3]);
     if (setting === null || setting.of === "place") return; // a thing may have moved since it was put somewhere
-    const { of, key, text } = setting;
+    const { of, text } = setting;
+    const key = keyOf(event, setting);
     const known = of === "buffer" ? this.#buffers.get(named(event[3]).buffer)?.[1] || "empty" : (this.#values.get(key) ?? startOf(setting, event[3]));
     if (known !== undefined) before.set(event, known);
     this.#values.set(key, text);
@@ -29,10 +30,11 @@ export class Former {
 
 const cm = (width) => String(Number((100 * width).toFixed(1)));
 
-/** Returns the width of an aperture or the value of a model's parameter at the start of the run as text; undefined for other values. */
+/** Returns the width of an aperture or the value of a model's parameter at the start of the run as text; undefined for other values, and in
+ * a program, whose simulations may have begun with other widths than the one that is shown. */
 function startOf({ of, parameter }, { data }) {
-  const { world, parameters } = session.peek() ?? {};
-  const width = of === "aperture" ? world?.openings?.[data?.named?.name ?? "aperture"] : undefined;
+  const { kind, world, parameters } = session.peek() ?? {};
+  const width = of === "aperture" && kind !== "program" ? world?.openings?.[data?.named?.name ?? "aperture"] : undefined;
   if (width !== undefined) return cm(width);
   return parameter && parameter.name in (parameters ?? {}) ? valueText(parameters[parameter.name]) : undefined;
 }
@@ -106,8 +108,16 @@ export function commandText(event, first = event) {
   return [changeOf(event[3]) && command !== "aperture" ? command.replaceAll("_", " ") : command, dataText(event, first)];
 }
 
+/** Returns the key of what a command sets; the simulations of a program have things of the same name. */
+const keyOf = ([, source], { key }) => `${source} ${key}`;
+
 /** Whether two commands set the same value. */
 export function setTheSame(event, other) {
   const [one, two] = [settingOf(event[3]), settingOf(other[3])];
-  return one !== null && two !== null && one.key === two.key;
+  return one !== null && two !== null && keyOf(event, one) === keyOf(other, two);
+}
+
+/** Whether a command comes from a user: a program can give its simulations commands itself. */
+export function isOfUser([, , , { by }]) {
+  return session.peek()?.kind !== "program" || by === "user";
 }

@@ -402,7 +402,7 @@ def test_a_warning_is_shown_where_the_run_has_given_it_and_nowhere_else(pages: C
 
 OWN = """from actr3d.actr import *
 from actr3d.simulation import Simulation
-from actr3d.world import Floor, Scene
+from actr3d.world import Aperture, Floor, Scene, Wall
 
 class Mind(ACTR):
     goal = Buffer()
@@ -415,20 +415,41 @@ class Mind(ACTR):
     def go(goal="on"):
         goal.set("off")
 
-Simulation(Scene(parts=(Floor(),)), bodiless={"mind": Mind}).run(1)
+simulation = Simulation(Scene(parts=(Floor(), Aperture(), Wall(name="wall", start=(1, 1), end=(1, 2)))), bodiless={"mind": Mind})
+simulation.run(0.1)
+simulation.command("aperture", 0.8)
+simulation.run(1)
 """
-"""A program that makes its own simulation."""
+"""A program that makes its own simulation, and gives it a command."""
 
 
-def test_the_panels_of_a_program_with_its_own_simulation_say_once_that_it_cannot_be_changed_by_hand(
+def test_a_program_with_its_own_simulation_is_changed_by_hand_in_its_panels_and_its_scene(
     pages: Callable[..., Page], workbench: Served
 ) -> None:
     (workbench.folder / "own.py").write_text(OWN, encoding="utf-8")
     page = pages("own.py", tab="buffers")
     shows(page, "tr[data-path='mind.goal']", "empty")
-    for tab in ("Buffers", "Memory", "Productions"):
-        open_tab(page, tab)
-        expect(page.get_by_text("A program that makes its own Simulation changes its agents and its world itself")).to_have_count(1)
-    page = pages("counting.py", tab="buffers")
-    shows(page, "#status", "at its start")
-    expect(page.get_by_text("A program that makes its own Simulation")).to_have_count(0)
+    page.get_by_role("button", name="Edit goal").click()
+    page.get_by_label("Chunk of goal").fill("other 1")
+    page.get_by_label("Chunk of goal").press("Enter")
+    shows(page, "tr[data-path='mind.goal']", "other1")
+    page.get_by_role("button", name="Move, push").click()
+    page.get_by_role("dialog").get_by_role("button", name="Move …").click()
+    page.get_by_label("x [m]").fill("2")
+    page.get_by_label("y [m]").fill("0")
+    page.get_by_role("dialog").get_by_role("button", name="Move", exact=True).click()
+    until(page, lambda: len(commands(page)) == 2)
+    assert commands(page) == ["set buffer mind.goal empty -> other 1", "move wall to (2, 0) m"]
+    say(page, type="until", time=0.05)
+    shows(page, "#time", r"0\.05")
+    slider = page.get_by_role("slider", name="aperture", exact=True)
+    slider.focus()
+    slider.press("ArrowRight")
+    until(page, lambda: re.fullmatch(r"aperture \d+ cm", commands(page)[-1]) is not None)
+    say(page, type="until", time=0.2)
+    shows(page, "#time", r"0\.20")
+    until(page, lambda: commands(page)[-1].endswith("-> 80 cm"))  # by the program itself
+    page.locator("#status").click()
+    page.keyboard.press("Control+z")
+    shows(page, "#status", r"undone at 0\.05 s; a branch was kept")
+    until(page, lambda: len(commands(page)) == 2)

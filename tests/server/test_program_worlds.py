@@ -8,11 +8,15 @@ from typing import Any
 
 import pytest
 
+from actr3d.recording import Recorded
+from actr3d.runner.replay import replay
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from tests.server.test_html_replay import inside, numbers
 from workbench.csv_files import write_states_csv
 from workbench.exports import curves_of
 from workbench.html_replay.make import write_replay
+from workbench.recording_diff import compare
+from workbench.retention import copied_from
 
 EXAMPLE = """from actr3d.actr import *
 from actr3d.simulation import BodyPort, Simulation
@@ -99,7 +103,11 @@ def test_a_program_that_makes_a_simulation_stands_at_its_start_with_its_scene(de
     talk = desk.begin(tmp_path, ONE)
     assert talk.session.facts is not None
     assert talk.session.facts.mj_model is not None
-    assert (talk.facts["kind"], list(talk.facts["world"]["bodies"]), talk.facts["world"]["widths"]) == ("program", ["walker"], {})
+    assert (talk.facts["kind"], list(talk.facts["world"]["bodies"]), talk.facts["world"]["widths"]) == (
+        "program",
+        ["walker"],
+        {"aperture": [0, 300]},
+    )
     assert (talk.state["time"], talk.state["apertures"]) == (0, {"aperture": pytest.approx(0.7)})
     assert [event[3]["text"] for event in talk.events if event[2] == "output"] == ["begins"]
     assert talk.say("view")["extents"]
@@ -236,10 +244,186 @@ def test_of_more_simulations_than_are_kept_those_near_the_present_keep_their_pas
     assert third() == before
 
 
-def test_a_command_to_a_program_is_refused_in_words(desk: Desk, tmp_path: Path) -> None:
+def recorded_commands(path: Path) -> list[Any]:
+    """Returns the commands of a recording, which its replay repeats exactly."""
+    with Recorded(path) as recorded:
+        assert replay(recorded).difference is None
+        return [(command.run, command.tick, command.data["command"], command.data.get("by")) for command in recorded.commands()]
+
+
+def test_the_world_of_a_program_is_changed_by_hand_and_the_change_is_repeated_and_undone(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, ONE, record=True)
+    assert talk.facts["world"]["objects"] == ["walker"]
+    assert {one["of"] for one in talk.facts["changes"]} > {"object", "aperture", "buffer"}
+    draw(talk)
+    seen: dict[float, Any] = {}
+    for time, word, values in ((0.0, "aperture", [0.9]), (0.2, "move", ["walker", 0.5, 0.25]), (0.4, "push", ["walker", 90, 0.1])):
+        if time > 0:
+            talk.say("until", time=time)
+            talk.until("paused", time=time)
+        talk.say("command", word=word, values=values)
+    assert talk.state["apertures"] == {"aperture": pytest.approx(0.9)}
+    for time in (0.3, 0.7):
+        talk.say("until" if time > 0.4 else "seek", time=time)
+        talk.until("paused", time=time)
+        seen[time] = told(talk)
+    moved = dict(zip(talk.say("curves", most=5_000)["times"], talk.say("curves", most=5_000)["curves"]["walker y"], strict=True))
+    assert moved[0.2] == pytest.approx(0, abs=0.02)
+    assert moved[0.21] == pytest.approx(0.25, abs=0.02)
+    assert [data["command"] for _, _, kind, data in talk.events if kind == "command"] == ["aperture", "move", "push"]
+    for time in (0.3, 0.7, 0.3):
+        talk.say("seek", time=time)
+        talk.until("paused", time=time)
+        now = told(talk)
+        assert [name for name in now if now[name] != seen[time][name]] == [], f"at {time} s"
+    talk.say("undo")
+    assert talk.until("paused", time=0.2, furthest=0.2)["reason"] == "undone at 0.20 s; a branch was kept"
+    assert [data["command"] for _, _, kind, data in talk.say("events")["events"] if kind == "command"] == ["aperture"]
+    talk.say("until", time=0.3)
+    talk.until("paused", time=0.3)
+    assert max(value for value in talk.say("curves", most=5_000)["curves"]["walker y"] if value is not None) < 0.1
+    path = talk.sessions.recordings.path(talk.session.recording or "")
+    desk.do(talk.session.close())
+    (branch,) = [one for one in path.parent.glob("*.sqlite") if copied_from(one.stem) is not None]
+    assert recorded_commands(path) == [(1, 0, "aperture", "user")]
+    assert recorded_commands(branch) == [(1, 0, "aperture", "user"), (1, 20, "move", "user"), (1, 40, "push", "user")]
+
+
+def test_of_several_simulations_the_agents_of_the_present_one_are_changed_by_their_names_in_the_program(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, TRIALS, record=True)
+    talk.say("until", time=0.5)
+    talk.until("paused", time=0.5)  # at the end of the first simulation
+    talk.say("command", word="aperture", values=[0.65])
+    talk.say("step", ticks=1)
+    talk.until("paused", time=0.51)
+    with pytest.raises(RefusedError, match=r"'walker\.goal' is not in the simulation that runs at this moment, 'top#3'"):
+        talk.say("command", word="set_buffer", values=["walker.goal", "other"])
+    with pytest.raises(RefusedError, match=r"'top#2\.walker\.goal' is not in the simulation that runs at this moment, 'top#3'"):
+        talk.say("command", word="set_buffer", named={"buffer": "top#2.walker.goal", "chunk": "other"})
+    talk.say("command", word="set_buffer", named={"buffer": "top#3.walker.goal", "chunk": "other"})
+    assert [talk.state["parts"][f"top#{n}.walker.goal"]["chunk"] for n in (2, 3)] == [{"0": "walk"}, {"0": "other"}]
+    talk.say("run")
+    talk.until("ended")
+    first = talk.say("events", most=20_000)["events"]
+    assert [(source, data["data"]["named"]) for _, source, kind, data in first if kind == "command"] == [
+        ("top#2", {}), ("top#3", {"buffer": "top#3.walker.goal", "chunk": "other"})
+    ]  # fmt: skip
+    talk.say("seek", time=0.2)
+    talk.until("paused", time=0.2)
+    talk.say("run")
+    talk.until("ended")
+    assert talk.say("events", most=20_000)["events"] == first
+    path = talk.sessions.recordings.path(talk.session.recording or "")
+    desk.do(talk.session.close())
+    assert recorded_commands(path) == [(2, 40, "aperture", "user"), (3, 1, "set_buffer", "user")]
+
+
+def test_changes_at_the_start_of_a_simulation_come_after_those_at_the_end_of_the_one_before(desk: Desk, tmp_path: Path) -> None:
+    walls = "Simulation(Scene(parts=(Floor(), Mannequin(name='walker')))).run(0.04)\n"
+    minds = "Simulation(Scene(parts=(Floor(), Aperture(width=0.9))), bodiless={'mind': Walker}).run(0.04)\n"
+    talk = desk.begin(tmp_path, EXAMPLE.replace("BodyPort()", "Buffer()") + walls + minds, record=True)
+    talk.say("until", time=0.04)
+    talk.until("paused", time=0.04)
+    talk.say("command", word="move", values=["walker", 0.5, 0.5])
+    talk.say("until", buffer="top#2.mind.goal")
+    talk.wait(lambda: talk.state["status"] == "paused" and talk.state["apertures"])
+    assert (talk.state["time"], talk.state["apertures"]) == (0.04, {"aperture": pytest.approx(0.9)})
+    for width in (0.8, 0.7):
+        talk.say("command", word="aperture", values=[width])
+    talk.say("run")
+    talk.until("ended", time=0.08)
+
+    def given() -> list[list[Any]]:
+        return [data["data"]["values"] for _, _, kind, data in talk.say("events")["events"] if kind == "command"]
+
+    move = ["walker", 0.5, 0.5]
+    assert given() == [move, [0.8], [0.7]]
+    talk.say("undo")
+    talk.until("paused", time=0.04, furthest=0.04)
+    assert (talk.state["apertures"], given()) == ({"aperture": pytest.approx(0.8)}, [move, [0.8]])
+    talk.say("undo")
+    talk.wait(lambda: talk.state["apertures"] == {})  # at the end of the simulation before
+    assert given() == [move]
+    talk.say("run")
+    talk.until("ended", time=0.08)
+    assert talk.state["apertures"] == {"aperture": pytest.approx(0.9)}
+    path = talk.sessions.recordings.path(talk.session.recording or "")
+    desk.do(talk.session.close())
+    assert recorded_commands(path) == [(1, 4, "move", "user")]
+
+
+def test_commands_of_a_program_itself_are_repeated_by_the_program_and_are_not_undone(desk: Desk, tmp_path: Path) -> None:
+    source = (
+        EXAMPLE
+        + """
+simulation = Simulation(Scene(parts=(Floor(), Aperture(width=0.7), Mannequin(name="walker"))), {"walker": Walker}, seed=1)
+simulation.run(0.1)
+simulation.command("aperture", 0.8)
+simulation.run(0.1)
+"""
+    )
+    talk = desk.begin(tmp_path, source, record=True)
+    talk.say("until", time=0.1)
+    talk.until("paused", time=0.1)
+    talk.say("command", word="aperture", values=[0.5])
+    talk.say("run")
+    talk.until("ended")
+    assert talk.state["apertures"] == {"aperture": pytest.approx(0.8)}
+    path = talk.sessions.recordings.path(talk.session.recording or "")
+    assert recorded_commands(path) == [(1, 10, "aperture", "user"), (1, 10, "aperture", None)]
+    compared = compare(path, path)
+    assert (compared["changed"], compared["units"]) == ([{"aperture": [[0.1, 0.5]]}] * 2, {"aperture": "m"})
+    opened = Talk(desk, desk.do(talk.sessions.reopen(path.stem)), talk.sessions)
+    opened.until("paused", time=0)
+    opened.say("run")
+    opened.until("ended")
+    assert not [notice for notice in opened.notices if "differ" in notice["text"]]
+    opened.say("undo")
+    opened.until("paused", time=0.1, furthest=0.1)
+    with pytest.raises(RefusedError, match=r"undo: nothing was changed by hand up to 0\.1 s"):
+        opened.say("undo")
+
+
+def test_a_simulation_that_its_program_has_taken_back_is_not_changed_by_hand(desk: Desk, tmp_path: Path) -> None:
+    source = (
+        EXAMPLE
+        + """
+simulation = Simulation(Scene(parts=(Floor(), Aperture())))
+simulation.run(0.1)
+simulation.seek(0.05)
+simulation.run(0.1)
+"""
+    )
+    talk = desk.begin(tmp_path, source, record=True)
+    talk.say("until", time=0.08)
+    talk.until("paused", time=0.08)
+    talk.say("command", word="aperture", values=[0.5])
+    talk.say("until", time=0.13)
+    talk.until("paused", time=0.13)
+    with pytest.raises(
+        RefusedError, match="'aperture' cannot be done: the program has taken this simulation back to an earlier time itself"
+    ):
+        talk.say("command", word="aperture", values=[0.4])
+    talk.say("undo")
+    talk.until("paused", time=0.08)
+
+
+def test_a_program_says_what_cannot_be_changed_at_this_moment(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, ONE)
-    with pytest.raises(RefusedError, match="in a program, only agents without a body can be changed"):
-        talk.say("command", word="aperture", values=[0.5])
+    with pytest.raises(RefusedError, match="parameters of a program cannot change while it runs"):
+        talk.say("set", name="speed", value=1)
+    with pytest.raises(RefusedError, match="no body 'walkr'; did you mean 'walker'"):
+        talk.say("command", word="walk", values=[1], body="walkr")
+    with pytest.raises(RefusedError, match=r"no buffer 'walker\.goa'; did you mean 'walker\.goal'"):
+        talk.say("command", word="clear_buffer", values=["walker.goa"])
+    silent = TRIALS.partition("for width")[0].replace(
+        "Silent().run(0.1)", "Simulation(Scene(parts=(Floor(),))).run(0.1)\nSilent().run(0.1)"
+    )
+    talk = desk.begin(tmp_path, silent)
+    talk.say("until", time=0.15)
+    talk.until("paused", time=0.15)
+    with pytest.raises(RefusedError, match="'walk' cannot be done: no simulation runs at this moment, but an agent without a body"):
+        talk.say("command", word="walk", values=[1], body="walker")
 
 
 def test_a_program_that_makes_a_simulation_and_fails_before_that_says_so(desk: Desk, tmp_path: Path) -> None:

@@ -51,7 +51,8 @@ for some in ([apertures] if "narrow" in str(judge.goal.chunk) else [apertures[:1
     Simulation(Scene(parts=(Floor(), Mannequin(name="walker"), *some))).run(0.1)
 """
 """What its agent has in mind decides which simulations it makes."""
-MODELS = {"program": (PROGRAM, "top", ""), "simulation": (BUILT, "mind", "mind.")}
+OWN = BUILT.partition("def build")[0] + 'Simulation(Scene(parts=(Floor(),)), bodiless={"mind": Counter}).run(3)\n'
+MODELS = {"program": (PROGRAM, "top", ""), "simulation": (BUILT, "mind", "mind."), "own simulation": (OWN, "mind", "mind.")}
 """By kind of model: its text, the path of its agent, and the start of the paths of its parts."""
 
 

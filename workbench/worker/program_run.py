@@ -6,6 +6,7 @@ from array import array
 from collections import Counter, defaultdict, deque
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -194,6 +195,10 @@ class ProgramRun(ControlledRun):
         self._waits: tuple[Scheduler, int, int] | None = None
         """While a model without a body waits for its time to pass: its scheduler, the time of its latest event [us], and the time of the
         program then [us]."""
+        self._ticked: Simulation | None = None
+        """While a simulation waits for its next tick: this simulation."""
+        self._made_at: list[int] = []
+        """When each of the known changes up to the present was made: the time of the program [us]."""
         self._undoing: KeptBranch | None = None
         """While the program is run again up to a change that a user has undone: what is kept of its future."""
         self._changed = False
@@ -262,14 +267,18 @@ class ProgramRun(ControlledRun):
         parameters = to_json({**known, **self._controller.channel.start.settings}).encode()
         self._scene = mj_model, world = self._scene_now()
         period = seconds(self.period)
-        changes = change_menu(agents_only=True) if self._shown is None else b"[]"
+        changes = change_menu(agents_only=self._shown is None)
         facts = Facts(
             kind="program", seed=self._seed, period=period, parameters=parameters, world=world, mj_model=mj_model, changes=changes
         )
         self._controller.channel.post(facts)
 
     def _scene_now(self) -> tuple[bytes | None, bytes]:
-        return (None, b"null") if self._shown is None else (self._shown.mj_model, to_json(self._shown.world()).encode())
+        return (
+            (None, b"null")
+            if self._shown is None
+            else (self._shown.mj_model, to_json(self._shown.world(self._listing.parameters)).encode())
+        )
 
     def _run_once(self) -> None:
         """Runs the program from its start to its end, or until it is left."""
@@ -277,10 +286,11 @@ class ProgramRun(ControlledRun):
         self._again = False
         self._clock = self._begun = self._runs = 0
         self._held.clear()
-        self._shown = self._waits = self._recorded = None
+        self._shown = self._waits = self._ticked = self._recorded = None
         self._changed = False
         self._tick_begin = None
         self._event_times = array("q")
+        self._made_at.clear()
         self._run_times.clear()
         self._failed = ""
         trace = Trace("all")
@@ -409,7 +419,14 @@ class ProgramRun(ControlledRun):
             self._waits = None
         if self._changed:
             return True
-        return due is not None and self._changes.repeat(sch, end)
+        if due is None or not self._changes.repeat(sch, end):
+            return False
+        self._note_made()
+        return True
+
+    def _note_made(self) -> None:
+        """Stores when changes were made: now."""
+        self._made_at += [self._clock] * (self._changes.made - len(self._made_at))
 
     def _arrive(self) -> None:
         """Pauses the program, which has gone to another time; a change that a user undoes is forgotten there."""
@@ -469,7 +486,18 @@ class ProgramRun(ControlledRun):
         self._introduce()
         self._clock = max(self._clock + passed, self._last_event)
         self._tick_begin = simulation.ticks * self.period
+        self._changes.count(simulation, passed)
         self._check_left()
+        self._ticked = simulation
+        try:
+            self._wait_for_tick(simulation)
+        finally:
+            self._ticked = None
+        self._repeat_in(simulation)
+
+    def _wait_for_tick(self, simulation: Simulation) -> None:
+        """Waits until a simulation may continue."""
+        controller = self._controller
         if self._rush is not None and self._clock < self._rush:
             return
         self._furthest = max(self._furthest, self._clock)
@@ -479,10 +507,19 @@ class ProgramRun(ControlledRun):
             if self._rush is not None:
                 if self._clock < self._rush:
                     return
+                if self._undoing is not None and self._clock == self._rush:
+                    self._repeat_in(simulation)  # the changes of that moment that are not undone come before the one that is
+                    if self._changes.made < len(self._changes.known):
+                        return  # they are those of another simulation, which begins at that moment
                 self._arrive()
             controller.attend()
             if self._rush is None and controller.pace(self._clock):
                 return
+
+    def _repeat_in(self, simulation: Simulation) -> None:
+        """Repeats the known changes of the present moment of a simulation."""
+        self._changes.repeat_in(simulation)
+        self._note_made()
 
     def _check_left(self) -> None:
         """Ends the program at the tick where it is to be left, even if it catches the exception and continues.
@@ -547,43 +584,60 @@ class ProgramRun(ControlledRun):
         return self._shown
 
     def live_parameter(self, name: str, value: Any) -> LiveCommand:
-        raise _refusal(name)  # a program may hold what the command would change
+        raise SimulationError(f"'{name}': the parameters of a program cannot change while it runs; restart it with the new value")
 
     def change(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None, *, drop: bool) -> None:
         if self._controller.status in ENDED:
             raise SimulationError("the run is over: go back to an earlier time, or restart it")
-        if self._shown is not None or body is not None:
-            raise _refusal(word)
-        self._changes.check(word)
-        if self._waits is None:
-            raise SimulationError(f"'{word}' cannot be done: the program has not begun, so there is no agent yet; step once first")
-        sch, begin, clock = self._waits
+        make = self._change_now(word, values, named, body)
         before = len(self.trace)
         self.flush()
         branch = KeptBranch(self._controller, self._recording, self._clock, self._furthest, drop=drop)
         try:
             with self._recorded.changing() if self._recorded is not None else nullcontext():
-                self._changes.make(sch, begin + self._clock - clock, word, values, named)
+                make()
         except BaseException:
             branch.undo()
             raise
         self._commands = self._changes.known
-        self._waits = sch, sch.now_us, self._clock
-        self._changed = True
-        self._controller.interrupt()
+        self._note_made()
+        if self._waits is not None:
+            sch, _, _ = self._waits
+            self._waits = sch, sch.now_us, self._clock
+            self._changed = True
+            self._controller.interrupt()
         self._continue_differently()
         branch.announce(before)
+
+    def _change_now(self, word: str, values: tuple[Any, ...], named: Mapping[str, Any], body: str | None) -> Callable[[], None]:
+        """Returns a function that makes a change at the present moment.
+
+        Raises:
+            SimulationError: If there is nothing that can be changed, or the command is not for an agent without a body that runs now.
+        """
+        changes = self._changes
+        if self._ticked is not None:
+            _ = self._ticked.agents  # they are made before what is recorded after the present is removed
+            return partial(changes.make_in, self._ticked, word, values, named, body)
+        if body is not None:
+            raise SimulationError(f"'{word}' cannot be done: no simulation runs at this moment, but an agent without a body")
+        changes.check(word)
+        if self._waits is None:
+            raise SimulationError(f"'{word}' cannot be done: the program has not begun, so there is no agent yet; step once first")
+        sch, begin, clock = self._waits
+        return partial(changes.make, sch, begin + self._clock - clock, word, values, named)
 
     def undo(self, *, drop: bool) -> None:
         changes = self._changes
         known = changes.made
-        if self._waits is not None:
+        if self._ticked is not None:
+            known = changes.up_to_now(self._ticked)
+        elif self._waits is not None:
             sch, begin, clock = self._waits
             known = changes.up_to(sch, begin + self._clock - clock)
         if known == 0:
             raise nothing_to_undo(self._clock)
-        run, time, _ = changes.known[known - 1]
-        moment = self._clock if known > changes.made else self._run_times[run].program_at(time)
+        moment = self._clock if known > changes.made else self._made_at[known - 1]
         self.flush()
         self._undoing = KeptBranch(self._controller, self._recording, moment, self._furthest, drop=drop)
         self._commands = changes.known[: known - 1]
@@ -657,10 +711,3 @@ class ProgramRun(ControlledRun):
             self._runs += 1
             if run.model is not None:
                 self._held.append((self._runs, run, run.model))
-
-
-def _refusal(what: str) -> SimulationError:
-    return SimulationError(
-        f"'{what}' cannot be done: in a program, only agents without a body can be changed, and none once it has made "
-        "a `Simulation`; to change a simulation by hand, return it from `build(parameters) -> Simulation`"
-    )

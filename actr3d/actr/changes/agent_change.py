@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from inspect import signature
+from typing import Any, TypeVar
 
 from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.kernel.model import Model
@@ -60,7 +61,19 @@ class Parts:
 
 
 class AgentChange(Change):
-    """A change of a part of an agent; `carry_out` gets the parts of all agents."""
+    """A change of a part of an agent. Its first field is the path of this part; `carry_out` gets the parts of all agents."""
+
+    @classmethod
+    def renamed(cls, values: Sequence[Any], named: Mapping[str, Any], name: Callable[[str], str]) -> tuple[list[Any], dict[str, Any]]:
+        """Returns the arguments of a command, in which the part has another path.
+
+        Args:
+            values: The positional arguments of a valid command.
+            named: Its keyword arguments.
+            name: Returns the other path of a part.
+        """
+        path = next(iter(signature(cls).parameters))
+        return [*map(name, values[:1]), *values[1:]], {key: name(value) if key == path else value for key, value in named.items()}
 
 
 def chunk_of(text: str, where: str) -> Chunk:

@@ -74,7 +74,7 @@ class RunLimits:
     time are run, and it is called again."""
     ticked: Callable[[Any, int], object] | None = field(default=None, repr=False)
     """Called with a simulation before its first tick and after each tock, and with the time passed [us]; replaces `passing`,
-    which would be called within a tick."""
+    which would be called within a tick. It may give the simulation commands."""
     last_resort: Callable[[], Any] | None = field(default=None, repr=False)
     """Ends a program that keeps asking for time although every further run raises `EndOfRun`: called after 100 requests."""
     _outer: RunLimits | None = field(default=None, init=False, repr=False)
