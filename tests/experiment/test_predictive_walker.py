@@ -267,8 +267,10 @@ def test_it_declines_if_the_passage_that_is_most_active_was_stopped(
         body = {"felt": 0.4, "shoulders": 0.404, "turn": 0.0, "speed": 1.29}
         return {**body, "seen": seen, "energy": 0.0, "free": passed, "passed": passed}
 
-    known = [passage(0.6, nearest), *[passage(0.62, others)] * 20]
-    monkeypatch.setattr(model, "experiences", lambda **_: known)
+    def known(**_: object) -> list[dict[str, float]]:
+        return [passage(0.6, nearest), *[passage(0.62, others)] * 20]
+
+    monkeypatch.setattr(model, "experiences", known)
     _, walker = walked(model, aperture=0.6, memory_noise=0, perceptual_noise=0)
     assert walker.judged == judged
 
