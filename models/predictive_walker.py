@@ -2,13 +2,14 @@
 
 No ratio and no margin is put in. The walker has passed doorways before, with empty hands or with a bar as now. It remembers of 150
 passages how much wider than its body the doorway looked, in widths of its own shoulders, how fast it walked, and what came of it: nothing, a
-brush, or a hit, and how hard. That room is remembered in units of the body is assumed; almost from this alone it follows that large
+brush, or a hit, and how hard. Memories hold both widths and the turn, too, but only the room, their difference, and the speed are compared.
+That room is compared in units of the body is assumed; almost from this alone it follows that large
 and small people turn alike at the same ratio of doorway and shoulders (`units = "metres"` shows what happens otherwise).
 
 For each turn of its shoulders that it can imagine, it knows from its body schema how wide it will be, and expects by blending its memories
 what the passage will cost. It chooses the turn with the smallest sum of effort and expected cost of contacts. The effort is the work of
 turning, and of walking more slowly and then fast again. Asked whether it could pass a doorway, it says what came of the one passage that is
-most active for the room there is. In the same way it declines to walk: if the passage that is most active for the cheapest turn was stopped.
+most active for the room there is. When it walks, it declines if it was stopped in the passage that is most active for the cheapest turn.
 
 The body walks with a gait (`actr3d.world.Gait`): it sways, and its steps vary. So it needs more room than its width, and the less room
 it has the more often it touches the wall. The eyes see the doorway with noise, less when it is near; and the felt width has noise.
@@ -36,8 +37,7 @@ Which doorways are wide enough for two follows from experience, as all plans do.
 predictions: where the walker waits (`YIELD`), and for how long (`PATIENCE`), so also who goes first; that it keeps to the right, and backs
 off; and that it does not share a doorway for which it once had another plan.
 
-With the seeds 500 to 519, one passes and the other waits in all pairs at 60, 80 and 100 cm, and both pass in all pairs at 120 and 160 cm; at
-110 cm both pass in 5 of 20. Nobody touches anything. With the seed 601, one touches the frame at 100 cm (docs/results.md).
+How pairs pass doorways of different widths is in docs/results.md.
 
 What to expect
 --------------
@@ -454,7 +454,8 @@ class Person(ACTR):
         effort, cost = round(self.effort(turn), 1), round(float(self.b_plan["cost"]), 1)
         (none, straight), *others = self.costs.items()
         costs = "   ".join(f"{other:.0f}°: {value:.0f}" for other, value in [(none, straight), *others[-4:]])
-        text = f"turn by {turn:.0f}°: cost {cost:.1f} = effort {effort:.1f} + contacts {cost - effort:.1f}\n{costs}"
+        what = "declines; cheapest " if self.b_plan["outcome"] == "stopped" else ""
+        text = f"{what}turn by {turn:.0f}°: cost {cost:.1f} = effort {effort:.1f} + contacts {cost - effort:.1f}\n{costs}"
         if turn == 0 or self.b_goal["do"] in ("turn", "pass"):
             return Plan(text=text)
         return Plan(text=text, posture={f"{part}_yaw": self.side * share * turn for part, share in SHARES.items()})
@@ -523,7 +524,7 @@ class Person(ACTR):
             motor.walk(self.speed)
 
     def go(b_goal="do:walk", b_door="free:True", b_plan="outcome:!stopped", motor="walking:False legs_end:!blocked"):
-        """Sets out near the doorway, once it expects to pass it."""
+        """Sets out near the doorway, once it has a plan by which it was not stopped."""
         motor.walk(self.speed)
 
     def stay(b_goal="do:walk", b_door="free:True", b_plan="outcome:stopped", motor="walking:False legs_end:!blocked"):
