@@ -83,7 +83,7 @@ function endOf(run) {
 }
 
 /** The newest time of the run and of the branches that are shown [s]: the axis goes as far. */
-export const reach = computed(() => Math.max(furthest.value, ...(open.value && tree.value.length > 1 ? tree.value.map(endOf) : [])));
+export const reach = computed(() => Math.max(furthest.value, ...(open.value && tree.value.length > 1 ? tree.value.map(({ run }) => endOf(run)) : [])));
 
 /** Shows another branch: the open session that writes it, where it is, or its recording. */
 async function show(run) {
