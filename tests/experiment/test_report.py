@@ -423,6 +423,20 @@ def test_critical_ratios_beyond_the_trials_are_in_no_mean(tmp_path: Path) -> Non
     assert "1 of 6 values are most likely beyond the ratios of the trials" in cautions(parts)
 
 
+def test_a_trial_is_turned_by_the_same_angle_in_the_constraints_and_for_each_participant(tmp_path: Path) -> None:
+    """A walker that sways by 3 degrees and turns by 7 or more is turned in these trials, whatever its sway is."""
+
+    def swaying(trial: Any) -> dict[str, Any]:
+        return {**walk(trial), "wall_angle_deg": 3.0 if trial.values["aperture"] > 0.52 else 7.0 + trial.repetition}
+
+    folder = store_rows(tmp_path / "out", "warren_whang_1987", swaying, trials=6, participants=3, values={"condition": ["normal"]})
+    found = frames(parts_on_apertures(folder))
+    (critical,) = (one for one in Findings(passings_of(read_results(folder))).all() if one.number == 4)
+    for group, mean in zip(found["critical_ratios_of_groups"]["group"], found["critical_ratios_of_groups"]["mean"], strict=True):
+        of_cell = float(re.findall(rf"{group} normal ([0-9.]+)", critical.found)[0])
+        assert mean == pytest.approx(of_cell, abs=0.01)
+
+
 def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
     path, same = (str(write_experiment(folder, participants=3)) for folder in (tmp_path, tmp_path / "elsewhere"))

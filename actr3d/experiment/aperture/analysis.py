@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from actr3d.experiment.aperture.constraints import CRITICAL, MARGIN, PASSABLE, SAME, TURNED, WIDE, Constraint, Findings
+from actr3d.experiment.aperture.constraints import CRITICAL, MARGIN, PASSABLE, SAME, Constraint, Findings
 from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
 from actr3d.experiment.aperture.original import original_bar_means, original_means
-from actr3d.experiment.aperture.passing import Passing, baseline_angle
+from actr3d.experiment.aperture.passing import TURNED, Passing, baseline_angle
 from actr3d.experiment.report.analyses import analysis
 from actr3d.experiment.report.beside import Beside, matched_means, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
@@ -93,6 +93,7 @@ def frame_of(results: Results, findings: Findings) -> Any:
     frame["level"] = [findings.level(one) for one in findings.plain]
     frame["ratio"] = [one.ratio for one in findings.plain]
     frame["angle"] = np.array([one.angle for one in findings.plain], dtype=float)
+    frame["turned"] = [one.turned for one in findings.plain]
     for name, column, scale in (
         ("logged", "logged_angle_deg", 1),
         ("left", "clearance_left_m", 100),
@@ -472,12 +473,11 @@ def _critical_ratios(findings: Findings) -> Parts:
                 fits = _fits(findings.trials(group, condition, one), findings.curve(group, condition, one))
                 rows.append({"group": group, "condition": condition, "participant": one, **fits})
     frame = pandas().DataFrame(rows)
-    digits = {"critical_ratio": 3, "low": 3, "high": 3, "bend": 3, "baseline_deg": 1}
+    digits = {"critical_ratio": 3, "low": 3, "high": 3, "bend": 3}
     note = (
-        f"Logistic: half of the trials are turned by more than {TURNED:g} degrees above the participant's baseline, its median angle above "
-        f"{WIDE:g} A/S. low, high: 95 % interval of the profile likelihood, infinite where it goes beyond the ratios of the "
-        f"trials; if the change is abrupt, the interval is one step between two apertures. {BEYOND} "
-        "Bend: piecewise-linear fit; it is too large for a rotation that falls more steeply near its end."
+        f"Logistic: half of the trials are turned by more than {TURNED:g} degrees. low, high: 95 % interval of the profile likelihood, "
+        f"infinite where it goes beyond the ratios of the trials; if the change is abrupt, the interval is one step between two apertures. "
+        f"{BEYOND} Bend: piecewise-linear fit; it is too large for a rotation that falls more steeply near its end."
     )
     title = "Critical ratio of each participant"
     parts: Parts = []
@@ -529,9 +529,7 @@ def _left_out(frame: Any, column: str) -> list[Caution]:
 
 def _fits(of: Sequence[Passing], curve: tuple[list[float], list[float]]) -> dict[str, Any]:
     """Returns both fits of one participant at one speed."""
-    wide = [one.angle or 0.0 for one in of if one.ratio > WIDE]
-    base = float(np.median(wide)) if wide else 0.0
-    logistic = critical_ratio((one.ratio, (one.angle or 0.0) > base + TURNED) for one in of) if of else None
+    logistic = critical_ratio((one.ratio, one.turned) for one in of)
     if logistic is not None and math.isinf(logistic.low) and math.isinf(logistic.high):
         logistic = None  # it may be anywhere
     line = bend(*curve)
@@ -540,7 +538,6 @@ def _fits(of: Sequence[Passing], curve: tuple[list[float], list[float]]) -> dict
         "low": math.nan if logistic is None else logistic.low,
         "high": math.nan if logistic is None else logistic.high,
         "beyond": "yes" if logistic is not None and logistic.beyond else "no",
-        "baseline_deg": base if wide else math.nan,
         "bend": math.nan if line is None else line,
     }
 
@@ -619,7 +616,7 @@ def _contacts(frame: Any) -> Table:
 
 
 def _onset(findings: Findings, frame: Any, x_label: str, scale: float) -> Parts:
-    turned = frame[frame["onset"].notna() & (frame["angle"] > TURNED)]
+    turned = frame[frame["onset"].notna() & frame["turned"]]
     if not len(turned):
         return ["No walker turned, so there is no onset."]
     means = cell_means(turned, "onset", ["group", "condition", "level"])

@@ -18,14 +18,11 @@ import numpy as np
 from scipy.special import stdtr
 
 from actr3d.experiment.aperture.critical_ratio import CriticalRatio, critical_ratio
-from actr3d.experiment.aperture.passing import DEPTH, Passing
+from actr3d.experiment.aperture.passing import DEPTH, TURNED, Passing
 from actr3d.experiment.report.libraries import noting_warnings, pingouin
 from actr3d.experiment.report.page import number
 from actr3d.experiment.report.statistics import FEWEST
 
-TURNED = 5.0
-"""A walker has turned if its angle is above this [degrees]: people sway by a few degrees (docs/human-data.md).
-Source: chosen for this library."""
 CRITICAL = (1.25, 1.35)
 """The bounds of the ratio of aperture to shoulders at which turning begins. Source: Warren & Whang (1987), 1.28 to 1.31; bounds of
 docs/human-data.md."""
@@ -82,9 +79,9 @@ def margin(passing: Passing) -> tuple[float, float] | None:
 
     Returns None for all other trials, whose distances depend on the aperture only, and for a walker that never was in the doorway.
     """
-    if passing.left is None or passing.right is None or passing.angle is None:
+    if passing.left is None or passing.right is None:
         return None
-    return (passing.left, passing.right) if passing.ratio < POINT and passing.angle > TURNED else None
+    return (passing.left, passing.right) if passing.ratio < POINT and passing.turned else None
 
 
 class Findings:
@@ -255,7 +252,7 @@ class Findings:
         }
         if not cells or any(not of or not _spans([one.ratio for one in of], CRITICAL) for of in cells.values()):
             return _untested(4, says, f"it needs ratios below {CRITICAL[0]} and above {CRITICAL[1]} in each group and condition")
-        found = {key: critical_ratio((one.ratio, (one.angle or 0.0) > TURNED) for one in of) for key, of in cells.items()}
+        found = {key: critical_ratio((one.ratio, one.turned) for one in of) for key, of in cells.items()}
         met = {_within(ratio, CRITICAL) for ratio in found.values()}
         text = ", ".join(f"{' '.join(filter(None, key))} {_ratio_text(ratio)}" for key, ratio in found.items())
         if met <= {True, None} and None in met:

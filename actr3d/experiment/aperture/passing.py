@@ -12,6 +12,9 @@ DEPTH = 0.563
 """The depth of the chest as a fraction of the shoulder width. Source: ANSUR II (2012), 0.25 m at 0.444 m."""
 ROOM = 0.30
 """The room on both sides together as a fraction of the shoulder width. Source: Warren & Whang (1987), critical ratio 1.30."""
+TURNED = 5.0
+"""A walker has turned if its angle is above this [degrees]: people sway by a few degrees (docs/human-data.md).
+Source: chosen for this library."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,6 +42,11 @@ class Passing:
     """The length of a bar in the hands [m]."""
     straight: bool = True
     """Whether the walk begins in line with the doorway."""
+
+    @property
+    def turned(self) -> bool:
+        """Whether the walker turned."""
+        return self.angle is not None and self.angle > TURNED
 
     @property
     def ratio(self) -> float:
