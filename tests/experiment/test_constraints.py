@@ -6,10 +6,11 @@ import math
 import random
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from statistics import mean
 
 import pytest
 
-from actr3d.experiment.aperture.constraints import Findings, equivalence, margin
+from actr3d.experiment.aperture.constraints import Findings, difference, equivalence, margin
 from actr3d.experiment.aperture.critical_ratio import critical_ratio
 from actr3d.experiment.aperture.original import original_means
 from actr3d.experiment.aperture.passing import Passing
@@ -171,9 +172,25 @@ def test_with_two_participants_a_group_nothing_is_tested() -> None:
     """A t test of two would be met or not met by chance, and the report says that nothing is tested."""
     few = Findings(one for one in GOOD if one.participant[-1] in "01")
     assert few.scores() is None
-    assert (results(few)[3], results(few)[5]) == (None, None)
+    assert [results(few)[number] for number in (2, 3, 5)] == [None, None, None]
     enough = Findings(one for one in GOOD if one.participant[-1] in "012")
-    assert (results(enough)[3], results(enough)[5]) == (True, True)
+    assert [results(enough)[number] for number in (2, 3, 5)] == [True, True, True]
+
+
+def test_whether_the_large_turn_more_is_decided_by_the_interval_of_the_difference() -> None:
+    """The ends are those of scipy's `ttest_ind(one, other, equal_var=False).confidence_interval()`."""
+    one, other = [70.0, 66.0, 74.0, 69.0, 71.0], [69.0, 72.0, 66.0, 68.0, 70.0]
+    assert difference(one, other) == pytest.approx((1.0, -2.833945, 4.833945), abs=1e-6)
+
+    def at_40(*angles: float) -> Callable[[Passing], Passing]:
+        return lambda of: with_angle(of, angles[int(of.participant[-1])]) if of.aperture == 0.4 and of.group == "large" else of
+
+    small = [mean(of.angle or 0.0 for of in GOOD if of.participant == f"small {n}" and of.aperture == 0.4) for n in range(5)]
+    above, near, below = (findings(at_40(*(angle + more + n for n, angle in enumerate(small)))).wider_turns_more() for more in (20, 0, -30))
+    assert (above.met, near.met, below.met) == (True, None, False)
+    assert "cannot be decided without more participants" in near.found
+    assert "at 40 cm" in near.found
+    assert "at 40 cm" in below.found
 
 
 @pytest.mark.parametrize("conditions", [("fast",), CONDITIONS])

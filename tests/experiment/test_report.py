@@ -166,7 +166,9 @@ def test_the_same_rows_give_the_same_files(tmp_path: Path) -> None:
 
 def test_apertures_have_their_own_sections(walked: Path) -> None:
     assert [(row["number"], row["result"]) for row in table(walked, "constraints")] == [
-        *((str(number), "met") for number in (1, 2, 3, 4, 5)),
+        ("1", "met"),
+        ("2", "not testable"),
+        *((str(number), "met") for number in (3, 4, 5)),
         ("6", "met"),
         ("7", "met"),
         ("8", "not testable"),

@@ -12,10 +12,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from statistics import mean, stdev
+from statistics import mean, stdev, variance
+from typing import NamedTuple
 
 import numpy as np
-from scipy.special import stdtr
+from scipy.special import stdtr, stdtrit
 
 from actr3d.experiment.aperture.critical_ratio import CriticalRatio, critical_ratio
 from actr3d.experiment.aperture.passing import DEPTH, TURNED, Passing
@@ -45,6 +46,15 @@ EQUAL = 0.63
 """Below this aperture the large group turns more [m]. Source: 1.30 times the large group's shoulders (docs/human-data.md)."""
 BARS = 8
 """The number of the constraint that needs bars in the hands."""
+
+
+class Difference(NamedTuple):
+    """How much greater one mean is than another."""
+
+    value: float
+    low: float
+    """The lower end of its 95 % interval."""
+    high: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -180,21 +190,35 @@ class Findings:
         return Constraint(number=1, says=says, met=rise <= STEADY < fall, found=found)
 
     def wider_turns_more(self) -> Constraint:
-        """2: the large group turns more at equal width below about 63 cm."""
+        """2: the large group turns more at equal width below about 63 cm: the interval of the least difference is above 0."""
         says = "large > small below 63 cm"
         if self.pair is None or self.by != "aperture":
             return _untested(2, says, "it needs two groups of different shoulder width at the same apertures")
         small, large = self.pair
-        differences = [
-            self.mean(large, condition, aperture) - self.mean(small, condition, aperture)
+        cells = {
+            (condition, aperture): [
+                [mean(of[aperture]) for one in self.people(group) if aperture in (of := self._angles(group, condition, one))]
+                for group in self.pair
+            ]
             for condition in self.conditions
             for aperture in self.levels
             if aperture < EQUAL and self.has(large, condition, aperture) and self.has(small, condition, aperture)
-        ]
-        if not differences:
+        }
+        if not cells:
             return _untested(2, says, "it needs apertures below 63 cm")
-        least = min(differences)
-        return Constraint(number=2, says=says, met=least > 0, found=f"smallest difference {least:.1f} degrees")
+        if any(len(angles) < FEWEST for pair in cells.values() for angles in pair):
+            return _untested(2, says, "it needs three or more participants in each group")
+        differences = {cell: difference(wider, narrower) for cell, (narrower, wider) in cells.items()}
+        lowest = min(differences, key=lambda cell: differences[cell].low)
+        negative = min(differences, key=lambda cell: differences[cell].high)
+        met = differences[lowest].low > 0
+        unmet = differences[negative].high <= 0
+        condition, aperture = cell = negative if unmet else lowest
+        found = differences[cell]
+        text = f"{found.value:.1f} degrees (95 % interval {found.low:.1f} to {found.high:.1f}) {condition} at {100 * aperture:.3g} cm"
+        if not met and not unmet:
+            return _untested(2, says, f"cannot be decided without more participants: {text}")
+        return Constraint(number=2, says=says, met=met, found=text)
 
     def scores(self) -> tuple[list[float], list[float]] | None:
         """Returns the mean angle of each participant over ratios from 1.0 to 1.4 [degrees]: those of the large, and of the small group.
@@ -392,6 +416,23 @@ def _sides(left: float, right: float) -> str:
 
 def _listed(values: Iterable[float]) -> str:
     return ", ".join(f"{value:.3g}" for value in values)
+
+
+def difference(one: Sequence[float], other: Sequence[float]) -> Difference:
+    """Compares two means: Welch's t test.
+
+    Args:
+        one: One value for each participant of a group; two or more.
+        other: The values of the other group.
+    """
+    value = mean(one) - mean(other)
+    errors = [(variance(values) / len(values), len(values) - 1) for values in (one, other)]
+    squared = math.fsum(error for error, _ in errors)
+    if squared == 0:
+        return Difference(value, value, value)
+    freedom = squared**2 / math.fsum(error**2 / n for error, n in errors)
+    half = float(stdtrit(freedom, 0.975)) * math.sqrt(squared)
+    return Difference(value, value - half, value + half)
 
 
 def equivalence(one: Sequence[float], other: Sequence[float], bound: float) -> Equivalence:
