@@ -131,21 +131,22 @@ def expected(
     return np.array(efforts), np.array(impacts)
 
 
-def judged_boundary(by: Deciding) -> float:
-    """Returns the least ratio from which on half of the walkers judge that they can pass as they are: the most active passage was free.
+def judged_boundary(by: Deciding, counts: str = "free") -> float:
+    """Returns the least ratio from which on half of the walkers judge that they can pass as they are, by the most active passage.
 
     Args:
         by: The numbers by which they remember passages, at any speed.
+        counts: What the passage must have been: `free`, or `passed`, with or without contact.
     """
     known = experiences(walks=by.walks)
-    free = np.array([one["free"] for one in known])
+    could = np.array([one[counts] for one in known])
     rooms = np.array([(one["seen"] - one["felt"]) / one["shoulders"] for one in known]) * MODEL.BODY
     choice, noise = random.Random(1), np.random.default_rng(1)
     judged: list[NDArray[Any]] = []
     for _ in range(WALKERS):
         some = choice.sample(range(len(known)), min(by.memories, len(known)))
         far = np.abs(rooms[some] - (RATIOS[:, None] - 1) * MODEL.BODY) / by.room
-        judged.append(free[some][by.activation(far, noise).argmax(axis=1)])
+        judged.append(could[some][by.activation(far, noise).argmax(axis=1)])
     return float(RATIOS[np.flatnonzero(np.mean(judged, axis=0) < 0.5)[-1] + 1])
 
 
@@ -225,6 +226,7 @@ def report() -> str:
         lines.append(f"  alike by {likeness}, {found_by(of)}")
         lines.append(f"    large minus small: {large_minus_small(of):+.1f} degrees")
     lines.append(f"judged passable: from {judged_boundary(usual):.2f}")
+    lines.append(f"  with a brush, too: from {judged_boundary(usual, counts='passed'):.2f}")
     for name, value in (("room", 0.01), ("room", 0.04), ("noise", 0.5 * usual.noise), ("noise", 2 * usual.noise), ("memories", 75)):
         lines.append(f"  {name} {value:g}: from {judged_boundary(replace(usual, **{name: value})):.2f}")
     for name, shoulders, normal, fast in CELLS:

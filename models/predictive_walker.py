@@ -23,7 +23,8 @@ Four parallel systems:
   an object approaches the doorway, on either side, and is as near to it as the walker. It waits as long as the object approaches, and
   then until its patience ends. Then it looks for the doorway again, unless it has waited for somebody, and goes on; if there is none, it
   gives up.
-- *Planning* imagines one turn after the other, and keeps the cheapest. It goes on until two steps before the doorway.
+- *Planning* imagines one turn after the other, and keeps the cheapest. It plans again and again until two steps before the doorway; what
+  it does then is what the last finished plan says, which may have begun 3 s before.
 - *Walking* turns the shoulders in one of these two steps, about half a step before the doorway, and turns them back behind it. With
   turned hips its steps are shorter, so it walks more slowly meanwhile.
 
@@ -100,8 +101,8 @@ HEADING_NOISE = 0.02
 SLOWEST = 0.01
 """Turns slower than this are not made [rad/s]. Source: chosen for this model."""
 STEPS = 2.0
-"""Distance from the doorway at which it decides [steps]. Source: chosen, because people look about two steps ahead (Patla & Vickers 2003);
-that they decide then is our assumption."""
+"""Distance from the doorway at which it stops planning, and does what the last finished plan says [steps]. Source: chosen, because people look
+about two steps ahead (Patla & Vickers 2003); that they decide then is our assumption."""
 TURNING = 1.0
 """Duration of a turn of the shoulders [steps]. As seeing and deciding take time, they begin about one and a half steps before the doorway,
 and are turned about half a step before it. Source: chosen for this model."""
