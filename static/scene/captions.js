@@ -25,18 +25,24 @@ export function placed(wanted, blocked, size) {
   const taken = [...blocked];
   return wanted.map(({ x, y, width, height, about }) => {
     if (x < 0 || x > size.width || y < 0 || y > size.height || width > size.width) return null;
-    const left = Math.max(0, Math.min(size.width - width, x - width / 2));
-    const free = (taken) => {
+    const inside = (left) => Math.max(0, Math.min(size.width - width, left));
+    const centred = [inside(x - width / 2)];
+    const free = (taken, lefts) => {
       for (let step = 0; step < STEPS; step++) {
         // Above its point, higher and higher; then below, lower and lower.
         for (const top of [y - LIFT - height - step * 6, y + LIFT + step * 6]) {
-          const box = { left: left - GAP, top: top - GAP, width: width + 2 * GAP, height: height + 2 * GAP };
-          if (top >= 0 && top + height <= size.height && !taken.some((other) => overlap(box, other))) return { left, top, width, height };
+          if (top < 0 || top + height > size.height) continue;
+          for (const left of lefts) {
+            const box = { left: left - GAP, top: top - GAP, width: width + 2 * GAP, height: height + 2 * GAP };
+            if (!taken.some((other) => overlap(box, other))) return { left, top, width, height };
+          }
         }
       }
       return null;
     };
-    const found = (about && free([...taken, about])) ?? free(taken);
+    // Beside what is in the way, but still above or below its point.
+    const beside = () => taken.flatMap((other) => [other.left - GAP - width, other.left + other.width + GAP]).map(inside).filter((left) => left <= x && x <= left + width);
+    const found = (about && free([...taken, about], centred)) ?? free(taken, centred) ?? free(taken, beside());
     if (found) taken.push(found);
     return found;
   });

@@ -161,6 +161,20 @@ def test_labels_never_cover_each_other_or_a_head_or_leave_the_picture(blank: Pag
     assert found > 200
 
 
+def test_a_label_without_room_above_and_below_stands_beside_what_is_there(blank: Page) -> None:
+    """As that of a walker in a small view, with its head and another label near it, and the picture of the eye at the right."""
+    plan = {"x": 278, "y": 188, "width": 330, "height": 38}
+    head, opening, eye, bar = (
+        {"left": left, "top": top, "width": width, "height": height}
+        for left, top, width, height in ((265, 190, 26, 30), (245, 137, 130, 26), (367, 255, 193, 135), (0, 0, 560, 130))
+    )
+    size = {"width": 560, "height": 290}
+    (box,) = blank.evaluate(PLACED, [[plan], [head, opening, eye, bar], size])
+    assert box is not None
+    assert box["left"] <= plan["x"] <= box["left"] + plan["width"]
+    assert not any(overlap(box, other) for other in (head, opening, eye, bar))
+
+
 CAPTION = """async (lines) => {
   const { Captions } = await part("scene/captions.js");
   const captions = new Captions();
