@@ -48,18 +48,18 @@ class Shown:
         self.surroundings = surroundings(simulation.world)
         self._observed = Observed(simulation, self.eyesight, lambda: self.kept.walked.up_to(simulation.ticks, simulation.world))
 
-    def world(self, parameters: Iterable[Parameter] | None = None) -> dict[str, Any]:
+    def world(self, parameters: Iterable[Parameter] = ()) -> dict[str, Any]:
         """Returns the description of the world for pages, as plain values.
 
         Args:
-            parameters: The model's parameters, which limit the widths of doorways during the run; None if widths cannot be changed.
+            parameters: The model's parameters, which limit the widths of doorways during the run.
         """
         return {
             **self.surroundings,
             "empty": self.simulation.world.mj_model.ngeom == 0,
             "agents": self.simulation.embodied,
-            "objects": [] if parameters is None else self.simulation.world.objects.names,
-            "widths": {} if parameters is None else widths(self.surroundings["apertures"], parameters),
+            "objects": self.simulation.world.objects.names,
+            "widths": widths(self.surroundings["apertures"], parameters),
         }
 
     @property
