@@ -162,7 +162,11 @@ def test_a_list_asked_for_after_a_change_has_the_change_although_an_earlier_read
         @asynccontextmanager
         async def first_answers_late(workers: Workers, start: Start, job: Job, **more: Any) -> AsyncGenerator[Job]:
             answers: list[Reply] = []
-            reply, job.reply = job.reply, answers.append
+
+            def hold(message: Reply) -> None:
+                answers.append(message)
+
+            reply, job.reply = job.reply, hold
             async with doing(workers, start, job, **more):
                 await job.over.wait()
                 if not was_read.is_set():
