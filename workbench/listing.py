@@ -41,8 +41,8 @@ class Listing:
         self._workers = workers
         self._models = models
         self._known: dict[str, tuple[_Stamp, Summary]] = {}
-        self._coming: dict[str, asyncio.Future[Summary]] = {}
-        """The summaries that are being read; all who ask for one wait for the same result."""
+        self._coming: dict[tuple[str, _Stamp], asyncio.Future[Summary]] = {}
+        """The summaries that are being read; all who ask for one in the same state of its file wait for the same result."""
         self._turns = asyncio.Semaphore(MAX_READERS)
         self._tasks: set[asyncio.Task[None]] = set()
 
@@ -84,10 +84,10 @@ class Listing:
             known = self._known.get(path.name)
             if known is not None and known[0] == stamp:
                 there[path] = known[1]
-            elif path.name not in self._coming:
-                self._coming[path.name] = asyncio.get_running_loop().create_future()
+            elif (path.name, stamp) not in self._coming:
+                self._coming[path.name, stamp] = asyncio.get_running_loop().create_future()
                 fresh.append(path)
-        waiting = {path: self._coming[path.name] for path in paths if path not in there}
+        waiting = {path: self._coming[path.name, stamps[path]] for path in paths if path not in there}
         if fresh:
             task = asyncio.create_task(self._read(fresh, stamps))
             self._tasks.add(task)
@@ -101,7 +101,7 @@ class Listing:
 
         def found(path: Path, summary: Summary) -> None:
             self._known[path.name] = stamps[path], summary
-            self._coming.pop(path.name).set_result(summary)
+            self._coming.pop((path.name, stamps[path])).set_result(summary)
 
         left = list(paths)
         try:
@@ -117,15 +117,15 @@ class Listing:
                         found(left[0], unreadable(left[0], reading.problem if reading.over_by_itself else slow))
                         del left[0]
         except Exception as error:  # noqa: BLE001 - passed on to those who wait
-            self._give_up(left, error)
+            self._give_up([(path.name, stamps[path]) for path in left], error)
         except asyncio.CancelledError:
-            self._give_up(left, OSError("the workbench ends"))
+            self._give_up([(path.name, stamps[path]) for path in left], OSError("the workbench ends"))
             raise
 
-    def _give_up(self, paths: Sequence[Path], error: Exception) -> None:
+    def _give_up(self, unread: Sequence[tuple[str, _Stamp]], error: Exception) -> None:
         """Passes an error on to those who wait for these summaries."""
-        for path in paths:
-            coming = self._coming.pop(path.name, None)
+        for key in unread:
+            coming = self._coming.pop(key, None)
             if coming is not None:
                 coming.set_exception(error)
                 coming.exception()  # marks it as retrieved, as nobody may wait for it any more

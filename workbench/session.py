@@ -529,7 +529,8 @@ class Session(Broadcast, Receiver):
         }
         if facts is not None:
             facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters)}
-            facts_of_session |= {"world": Raw(facts.world), "changes": Raw(facts.changes), "live": Raw(facts.live)}
+            facts_of_session |= {"world": Raw(facts.world), "openings": Raw(facts.openings)}
+            facts_of_session |= {"changes": Raw(facts.changes), "live": Raw(facts.live)}
         return msgspec.json.encode(facts_of_session)
 
     def _branched_json(self) -> dict[str, Any] | None:

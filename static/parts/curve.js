@@ -8,6 +8,8 @@ const MIN_RANGE = 0.01; // smaller differences are drawn as a straight line, not
 const BETWEEN = 4; // the minimum distance between two labels of an axis [px]
 const SAME = 1e-6; // times that are no farther apart are the same [s]
 const GROUP = 16; // the number of values that are read as one where a pixel has more than two such groups
+const HIDDEN = 0.5; // up to this distance, a curve hides another one [px]
+const GAP = 6; // the length of the gaps and dashes of a line that lies on another one [px]
 const EDGES = 2; // how far what is at the least or greatest value is drawn beyond the box [px]
 const EDGE = 6; // the distance of the first and last text from the ends of an axis [px]
 
@@ -133,12 +135,13 @@ function pointsOf(curve, span, box, yOf) {
   return points;
 }
 
-/** Draws the values of single moments; those that share a pixel as one stroke. */
-function drawMoments(surface, curve, span, box, yOf, colour) {
+/** Returns the values of single moments as strokes in a box, [x, top, bottom, …]; those that share a pixel are one stroke. */
+function strokesOf(curve, span, box, yOf) {
   const scale = box.width / (span.to - span.from);
   const seen = visible(curve, span, box);
+  const strokes = [];
   let [pixel, least, most] = [null, 0, 0];
-  const flush = () => pixel !== null && surface.fill(pixel - 1.5, yOf(most) - 1.5, 3, yOf(least) - yOf(most) + 3, colour);
+  const flush = () => pixel !== null && strokes.push(pixel, yOf(most), yOf(least));
   for (let n = seen.begin; n < seen.beyond; n += 1) {
     if ((seen.last[n] ?? null) === null) continue;
     const x = box.x + (seen.times[n] - span.from) * scale;
@@ -151,6 +154,20 @@ function drawMoments(surface, curve, span, box, yOf, colour) {
     }
   }
   flush();
+  return strokes;
+}
+
+/** Returns whether a curve would hide another one: whether all of their places, as numbers, are nearly the same. */
+function hides(places, others) {
+  const isSame = (one, n) => Math.abs(one - others[n]) < HIDDEN || Object.is(one, others[n]);
+  return places.length === others.length && places.every(isSame);
+}
+
+/** Returns the dashes of a line that lies on some others, with gaps in which each of them is seen. */
+function dashesOver(count, dash) {
+  if (count === 0) return dash ?? [];
+  const own = dash ?? [GAP, 0];
+  return own.with(-1, own.at(-1) + count * own.reduce((sum, length) => sum + length));
 }
 
 /** Returns the values labelled on a scale: at least two, because one alone shows no size; otherwise as many as fit. */
@@ -166,7 +183,7 @@ function* alone(points) {
 }
 
 /**
- * Draws curves.
+ * Draws curves. A line that lies on others is wider and has gaps; moments that lie on others are drawn beside them.
  *
  * @param surface The surface to draw on.
  * @param box {x, y, width, height} of the curves; the scale is left of it.
@@ -187,12 +204,21 @@ export function drawCurves(surface, box, { series, times, span, range, until }) 
     if (y > box.y + 4) surface.text(numberText(value).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, ""), box.x - 5, y, "quiet", { size: 10, anchor: "end" });
   }
   surface.within(box.x, box.y - EDGES, box.width, box.height + 2 * EDGES, () => {
+    const drawn = { lines: [], strokes: [] };
     series.forEach(({ colour, dash, ...curve }, n) => {
       const [of, name] = [{ times, until, ...curve }, colour ?? seriesColour(n)];
-      if (of.shape === "points") return drawMoments(surface, of, span, box, yOf, name);
-      const points = pointsOf(of, span, box, yOf);
-      surface.line(points, name, { width: 1.5, dash: dash ?? [] });
-      for (const [x, y] of alone(points)) surface.fill(x - 2, y - 2, 4, 4, name);
+      const [kind, places] = of.shape === "points" ? ["strokes", strokesOf(of, span, box, yOf)] : ["lines", pointsOf(of, span, box, yOf)];
+      const below = drawn[kind].filter((others) => hides(places, others)).length;
+      drawn[kind].push(places);
+      if (kind === "lines") {
+        surface.line(places, name, { width: 1.5 * (1 + below), dash: dashesOver(below, dash) });
+        for (const [x, y] of alone(places)) surface.fill(x - 2 + 4 * below, y - 2, 4, 4, name);
+      } else {
+        for (let at = 0; at < places.length; at += 3) {
+          const [x, top, bottom] = places.slice(at, at + 3);
+          surface.fill(x - 1.5 + 3 * below, top - 1.5, 3, bottom - top + 3, name);
+        }
+      }
     });
   });
 }

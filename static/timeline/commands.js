@@ -1,6 +1,7 @@
 // Users' changes as text: `aperture 50 -> 40 cm`, `speed 1.2 -> 1.5 m/s`, `set goal count 2 -> count 3`.
 
 import { changes } from "../changes/changes.js";
+import { runOf } from "../inspector/agents.js";
 import { chunkText, valueText } from "../parts/chunk.js";
 import { session } from "../store.js";
 
@@ -22,7 +23,7 @@ export class Former {
     if (setting === null || setting.of === "place") return; // a thing may have moved since it was put somewhere
     const { of, text } = setting;
     const key = keyOf(event, setting);
-    const known = of === "buffer" ? this.#buffers.get(named(event[3]).buffer)?.[1] || "empty" : (this.#values.get(key) ?? startOf(setting, event[3]));
+    const known = of === "buffer" ? this.#buffers.get(named(event[3]).buffer)?.[1] || "empty" : (this.#values.get(key) ?? startOf(setting, event));
     if (known !== undefined) before.set(event, known);
     this.#values.set(key, text);
   }
@@ -30,12 +31,14 @@ export class Former {
 
 const cm = (width) => String(Number((100 * width).toFixed(1)));
 
-/** Returns the width of an aperture or the value of a model's parameter at the start of the run as text; undefined for other values, and in
- * a program, whose simulations may have begun with other widths than the one that is shown. */
-function startOf({ of, parameter }, { data }) {
-  const { kind, world, parameters } = session.peek() ?? {};
-  const width = of === "aperture" && kind !== "program" ? world?.openings?.[data?.named?.name ?? "aperture"] : undefined;
-  if (width !== undefined) return cm(width);
+/** Returns the width of an aperture or the value of a model's parameter at the start of its run as text; undefined for other values. */
+function startOf({ of, parameter }, [, source, , command]) {
+  const { openings, parameters } = session.peek() ?? {};
+  if (of === "aperture") {
+    const [, widths] = openings?.findLast(([first]) => first <= runOf(source)) ?? [];
+    const width = widths?.[named(command).name];
+    return width === undefined ? undefined : cm(width);
+  }
   return parameter && parameter.name in (parameters ?? {}) ? valueText(parameters[parameter.name]) : undefined;
 }
 

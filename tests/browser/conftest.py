@@ -94,6 +94,8 @@ def pages(users: Users, workbench: Served, request: pytest.FixtureRequest) -> It
         paced: bool = False,
         refusals: bool = False,
     ) -> Page:
+        there = sorted(str(file.relative_to(workbench.folder)) for file in workbench.folder.rglob("*.py"))
+        assert model in there, f"pages: the workbench has no model {model!r}; copy it into its folder first (it has {', '.join(there)})"
         page = users.new(request.node.get_closest_marker("scene") is not None, note_unless_refused if refusals else complaints.append)
         page.set_viewport_size({"width": width, "height": height})
         page.emulate_media(color_scheme=theme)

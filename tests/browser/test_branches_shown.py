@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.page import open_tab, shows, until
+from tests.helpers.page import answers, open_tab, shows, until
 from tests.helpers.workbench_server import Served
+from workbench.recording_index import Summary
 
 
 def say(page: Page, **command: Any) -> None:
@@ -82,6 +84,25 @@ def test_a_branch_below_a_deleted_recording_follows_the_nearest_one_that_it_come
       return [treeOf(all, "r").map(({ run, depth }) => depth + run.id), sameUntil(all, "r1", "c1")];
     }"""
     assert page.evaluate(copies) == [["0r", "1c1", "2b1", "1r1"], 5]  # r1 is a copy of the run r, c1 one of its branch b1
+
+
+SHOWN_SPAN = "async () => { const { from, to } = (await part('timeline/view.js')).span.value; return [from, to]; }"
+
+
+def test_the_axis_goes_as_far_as_the_longest_branch_unless_branches_are_hidden(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    name = page.evaluate("async () => (await part('store.js')).shownRecording.value")
+    start = {**asdict(Summary(id=name, named=name, model="doorway.py", size=0, made=0.0)), "session": "1", "label": None}
+    branch = {**start, "id": "branch", "named": "branch", "session": None, "origin": name, "branched": 2.0, "ended": "left", "time": 7.0}
+    answers(page, "/api/recordings", {"total": 2, "recordings": [start, branch], "warning": None})
+    page.evaluate("async () => (await part('runs/list.js')).listRuns()")
+    head = page.locator(".branches-head")
+    expect(head).to_have_text("1 branch")
+    until(page, lambda: page.evaluate(SHOWN_SPAN) == [0, 8])
+    head.click()
+    until(page, lambda: page.evaluate(SHOWN_SPAN) == [0, 1])
+    head.click()
+    until(page, lambda: page.evaluate(SHOWN_SPAN) == [0, 8])
 
 
 @pytest.mark.slow

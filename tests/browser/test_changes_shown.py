@@ -445,7 +445,7 @@ def test_a_program_with_its_own_simulation_is_changed_by_hand_in_its_panels_and_
     slider = page.get_by_role("slider", name="aperture", exact=True)
     slider.focus()
     slider.press("ArrowRight")
-    until(page, lambda: re.fullmatch(r"aperture \d+ cm", commands(page)[-1]) is not None)
+    until(page, lambda: commands(page)[-1] == "aperture 80 -> 81 cm")
     say(page, type="until", time=0.2)
     shows(page, "#time", r"0\.20")
     until(page, lambda: commands(page)[-1].endswith("-> 80 cm"))  # by the program itself

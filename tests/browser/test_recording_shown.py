@@ -425,6 +425,11 @@ def test_an_address_of_a_model_that_is_not_there_says_so(browser: Browser, workb
         shows(page, "#status", "paused")
 
 
+def test_a_test_that_opens_a_page_of_a_model_that_is_not_there_fails(pages: Pages) -> None:
+    with pytest.raises(AssertionError, match=r"^pages: the workbench has no model 'nope\.py'; copy it into its folder first \(it has "):
+        pages("nope.py")
+
+
 def test_an_address_of_a_recording_that_is_gone_says_so_and_shows_a_model(browser: Browser, workbench: Served) -> None:
     with browser.new_context() as context:  # of its own: a browser always complains of what is not found
         page = context.new_page()

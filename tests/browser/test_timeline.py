@@ -775,6 +775,36 @@ def test_the_value_of_a_curve_is_where_its_line_is_and_nowhere_else(blank: Page)
     assert found["csv"].splitlines()[1:] == ["0,0,,,0,8", "1,10,,3,1,", "1.5,,7,3,1,", "2,,,4,1,", "4,40,,4,3,", "5,,,4,4,"]
 
 
+EQUAL = """async () => {
+  const { drawCurves } = await part("parts/curve.js");
+  const curve = (colour, value, more = {}) => ({ name: colour, unit: "", times: [0, 1, 2], values: [0, value, null], colour, ...more });
+  const dots = (colour, value) => curve(colour, value, { shape: "points" });
+  const series = [curve("a", 1), curve("b", 1), curve("c", 0.5), curve("d", 1), dots("e", 1), dots("f", 1), dots("g", 0.5)];
+  const dashed = [curve("h", 0.2, { dash: [6, 3] }), curve("i", 0.2, { dash: [6, 3] })];
+  const [lines, moments] = [{}, {}];
+  const surface = { text() {}, within: (x, y, width, height, draw) => draw() };
+  surface.line = (points, colour, { width, dash } = {}) => width && (lines[colour] = [width, dash]);
+  surface.fill = (x, y, width, height, colour) => (moments[colour] ??= []).push(x);
+  const box = { x: 0, y: 0, width: 100, height: 50 };
+  drawCurves(surface, box, { series: [...series, ...dashed], span: { from: 0, to: 2 }, range: [0, 1] });
+  return [lines, moments];
+}"""
+"""The width and the dashes of each line, and where the moments of the others are drawn, by colour."""
+
+
+def test_curves_that_are_equal_do_not_hide_each_other(blank: Page) -> None:
+    lines, moments = blank.evaluate(EQUAL)
+    assert lines == {
+        "a": [1.5, []],
+        "b": [3, [6, 6]],
+        "c": [1.5, []],  # it differs
+        "d": [4.5, [6, 12]],
+        "h": [1.5, [6, 3]],
+        "i": [3, [6, 12]],  # every second dash
+    }
+    assert moments == {"e": [-1.5, 48.5], "f": [1.5, 51.5], "g": [-1.5, 48.5]}
+
+
 def test_parts_of_an_activation_of_one_kind_have_different_dashes(blank: Page) -> None:
     parts = ["activation", "base level", "base level 2", "spreading", "spreading 2"]
     dashes = blank.evaluate(

@@ -170,6 +170,10 @@ def test_the_widget_follows_the_cells_and_says_what_to_do_where_it_cannot(browse
     expect(frame.get_by_role("tab", name="Buffers")).to_be_visible()
     assert frame.get_by_role("tab", name="Editor").count() == 0
     assert frame.locator("#restart, #stop, select.model").count() == 0
+    frame.get_by_role("button", name="Move, push").click()
+    frame.get_by_role("dialog").get_by_role("button", name="Move …").click()
+    expect(frame.get_by_role("dialog").get_by_role("option", name="walker")).to_have_count(1)
+    frame.get_by_role("dialog").get_by_role("button", name="Cancel").click()
     inner = next(one for one in page.frames if "session=" in one.url)
     assert inner.evaluate("() => document.documentElement.dataset.theme") == "dark"
     expect(inner.locator(".changed")).to_have_count(0)

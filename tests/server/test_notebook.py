@@ -26,7 +26,7 @@ from actr3d.actr import ACTR, Buffer, Model
 from actr3d.errors import NotebookError
 from actr3d.recording import Recorded
 from actr3d.simulation import Simulation
-from actr3d.world import Aperture, Floor, Scene
+from actr3d.world import Aperture, Floor, Scene, Wall
 from tests.helpers.asgi_client import HOST, Answer, ask
 from tests.helpers.manual import FENCE, ROOT, compare
 from tests.helpers.walkers import driving
@@ -55,7 +55,7 @@ class Counter(ACTR):
 
 
 def counter() -> Simulation:
-    scene = Scene(parts=(Floor(), Aperture(name="aperture", width=0.6)))
+    scene = Scene(parts=(Floor(), Aperture(name="aperture", width=0.6), Wall(name="wall", start=(3, 1), end=(3, 2))))
     return Simulation(scene, bodiless={"counter": Counter}, seed=1)
 
 
@@ -118,6 +118,8 @@ def test_a_page_shows_what_a_cell_has_left_before_the_cell_is_over() -> None:
         assert isinstance(facts, Facts)
         assert facts.mj_model is not None
         assert {"move", "aperture", "set_buffer"} <= {change["word"] for change in json.loads(facts.changes)}
+        world = json.loads(facts.world)
+        assert (world["objects"], world["widths"]) == (["wall"], {"aperture": [0, 300]})  # what these changes are of
         simulation.run(0.5)  # no turn of the event loop from here on
         assert json.loads(server.state(0.5).parts)["counter.goal"]["chunk"] == {"0": "count", "1": "5"}
         simulation.seek(0.2)

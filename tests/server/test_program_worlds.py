@@ -115,6 +115,16 @@ def test_a_program_that_makes_a_simulation_stands_at_its_start_with_its_scene(de
     assert [*talk.state["parts"]][:2] == ["walker", "walker.body"]
 
 
+def test_pages_know_the_widths_at_the_start_of_every_simulation(desk: Desk, tmp_path: Path) -> None:
+    widths = TRIALS.replace("(0.6, 0.9)", "(0.6, 0.6, 0.9)").replace("run(0.4)", "run(0.01)")
+    talk = desk.begin(tmp_path, widths, run=True, wait="ended")
+    known = [[2, {"aperture": 0.6}], [4, {"aperture": 0.9}]]
+    assert talk.facts["openings"] == known
+    talk.say("seek", time=0.1)
+    talk.until("paused", time=0.1)
+    assert talk.facts["openings"] == known, "events that lie ahead are shown, too"
+
+
 def test_its_steps_are_ticks_and_what_it_was_is_shown_again_where_it_goes_back(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, ONE)
     draw(talk)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import sqlite3
 import time
-from contextlib import closing
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager, closing
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -14,8 +17,12 @@ from actr3d.errors import RecordingError
 from actr3d.recording import Recorded, Recording
 from actr3d.trace import TraceEvent
 from tests.helpers.sessions import Desk
+from workbench import listing
+from workbench.jobs import Job, doing
 from workbench.recording_diff import CONTEXT, compare
 from workbench.recording_index import Summary
+from workbench.worker.messages import Reply, Start
+from workbench.worker.workers import Workers
 
 MODELS = Path(__file__).parents[2] / "models"
 APERTURE = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
@@ -140,6 +147,47 @@ def test_a_summary_is_read_again_when_its_file_has_changed(desk: Desk, tmp_path:
         assert beside > 0
         assert summary().size >= path.stat().st_size + beside  # what is new lies there until the run has ended
         assert summary() is summary()
+
+
+def test_a_list_asked_for_after_a_change_has_the_change_although_an_earlier_reading_is_not_over(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / ".workbench" / "recordings" / "m.sqlite"
+    path.parent.mkdir(parents=True)
+    sessions = desk.sessions(tmp_path)
+
+    async def both(recording: Recording) -> tuple[Summary, Summary]:
+        was_read, may_answer = asyncio.Event(), asyncio.Event()
+
+        @asynccontextmanager
+        async def first_answers_late(workers: Workers, start: Start, job: Job, **more: Any) -> AsyncGenerator[Job]:
+            answers: list[Reply] = []
+
+            def hold(message: Reply) -> None:
+                answers.append(message)
+
+            reply, job.reply = job.reply, hold
+            async with doing(workers, start, job, **more):
+                await job.over.wait()
+                if not was_read.is_set():
+                    was_read.set()
+                    await may_answer.wait()
+                for answer in answers:
+                    reply(answer)
+                yield job
+
+        monkeypatch.setattr(listing, "doing", first_answers_late)
+        first = asyncio.create_task(sessions.listing.one("m"))
+        await was_read.wait()
+        recording.fact("ended", {"by": "stop"})
+        recording.flush()
+        second = await asyncio.wait_for(sessions.listing.one("m"), 60)
+        may_answer.set()
+        return await first, second
+
+    with Recording(path, {"kind": "program", "seed": 1, "file": "m.py"}) as recording:
+        first, second = desk.do(both(recording))
+    assert (first.ended, second.ended) == (None, "stop")
 
 
 def test_the_first_difference_has_its_surroundings(tmp_path: Path) -> None:

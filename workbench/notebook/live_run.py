@@ -84,10 +84,11 @@ class LiveRun(SimulationRun):
 
     def _first_facts(self) -> Facts:
         simulation, shown = self._simulation, self._shown
-        world = to_json(shown.world()).encode()
+        world, openings = to_json(shown.world()).encode(), to_json([(1, shown.openings)]).encode()
         seed, period = simulation.seed, simulation.period
         changes = change_menu(agents_only=False)
-        return Facts(kind="simulation", seed=seed, period=period, parameters=b"{}", world=world, mj_model=shown.mj_model, changes=changes)
+        known = {"parameters": b"{}", "world": world, "openings": openings, "changes": changes}
+        return Facts(kind="simulation", seed=seed, period=period, mj_model=shown.mj_model, **known)
 
     # -- what cells do
 

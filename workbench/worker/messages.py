@@ -108,6 +108,9 @@ class Facts(Message, frozen=True, kw_only=True):
     """JSON: the values of parameters by name."""
     world: bytes
     """JSON: bodies, apertures and objects; null without a world."""
+    openings: bytes = b"[]"
+    """JSON: the widths of apertures at the start of the simulations of the run [m], each as [number, widths by name]. The number is that
+    of the simulation among all runs of a program; simulations that begin with the widths of the one before are left out."""
     changes: bytes = b"[]"
     """JSON: the changes that a user can make by hand; see `worker.change_menu`."""
     live: bytes = b"[]"

@@ -7,6 +7,8 @@ from collections import Counter, defaultdict, deque
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext, suppress
 from functools import partial
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -174,14 +176,16 @@ class ProgramRun(ControlledRun):
         self._simulations: dict[int, tuple[Shown, int]] = {}
         """Those nearest to the present by number, and when each began [us]. They are kept when the program is run again: the stored past of
         a simulation is passed on to the one that begins in its place."""
+        self._openings: dict[int, dict[str, float]] = {}
+        """The widths of apertures at the start of each simulation [m], by its number among all runs; kept likewise."""
         self._held: deque[tuple[int, Run, Any]] = deque(maxlen=MAX_RUNS)
         """The numbers of the latest runs, these, and their models."""
         self._runs = 0
         """How many runs there have been."""
         self._shown: Shown | None = None
         """The simulation that has ticked last."""
-        self._scene: tuple[bytes | None, bytes] = (None, b"null")
-        """The compiled scene and the world that the server knows."""
+        self._scene: tuple[bytes | None, bytes, bytes] = (None, b"null", b"[]")
+        """The compiled scene, the world, and the widths at the start of simulations that the server knows."""
         self._scene_of: Shown | None = None
         """The simulation that was shown last."""
         self._ahead: dict[int, Past] = {}
@@ -265,20 +269,26 @@ class ProgramRun(ControlledRun):
     def _send_facts(self) -> None:
         known = {parameter.name: parameter.default for parameter in self._listing.parameters}
         parameters = to_json({**known, **self._controller.channel.start.settings}).encode()
-        self._scene = mj_model, world = self._scene_now()
+        self._scene = mj_model, world, openings = self._scene_now()
         period = seconds(self.period)
         changes = change_menu(agents_only=self._shown is None)
         facts = Facts(
-            kind="program", seed=self._seed, period=period, parameters=parameters, world=world, mj_model=mj_model, changes=changes
+            kind="program",
+            seed=self._seed,
+            period=period,
+            parameters=parameters,
+            world=world,
+            openings=openings,
+            changes=changes,
+            mj_model=mj_model,
         )
         self._controller.channel.post(facts)
 
-    def _scene_now(self) -> tuple[bytes | None, bytes]:
-        return (
-            (None, b"null")
-            if self._shown is None
-            else (self._shown.mj_model, to_json(self._shown.world(self._listing.parameters)).encode())
-        )
+    def _scene_now(self) -> tuple[bytes | None, bytes, bytes]:
+        if self._shown is None:
+            return None, b"null", b"[]"
+        openings = [next(same) for _, same in groupby(sorted(self._openings.items()), key=itemgetter(1))]
+        return self._shown.mj_model, to_json(self._shown.world(self._listing.parameters)).encode(), to_json(openings).encode()
 
     def _run_once(self) -> None:
         """Runs the program from its start to its end, or until it is left."""
@@ -545,6 +555,7 @@ class ProgramRun(ControlledRun):
             self._shown = shown = Shown(simulation, None if earlier is None else earlier[0].kept)
             self._take_ahead(shown)
             self._simulations[self._begun] = shown, self._clock
+            self._openings[simulation.event_log.number or 1] = shown.openings
             if len(self._simulations) > MAX_SIMULATIONS:
                 del self._simulations[max(self._simulations, key=lambda number: abs(number - self._begun))]
 

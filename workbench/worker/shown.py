@@ -46,30 +46,31 @@ class Shown:
         self.mj_model = to_bytes(simulation.world.mj_model)
         """The compiled scene at the start, in MuJoCo's binary format."""
         self.surroundings = surroundings(simulation.world)
-        self._openings = self.scene()[1]
-        """The widths of apertures at the start [m]."""
         self._observed = Observed(simulation, self.eyesight, lambda: self.kept.walked.up_to(simulation.ticks, simulation.world))
 
-    def world(self, parameters: Iterable[Parameter] | None = None) -> dict[str, Any]:
+    def world(self, parameters: Iterable[Parameter] = ()) -> dict[str, Any]:
         """Returns the description of the world for pages, as plain values.
 
         Args:
-            parameters: The model's parameters, which limit the widths of doorways during the run; None if widths cannot be changed.
+            parameters: The model's parameters, which limit the widths of doorways during the run.
         """
         return {
             **self.surroundings,
             "empty": self.simulation.world.mj_model.ngeom == 0,
             "agents": self.simulation.embodied,
-            "openings": self._openings,
-            "objects": [] if parameters is None else self.simulation.world.objects.names,
-            "widths": {} if parameters is None else widths(self.surroundings["apertures"], parameters),
+            "objects": self.simulation.world.objects.names,
+            "widths": widths(self.surroundings["apertures"], parameters),
         }
+
+    @property
+    def openings(self) -> dict[str, float]:
+        """The widths of apertures at the start [m]."""
+        return {part.name: part.width for part in self.simulation.world.scene.parts if isinstance(part, Aperture)}
 
     def scene(self) -> tuple[bytes, dict[str, float]]:
         """Returns the state of the physics, and the widths of apertures [m]."""
         world = self.simulation.world
-        names = [part.name for part in world.scene.parts if isinstance(part, Aperture)]
-        return world.state_bytes(), {name: world.aperture_width(name) for name in names}
+        return world.state_bytes(), {name: world.aperture_width(name) for name in self.openings}
 
     def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
         """Returns the current data of overlays by kind; empty if it cannot be computed, for example after the physics has diverged."""
