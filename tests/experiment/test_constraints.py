@@ -7,11 +7,12 @@ import random
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from statistics import mean
+from typing import Any
 
 import pytest
 
 from actr3d.experiment.aperture.constraints import Findings, difference, equivalence, margin
-from actr3d.experiment.aperture.critical_ratio import critical_ratio
+from actr3d.experiment.aperture.critical_ratio import critical_ratio, critical_ratio_of_group
 from actr3d.experiment.aperture.original import original_means
 from actr3d.experiment.aperture.passing import Passing
 
@@ -110,8 +111,14 @@ def findings(of: Callable[[Passing], Passing]) -> Findings:
     return Findings(map(of, GOOD))
 
 
+def judgements(*boundaries: float, step: float = 0.02) -> list[list[tuple[float, bool]]]:
+    """Returns the judgements of people, each with a boundary: the ratio, and whether it is below that."""
+    ratios = [round(0.9 + step * n, 2) for n in range(round(0.5 / step) + 1)]
+    return [[(ratio, ratio < boundary) for ratio in ratios] for boundary in boundaries]
+
+
 def unmet(of: Callable[[Passing], Passing], boundary: float = 1.16) -> list[int]:
-    return [constraint.number for constraint in findings(of).all(boundary=boundary) if constraint.met is False]
+    return [constraint.number for constraint in findings(of).all(judged=judgements(*[boundary] * 4)) if constraint.met is False]
 
 
 def with_angle(one: Passing, angle: float) -> Passing:
@@ -198,7 +205,7 @@ def test_a_participant_without_an_angle_is_left_out_wherever_it_has_none(conditi
     """An experiment that goes on may have no trial of it yet, or none in which it set out."""
     absent = [replace(one, angle=None) if one.participant == "large 4" and one.condition in conditions else one for one in GOOD]
     found, without = Findings(absent), Findings(one for one in absent if one.angle is not None)
-    assert found.all(boundary=1.16)[:5] == without.all(boundary=1.16)[:5]
+    assert found.all()[:5] == without.all()[:5]
     assert results(found)[3] is True
     scores = found.scores()
     assert scores is not None
@@ -214,16 +221,58 @@ def test_groups_coincide_only_where_they_turn() -> None:
     assert (same.met, same.found) == (None, "it needs participants that differ")
 
 
-def test_judgements_that_are_all_alike_have_no_boundary() -> None:
-    assert Findings([]).judged(math.nan).met is None
+@pytest.mark.parametrize(
+    ("people", "met", "found"),
+    [
+        (judgements(1.16, 1.16, 1.16), True, "from 1.150 (95 % interval 1.139 to 1.161)"),
+        (judgements(1.13, 1.16, 1.19), None, "cannot be decided without more participants"),
+        (judgements(1.16, 1.16, 1.16, step=0.1), None, "(95 % interval 1.100 to 1.200)"),
+        (judgements(1.14, 1.16, 1.18, step=0.25), None, "(95 % interval 0.802 to 1.519)"),
+        (judgements(1.0, 1.02, 1.04), False, "from 1.010 (95 % interval 0.960 to 1.060)"),
+        (judgements(0.5, 0.5, 0.5), None, "it needs judgements of both kinds: all were the same"),
+        (judgements(1.16, 1.16), None, "it needs three or more participants"),
+        (None, None, "it needs judgements, as in the design passability_judgement"),
+    ],
+)
+def test_the_boundary_of_judgements_is_judged_by_its_whole_interval(people: Any, met: bool | None, found: str) -> None:
+    constraint = Findings([]).judged(people)
+    assert (constraint.met, found in constraint.found) == (met, True), constraint.found
+
+
+def test_the_interval_of_a_group_is_as_wide_as_its_participants_differ() -> None:
+    """Trials of one person are more alike than those of several: all of them together would look more certain than they are."""
+    chance = random.Random(1)
+
+    def walked(turns: float) -> list[tuple[float, bool]]:
+        ratios = [0.8 + 0.1 * n for n in range(11) for _ in range(60)]
+        return [(ratio, chance.random() < 1 / (1 + math.exp(25 * (ratio - turns)))) for ratio in ratios]
+
+    alike, different = ([walked(1.30 + more * spread) for more in (-1, -0.5, 0, 0.5, 1)] for spread in (0.0, 0.08))
+    for people in (alike, different):
+        found, pooled = critical_ratio_of_group(people), critical_ratio(trial for one in people for trial in one)
+        assert found is not None
+        assert pooled is not None
+        assert found.value == pooled.value
+        assert found.low <= pooled.low < pooled.high <= found.high
+    (low, high), (lower, higher) = ((of.low, of.high) for of in map(critical_ratio_of_group, (alike, different)) if of is not None)
+    assert higher - lower > 3 * (high - low)
+    # That of five means with these differences, by Student's t, is 0.079 to each side.
+    assert (higher - lower) / 2 == pytest.approx(0.079, abs=0.02)
+    one_never = critical_ratio_of_group([[(1.0, True), (1.2, False)], [(1.0, False), (1.2, False)]])
+    assert one_never is not None
+    assert (one_never.low, one_never.high) == (-math.inf, math.inf), "without the first, there is none"
 
 
 def test_a_critical_ratio_that_the_trials_leave_open_is_not_tested() -> None:
-    """One walker turns at the narrower of two apertures: where it begins to turn is not known."""
-    two = [one for one in GOOD if one.aperture in (0.5, 0.7) and one.participant == "small 2" and one.condition == "normal"][::2]
+    """Walkers turn at the narrower of two apertures: where they begin to turn is not known."""
+    two = [one for one in GOOD if one.aperture in (0.5, 0.7) and one.participant[:5] == "small" and one.condition == "normal"][::2]
     found = Findings(two).critical()
     assert found.met is None
-    assert found.found == "cannot be decided without more trials or more ratios: small normal 1.485 (95 % interval −∞ to ∞)"
+    assert "cannot be decided without more participants, trials or ratios: small normal" in found.found
+    assert found.found.endswith("small normal 1.299 (95 % interval 0.928 to 1.669)")
+    assert (
+        Findings(one for one in two if one.participant == "small 2").critical().found == "it needs three or more participants in each group"
+    )
     below = Findings(replace(one, angle=20.0 if one.ratio < 1.1 else 0.0) for one in GOOD if one.aperture > 0.4)
     assert below.critical().met is False, "a ratio that is certainly too small is so, wherever it is"
 

@@ -136,11 +136,11 @@ def passing_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
 def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Section]:
     """Returns the sections on judging whether one could pass without turning."""
     pd, rows = pandas(), results.rows
-    of_all = critical_ratio(zip(rows["ratio"], rows["passable"] < 0.5, strict=True))
-    constraints = Findings([]).all(boundary=math.nan if of_all is None else of_all.value)
+    judged: list[list[tuple[float, bool]]] = []
     found: list[dict[str, Any]] = []
     for (group, participant), of in rows.groupby(["group", "participant"], sort=False, observed=True):
-        one = critical_ratio(zip(of["ratio"], of["passable"] < 0.5, strict=True))
+        judged.append(list(zip(of["ratio"].tolist(), (of["passable"] < 0.5).tolist(), strict=True)))
+        one = critical_ratio(judged[-1])
         values = (math.nan,) * 3 if one is None else (one.value, one.low, one.high)
         found.append({"group": group, "participant": participant, **dict(zip(("boundary", "low", "high"), values, strict=True))})
         found[-1]["beyond"] = "yes" if one is not None and one.beyond else "no"
@@ -164,27 +164,24 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
             digits={"boundary": 3, "low": 3, "high": 3},
         ),
     ]
-    if of_all is not None:
-        within: list[float] = people[people["beyond"] == "no"]["boundary"].dropna().tolist()
+    within: list[float] = people[people["beyond"] == "no"]["boundary"].dropna().tolist()
+    if within:
         low, high = bootstrap_interval(within)
-        mean = float(np.mean(within)) if within else math.nan
-        parts.append(
-            f"Mean boundary {mean:.3f} (95 % interval over participants {low:.3f} to {high:.3f}); of all judgements {of_all.value:.3f}."
-        )
-        parts += _left_out(people, "boundary")
+        parts.append(f"Mean boundary {float(np.mean(within)):.3f} (95 % interval over participants {low:.3f} to {high:.3f}).")
+    parts += _left_out(people, "boundary")
     parts.append(
         "The boundary of the descriptive and of the replication variant is a parameter of the model (1.16, 1.139): only its spread follows "
         "from the noise of vision. That of the predictive variant follows from its experiences: it says what came of the one that is most "
         "active."
     )
     return [
-        Section(title="Constraints on a model of people", parts=[_constraints(constraints)]),
+        Section(title="Constraints on a model of people", parts=[_constraints(Findings([]).all(judged=judged))]),
         Section(title="Judged passability", parts=parts),
     ]
 
 
 def _constraints(constraints: Sequence[Constraint]) -> Table:
-    words = {True: "met", False: "not met", None: "not testable"}
+    words = {True: "met", False: "not met", None: "not decided"}
     rows = [{"number": str(one.number), "constraint": one.says, "result": words[one.met], "found": one.found} for one in constraints]
     note = (
         "As in the manual, «Human data and sources». Participants are the unit; for the fourth, the critical ratio of a cell is that of "

@@ -1,7 +1,7 @@
 """The constraints on a model of people who pass apertures, by their numbers in docs/human-data.md.
 
 Participants, not trials, are the unit of analysis: means of participants are compared. Only the critical ratio of a cell is that of all
-its trials, as the ratios of a single participant are more than 0.1 apart.
+its trials, as the ratios of a single participant are more than 0.1 apart; its interval is as wide as participants differ, at least.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import stdtr, stdtrit
 
-from actr3d.experiment.aperture.critical_ratio import CriticalRatio, critical_ratio
+from actr3d.experiment.aperture.critical_ratio import CriticalRatio, Trials, critical_ratio_of_group
 from actr3d.experiment.aperture.passing import DEPTH, TURNED, Passing
 from actr3d.experiment.report.libraries import noting_warnings, pingouin
 from actr3d.experiment.report.page import number
@@ -79,7 +79,7 @@ class Constraint:
     """Its number in docs/human-data.md."""
     says: str
     met: bool | None
-    """None if the design of the experiment does not test it."""
+    """None if the design of the experiment does not test it, or has too few participants or trials to decide it."""
     found: str
     """The model's result, with its numbers; or what the design lacks."""
 
@@ -161,16 +161,16 @@ class Findings:
 
     # -- the constraints
 
-    def all(self, *, boundary: float | None = None) -> list[Constraint]:
+    def all(self, *, judged: Sequence[Trials] | None = None) -> list[Constraint]:
         """Returns all nine constraints.
 
         Args:
-            boundary: The ratio from which the model judges that it can pass without turning; None if it was not asked, NaN if it judges
-                all alike.
+            judged: The judgements of each participant: the ratio, and whether it judged that it cannot pass without turning; None if it was
+                not asked.
         """
         made: list[Callable[[], Constraint]] = [self.falls, self.wider_turns_more, self.same_ratio, self.critical, self.faster_turns_more]
         made += [self.untouched, self.upright, self.longer_bar]
-        return [*(make() for make in made), self.judged(boundary)]
+        return [*(make() for make in made), self.judged(judged)]
 
     def falls(self) -> Constraint:
         """1: rotation falls with aperture."""
@@ -267,20 +267,22 @@ class Findings:
         return Constraint(number=3, says=says, met=test.p < 0.05, found=found)
 
     def critical(self) -> Constraint:
-        """4: the critical ratio of each cell, of all its trials: its whole interval is inside the bounds, outside, or neither."""
+        """4: the critical ratio of each cell: its whole interval is inside the bounds, outside, or neither."""
         says = f"critical ratio {CRITICAL[0]} to {CRITICAL[1]} in each cell"
         cells = {
-            (group, condition): [one for who in self.people(group) for one in self.trials(group, condition, who)]
+            (group, condition): [of for who in self.people(group) if (of := self.trials(group, condition, who))]
             for group in self.groups
             for condition in self.conditions
         }
-        if not cells or any(not of or not _spans([one.ratio for one in of], CRITICAL) for of in cells.values()):
+        if not cells or any(not of or not _spans([one.ratio for who in of for one in who], CRITICAL) for of in cells.values()):
             return _untested(4, says, f"it needs ratios below {CRITICAL[0]} and above {CRITICAL[1]} in each group and condition")
-        found = {key: critical_ratio((one.ratio, one.turned) for one in of) for key, of in cells.items()}
+        if any(len(of) < FEWEST for of in cells.values()):
+            return _untested(4, says, "it needs three or more participants in each group")
+        found = {key: critical_ratio_of_group([[(one.ratio, one.turned) for one in who] for who in of]) for key, of in cells.items()}
         met = {_within(ratio, CRITICAL) for ratio in found.values()}
         text = ", ".join(f"{' '.join(filter(None, key))} {_ratio_text(ratio)}" for key, ratio in found.items())
         if met <= {True, None} and None in met:
-            return _untested(4, says, f"cannot be decided without more trials or more ratios: {text}")
+            return _untested(4, says, f"cannot be decided without more participants, trials or ratios: {text}")
         return Constraint(number=4, says=says, met=met == {True}, found=text)
 
     def faster_turns_more(self) -> Constraint:
@@ -373,15 +375,20 @@ class Findings:
             text += "; none: no walker set out, although people pass"
         return Constraint(number=BARS, says=says, met=met, found=text)
 
-    def judged(self, boundary: float | None) -> Constraint:
-        """9: the boundary of what is judged to be passable."""
+    def judged(self, people: Sequence[Trials] | None) -> Constraint:
+        """9: the boundary of what is judged to be passable: its whole interval is inside the bounds, outside, or neither."""
         says = "«can pass» from about 1.16, below 1.30"
-        if boundary is None:
+        if people is None:
             return _untested(9, says, "it needs judgements, as in the design passability_judgement")
-        if math.isnan(boundary):
+        if len(people) < FEWEST:
+            return _untested(9, says, "it needs three or more participants")
+        boundary = critical_ratio_of_group(people)
+        if boundary is None:
             return _untested(9, says, "it needs judgements of both kinds: all were the same")
-        met = PASSABLE[0] <= boundary <= PASSABLE[1]
-        return Constraint(number=9, says=says, met=met, found=f"from {boundary:.3f}")
+        met, text = _within(boundary, PASSABLE), f"from {_ratio_text(boundary)}"
+        if met is None:
+            return _untested(9, says, f"cannot be decided without more participants, judgements or ratios: {text}")
+        return Constraint(number=9, says=says, met=met, found=text)
 
 
 def _untested(number: int, says: str, why: str) -> Constraint:

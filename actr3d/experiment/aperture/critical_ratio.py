@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from statistics import pvariance
 
 import numpy as np
+from scipy.special import stdtrit
 
 STEEPEST = 200.0
 """The greatest slope of the logistic curve per unit of the ratio: steeper ones cannot be distinguished."""
@@ -33,7 +36,11 @@ class CriticalRatio:
     value is only a bound."""
 
 
-def critical_ratio(trials: Iterable[tuple[float, bool]]) -> CriticalRatio | None:
+Trials = Iterable[tuple[float, bool]]
+"""The ratio of each trial, and whether the walker turned, or judged that it cannot pass without turning."""
+
+
+def critical_ratio(trials: Trials) -> CriticalRatio | None:
     """Returns the ratio at which half of the trials are turned, by a logistic fit; None if all are, or none is.
 
     The interval is that of the profile likelihood. If all trials up to one ratio are turned, and none from the next ratio on, the critical
@@ -69,6 +76,27 @@ def critical_ratio(trials: Iterable[tuple[float, bool]]) -> CriticalRatio | None
     if last < first:  # a curve steeper than the steepest may be as near to either as one likes
         low, high = min(low, last), max(high, first)
     return CriticalRatio(value=(top[0] + top[-1]) / 2, low=low, high=high, beyond=bool(likely[0] or likely[-1]))
+
+
+def critical_ratio_of_group(people: Sequence[Trials]) -> CriticalRatio | None:
+    """Returns the ratio at which half of all trials of some participants are turned, with an interval for other such people.
+
+    Trials of one person are more alike than those of several. So the interval is that of all trials or, where this is wider, that of the
+    jackknife: of how much the ratio changes without each of the participants (Student's t).
+
+    Args:
+        people: The trials of each participant, as for `critical_ratio`.
+    """
+    found = critical_ratio(trial for one in people for trial in one)
+    if found is None or len(people) < 2:
+        return found
+    without = [critical_ratio(trial for one in (*people[:n], *people[n + 1 :]) for trial in one) for n in range(len(people))]
+    values = [one.value for one in without if one is not None and not one.beyond]
+    if len(values) < len(people):
+        return replace(found, low=-math.inf, high=math.inf)
+    error = math.sqrt((len(values) - 1) * pvariance(values))
+    half = float(stdtrit(len(values) - 1, 0.975)) * error
+    return replace(found, low=min(found.low, found.value - half), high=max(found.high, found.value + half))
 
 
 def bend(ratios: Sequence[float], angles: Sequence[float]) -> float | None:
