@@ -25,6 +25,8 @@ export const where = signal({});
 /** What the page waits for: {text, cancel?}; null for nothing. */
 export const busy = signal(null);
 
+/** Whether something happens to an experiment that ends by itself. */
+const isChanging = (one) => isRunning(one) || one.state === "elsewhere" || one.work.length > 0;
 /** Whether an experiment runs. */
 export const isRunning = ({ state }) => state === "running" || state === "stopping";
 
@@ -55,7 +57,7 @@ export function followExperiments() {
   async function again() {
     await listExperiments();
     clearTimeout(timer); // another request may have ended meanwhile
-    if (!over) timer = setTimeout(again, experiments.value?.some((one) => isRunning(one) || one.state === "elsewhere") ? WHILE_RUNNING : OTHERWISE);
+    if (!over) timer = setTimeout(again, experiments.value?.some(isChanging) ? WHILE_RUNNING : OTHERWISE);
   }
   const stop = effect(() => {
     shown.value; // another one is shown: its newest state

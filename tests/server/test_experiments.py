@@ -13,7 +13,7 @@ import sqlite3
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Coroutine, Iterator
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -281,6 +281,45 @@ def test_of_two_who_continue_an_experiment_at_once_one_is_refused(tmp_path: Path
     monkeypatch.setattr(ExperimentCommand, "start", slow)
     assert [str(problem) for problem in desk.do(both())] == ["no more processes", "this experiment is already running"]
     assert len(started) == 1
+
+
+def test_an_experiment_is_not_deleted_while_its_report_or_a_recording_is_made(
+    tmp_path: Path, desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / ".workbench" / "experiments" / "mine"
+    folder.mkdir(parents=True)
+    (folder / "experiment.json").write_text("{}", "utf-8")
+
+    async def refused(work: Coroutine[Any, Any, Any]) -> str:
+        with pytest.raises(ExperimentRunError) as error:
+            await work
+        return str(error.value)
+
+    async def all_at_once() -> None:
+        experiments, going = Experiments(desk.sessions(tmp_path)), asyncio.Event()
+
+        async def slow(*_: object) -> ExperimentCommand:
+            await going.wait()
+            raise OSError("no more processes")
+
+        monkeypatch.setattr(ExperimentCommand, "start", slow)
+        for make, what in (
+            (lambda: experiments.make_report("mine", trust=True), "its report is being made"),
+            (lambda: experiments.record("mine", 3, trust=True), "its trial 3 is being recorded"),
+        ):
+            going.clear()
+            made = asyncio.create_task(make())
+            await asyncio.sleep(0)
+            assert (await experiments.one("mine"))["work"] == [what]  # which other pages show
+            assert await refused(experiments.delete("mine")) == f"{what}: wait for its end, then delete the experiment"
+            assert await refused(make()) == f"{what} already: wait for its end"
+            going.set()
+            with pytest.raises(OSError, match="no more processes"):
+                await made
+            assert (await experiments.one("mine"))["work"] == []
+        assert (await experiments.delete("mine")).startswith(".workbench/trash/")
+
+    desk.do(all_at_once())
 
 
 @pytest.mark.slow
