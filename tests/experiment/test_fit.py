@@ -529,6 +529,21 @@ def test_columns_that_only_a_report_reads_are_no_measures_of_a_target(tmp_path: 
         load_target(str(path), design)
 
 
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("participant,n_,time\np,1,3\n", r":1: unknown column 'time'; there may be: participant, group, n_, rt\n"),
+        ("participant,n_,time,luck\np,1,3,4\n", r":1: unknown column 'time'; there may be: participant, group, n_, luck, rt$"),
+        ("participant,n_\np,1\n", r":1: no column is a measure; there may be: rt$"),
+    ],
+)
+def test_an_error_in_a_file_without_the_measure_of_the_fit_names_this_measure(tmp_path: Path, text: str, says: str) -> None:
+    design = specify(str(write_experiment(tmp_path)))
+    (people := tmp_path / "people.csv").write_text(text)
+    with pytest.raises(ExperimentError, match=says):
+        load_target(str(people), design, "rt")
+
+
 def test_levels_may_be_lists_and_dicts(tmp_path: Path) -> None:
     factors = '{"load": [[1, 2], (3,), {"a": [4]}, None]}'
     design = str(write_experiment(tmp_path, factors=factors, model=COUNTER.replace("n = 3", "n = 3\nload = None")))
