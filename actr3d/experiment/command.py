@@ -26,7 +26,7 @@ from actr3d.experiment.design import OWN_COLUMNS
 from actr3d.experiment.human_data import plain_text
 from actr3d.experiment.measures import NOTHING_LEFT, check_measures, check_row, ended_early, try_measures
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
-from actr3d.experiment.store import SPECIFICATION, Store, only_process, summary, write_whole
+from actr3d.experiment.store import LOCK, SPECIFICATION, Store, only_process, summary, write_whole
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import PLAIN, record_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
@@ -217,6 +217,7 @@ def fit(
 
     fitted = specify(name, values=values)
     path = Path(folder or f"fit {fitted.specification.name}")
+    check_folder_of_fit(path)
     wanted = means(fitted, target, "--target FILE")
     named = [given.partition("=") for given in hold_out]
     if twice := [design for design, count in Counter(design for design, _, _ in named).items() if count > 1]:
@@ -224,13 +225,19 @@ def fit(
     held_out = {design: means(specify(design), data, f"--hold-out {design}=FILE") for design, _, data in named}
     options = {"values": values, "participants": participants, "trials": trials}
     searched = [Range.from_text(text) for text in ranges]
-    with (
-        _folder_of_fit(path),
-        local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler) as client,
-    ):
-        running = Fit(name, searched, wanted, path, client, options=options, progress=partial(_progress, out))
-        result = running.run(candidates, hold_out=held_out, ablate=ablate, recover=recover)
-        write_whole(path / "fit.json", json.dumps(asdict(result), indent=1, ensure_ascii=False))
+
+    @contextmanager
+    def open_cluster() -> Generator[Any]:
+        # First the cluster, which may not answer: then no folder is made.
+        with (
+            local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler) as client,
+            _folder_of_fit(path),
+        ):
+            yield client
+
+    running = Fit(name, searched, wanted, path, open_cluster, options=options, progress=partial(_progress, out))
+    result = running.run(candidates, hold_out=held_out, ablate=ablate, recover=recover)
+    write_whole(path / "fit.json", json.dumps(asdict(result), indent=1, ensure_ascii=False))
     out.event("fit", asdict(result))
     out.line(("\nfitted", "bold"), f" to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
     few = result.fit.cells <= len(result.parameters)
@@ -387,6 +394,19 @@ def _opened(
         raise ExperimentError(f"'{folder}' is another experiment: {'; '.join(different)}; {same}")
     # The files may be at another place now, and other files that the model reads beside them.
     return Experiment(replace(there, design=now.design, model=now.model)), store, True
+
+
+def check_folder_of_fit(path: Path) -> None:
+    """Checks that the folder of a fit is new or empty, or holds an earlier fit.
+
+    Raises:
+        ExperimentError: If it holds an experiment, or something else and no fit.
+    """
+    holds = sorted(file.name for file in path.glob("*") if file.name != LOCK and not file.name.startswith("."))
+    is_experiment = SPECIFICATION in holds
+    if is_experiment or (holds and not any(name == "fit.json" or name.startswith("candidate ") for name in holds)):
+        what = "holds an experiment" if is_experiment else f"holds '{holds[0]}' and no earlier fit"
+        raise ExperimentError(f"--out: '{path}' {what}; name a new folder, or that of an earlier fit")
 
 
 @contextmanager

@@ -211,7 +211,7 @@ class Fit:
         ranges: The parameters and their ranges.
         target: The means to fit, of one measure.
         folder: Where candidates are kept.
-        client: The cluster.
+        open_cluster: Opens the folder and the cluster, and yields the cluster; called when all else has been checked.
         options: `values`, `participants` and `trials` for `specify`. The values hold for held-out designs too, the numbers do not.
         seed: The seed of the proposals.
         progress: Shows the progress of each experiment.
@@ -228,14 +228,14 @@ class Fit:
         ranges: Sequence[Range],
         target: Sequence[TargetMean],
         folder: Path,
-        client: Any,
+        open_cluster: Callable[[], AbstractContextManager[Any]],
         *,
         options: Mapping[str, Any] | None = None,
         seed: int = 1,
         progress: Shown = lambda _what, _total: nullcontext(lambda _: None),
     ) -> None:
-        self._design, self._ranges, self._folder, self._client = design, tuple(ranges), folder, client
-        self._seed, self._progress = seed, progress
+        self._design, self._ranges, self._folder, self._open_cluster = design, tuple(ranges), folder, open_cluster
+        self._seed, self._progress, self._client = seed, progress, None
         if not ranges:
             raise ExperimentError("--parameter: must be given at least once, as NAME=LOW..HIGH")
         self.target = cells_of_target(target)
@@ -291,12 +291,18 @@ class Fit:
             ExperimentError: If no candidate has all means of the target, or an ablation is not NAME=VALUE.
             DesignError: If a held-out design or an ablated model does not fit the values; before anything runs.
         """
+        hold_out = hold_out or {}
         lowest = {one.name: one.low for one in self._ranges}
-        for name, means in (hold_out or {}).items():
+        for name, means in hold_out.items():
             self._other(name, lowest)
             cells_of_target(means)
         for change in ablate:
             self._ablated(change, lowest)
+        with self._open_cluster() as self._client:
+            return self._result(candidates, hold_out, ablate, recover)
+
+    def _result(self, candidates: int, hold_out: Mapping[str, Sequence[TargetMean]], ablate: Sequence[str], recover: int) -> FitResult:
+        """Runs all candidates and what else is asked for; see `run`."""
         for number in range(candidates):
             self._evaluate(number, f"candidate {number + 1} of {candidates}")
         tried = self._simulated[:candidates]
@@ -320,7 +326,7 @@ class Fit:
                 TriedCandidate(values=point, rmse=loss if math.isfinite(loss) else None, failed=one.failed, trials=one.trials)
                 for point, loss, one in zip(self._points, losses, tried, strict=False)
             ),
-            held_out={name: self._held_out(name, target, values) for name, target in (hold_out or {}).items()},
+            held_out={name: self._held_out(name, target, values) for name, target in hold_out.items()},
             ablated={change: self._compared("ablated", f"changed: {change}", self._ablated(change, values)) for change in ablate},
             recovered=tuple(self._recover(number, f"simulated data {number + 1} of {recover}") for number in range(recover)),
         )

@@ -8,6 +8,7 @@ import math
 import os
 import re
 from collections.abc import Generator
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,9 @@ from scipy.special import stdtrit
 
 from actr3d.cli import main
 from actr3d.errors import Actr3dError, DesignError, ExperimentError, SettingError
+from actr3d.experiment import cluster
 from actr3d.experiment.cluster import local_cluster
+from actr3d.experiment.command import check_folder_of_fit
 from actr3d.experiment.design import Measured
 from actr3d.experiment.fit import (
     STARTING,
@@ -91,7 +94,7 @@ def means(levels: tuple[int, ...]) -> tuple[TargetMean, ...]:
 def fit_of(tmp_path: Path, client: Any, *ranges: str, line: str = LINE, **options: Any) -> Fit:
     (tmp_path / "line.py").write_text(line, encoding="utf-8")
     parsed = [Range.from_text(text) for text in ranges or ("slope=0..3", "offset=0..2")]
-    return Fit(f"{tmp_path / 'line.py'}:line", parsed, means((1, 2, 3, 4, 5)), tmp_path / "fit", client, **options)
+    return Fit(f"{tmp_path / 'line.py'}:line", parsed, means((1, 2, 3, 4, 5)), tmp_path / "fit", lambda: nullcontext(client), **options)
 
 
 @pytest.mark.slow
@@ -162,7 +165,7 @@ def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anythin
     (tmp_path / "line.py").write_text(LINE, encoding="utf-8")
     ranges = [Range.from_text("slope=0..3")]
     with pytest.raises(ExperimentError, match=r"--target: has a mean for x 7, which the design does not have; it has: 1, 2, 3, 4, 5"):
-        Fit(f"{tmp_path / 'line.py'}:line", ranges, means((1, 7)), tmp_path / "fit", client)
+        Fit(f"{tmp_path / 'line.py'}:line", ranges, means((1, 7)), tmp_path / "fit", nullcontext)
 
 
 @pytest.mark.slow
@@ -211,6 +214,41 @@ def test_two_commands_do_not_fit_in_one_folder_and_one_that_cannot_be_made_is_na
     assert re.fullmatch(r"error: --out: cannot make '.*out' \(Not a directory\)\n", capsys.readouterr().err)
     assert main(["fit", f"{model}:line", "--parameter", "slope=3", "--target", str(people), "--out", str(tmp_path / "new")]) == 2
     assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize(
+    ("holds", "says"),
+    [
+        (["experiment.json", "lock", "trials.sqlite"], "holds an experiment; name a new folder, or that of an earlier fit"),
+        (["notes.txt"], "holds 'notes.txt' and no earlier fit; name a new folder, or that of an earlier fit"),
+        (["candidate 0a1b", "fit.json", "lock", "notes.txt"], ""),
+        (["lock", ".hidden"], ""),
+        ([], ""),
+    ],
+)
+def test_a_fit_is_made_in_a_folder_of_its_own(tmp_path: Path, holds: list[str], says: str) -> None:
+    for name in holds:
+        (tmp_path / name).touch()
+    with pytest.raises(ExperimentError, match=re.escape(f"--out: '{tmp_path}' {says}")) if says else nullcontext():
+        check_folder_of_fit(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--parameter", "slop=0..3"], "--parameter slop: Design: the model has no parameter 'slop'; did you mean 'slope'?"),
+        (["--parameter", "slope=0..3", "--ablate", "nose=0"], "--ablate nose=0: Design: the model has no parameter 'nose'"),
+    ],
+)
+def test_a_fit_that_cannot_be_makes_no_folder(
+    tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, options: list[str], says: str
+) -> None:
+    monkeypatch.setattr(cluster, "local_cluster", None)  # and starts no cluster
+    (model := tmp_path / "line.py").write_text(LINE, encoding="utf-8")
+    (people := tmp_path / "people.csv").write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    assert main(["fit", f"{model}:line", "--target", str(people), "--out", str(tmp_path / "fit"), *options]) == 2
+    assert says in capsys.readouterr().err
+    assert not (tmp_path / "fit").exists()
 
 
 FAILING = LINE.replace("slope = 2.0", "slope = 1.0").replace(
@@ -364,7 +402,7 @@ def test_targets_whose_conditions_are_not_clear_are_refused(tmp_path: Path, clie
             [Range.from_text("slope=0..3")],
             load_target(str(people), specify(f"{model}:line"), "y"),
             tmp_path / "fit",
-            client,
+            nullcontext,
         )
 
 
@@ -549,7 +587,7 @@ def test_levels_may_be_lists_and_dicts(tmp_path: Path) -> None:
     design = str(write_experiment(tmp_path, factors=factors, model=COUNTER.replace("n = 3", "n = 3\nload = None")))
     (people := tmp_path / "people.csv").write_text('participant,load,rt\np,"[1, 2]",1\np,[3],2\np,"{""a"": [4]}",3\np,,4\n')
     target = load_target(str(people), specify(design))
-    Fit(design, [Range(name="n", low=1, high=3)], target, tmp_path / "fit", None)
+    Fit(design, [Range(name="n", low=1, high=3)], target, tmp_path / "fit", nullcontext)
     folder = store_rows(tmp_path / "out", design, lambda trial: {"rt": float(trial.position)})
     with Store(folder) as store:
         found = cells_of_rows(store.rows(), Measured(name="rt"), ["group", "load"])
