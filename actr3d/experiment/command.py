@@ -21,7 +21,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
-from actr3d.errors import ExperimentError, SettingError
+from actr3d.errors import DesignError, ExperimentError, SettingError
 from actr3d.experiment.design import OWN_COLUMNS
 from actr3d.experiment.human_data import plain_text
 from actr3d.experiment.measures import NOTHING_LEFT, check_measures, check_row, ended_early, try_measures
@@ -202,9 +202,9 @@ def fit(
         Exception: Any error that the files of the design and of the model themselves raise.
     """
     from actr3d.experiment.cluster import existing_cluster, local_cluster
-    from actr3d.experiment.fit import Fit, Range, TargetMean, check_measure, load_target
+    from actr3d.experiment.fit import Fit, Range, TargetMean, check_measure, load_target, measures_of
 
-    def means(experiment: Experiment, data: str | None, give: str) -> tuple[TargetMean, ...]:
+    def means(experiment: Experiment, data: str | None, give: str, measure: str | None) -> tuple[TargetMean, ...]:
         data = data or experiment.design.human
         if data is None:
             raise ExperimentError(f"design '{experiment.specification.name}': names no human data; give {give}")
@@ -215,14 +215,24 @@ def fit(
                 check_measure(found[0].measure, [name for name in row if name not in OWN_COLUMNS], experiment)
         return found
 
+    def held_out_means(design: str, data: str) -> tuple[TargetMean, ...]:
+        try:
+            experiment = specify(design)
+            has = measures_of(experiment)
+            return means(experiment, data, f"--hold-out {design}=FILE", measure if not has or measure in has else None)
+        except DesignError:  # names the design
+            raise
+        except ExperimentError as error:
+            raise ExperimentError(f"--hold-out {design}: {error}") from None
+
     fitted = specify(name, values=values)
     path = Path(folder or f"fit {fitted.specification.name}")
     check_folder_of_fit(path)
-    wanted = means(fitted, target, "--target FILE")
+    wanted = means(fitted, target, "--target FILE", measure)
     named = [given.partition("=") for given in hold_out]
     if twice := [design for design, count in Counter(design for design, _, _ in named).items() if count > 1]:
         raise SettingError(f"--hold-out {twice[0]}: is given twice; give one")
-    held_out = {design: means(specify(design), data, f"--hold-out {design}=FILE") for design, _, data in named}
+    held_out = {design: held_out_means(design, data) for design, _, data in named}
     options = {"values": values, "participants": participants, "trials": trials}
     searched = [Range.from_text(text) for text in ranges]
 

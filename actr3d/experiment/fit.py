@@ -295,7 +295,7 @@ class Fit:
         lowest = {one.name: one.low for one in self._ranges}
         for name, means in hold_out.items():
             self._other(name, lowest)
-            cells_of_target(means)
+            cells_of_target(means, f"--hold-out {name}")
         for change in ablate:
             self._ablated(change, lowest)
         with self._open_cluster() as self._client:
@@ -615,7 +615,7 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     texts = {(shown, plain_text(level)): _in_cell(level) for shown, name in names.items() for level in design.factors.get(name, ())}
     lines = [row for row in csv.reader(io.StringIO(read_human_text(path))) if row and not row[0].lstrip().startswith("#")]
     head = [cell.strip() for cell in lines[0]] if lines else []
-    trial_has = [one.name for one in design.kept] or list(known_measures(experiment) or ())
+    trial_has = measures_of(experiment)
     for_report = {*columns_of_people([*trial_has, *design.known_columns])} - {*trial_has, measure}
     ignored = {*OWN_COLUMNS, *design.known_columns, *for_report} - {"participant", "group", *names.values()}
     if "measure" in head:
@@ -662,6 +662,11 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     return found
 
 
+def measures_of(experiment: Experiment) -> list[str]:
+    """Returns the names of the measures of a trial; none if only a run shows them."""
+    return [one.name for one in experiment.design.kept] or list(known_measures(experiment) or ())
+
+
 def check_measure(name: str, known: Collection[str], experiment: Experiment) -> None:
     """Checks that the trials of a design have the measure that is fitted.
 
@@ -700,24 +705,28 @@ def _check_conditions(target: Mapping[Cell, float], of: Design) -> None:
                 raise ExperimentError(f"--target: has a mean for {name} {what}, which the design does not have; it has: {known}")
 
 
-def cells_of_target(target: Sequence[TargetMean]) -> dict[Cell, float]:
+def cells_of_target(target: Sequence[TargetMean], option: str = "--target") -> dict[Cell, float]:
     """Returns the means of a target by cell.
+
+    Args:
+        target: The means.
+        option: The option that gave them, for errors.
 
     Raises:
         ExperimentError: If there are none, they are of several measures, two are of the same conditions, or some of fewer conditions.
     """
     measures = sorted({one.measure for one in target})
     if len(measures) != 1:
-        raise ExperimentError(f"--target: must have means of one measure; choose it with --measure ({', '.join(measures) or 'none'})")
+        raise ExperimentError(f"{option}: must have means of one measure; choose it with --measure ({', '.join(measures) or 'none'})")
     found: dict[Cell, float] = {}
     for one in target:
         cell = tuple(sorted((name, _in_cell(level)) for name, level in one.conditions.items()))
         if cell in found:
-            raise ExperimentError(f"--target: has two means for {dict(cell)}")
+            raise ExperimentError(f"{option}: has two means for {dict(cell)}")
         found[cell] = one.mean
     if len(named := {tuple(name for name, _ in cell) for cell in found}) > 1:
         these = " and ".join(", ".join(names) or "none" for names in sorted(named))
-        raise ExperimentError(f"--target: all means must be of the same conditions (got {these}): is a cell empty?")
+        raise ExperimentError(f"{option}: all means must be of the same conditions (got {these}): is a cell empty?")
     return found
 
 

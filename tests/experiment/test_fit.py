@@ -130,6 +130,28 @@ def test_the_command_compares_a_held_out_design_with_data_of_a_file(tmp_path: Pa
     assert "95 % interval: none: it needs more means than parameters" in capsys.readouterr().out
 
 
+def test_a_held_out_design_may_have_another_measure_than_the_fit(
+    tmp_path: Path, client: Any, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster, "local_cluster", lambda _: nullcontext(client))
+    model, people, others = (tmp_path / name for name in ("line.py", "people.csv", "others.csv"))
+    two = LINE.replace("y = model.value\n", "y = model.value\nz = y + 1\nv = y + 2\n")
+    model.write_text(two.replace('trials=3, measures=["y"]', 'measures=["z", "v"]'), encoding="utf-8")
+    people.write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--measure", "y", "--candidates", "1"]
+    words += ["--out", str(tmp_path / "fit"), "--hold-out", f"{model}:steeper={others}"]
+    for text, says in (
+        ("10,z,15,ours\n10,v,15,ours\n", r"--hold-out .*:steeper: must have means of one measure; choose it with --measure \(v, z\)"),
+        ("10,zz,15,ours\n", r"--hold-out .*:steeper: .*others.csv:2: column 'measure': must be one of: z, v \(got 'zz'\)"),
+    ):
+        others.write_text(f"x,measure,mean,source\n{text}", encoding="utf-8")
+        assert main(words) == 1
+        assert re.search(says, capsys.readouterr().err)
+    others.write_text("x,measure,mean,source\n10,z,15,ours\n", encoding="utf-8")
+    assert main(words) == 0
+    assert re.search(r"held out .*:steeper: RMSE [\d.]+, r2 none, 1 means", capsys.readouterr().out)
+
+
 def test_held_out_designs_are_run_with_the_model_and_their_own_numbers(tmp_path: Path, client: Any) -> None:
     steeper = f"{tmp_path / 'line.py'}:steeper"
     options = {"values": {"noise": 0, "offset": 7}, "participants": 1, "trials": 1}
