@@ -487,12 +487,17 @@ def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFi
         ([out, "--trials", "3"], 1, "is an experiment, whose design is fixed; name a design to run it with other values"),
         ([out, "--workers", "2"], 1, "is an experiment; continue it with --resume"),
         (["nothing"], 1, "no design or file 'nothing'"),
+        ([str(path), "--any-version"], 2, "--any-version: is for an experiment that is continued; add --resume"),
         ([str(path), "--set", "m=3"], 2, "--set m: Design: the model has no parameter 'm'"),
         ([str(path), "--set", "n="], 2, "--set n: Design, all 1: n: must be a value such as 3 (got '')"),
         ([str(path), "--set", "m"], 2, "a parameter is set by name=value (got 'm')"),
     ):
         assert main(["experiment", *arguments]) == code
         assert says in capsys.readouterr().err
+    for command in (["experiment", str(path)], ["fit", str(path), "--parameter", "n=1..3"]):
+        with pytest.raises(SystemExit, match="2"):
+            main([*command, "--workers", "2", "--scheduler", "tcp://127.0.0.1:1"])
+        assert "argument --scheduler: not allowed with argument --workers" in capsys.readouterr().err
     assert main(["experiment", out]) == 0
     assert "counting: 0 of 24 trials have finished\n" in capsys.readouterr().out
 
