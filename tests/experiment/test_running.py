@@ -487,6 +487,8 @@ def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFi
         ([out, "--trials", "3"], 1, "is an experiment, whose design is fixed; name a design to run it with other values"),
         ([out, "--workers", "2"], 1, "is an experiment; continue it with --resume"),
         (["nothing"], 1, "no design or file 'nothing'"),
+        ([f"{path.parent}/countin_design.py"], 1, f"countin_design.py'; did you mean '{path}'? The library has: "),
+        ([out, "--check"], 1, f"'{out}' is a folder; name a design, or a file with one"),
         ([str(path), "--any-version"], 2, "--any-version: is for an experiment that is continued; add --resume"),
         ([str(path), "--set", "m=3"], 2, "--set m: Design: the model has no parameter 'm'"),
         ([str(path), "--set", "n="], 2, "--set n: Design, all 1: n: must be a value such as 3 (got '')"),
