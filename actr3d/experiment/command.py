@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import sys
@@ -245,8 +246,16 @@ def fit(
         ):
             yield client
 
-    running = Fit(name, searched, wanted, path, open_cluster, options=options, progress=partial(_progress, out))
-    result = running.run(candidates, hold_out=held_out, ablate=ablate, recover=recover)
+    def evaluated(rmse: float) -> None:
+        out.line(f"RMSE {rmse:.4g}" if math.isfinite(rmse) else "not all means of the target, or failed trials")
+
+    progress = partial(_progress, out)
+    running = Fit(name, searched, wanted, path, open_cluster, options=options, progress=progress, evaluated=evaluated)
+    try:
+        result = running.run(candidates, hold_out=held_out, ablate=ablate, recover=recover)
+    except KeyboardInterrupt:
+        out.line("finished trials are kept: the same command continues the fit")
+        raise
     write_whole(path / "fit.json", json.dumps(asdict(result), indent=1, ensure_ascii=False))
     out.event("fit", asdict(result))
     out.line(("\nfitted", "bold"), f" to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")

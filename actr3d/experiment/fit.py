@@ -215,6 +215,7 @@ class Fit:
         options: `values`, `participants` and `trials` for `specify`. The values hold for held-out designs too, the numbers do not.
         seed: The seed of the proposals.
         progress: Shows the progress of each experiment.
+        evaluated: Called with the root mean square difference of each candidate; infinite if it has not all means.
 
     Raises:
         ExperimentError: If nothing can be fitted.
@@ -233,9 +234,10 @@ class Fit:
         options: Mapping[str, Any] | None = None,
         seed: int = 1,
         progress: Shown = lambda _what, _total: nullcontext(lambda _: None),
+        evaluated: Callable[[float], object] = lambda _rmse: None,
     ) -> None:
         self._design, self._ranges, self._folder, self._open_cluster = design, tuple(ranges), folder, open_cluster
-        self._seed, self._progress, self._client = seed, progress, None
+        self._seed, self._progress, self._evaluated, self._client = seed, progress, evaluated, None
         if not ranges:
             raise ExperimentError("--parameter: must be given at least once, as NAME=LOW..HIGH")
         self.target = cells_of_target(target)
@@ -364,6 +366,7 @@ class Fit:
         point = self._propose(number)
         self._points.append(point)
         self._simulated.append(self._simulate("candidate", f"{what}: {_text_of(point)}", self._experiment(point)))
+        self._evaluated(rmse(self._simulated[-1].means, self.target))
 
     def _experiment(self, values: Mapping[str, Any], option: str = "--parameter {}") -> Experiment:
         """Returns the experiment with other values; `option` names in errors what gave them."""

@@ -123,6 +123,7 @@ def test_the_command_compares_a_held_out_design_with_data_of_a_file(tmp_path: Pa
     told = capsys.readouterr().out
     for what in ("candidate 2 of 2: slope = ", "held out: ", "simulated data 1 of 1: slope = "):
         assert re.search(rf"^{what}.*\n\d+ of \d+ trials", told, re.MULTILINE), what
+    assert len(re.findall(r"^RMSE \d[\d.]*$", told, re.MULTILINE)) == 2  # of each candidate, as soon as it has run
     assert "fitted to 2 means of y, from 2 candidates" in told
     assert "steeper: RMSE" in told
     people.write_text("x,measure,mean,source\n1,y,2.4,ours\n", encoding="utf-8")
@@ -271,6 +272,20 @@ def test_a_fit_that_cannot_be_makes_no_folder(
     assert main(["fit", f"{model}:line", "--target", str(people), "--out", str(tmp_path / "fit"), *options]) == 2
     assert says in capsys.readouterr().err
     assert not (tmp_path / "fit").exists()
+
+
+def test_a_fit_that_is_stopped_says_how_to_continue(tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cluster, "local_cluster", stopped)
+    (model := tmp_path / "line.py").write_text(LINE, encoding="utf-8")
+    (people := tmp_path / "people.csv").write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit")]
+    assert main(words) == 130
+    told = capsys.readouterr()
+    assert told.out.endswith("the same command continues the fit\n")
+    assert told.err == "stopped\n"
 
 
 FAILING = LINE.replace("slope = 2.0", "slope = 1.0").replace(
