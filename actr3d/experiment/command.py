@@ -104,7 +104,7 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     about = {**facts, "seconds_a_trial": round(seconds, 3), "error": failed[0][1] if failed else None}
     out.event("check", about)
     people = ", ".join(f"{count} {name}" for name, count in groups.items())
-    out.line((str(about["name"]), "bold"), f": {total:,} trials of '{about['model']}' by participants: {people}")
+    out.line((str(about["name"]), "bold"), f": {_trials(total)} of '{about['model']}' by participants: {people}")
     for factor, levels in design.factors.items():
         out.line(f"  {factor}: {', '.join(map(str, levels))}")
     out.line(
@@ -158,7 +158,7 @@ def run(
         facts = facts_of(experiment)
         store.write_facts({"event": "facts", **facts})
         out.event("facts", {**facts, "folder": str(store.folder)})
-        out.line((experiment.specification.name, "bold"), f": {total:,} trials in '{store.folder}', {before:,} finished")
+        out.line((experiment.specification.name, "bold"), f": {_trials(total)} in '{store.folder}', {before:,} finished")
         if before < total:
             with (
                 _stopping() as stop,
@@ -167,7 +167,7 @@ def run(
             ):
                 run_experiment(experiment, store, client, show=show, stop=stop, sure=sure)
             took, ran = time.monotonic() - begin, store.count - before
-            out.line(f"{ran:,} trials in {took:,.0f} s ({ran / max(took, 1e-9):,.1f} a second)")
+            out.line(f"{_trials(ran)} in {took:,.0f} s ({ran / max(took, 1e-9):,.1f} a second)")
         files = export(store)
         out.line(f"table: {', '.join(str(path) for path in files)}")
         _show_failures(store, out)
@@ -455,11 +455,15 @@ def _check_versions(there: Specification, *, any_version: bool) -> None:
         raise ExperimentError(f"its trials until now were run with {', '.join(different)}; install these versions, or add --any-version")
 
 
+def _trials(count: int) -> str:
+    return "1 trial" if count == 1 else f"{count:,} trials"
+
+
 def _show_failures(store: Store, out: Output) -> None:
     if not store.failures:
         return
     kinds = Counter(summary(row["error"]) for row in store.rows() if row["error"] is not None)
-    out.line((f"{store.failures:,} trials failed", "bold red"), " (columns `end` and `error` of the table):")
+    out.line((f"{_trials(store.failures)} failed", "bold red"), " (columns `end` and `error` of the table):")
     for text, count in kinds.most_common(SHOWN):
         out.line(f"  {count:,}  {text}")
 

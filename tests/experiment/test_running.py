@@ -6,6 +6,7 @@ import csv
 import io
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -13,7 +14,7 @@ import threading
 import time
 from collections.abc import Generator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from itertools import groupby, pairwise
 from pathlib import Path
@@ -576,6 +577,16 @@ def test_texts_of_models_are_printed_as_they_are(tmp_path: Path, capsys: pytest.
     path = write_experiment(tmp_path, model=COUNTER.replace("cannot count to", "wrong [/int] list[int]"))
     assert main(["experiment", str(path), "--check", "--set", "mode=fail"]) == 1
     assert "RuntimeError: wrong [/int] list[int] " in capsys.readouterr().out
+
+
+def test_one_trial_is_not_called_trials(tmp_path: Path, client: Any, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    monkeypatch.setattr(cluster, "local_cluster", lambda _: nullcontext(client))
+    path = write_experiment(tmp_path, factors='{"mode": ["fail"]}', participants=1, trials=1)
+    assert main(["experiment", str(path), "--out", str(tmp_path / "out")]) == 1
+    said = capsys.readouterr().out
+    assert "counting: 1 trial in " in said
+    assert "1 trial failed (" in said
+    assert re.search(r"^1 trial in [\d,]+ s ", said, re.MULTILINE)
 
 
 def test_two_commands_may_write_the_table_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
