@@ -152,13 +152,14 @@ class Experiments:
             raise NoSuchExperimentError
         return folder
 
-    async def listing(self) -> list[dict[str, Any]]:
-        """Returns the summaries of all experiments, newest first.
+    async def listing(self) -> tuple[int, list[dict[str, Any]]]:
+        """Returns the number of all experiments, and the summaries of the newest `MAX_LISTED`, newest first.
 
         Raises:
             OSError: If no worker can be started.
         """
-        return await self._summaries(await asyncio.to_thread(self._folders))
+        folders = await asyncio.to_thread(self._folders)
+        return len(folders), await self._summaries(folders[:MAX_LISTED])
 
     async def one(self, name: str) -> dict[str, Any]:
         """Returns the summary of an experiment, with its facts.
@@ -174,7 +175,7 @@ class Experiments:
     def _folders(self) -> list[ExperimentFolder]:
         there = self._root.iterdir() if self._root.is_dir() else ()
         found = [folder for path in there if _NAME.fullmatch(path.name) and (folder := ExperimentFolder(path)).is_experiment]
-        return sorted(found, key=lambda folder: (begun(folder.path), folder.path.name), reverse=True)[:MAX_LISTED]
+        return sorted(found, key=lambda folder: (begun(folder.path), folder.path.name), reverse=True)
 
     async def _summaries(self, folders: Sequence[ExperimentFolder]) -> list[dict[str, Any]]:
         running = self._running.copy()  # one that ends in the meantime is still shown as it was

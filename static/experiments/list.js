@@ -12,8 +12,10 @@ import { effect, signal, untracked } from "../vendor/preact.js";
 const WHILE_RUNNING = 1000; // the interval between two requests for the list [ms]
 const OTHERWISE = 5000;
 
-/** The summaries of all experiments, the newest first; null before they are known. */
+/** The summaries of the newest experiments, the newest first; null before they are known. */
 export const experiments = signal(null);
+/** The number of all experiments, of which the list has the newest. */
+export const total = signal(0);
 /** Why they cannot be listed; null if they can. */
 export const problem = signal(null);
 /** The id of the experiment that is shown, "new" for the form of a new one, "" for the list. */
@@ -44,6 +46,7 @@ export async function listExperiments() {
     const answer = await call("GET", "/api/experiments");
     if (mine !== asked) return;
     experiments.value = answer.experiments;
+    total.value = answer.total;
     problem.value = null;
   } catch (error) {
     if (mine === asked) problem.value = error.message;
