@@ -7,7 +7,7 @@ import json
 import re
 import time
 from collections import OrderedDict, defaultdict, deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, TypeVar
@@ -463,7 +463,7 @@ class Experiments:
             raise ExperimentRunError(problem)
 
     @contextmanager
-    def _working(self, name: str, what: str) -> Iterator[None]:
+    def _working(self, name: str, what: str) -> Generator[None]:
         """Keeps an experiment from being deleted inside the block; every page shows what is being made.
 
         Raises:

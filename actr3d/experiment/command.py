@@ -36,7 +36,7 @@ from actr3d.values import to_json
 
 if TYPE_CHECKING:
     from actr3d.experiment.cluster import Progress as State
-    from actr3d.experiment.fit import Agreement
+    from actr3d.experiment.fit import Agreement, FitResult
 
 EVERY = 10.0
 """Time between two lines of progress where the output is not a terminal [s]."""
@@ -258,6 +258,13 @@ def fit(
         raise
     write_whole(path / "fit.json", json.dumps(asdict(result), indent=1, ensure_ascii=False))
     out.event("fit", asdict(result))
+    _show_fit(result, out)
+    out.line(f"result: {path / 'fit.json'}")
+    return 0
+
+
+def _show_fit(result: FitResult, out: Output) -> None:
+    """Prints the parameters, and how well the model agrees with each target."""
     out.line(("\nfitted", "bold"), f" to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
     few = result.fit.cells <= len(result.parameters)
     for one in result.parameters:
@@ -278,8 +285,6 @@ def fit(
     for number, one in enumerate(result.recovered, start=1):
         pairs = ", ".join(f"{each.name} {one[f'true {each.name}']:g} found as {one[each.name]:g}" for each in result.parameters)
         out.line(f"simulated data {number}: {pairs}")
-    out.line(f"result: {path / 'fit.json'}")
-    return 0
 
 
 def _effects(fit: Agreement, changed: Mapping[str, Agreement]) -> list[str]:

@@ -134,7 +134,10 @@ def test_the_command_compares_a_held_out_design_with_data_of_a_file(tmp_path: Pa
 def test_a_held_out_design_may_have_another_measure_than_the_fit(
     tmp_path: Path, client: Any, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cluster, "local_cluster", lambda _: nullcontext(client))
+    def local(_: int) -> nullcontext[Any]:
+        return nullcontext(client)
+
+    monkeypatch.setattr(cluster, "local_cluster", local)
     model, people, others = (tmp_path / name for name in ("line.py", "people.csv", "others.csv"))
     two = LINE.replace("y = model.value\n", "y = model.value\nz = y + 1\nv = y + 2\n")
     model.write_text(two.replace('trials=3, measures=["y"]', 'measures=["z", "v"]'), encoding="utf-8")

@@ -580,7 +580,10 @@ def test_texts_of_models_are_printed_as_they_are(tmp_path: Path, capsys: pytest.
 
 
 def test_one_trial_is_not_called_trials(tmp_path: Path, client: Any, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
-    monkeypatch.setattr(cluster, "local_cluster", lambda _: nullcontext(client))
+    def local(_: int) -> nullcontext[Any]:
+        return nullcontext(client)
+
+    monkeypatch.setattr(cluster, "local_cluster", local)
     path = write_experiment(tmp_path, factors='{"mode": ["fail"]}', participants=1, trials=1)
     assert main(["experiment", str(path), "--out", str(tmp_path / "out")]) == 1
     said = capsys.readouterr().out
