@@ -276,8 +276,9 @@ def _add_design_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="replace levels of a factor, or a value")
     parser.add_argument("--participants", type=_count, metavar="N", help="number of participants of each group")
     parser.add_argument("--trials", type=_count, metavar="N", help="number of trials of each combination of levels")
-    parser.add_argument("--workers", type=_count, metavar="N", help="number of workers here (default: one on each processor)")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("--workers", type=_count, metavar="N", help="number of workers here (default: one on each processor)")
+    where.add_argument("--scheduler", metavar="ADDRESS", help="run on the Dask cluster with this scheduler address or scheduler file")
 
 
 def _add_fit(commands: Any) -> None:
@@ -397,6 +398,8 @@ def _experiment(options: argparse.Namespace) -> int:
         if idle := [f"--{name.replace('_', '-')}" for name in BESIDE_CHECK if getattr(options, name)]:
             raise SettingError(f"--check: runs two trials on this computer and stores nothing; leave out {' and '.join(idle)}")
         return command.check(options.name, out, **numbers)
+    if options.any_version and not options.resume:
+        raise SettingError("--any-version: is for an experiment that is continued; add --resume")
     how = {name: getattr(options, name) for name in ("workers", "scheduler", "resume", "any_version")}
     if command.is_folder(options.name) and not any((*numbers.values(), *how.values(), options.out)):
         return command.show_state(options.name, out)
@@ -421,7 +424,7 @@ def _report(options: argparse.Namespace) -> int:
     return 0
 
 
-BESIDE_TRIAL = ("set", "participants", "trials", "workers", "scheduler", "out", "resume", "check")
+BESIDE_TRIAL = ("set", "participants", "trials", "workers", "scheduler", "out", "resume", "any_version", "check")
 """The options of `actr3d experiment` that mean nothing for one trial."""
 BESIDE_CHECK = ("workers", "scheduler", "out", "resume", "any_version")
 """The options of `actr3d experiment` that mean nothing for a check."""

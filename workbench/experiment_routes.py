@@ -79,8 +79,9 @@ async def check_design(request: Request, body: Checking) -> Response:
 
 @router.get("/experiments")
 async def experiments(request: Request) -> Response:
-    """Lists experiments, newest first: state, progress, rate [1/s], remaining time [s]."""
-    return _json({"experiments": await experiments_of(request).listing()})
+    """Lists the newest experiments, newest first: state, progress, rate [1/s], remaining time [s]; `total` is the number of all."""
+    total, listed = await experiments_of(request).listing()
+    return _json({"total": total, "experiments": listed})
 
 
 @router.post("/experiments", status_code=201)

@@ -6,9 +6,9 @@ import asyncio
 import json
 import re
 import time
-from collections import OrderedDict, deque
-from collections.abc import Sequence
-from contextlib import suppress
+from collections import OrderedDict, defaultdict, deque
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -130,6 +130,8 @@ class Experiments:
         """The experiments whose commands are being started."""
         self._deleting: set[str] = set()
         """The experiments that are being moved to the trash folder: they do not exist any more."""
+        self._work: defaultdict[str, list[str]] = defaultdict(list)
+        """What is being made of each experiment: sentences such as "its report is being made"."""
         self._closed = False
         self._counts: dict[str, tuple[Any, dict[str, Any]]] = {}
         """The numbers of finished and failed trials by name, and the stamps of the tables in which they were counted."""
@@ -150,13 +152,14 @@ class Experiments:
             raise NoSuchExperimentError
         return folder
 
-    async def listing(self) -> list[dict[str, Any]]:
-        """Returns the summaries of all experiments, newest first.
+    async def listing(self) -> tuple[int, list[dict[str, Any]]]:
+        """Returns the number of all experiments, and the summaries of the newest `MAX_LISTED`, newest first.
 
         Raises:
             OSError: If no worker can be started.
         """
-        return await self._summaries(await asyncio.to_thread(self._folders))
+        folders = await asyncio.to_thread(self._folders)
+        return len(folders), await self._summaries(folders[:MAX_LISTED])
 
     async def one(self, name: str) -> dict[str, Any]:
         """Returns the summary of an experiment, with its facts.
@@ -172,7 +175,7 @@ class Experiments:
     def _folders(self) -> list[ExperimentFolder]:
         there = self._root.iterdir() if self._root.is_dir() else ()
         found = [folder for path in there if _NAME.fullmatch(path.name) and (folder := ExperimentFolder(path)).is_experiment]
-        return sorted(found, key=lambda folder: (begun(folder.path), folder.path.name), reverse=True)[:MAX_LISTED]
+        return sorted(found, key=lambda folder: (begun(folder.path), folder.path.name), reverse=True)
 
     async def _summaries(self, folders: Sequence[ExperimentFolder]) -> list[dict[str, Any]]:
         running = self._running.copy()  # one that ends in the meantime is still shown as it was
@@ -194,6 +197,7 @@ class Experiments:
             "changed": {} if facts is None else facts.changed,
             "report": folder.report_made,
             "processes": notes.workers,
+            "work": [*self._work.get(name, ())],
             "problem": None,
         }
         _, counted = self._counts.get(name, (None, _NOTHING))
@@ -425,17 +429,18 @@ class Experiments:
             OSError: If no process can be started.
         """
         folder = self._trusted(name, trust=trust)
-        async with self._turns:
-            known = self._recorded.get((name, number))
-            if known is not None:
-                with suppress(Actr3dError):
-                    return self._recordings.path(known).stem
-            to = self._recordings.new(f"{_STAMP.sub('', name)}_trial_{number}")
-            problem = await self._work(["experiment", str(folder.path), "--trial", str(number), "--record", str(to)])
-            if not to.is_file():
-                raise ExperimentRunError(problem or "the trial was not recorded")
-            self._recorded[name, number] = to.stem  # also for a trial that fails: the recording shows how far it came
-            return to.stem
+        with self._working(name, f"its trial {number} is being recorded"):
+            async with self._turns:
+                known = self._recorded.get((name, number))
+                if known is not None:
+                    with suppress(Actr3dError):
+                        return self._recordings.path(known).stem
+                to = self._recordings.new(f"{_STAMP.sub('', name)}_trial_{number}")
+                problem = await self._run_command(["experiment", str(folder.path), "--trial", str(number), "--record", str(to)])
+                if not to.is_file():
+                    raise ExperimentRunError(problem or "the trial was not recorded")
+                self._recorded[name, number] = to.stem  # also for a trial that fails: the recording shows how far it came
+                return to.stem
 
     async def make_report(self, name: str, *, trust: bool) -> None:
         """Makes the report of an experiment.
@@ -451,12 +456,28 @@ class Experiments:
             OSError: If no process can be started.
         """
         folder = self._trusted(name, trust=trust)
-        async with self._turns:
-            problem = await self._work(["report", str(folder.path), "--out", str(folder.report_folder)])
+        with self._working(name, "its report is being made"):
+            async with self._turns:
+                problem = await self._run_command(["report", str(folder.path), "--out", str(folder.report_folder)])
         if problem is not None:
             raise ExperimentRunError(problem)
 
-    async def _work(self, arguments: Sequence[str]) -> str | None:
+    @contextmanager
+    def _working(self, name: str, what: str) -> Generator[None]:
+        """Keeps an experiment from being deleted inside the block; every page shows what is being made.
+
+        Raises:
+            ExperimentRunError: If the same is being made already.
+        """
+        if what in self._work[name]:
+            raise ExperimentRunError(f"{what} already: wait for its end")
+        self._work[name].append(what)
+        try:
+            yield
+        finally:
+            self._work[name].remove(what)
+
+    async def _run_command(self, arguments: Sequence[str]) -> str | None:
         """Runs a command to its end; returns None, or its messages if it fails, with paths inside the models folder."""
         command = await ExperimentCommand.start(arguments, self._made_root())
         try:
@@ -475,12 +496,14 @@ class Experiments:
 
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            ExperimentRunError: If it runs.
+            ExperimentRunError: If it runs, or its report or the recording of a trial is being made.
             OSError: If it cannot be moved.
         """
         folder = self.folder(name)
         if self._runs(folder):
             raise ExperimentRunError("this experiment runs: stop it, then delete it")
+        if work := self._work.get(name):
+            raise ExperimentRunError(f"{' and '.join(work)}: wait for its end, then delete the experiment")
         reports = [folder.elsewhere] if folder.elsewhere.is_dir() else []
         self._deleting.add(name)
         try:

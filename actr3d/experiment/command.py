@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import sys
@@ -21,12 +22,12 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
-from actr3d.errors import ExperimentError, SettingError
+from actr3d.errors import DesignError, ExperimentError, SettingError
 from actr3d.experiment.design import OWN_COLUMNS
 from actr3d.experiment.human_data import plain_text
 from actr3d.experiment.measures import NOTHING_LEFT, check_measures, check_row, ended_early, try_measures
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
-from actr3d.experiment.store import SPECIFICATION, Store, only_process, summary, write_whole
+from actr3d.experiment.store import LOCK, SPECIFICATION, Store, only_process, summary, write_whole
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import PLAIN, record_trial
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
@@ -35,7 +36,7 @@ from actr3d.values import to_json
 
 if TYPE_CHECKING:
     from actr3d.experiment.cluster import Progress as State
-    from actr3d.experiment.fit import Agreement
+    from actr3d.experiment.fit import Agreement, FitResult
 
 EVERY = 10.0
 """Time between two lines of progress where the output is not a terminal [s]."""
@@ -103,7 +104,7 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     about = {**facts, "seconds_a_trial": round(seconds, 3), "error": failed[0][1] if failed else None}
     out.event("check", about)
     people = ", ".join(f"{count} {name}" for name, count in groups.items())
-    out.line((str(about["name"]), "bold"), f": {total:,} trials of '{about['model']}' by participants: {people}")
+    out.line((str(about["name"]), "bold"), f": {_trials(total)} of '{about['model']}' by participants: {people}")
     for factor, levels in design.factors.items():
         out.line(f"  {factor}: {', '.join(map(str, levels))}")
     out.line(
@@ -157,7 +158,7 @@ def run(
         facts = facts_of(experiment)
         store.write_facts({"event": "facts", **facts})
         out.event("facts", {**facts, "folder": str(store.folder)})
-        out.line((experiment.specification.name, "bold"), f": {total:,} trials in '{store.folder}', {before:,} finished")
+        out.line((experiment.specification.name, "bold"), f": {_trials(total)} in '{store.folder}', {before:,} finished")
         if before < total:
             with (
                 _stopping() as stop,
@@ -166,7 +167,7 @@ def run(
             ):
                 run_experiment(experiment, store, client, show=show, stop=stop, sure=sure)
             took, ran = time.monotonic() - begin, store.count - before
-            out.line(f"{ran:,} trials in {took:,.0f} s ({ran / max(took, 1e-9):,.1f} a second)")
+            out.line(f"{_trials(ran)} in {took:,.0f} s ({ran / max(took, 1e-9):,.1f} a second)")
         files = export(store)
         out.line(f"table: {', '.join(str(path) for path in files)}")
         _show_failures(store, out)
@@ -202,9 +203,9 @@ def fit(
         Exception: Any error that the files of the design and of the model themselves raise.
     """
     from actr3d.experiment.cluster import existing_cluster, local_cluster
-    from actr3d.experiment.fit import Fit, Range, TargetMean, check_measure, load_target
+    from actr3d.experiment.fit import Fit, Range, TargetMean, check_measure, load_target, measures_of
 
-    def means(experiment: Experiment, data: str | None, give: str) -> tuple[TargetMean, ...]:
+    def means(experiment: Experiment, data: str | None, give: str, measure: str | None) -> tuple[TargetMean, ...]:
         data = data or experiment.design.human
         if data is None:
             raise ExperimentError(f"design '{experiment.specification.name}': names no human data; give {give}")
@@ -215,23 +216,55 @@ def fit(
                 check_measure(found[0].measure, [name for name in row if name not in OWN_COLUMNS], experiment)
         return found
 
+    def held_out_means(design: str, data: str) -> tuple[TargetMean, ...]:
+        try:
+            experiment = specify(design)
+            has = measures_of(experiment)
+            return means(experiment, data, f"--hold-out {design}=FILE", measure if not has or measure in has else None)
+        except DesignError:  # names the design
+            raise
+        except ExperimentError as error:
+            raise ExperimentError(f"--hold-out {design}: {error}") from None
+
     fitted = specify(name, values=values)
     path = Path(folder or f"fit {fitted.specification.name}")
-    wanted = means(fitted, target, "--target FILE")
+    check_folder_of_fit(path)
+    wanted = means(fitted, target, "--target FILE", measure)
     named = [given.partition("=") for given in hold_out]
     if twice := [design for design, count in Counter(design for design, _, _ in named).items() if count > 1]:
         raise SettingError(f"--hold-out {twice[0]}: is given twice; give one")
-    held_out = {design: means(specify(design), data, f"--hold-out {design}=FILE") for design, _, data in named}
+    held_out = {design: held_out_means(design, data) for design, _, data in named}
     options = {"values": values, "participants": participants, "trials": trials}
     searched = [Range.from_text(text) for text in ranges]
-    with (
-        _folder_of_fit(path),
-        local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler) as client,
-    ):
-        running = Fit(name, searched, wanted, path, client, options=options, progress=partial(_progress, out))
+
+    @contextmanager
+    def open_cluster() -> Generator[Any]:
+        # First the cluster, which may not answer: then no folder is made.
+        with (
+            local_cluster(workers or os.cpu_count() or 1) if scheduler is None else existing_cluster(scheduler) as client,
+            _folder_of_fit(path),
+        ):
+            yield client
+
+    def evaluated(rmse: float) -> None:
+        out.line(f"RMSE {rmse:.4g}" if math.isfinite(rmse) else "not all means of the target, or failed trials")
+
+    progress = partial(_progress, out)
+    running = Fit(name, searched, wanted, path, open_cluster, options=options, progress=progress, evaluated=evaluated)
+    try:
         result = running.run(candidates, hold_out=held_out, ablate=ablate, recover=recover)
-        write_whole(path / "fit.json", json.dumps(asdict(result), indent=1, ensure_ascii=False))
+    except KeyboardInterrupt:
+        out.line("finished trials are kept: the same command continues the fit")
+        raise
+    write_whole(path / "fit.json", json.dumps(asdict(result), indent=1, ensure_ascii=False))
     out.event("fit", asdict(result))
+    _show_fit(result, out)
+    out.line(f"result: {path / 'fit.json'}")
+    return 0
+
+
+def _show_fit(result: FitResult, out: Output) -> None:
+    """Prints the parameters, and how well the model agrees with each target."""
     out.line(("\nfitted", "bold"), f" to {result.fit.cells} means of {result.measure}, from {result.candidates} candidates")
     few = result.fit.cells <= len(result.parameters)
     for one in result.parameters:
@@ -252,8 +285,6 @@ def fit(
     for number, one in enumerate(result.recovered, start=1):
         pairs = ", ".join(f"{each.name} {one[f'true {each.name}']:g} found as {one[each.name]:g}" for each in result.parameters)
         out.line(f"simulated data {number}: {pairs}")
-    out.line(f"result: {path / 'fit.json'}")
-    return 0
 
 
 def _effects(fit: Agreement, changed: Mapping[str, Agreement]) -> list[str]:
@@ -389,6 +420,19 @@ def _opened(
     return Experiment(replace(there, design=now.design, model=now.model)), store, True
 
 
+def check_folder_of_fit(path: Path) -> None:
+    """Checks that the folder of a fit is new or empty, or holds an earlier fit.
+
+    Raises:
+        ExperimentError: If it holds an experiment, or something else and no fit.
+    """
+    holds = sorted(file.name for file in path.glob("*") if file.name != LOCK and not file.name.startswith("."))
+    is_experiment = SPECIFICATION in holds
+    if is_experiment or (holds and not any(name == "fit.json" or name.startswith("candidate ") for name in holds)):
+        what = "holds an experiment" if is_experiment else f"holds '{holds[0]}' and no earlier fit"
+        raise ExperimentError(f"--out: '{path}' {what}; name a new folder, or that of an earlier fit")
+
+
 @contextmanager
 def _folder_of_fit(path: Path) -> Generator[None]:
     """Makes the folder of a fit, in which no other process fits inside the block.
@@ -416,11 +460,15 @@ def _check_versions(there: Specification, *, any_version: bool) -> None:
         raise ExperimentError(f"its trials until now were run with {', '.join(different)}; install these versions, or add --any-version")
 
 
+def _trials(count: int) -> str:
+    return "1 trial" if count == 1 else f"{count:,} trials"
+
+
 def _show_failures(store: Store, out: Output) -> None:
     if not store.failures:
         return
     kinds = Counter(summary(row["error"]) for row in store.rows() if row["error"] is not None)
-    out.line((f"{store.failures:,} trials failed", "bold red"), " (columns `end` and `error` of the table):")
+    out.line((f"{_trials(store.failures)} failed", "bold red"), " (columns `end` and `error` of the table):")
     for text, count in kinds.most_common(SHOWN):
         out.line(f"  {count:,}  {text}")
 

@@ -211,10 +211,11 @@ class Fit:
         ranges: The parameters and their ranges.
         target: The means to fit, of one measure.
         folder: Where candidates are kept.
-        client: The cluster.
+        open_cluster: Opens the folder and the cluster, and yields the cluster; called when all else has been checked.
         options: `values`, `participants` and `trials` for `specify`. The values hold for held-out designs too, the numbers do not.
         seed: The seed of the proposals.
         progress: Shows the progress of each experiment.
+        evaluated: Called with the root mean square difference of each candidate; infinite if it has not all means.
 
     Raises:
         ExperimentError: If nothing can be fitted.
@@ -228,14 +229,15 @@ class Fit:
         ranges: Sequence[Range],
         target: Sequence[TargetMean],
         folder: Path,
-        client: Any,
+        open_cluster: Callable[[], AbstractContextManager[Any]],
         *,
         options: Mapping[str, Any] | None = None,
         seed: int = 1,
         progress: Shown = lambda _what, _total: nullcontext(lambda _: None),
+        evaluated: Callable[[float], object] = lambda _rmse: None,
     ) -> None:
-        self._design, self._ranges, self._folder, self._client = design, tuple(ranges), folder, client
-        self._seed, self._progress = seed, progress
+        self._design, self._ranges, self._folder, self._open_cluster = design, tuple(ranges), folder, open_cluster
+        self._seed, self._progress, self._evaluated, self._client = seed, progress, evaluated, None
         if not ranges:
             raise ExperimentError("--parameter: must be given at least once, as NAME=LOW..HIGH")
         self.target = cells_of_target(target)
@@ -291,12 +293,18 @@ class Fit:
             ExperimentError: If no candidate has all means of the target, or an ablation is not NAME=VALUE.
             DesignError: If a held-out design or an ablated model does not fit the values; before anything runs.
         """
+        hold_out = hold_out or {}
         lowest = {one.name: one.low for one in self._ranges}
-        for name, means in (hold_out or {}).items():
+        for name, means in hold_out.items():
             self._other(name, lowest)
-            cells_of_target(means)
+            cells_of_target(means, f"--hold-out {name}")
         for change in ablate:
             self._ablated(change, lowest)
+        with self._open_cluster() as self._client:
+            return self._result(candidates, hold_out, ablate, recover)
+
+    def _result(self, candidates: int, hold_out: Mapping[str, Sequence[TargetMean]], ablate: Sequence[str], recover: int) -> FitResult:
+        """Runs all candidates and what else is asked for; see `run`."""
         for number in range(candidates):
             self._evaluate(number, f"candidate {number + 1} of {candidates}")
         tried = self._simulated[:candidates]
@@ -320,7 +328,7 @@ class Fit:
                 TriedCandidate(values=point, rmse=loss if math.isfinite(loss) else None, failed=one.failed, trials=one.trials)
                 for point, loss, one in zip(self._points, losses, tried, strict=False)
             ),
-            held_out={name: self._held_out(name, target, values) for name, target in (hold_out or {}).items()},
+            held_out={name: self._held_out(name, target, values) for name, target in hold_out.items()},
             ablated={change: self._compared("ablated", f"changed: {change}", self._ablated(change, values)) for change in ablate},
             recovered=tuple(self._recover(number, f"simulated data {number + 1} of {recover}") for number in range(recover)),
         )
@@ -358,6 +366,7 @@ class Fit:
         point = self._propose(number)
         self._points.append(point)
         self._simulated.append(self._simulate("candidate", f"{what}: {_text_of(point)}", self._experiment(point)))
+        self._evaluated(rmse(self._simulated[-1].means, self.target))
 
     def _experiment(self, values: Mapping[str, Any], option: str = "--parameter {}") -> Experiment:
         """Returns the experiment with other values; `option` names in errors what gave them."""
@@ -609,7 +618,7 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     texts = {(shown, plain_text(level)): _in_cell(level) for shown, name in names.items() for level in design.factors.get(name, ())}
     lines = [row for row in csv.reader(io.StringIO(read_human_text(path))) if row and not row[0].lstrip().startswith("#")]
     head = [cell.strip() for cell in lines[0]] if lines else []
-    trial_has = [one.name for one in design.kept] or list(known_measures(experiment) or ())
+    trial_has = measures_of(experiment)
     for_report = {*columns_of_people([*trial_has, *design.known_columns])} - {*trial_has, measure}
     ignored = {*OWN_COLUMNS, *design.known_columns, *for_report} - {"participant", "group", *names.values()}
     if "measure" in head:
@@ -623,6 +632,8 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
         if measure in measures:  # another one may be a text
             ignored |= {*measures} - {measure}
             measures = [measure]
+    if measure is not None and measure in (trial_has or (measure,)):
+        measures = [*measures, measure]  # an error of the reader names it, whether or not the data have it
     if trial_has and measure is None and len(set(measures)) <= 1:
         measures = trial_has  # the reader names the line with another one, or says which there are
     parameters = {factor_name(one.name): one for one in experiment.parameters if one.name in design.factors}
@@ -652,6 +663,11 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
     if measure is not None:
         check_measure(measure, trial_has or (measure,), experiment)
     return found
+
+
+def measures_of(experiment: Experiment) -> list[str]:
+    """Returns the names of the measures of a trial; none if only a run shows them."""
+    return [one.name for one in experiment.design.kept] or list(known_measures(experiment) or ())
 
 
 def check_measure(name: str, known: Collection[str], experiment: Experiment) -> None:
@@ -692,24 +708,28 @@ def _check_conditions(target: Mapping[Cell, float], of: Design) -> None:
                 raise ExperimentError(f"--target: has a mean for {name} {what}, which the design does not have; it has: {known}")
 
 
-def cells_of_target(target: Sequence[TargetMean]) -> dict[Cell, float]:
+def cells_of_target(target: Sequence[TargetMean], option: str = "--target") -> dict[Cell, float]:
     """Returns the means of a target by cell.
+
+    Args:
+        target: The means.
+        option: The option that gave them, for errors.
 
     Raises:
         ExperimentError: If there are none, they are of several measures, two are of the same conditions, or some of fewer conditions.
     """
     measures = sorted({one.measure for one in target})
     if len(measures) != 1:
-        raise ExperimentError(f"--target: must have means of one measure; choose it with --measure ({', '.join(measures) or 'none'})")
+        raise ExperimentError(f"{option}: must have means of one measure; choose it with --measure ({', '.join(measures) or 'none'})")
     found: dict[Cell, float] = {}
     for one in target:
         cell = tuple(sorted((name, _in_cell(level)) for name, level in one.conditions.items()))
         if cell in found:
-            raise ExperimentError(f"--target: has two means for {dict(cell)}")
+            raise ExperimentError(f"{option}: has two means for {dict(cell)}")
         found[cell] = one.mean
     if len(named := {tuple(name for name, _ in cell) for cell in found}) > 1:
         these = " and ".join(", ".join(names) or "none" for names in sorted(named))
-        raise ExperimentError(f"--target: all means must be of the same conditions (got {these}): is a cell empty?")
+        raise ExperimentError(f"{option}: all means must be of the same conditions (got {these}): is a cell empty?")
     return found
 
 

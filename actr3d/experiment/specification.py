@@ -311,9 +311,12 @@ def _file_of(name: str) -> tuple[Path, str]:
     file, colon, chosen = name.rpartition(":")
     if colon and file and chosen.isidentifier() and Path(file).exists():
         return Path(file), chosen
-    if not Path(name).exists() and not name.endswith(".py"):
-        raise ExperimentError(f"no design or file '{name}'{alternatives(name, known, 'the library has:')}")
-    return Path(name), ""
+    path = Path(name)
+    if path.is_dir():
+        raise ExperimentError(f"'{name}' is a folder; name a design, or a file with one")
+    if not path.exists():
+        raise ExperimentError(f"no design or file '{name}'{alternatives(name, known, 'the library has:', path.parent.glob('*.py'))}")
+    return path, ""
 
 
 def _source_of(path: Path) -> Source:

@@ -53,14 +53,18 @@ def read_settings(texts: Sequence[str], fields: Sequence[Parameter]) -> dict[str
     """Returns parameters from texts `name=value`; an unknown name gets a value too, so that the builder can reject it.
 
     Raises:
-        SettingError: If a text does not have this form.
+        SettingError: If a text does not have this form, or a name has two values.
     """
     known = {field.name: field for field in fields}
     settings: dict[str, Any] = {}
+    given: dict[str, str] = {}
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not name.isidentifier():
             raise SettingError(f"a parameter is set by name=value (got {text!r})")
+        if name in given:
+            raise SettingError(f"--set {name}: is given twice ({given[name]!r}, {value!r}); give one value")
+        given[name] = value
         settings[name] = known[name].value(value) if name in known else literal(value)
     return settings
 

@@ -12,8 +12,10 @@ import { effect, signal, untracked } from "../vendor/preact.js";
 const WHILE_RUNNING = 1000; // the interval between two requests for the list [ms]
 const OTHERWISE = 5000;
 
-/** The summaries of all experiments, the newest first; null before they are known. */
+/** The summaries of the newest experiments, the newest first; null before they are known. */
 export const experiments = signal(null);
+/** The number of all experiments, of which the list has the newest. */
+export const total = signal(0);
 /** Why they cannot be listed; null if they can. */
 export const problem = signal(null);
 /** The id of the experiment that is shown, "new" for the form of a new one, "" for the list. */
@@ -25,6 +27,8 @@ export const where = signal({});
 /** What the page waits for: {text, cancel?}; null for nothing. */
 export const busy = signal(null);
 
+/** Whether something happens to an experiment that ends by itself. */
+const isChanging = (one) => isRunning(one) || one.state === "elsewhere" || one.work.length > 0;
 /** Whether an experiment runs. */
 export const isRunning = ({ state }) => state === "running" || state === "stopping";
 
@@ -42,6 +46,7 @@ export async function listExperiments() {
     const answer = await call("GET", "/api/experiments");
     if (mine !== asked) return;
     experiments.value = answer.experiments;
+    total.value = answer.total;
     problem.value = null;
   } catch (error) {
     if (mine === asked) problem.value = error.message;
@@ -55,7 +60,7 @@ export function followExperiments() {
   async function again() {
     await listExperiments();
     clearTimeout(timer); // another request may have ended meanwhile
-    if (!over) timer = setTimeout(again, experiments.value?.some((one) => isRunning(one) || one.state === "elsewhere") ? WHILE_RUNNING : OTHERWISE);
+    if (!over) timer = setTimeout(again, experiments.value?.some(isChanging) ? WHILE_RUNNING : OTHERWISE);
   }
   const stop = effect(() => {
     shown.value; // another one is shown: its newest state

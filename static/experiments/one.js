@@ -14,20 +14,21 @@ import { Trials } from "./trials.js";
 import { changedText, doneText, durationText, failuresText, levelsText, rateText, stateText } from "./wording.js";
 
 function Actions({ experiment }) {
-  const { state } = experiment;
+  const { state, work } = experiment;
   const waits = busy.value !== null;
+  const inWork = waits || work.length > 0; // perhaps of another page
   return html`
     ${isRunning(experiment) ? html`<button disabled=${waits || !canStop(experiment)} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop</button>` : null}
     ${canResume(experiment) ? html`<button class="primary" disabled=${waits} title=${`Run the trials that are left, ${processesText(experiment)}`} onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume</button>` : null}
-    ${canMakeReport(experiment) ? html`<button disabled=${waits} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report</button>` : null}
-    ${isRunning(experiment) || state === "elsewhere" ? null : html`<button class="danger bare" aria-label="Delete" title="Delete" disabled=${waits} onClick=${() => deleteExperiment(experiment)}><${Icon} name="trash" /></button>`}
+    ${canMakeReport(experiment) ? html`<button disabled=${inWork} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report</button>` : null}
+    ${isRunning(experiment) || state === "elsewhere" ? null : html`<button class="danger bare" aria-label="Delete" title="Delete" disabled=${inWork} onClick=${() => deleteExperiment(experiment)}><${Icon} name="trash" /></button>`}
   `;
 }
 
 const processesText = ({ processes }) => (processes ? `in ${counted(processes, "process", "processes")}` : "on all processors");
 
 function Progress({ experiment }) {
-  const { done, total, failures, rate, remaining, state, workers } = experiment;
+  const { done, total, failures, rate, remaining, state, workers, work } = experiment;
   const going = state === "running" || state === "stopping";
   const facts = [
     going && done === 0 ? (workers > 0 ? "the first trials are running …" : "starting …") : null,
@@ -40,7 +41,7 @@ function Progress({ experiment }) {
     <span class="number">${doneText(experiment)}</span>
     ${facts.map((text) => html`<span key=${text.replace(/[\d.,]+/g, "")} class="number quiet">${text}</span>`)}
     ${failures > 0 ? html`<span class="bad number">${failuresText(failures)}</span>` : null}
-    ${busy.value ? html`<span class="stretch"></span><span class="doing"><progress aria-label=${busy.value.text}></progress> ${busy.value.text} ${busy.value.cancel ? html`<button class="bare" onClick=${() => busy.value?.cancel.abort()}>Cancel</button>` : null}</span>` : null}
+    ${busy.value ? html`<span class="stretch"></span><span class="doing"><progress aria-label=${busy.value.text}></progress> ${busy.value.text} ${busy.value.cancel ? html`<button class="bare" onClick=${() => busy.value?.cancel.abort()}>Cancel</button>` : null}</span>` : work.map((text) => html`<span key=${text} class="quiet">${text} …</span>`)}
   </div>`;
 }
 

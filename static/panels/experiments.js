@@ -3,7 +3,7 @@
 import { html, useEffect } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { agoText, whenInFull, whenText } from "../runs/wording.js";
-import { experiments, followExperiments, isRunning, listExperiments, problem, showExperiment, shown } from "../experiments/list.js";
+import { experiments, followExperiments, isRunning, listExperiments, problem, showExperiment, shown, total } from "../experiments/list.js";
 import { NewExperiment } from "../experiments/new.js";
 import { Experiment } from "../experiments/one.js";
 import { changedText, doneText, durationText, failuresText, stateText } from "../experiments/wording.js";
@@ -30,7 +30,7 @@ function List() {
     <div class="tools">
       ${begin}
       <span class="stretch"></span>
-      <span class="quiet number" role="status">${all === null ? "" : all.length}</span>
+      <span class="quiet number" role="status">${all === null ? "" : total.value > all.length ? `the newest ${all.length} of ${total.value.toLocaleString("en")}` : all.length}</span>
       <button class="bare" title="Read the list again" aria-label="Read the list again" onClick=${listExperiments}><${Icon} name="restart" /></button>
     </div>
     ${problem.value ? html`<p class="problem bad" role="alert">The experiments cannot be listed: ${problem.value}</p>` : null}

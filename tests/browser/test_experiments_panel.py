@@ -270,11 +270,35 @@ def test_a_figure_fills_in_although_its_means_take_long_and_stays_while_the_serv
 def test_an_experiment_that_cannot_be_read_says_why(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", tab="experiments", refusals=True)
     one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "stopped", "done": 0, "total": 8, "failures": 0}
-    one |= {"changed": {}, "model": "", "remaining": None}
+    one |= {"changed": {}, "model": "", "remaining": None, "work": []}
     page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [one]}))
     page.route("**/api/experiments/sums", lambda route: route.fulfill(status=409, json={"error": "facts.json is damaged"}))
     page.locator("tr[data-experiment=sums]").click()
     expect(page.get_by_role("alert")).to_have_text("The experiment cannot be read: facts.json is damaged")
+
+
+def test_the_list_says_if_it_has_only_the_newest_experiments(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="experiments")
+    one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "stopped", "done": 4, "total": 8, "failures": 0}
+    one |= {"changed": {}, "model": "", "remaining": None, "work": []}
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"total": 301, "experiments": [one]}))
+    page.get_by_role("button", name="Read the list again").click()
+    expect(page.locator(".experiments .tools [role=status]")).to_have_text("the newest 1 of 301")
+
+
+def test_a_report_that_another_page_makes_is_shown_and_the_experiment_cannot_be_deleted_meanwhile(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="experiments", refusals=True)
+    one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "stopped", "done": 4, "total": 8, "failures": 0}
+    one |= {"changed": {}, "model": "", "remaining": None, "work": ["its report is being made"]}
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [one]}))
+    page.locator("tr[data-experiment=sums]").click()
+    expect(page.locator(".progress")).to_contain_text("its report is being made …")
+    for name in ("Delete", "Make report"):
+        expect(page.get_by_role("button", name=name)).to_be_disabled()
+    one["work"].clear()
+    expect(page.locator(".progress")).not_to_contain_text("its report is being made")
+    for name in ("Delete", "Make report"):
+        expect(page.get_by_role("button", name=name)).to_be_enabled()
 
 
 def test_of_trials_that_have_all_failed_there_is_no_figure(blank: Page) -> None:

@@ -121,7 +121,7 @@ def test_the_palette_has_the_experiments_and_what_can_be_done_with_the_present_r
         "total": 8,
         "failures": 0,
     }
-    one |= {"changed": {}, "model": "", "left": None}
+    one |= {"changed": {}, "model": "", "left": None, "work": []}
     page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [one]}))
     shows(page, "#status", "at its start")
     page.click("#cycle")

@@ -8,6 +8,7 @@ import math
 import os
 import re
 from collections.abc import Generator
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,9 @@ from scipy.special import stdtrit
 
 from actr3d.cli import main
 from actr3d.errors import Actr3dError, DesignError, ExperimentError, SettingError
+from actr3d.experiment import cluster
 from actr3d.experiment.cluster import local_cluster
+from actr3d.experiment.command import check_folder_of_fit
 from actr3d.experiment.design import Measured
 from actr3d.experiment.fit import (
     STARTING,
@@ -91,7 +94,7 @@ def means(levels: tuple[int, ...]) -> tuple[TargetMean, ...]:
 def fit_of(tmp_path: Path, client: Any, *ranges: str, line: str = LINE, **options: Any) -> Fit:
     (tmp_path / "line.py").write_text(line, encoding="utf-8")
     parsed = [Range.from_text(text) for text in ranges or ("slope=0..3", "offset=0..2")]
-    return Fit(f"{tmp_path / 'line.py'}:line", parsed, means((1, 2, 3, 4, 5)), tmp_path / "fit", client, **options)
+    return Fit(f"{tmp_path / 'line.py'}:line", parsed, means((1, 2, 3, 4, 5)), tmp_path / "fit", lambda: nullcontext(client), **options)
 
 
 @pytest.mark.slow
@@ -120,11 +123,37 @@ def test_the_command_compares_a_held_out_design_with_data_of_a_file(tmp_path: Pa
     told = capsys.readouterr().out
     for what in ("candidate 2 of 2: slope = ", "held out: ", "simulated data 1 of 1: slope = "):
         assert re.search(rf"^{what}.*\n\d+ of \d+ trials", told, re.MULTILINE), what
+    assert len(re.findall(r"^RMSE \d[\d.]*$", told, re.MULTILINE)) == 2  # of each candidate, as soon as it has run
     assert "fitted to 2 means of y, from 2 candidates" in told
     assert "steeper: RMSE" in told
     people.write_text("x,measure,mean,source\n1,y,2.4,ours\n", encoding="utf-8")
     assert main([*words, "--candidates", "2"]) == 0
     assert "95 % interval: none: it needs more means than parameters" in capsys.readouterr().out
+
+
+def test_a_held_out_design_may_have_another_measure_than_the_fit(
+    tmp_path: Path, client: Any, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def local(_: int) -> nullcontext[Any]:
+        return nullcontext(client)
+
+    monkeypatch.setattr(cluster, "local_cluster", local)
+    model, people, others = (tmp_path / name for name in ("line.py", "people.csv", "others.csv"))
+    two = LINE.replace("y = model.value\n", "y = model.value\nz = y + 1\nv = y + 2\n")
+    model.write_text(two.replace('trials=3, measures=["y"]', 'measures=["z", "v"]'), encoding="utf-8")
+    people.write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--measure", "y", "--candidates", "1"]
+    words += ["--out", str(tmp_path / "fit"), "--hold-out", f"{model}:steeper={others}"]
+    for text, says in (
+        ("10,z,15,ours\n10,v,15,ours\n", r"--hold-out .*:steeper: must have means of one measure; choose it with --measure \(v, z\)"),
+        ("10,zz,15,ours\n", r"--hold-out .*:steeper: .*others.csv:2: column 'measure': must be one of: z, v \(got 'zz'\)"),
+    ):
+        others.write_text(f"x,measure,mean,source\n{text}", encoding="utf-8")
+        assert main(words) == 1
+        assert re.search(says, capsys.readouterr().err)
+    others.write_text("x,measure,mean,source\n10,z,15,ours\n", encoding="utf-8")
+    assert main(words) == 0
+    assert re.search(r"held out .*:steeper: RMSE [\d.]+, r2 none, 1 means", capsys.readouterr().out)
 
 
 def test_held_out_designs_are_run_with_the_model_and_their_own_numbers(tmp_path: Path, client: Any) -> None:
@@ -162,7 +191,7 @@ def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anythin
     (tmp_path / "line.py").write_text(LINE, encoding="utf-8")
     ranges = [Range.from_text("slope=0..3")]
     with pytest.raises(ExperimentError, match=r"--target: has a mean for x 7, which the design does not have; it has: 1, 2, 3, 4, 5"):
-        Fit(f"{tmp_path / 'line.py'}:line", ranges, means((1, 7)), tmp_path / "fit", client)
+        Fit(f"{tmp_path / 'line.py'}:line", ranges, means((1, 7)), tmp_path / "fit", nullcontext)
 
 
 @pytest.mark.slow
@@ -211,6 +240,55 @@ def test_two_commands_do_not_fit_in_one_folder_and_one_that_cannot_be_made_is_na
     assert re.fullmatch(r"error: --out: cannot make '.*out' \(Not a directory\)\n", capsys.readouterr().err)
     assert main(["fit", f"{model}:line", "--parameter", "slope=3", "--target", str(people), "--out", str(tmp_path / "new")]) == 2
     assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize(
+    ("holds", "says"),
+    [
+        (["experiment.json", "lock", "trials.sqlite"], "holds an experiment; name a new folder, or that of an earlier fit"),
+        (["notes.txt"], "holds 'notes.txt' and no earlier fit; name a new folder, or that of an earlier fit"),
+        (["candidate 0a1b", "fit.json", "lock", "notes.txt"], ""),
+        (["lock", ".hidden"], ""),
+        ([], ""),
+    ],
+)
+def test_a_fit_is_made_in_a_folder_of_its_own(tmp_path: Path, holds: list[str], says: str) -> None:
+    for name in holds:
+        (tmp_path / name).touch()
+    with pytest.raises(ExperimentError, match=re.escape(f"--out: '{tmp_path}' {says}")) if says else nullcontext():
+        check_folder_of_fit(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--parameter", "slop=0..3"], "--parameter slop: Design: the model has no parameter 'slop'; did you mean 'slope'?"),
+        (["--parameter", "slope=0..3", "--ablate", "nose=0"], "--ablate nose=0: Design: the model has no parameter 'nose'"),
+    ],
+)
+def test_a_fit_that_cannot_be_makes_no_folder(
+    tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, options: list[str], says: str
+) -> None:
+    monkeypatch.setattr(cluster, "local_cluster", None)  # and starts no cluster
+    (model := tmp_path / "line.py").write_text(LINE, encoding="utf-8")
+    (people := tmp_path / "people.csv").write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    assert main(["fit", f"{model}:line", "--target", str(people), "--out", str(tmp_path / "fit"), *options]) == 2
+    assert says in capsys.readouterr().err
+    assert not (tmp_path / "fit").exists()
+
+
+def test_a_fit_that_is_stopped_says_how_to_continue(tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cluster, "local_cluster", stopped)
+    (model := tmp_path / "line.py").write_text(LINE, encoding="utf-8")
+    (people := tmp_path / "people.csv").write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit")]
+    assert main(words) == 130
+    told = capsys.readouterr()
+    assert told.out.endswith("the same command continues the fit\n")
+    assert told.err == "stopped\n"
 
 
 FAILING = LINE.replace("slope = 2.0", "slope = 1.0").replace(
@@ -364,7 +442,7 @@ def test_targets_whose_conditions_are_not_clear_are_refused(tmp_path: Path, clie
             [Range.from_text("slope=0..3")],
             load_target(str(people), specify(f"{model}:line"), "y"),
             tmp_path / "fit",
-            client,
+            nullcontext,
         )
 
 
@@ -529,12 +607,27 @@ def test_columns_that_only_a_report_reads_are_no_measures_of_a_target(tmp_path: 
         load_target(str(path), design)
 
 
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("participant,n_,time\np,1,3\n", r":1: unknown column 'time'; there may be: participant, group, n_, rt\n"),
+        ("participant,n_,time,luck\np,1,3,4\n", r":1: unknown column 'time'; there may be: participant, group, n_, luck, rt$"),
+        ("participant,n_\np,1\n", r":1: no column is a measure; there may be: rt$"),
+    ],
+)
+def test_an_error_in_a_file_without_the_measure_of_the_fit_names_this_measure(tmp_path: Path, text: str, says: str) -> None:
+    design = specify(str(write_experiment(tmp_path)))
+    (people := tmp_path / "people.csv").write_text(text)
+    with pytest.raises(ExperimentError, match=says):
+        load_target(str(people), design, "rt")
+
+
 def test_levels_may_be_lists_and_dicts(tmp_path: Path) -> None:
     factors = '{"load": [[1, 2], (3,), {"a": [4]}, None]}'
     design = str(write_experiment(tmp_path, factors=factors, model=COUNTER.replace("n = 3", "n = 3\nload = None")))
     (people := tmp_path / "people.csv").write_text('participant,load,rt\np,"[1, 2]",1\np,[3],2\np,"{""a"": [4]}",3\np,,4\n')
     target = load_target(str(people), specify(design))
-    Fit(design, [Range(name="n", low=1, high=3)], target, tmp_path / "fit", None)
+    Fit(design, [Range(name="n", low=1, high=3)], target, tmp_path / "fit", nullcontext)
     folder = store_rows(tmp_path / "out", design, lambda trial: {"rt": float(trial.position)})
     with Store(folder) as store:
         found = cells_of_rows(store.rows(), Measured(name="rt"), ["group", "load"])

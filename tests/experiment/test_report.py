@@ -24,13 +24,13 @@ from actr3d.experiment.aperture.constraints import Findings
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.report import general, statistics
 from actr3d.experiment.report.analyses import ANALYSES
-from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of
+from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of, missing
 from actr3d.experiment.report.command import write_report
 from actr3d.experiment.report.figures import LOOKS, Curve, Look, Pane, curves_figure, legend_columns, svg
 from actr3d.experiment.report.general import comparison_section, what_was_run
 from actr3d.experiment.report.libraries import pingouin
 from actr3d.experiment.report.parts import Caution, Plot, Table
-from actr3d.experiment.report.results import by_number, read_results
+from actr3d.experiment.report.results import Results, by_number, read_results
 from actr3d.experiment.report.statistics import cell_means
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
@@ -384,6 +384,32 @@ def test_two_experiments_are_compared(tmp_path: Path) -> None:
     assert float(fit["rt"]["mean_difference"]) == pytest.approx(-0.1, abs=0.002)
     assert "differs from this experiment (“now”) in: seed: 2 there, 1 now." in page(one)
     assert ">two</text>" in (one / "report/figures/measure_rt.svg").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("there", "paces", "common"),
+    [
+        ("Uniform(low=1, high=3)", [None], 1),  # a mean over all of theirs, with that over all of ours
+        ("2.0", [2.0], 1),
+        ("7.0", [7.0], 0),
+    ],
+)
+def test_another_experiment_has_a_cell_for_each_value_that_is_fixed_there(
+    tmp_path: Path, there: str, paces: list[float | None], common: int
+) -> None:
+    def experiment(name: str, given: str) -> Results:
+        (tmp_path / name).mkdir()
+        path = write_experiment(tmp_path / name, factors=given, model=COUNTER.replace("n = 3", "n = 3\npace = 1.0"))
+        return read_results(store_rows(tmp_path / name / "rows", str(path), lambda _: {"rt": 1.0, "luck": 0.5}))
+
+    one = experiment("one", '{"pace": [1.0, 2.0, 3.0]}')
+    two = experiment("two", f'{{"n": [1, 2]}}, settings={{"pace": {there}}}')
+    beside = beside_experiment([two], [one])
+    assert beside is not None
+    assert [None if missing(pace) else pace for pace in beside.of("rt")["pace"]] == paces
+    parts = comparison_section(one, two, [one], beside).parts
+    assert len(frames(parts).get("means_beside_other", ())) == common * len(["rt", "luck"])
+    assert ("have no cell in common" in cautions(parts)) == (not common)
 
 
 def test_an_experiment_in_a_folder_with_the_name_of_a_column_is_compared(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import csv
 import io
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -13,7 +14,7 @@ import threading
 import time
 from collections.abc import Generator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from itertools import groupby, pairwise
 from pathlib import Path
@@ -487,12 +488,19 @@ def test_the_command_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFi
         ([out, "--trials", "3"], 1, "is an experiment, whose design is fixed; name a design to run it with other values"),
         ([out, "--workers", "2"], 1, "is an experiment; continue it with --resume"),
         (["nothing"], 1, "no design or file 'nothing'"),
+        ([f"{path.parent}/countin_design.py"], 1, f"countin_design.py'; did you mean '{path}'? The library has: "),
+        ([out, "--check"], 1, f"'{out}' is a folder; name a design, or a file with one"),
+        ([str(path), "--any-version"], 2, "--any-version: is for an experiment that is continued; add --resume"),
         ([str(path), "--set", "m=3"], 2, "--set m: Design: the model has no parameter 'm'"),
         ([str(path), "--set", "n="], 2, "--set n: Design, all 1: n: must be a value such as 3 (got '')"),
         ([str(path), "--set", "m"], 2, "a parameter is set by name=value (got 'm')"),
     ):
         assert main(["experiment", *arguments]) == code
         assert says in capsys.readouterr().err
+    for command in (["experiment", str(path)], ["fit", str(path), "--parameter", "n=1..3"]):
+        with pytest.raises(SystemExit, match="2"):
+            main([*command, "--workers", "2", "--scheduler", "tcp://127.0.0.1:1"])
+        assert "argument --scheduler: not allowed with argument --workers" in capsys.readouterr().err
     assert main(["experiment", out]) == 0
     assert "counting: 0 of 24 trials have finished\n" in capsys.readouterr().out
 
@@ -569,6 +577,19 @@ def test_texts_of_models_are_printed_as_they_are(tmp_path: Path, capsys: pytest.
     path = write_experiment(tmp_path, model=COUNTER.replace("cannot count to", "wrong [/int] list[int]"))
     assert main(["experiment", str(path), "--check", "--set", "mode=fail"]) == 1
     assert "RuntimeError: wrong [/int] list[int] " in capsys.readouterr().out
+
+
+def test_one_trial_is_not_called_trials(tmp_path: Path, client: Any, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    def local(_: int) -> nullcontext[Any]:
+        return nullcontext(client)
+
+    monkeypatch.setattr(cluster, "local_cluster", local)
+    path = write_experiment(tmp_path, factors='{"mode": ["fail"]}', participants=1, trials=1)
+    assert main(["experiment", str(path), "--out", str(tmp_path / "out")]) == 1
+    said = capsys.readouterr().out
+    assert "counting: 1 trial in " in said
+    assert "1 trial failed (" in said
+    assert re.search(r"^1 trial in [\d,]+ s ", said, re.MULTILINE)
 
 
 def test_two_commands_may_write_the_table_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

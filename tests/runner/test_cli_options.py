@@ -150,6 +150,11 @@ def test_settings_know_texts(lamp: Any) -> None:
     assert read_settings(["name=5", "power=5", "other=5"], parameters_of(lamp.Parameters)) == {"name": "5", "power": 5, "other": 5}
 
 
+def test_a_setting_that_is_given_twice_is_refused() -> None:
+    with pytest.raises(SettingError, match=r"--set power: is given twice \('5', '6'\); give one value"):
+        read_settings(["power=5", "name=a", "power=6"], ())
+
+
 @pytest.mark.parametrize(
     ("text", "value"),
     [

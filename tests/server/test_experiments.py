@@ -13,7 +13,7 @@ import sqlite3
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Coroutine, Iterator
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,7 @@ from tests.helpers.asgi_client import JSON, ORIGIN, OURS
 from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.sessions import Desk
 from tests.helpers.workbench_server import Served, served
+from workbench import experiments
 from workbench.design_files import Checking, Starting
 from workbench.experiment_command import ExperimentCommand, ExperimentFacts, ExperimentRunError
 from workbench.experiments import Experiments
@@ -281,6 +282,45 @@ def test_of_two_who_continue_an_experiment_at_once_one_is_refused(tmp_path: Path
     monkeypatch.setattr(ExperimentCommand, "start", slow)
     assert [str(problem) for problem in desk.do(both())] == ["no more processes", "this experiment is already running"]
     assert len(started) == 1
+
+
+def test_an_experiment_is_not_deleted_while_its_report_or_a_recording_is_made(
+    tmp_path: Path, desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / ".workbench" / "experiments" / "mine"
+    folder.mkdir(parents=True)
+    (folder / "experiment.json").write_text("{}", "utf-8")
+
+    async def refused(work: Coroutine[Any, Any, Any]) -> str:
+        with pytest.raises(ExperimentRunError) as error:
+            await work
+        return str(error.value)
+
+    async def all_at_once() -> None:
+        experiments, going = Experiments(desk.sessions(tmp_path)), asyncio.Event()
+
+        async def slow(*_: object) -> ExperimentCommand:
+            await going.wait()
+            raise OSError("no more processes")
+
+        monkeypatch.setattr(ExperimentCommand, "start", slow)
+        for make, what in (
+            (lambda: experiments.make_report("mine", trust=True), "its report is being made"),
+            (lambda: experiments.record("mine", 3, trust=True), "its trial 3 is being recorded"),
+        ):
+            going.clear()
+            made = asyncio.create_task(make())
+            await asyncio.sleep(0)
+            assert (await experiments.one("mine"))["work"] == [what]  # which other pages show
+            assert await refused(experiments.delete("mine")) == f"{what}: wait for its end, then delete the experiment"
+            assert await refused(make()) == f"{what} already: wait for its end"
+            going.set()
+            with pytest.raises(OSError, match="no more processes"):
+                await made
+            assert (await experiments.one("mine"))["work"] == []
+        assert (await experiments.delete("mine")).startswith(".workbench/trash/")
+
+    desk.do(all_at_once())
 
 
 @pytest.mark.slow
@@ -566,8 +606,19 @@ def test_a_table_that_ends_its_worker_does_not_hide_other_experiments(tmp_path: 
         return io.BytesIO(json.dumps([{"done": 3, "failures": 0, "problem": None, "columns": []} for _ in tables]).encode())
 
     monkeypatch.setattr(sessions.readers, "make", make)
-    found = {one["id"]: (one["done"], one["problem"]) for one in desk.do(Experiments(sessions).listing())}
+    found = {one["id"]: (one["done"], one["problem"]) for one in desk.do(Experiments(sessions).listing())[1]}
     assert found == {"good": (3, None), "better": (3, None), "bad": (0, "its table cannot be read: no progress for 120 s")}
+
+
+def test_of_more_experiments_than_a_list_has_the_newest_are_listed_with_the_number_of_all(
+    tmp_path: Path, desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(experiments, "MAX_LISTED", 2)
+    for number in range(3):
+        (folder := tmp_path / ".workbench" / "experiments" / f"sums-2026010{number + 1}-101010-abcd").mkdir(parents=True)
+        (folder / "experiment.json").write_text("{}", "utf-8")
+    total, listed = desk.do(Experiments(desk.sessions(tmp_path)).listing())
+    assert (total, [one["id"][:13] for one in listed]) == (3, ["sums-20260103", "sums-20260102"])
 
 
 def test_a_missing_package_is_named(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -581,7 +632,7 @@ def test_a_missing_package_is_named(desk: Desk, tmp_path: Path, monkeypatch: pyt
     body = json.dumps({"design": COUNTING}).encode()
     answer = desk.ask(folder, "/api/experiments", JSON, ORIGIN, OURS, method="POST", body=body)
     assert (answer.status, json.loads(answer.body)["error"].endswith("install: pip install 'actr3d[experiment]'")) == (422, True)
-    assert json.loads(desk.ask(folder, "/api/experiments").body) == {"experiments": []}
+    assert json.loads(desk.ask(folder, "/api/experiments").body) == {"total": 0, "experiments": []}
 
 
 def test_a_file_beside_the_models_does_not_stand_in_for_a_package(workbench: Served) -> None:

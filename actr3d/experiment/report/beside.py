@@ -119,7 +119,7 @@ def beside_experiment(others: Sequence[Results], parts: Sequence[Results]) -> Be
     pd, pieces = pandas(), list[Any]()
     for part, other in itertools.product(parts, others):
         if part.numbers.keys() == other.numbers.keys():
-            by = ["group", *(name for name in part.all_factors if name in other.rows)]
+            by = ["group", *(name for name in part.all_factors if _is_fixed(other, name))]
             common = [name for name in part.measures if name in other.measures]
             pieces += [cell_means(other.rows, measure, by).assign(measure=measure) for measure in common]
     if not pieces:
@@ -127,6 +127,12 @@ def beside_experiment(others: Sequence[Results], parts: Sequence[Results]) -> Be
     frame = pd.concat(pieces, ignore_index=True)
     columns = ["group", *factors_of(parts), "measure", "mean", "sd", "low", "high", "n"]
     return Beside(label=others[0].label, look="other", frame=frame.reindex(columns=columns), results=others[0])
+
+
+def _is_fixed(results: Results, name: str) -> bool:
+    """Returns whether a column is a factor, or has one value in each group: it is not drawn for each participant or trial."""
+    rows = results.rows
+    return name in results.all_factors or (name in rows and bool((rows.groupby("group")[name].nunique() <= 1).all()))
 
 
 def matched(results: Results, beside: Beside, measure: str) -> Any:

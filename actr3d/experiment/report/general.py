@@ -156,6 +156,8 @@ def comparison_section(results: Results, other: Results, parts: Sequence[Results
     if len(fit):
         found.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
         found.append(_matched_table(parts, beside, "means_beside_other", f"Means beside those of {other.label}"))
+    else:
+        found.append(Caution("The two experiments have no cell in common: their means are not compared."))
     return Section(title=title, parts=found)
 
 
