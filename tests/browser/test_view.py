@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from io import BytesIO
 from itertools import combinations
 from pathlib import Path
@@ -141,7 +141,7 @@ PLACED = """async ([wanted, blocked, size]) => {
 }"""
 
 
-def overlap(a: dict[str, float], b: dict[str, float]) -> bool:
+def overlap(a: Mapping[str, float], b: Mapping[str, float]) -> bool:
     across = a["left"] < b["left"] + b["width"] and b["left"] < a["left"] + a["width"]
     return across and a["top"] < b["top"] + b["height"] and b["top"] < a["top"] + a["height"]
 

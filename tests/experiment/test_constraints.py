@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from actr3d.experiment.aperture.constraints import Findings, difference, equivalence, margin
+from actr3d.experiment.aperture.constraints import Findings, change, difference, equivalence, margin
 from actr3d.experiment.aperture.critical_ratio import critical_ratio, critical_ratio_of_group
 from actr3d.experiment.aperture.original import original_means
 from actr3d.experiment.aperture.passing import Passing
@@ -182,6 +182,23 @@ def test_with_two_participants_a_group_nothing_is_tested() -> None:
     assert [results(few)[number] for number in (2, 3, 5)] == [None, None, None]
     enough = Findings(one for one in GOOD if one.participant[-1] in "012")
     assert [results(enough)[number] for number in (2, 3, 5)] == [True, True, True]
+
+
+def test_a_rise_before_a_wider_aperture_is_decided_by_its_interval() -> None:
+    """The interval is that of five changes: by scipy's `ttest_1samp(changes, 0).confidence_interval()`, 2.0368 to 5.9632."""
+    assert change([2.0, 3.0, 4.0, 5.0, 6.0]) == pytest.approx((4.0, 2.036757, 5.963243), abs=1e-6)
+
+    def rising(*more: float) -> Findings:
+        """Returns walkers who all turn less and less before wider apertures, but by so much more at 45 cm than at 40 cm."""
+        return findings(
+            lambda of: with_angle(of, 100 - 100 * of.aperture + (5 + more[int(of.participant[-1])] if of.aperture == 0.45 else 0))
+        )
+
+    sure, open_, slight = rising(3, 4, 4, 4, 5).falls(), rising(-20, -8, 4, 16, 28).falls(), rising(0.2, 0.4, 0.6, 0.8, 1.0).falls()
+    assert (sure.met, open_.met, slight.met) == (False, None, True)
+    assert "largest rise from one aperture to the next 4.0 degrees (95 % interval" in sure.found
+    assert "cannot be decided without more participants: largest rise from one aperture to the next 4.0" in open_.found
+    assert "at 45 cm" in open_.found
 
 
 def test_whether_the_large_turn_more_is_decided_by_the_interval_of_the_difference() -> None:
