@@ -64,6 +64,11 @@ KINDS: Registry[Kind] = Registry("kind of trace event")
 """All kinds of events by name."""
 
 
+def rank_of(kind: str) -> int:
+    """Returns the place among `LEVELS` of the lowest level at which a kind is recorded; a kind that is not registered has «all»."""
+    return KINDS[kind].rank if kind in KINDS else len(LEVELS) - 1
+
+
 def trace_kind(
     name: str, *, level: str = "all", source: str, data: str, meaning: str, group: str = "other", title: str = "", text: str = ""
 ) -> None:
