@@ -24,7 +24,7 @@ GROUPS = {
     "reward": KindGroup("Rewards", shown=True),
     "compile": KindGroup("Compiled productions", shown=True),
     "command": KindGroup("User's commands", shown=True),
-    "contact": KindGroup("Contacts and results", shown=True),
+    "result": KindGroup("Results", shown=True),
     "plan": KindGroup("Plans (SGOMS)", shown=True),
     "choice": KindGroup("Choices"),
     "buffer": KindGroup("Buffers"),
@@ -168,9 +168,7 @@ trace_kind(
     title="prints",
     text="{text}",
 )
-trace_kind(
-    "result", level="production", source="top model", data="...", meaning="a run with a measure is over: its result", group="contact"
-)
+trace_kind("result", level="production", source="top model", data="...", meaning="a run with a measure is over: its result", group="result")
 trace_kind(
     "planning_unit",
     level="production",

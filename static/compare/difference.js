@@ -4,15 +4,9 @@ import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { eventText, eventValues, timeText } from "../inspector/event_text.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
+import { GROUPS } from "../trace_kinds.js";
 
-const KINDS = [
-  ["all events", []],
-  ["firings", ["fire"]],
-  ["firings and requests", ["fire", "request"]],
-  ["commands to the body", ["request", "move", "moved", "answer"]],
-  ["what the eye sees", ["search", "sight"]],
-  ["output", ["output"]],
-];
+const KINDS = [["all events", []], ...GROUPS.filter(({ kinds }) => kinds.length > 0).map(({ text, kinds }) => [text, kinds])];
 
 const MOST = 8; // the number of different values that are shown
 
