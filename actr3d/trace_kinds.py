@@ -119,6 +119,8 @@ trace_kind(
     data="production bound",
     meaning="a production fires, with the variables that it bound",
     group="fire",
+    title="fires",
+    text="{production}",
 )
 trace_kind(
     "changed",
