@@ -20,7 +20,7 @@ ABOVE = 0.02
 
 @overlay("handles", "handles to move things")
 class Handles(Overlay):
-    """Shows arrows and an arc at the foot of each body, wall or object that can be moved: dragging them puts it elsewhere, or turns it.
+    """Shows arrows and an arc at the foot of each body, wall or object that can be moved: dragging them moves or turns it.
 
     The thing moves when its handle is released. This is a user's change like any other: it is recorded, and can be undone.
     """
