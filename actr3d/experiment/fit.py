@@ -40,11 +40,11 @@ from actr3d.errors import ConfigurationError, DesignError, ExperimentError, Sett
 from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
 from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data, read_human_text
-from actr3d.experiment.measures import known_measures
 from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.statistics import rmse_and_r2
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
+from actr3d.experiment.trial_measures import known_measures
 
 Shown = Callable[[str, int], AbstractContextManager[Callable[[Progress], object]]]
 """Shows the progress of an experiment inside a block: called with what it is for, and its number of trials."""
