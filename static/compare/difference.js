@@ -1,7 +1,7 @@
 // The first event at which the traces of two runs differ, with the events before and after it.
 
 import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
-import { eventText, eventValues, timeText } from "../inspector/event_text.js";
+import { eventText, eventTimeText, eventValues } from "../inspector/event_text.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { GROUPS } from "../trace_kinds.js";
@@ -41,7 +41,7 @@ function Cells({ event, none }) {
   const [time, source] = event;
   const [what, text] = eventText(event);
   return html`
-    <td class="number">${timeText(time)}</td><td class="mono" title=${source}>${source}</td>
+    <td class="number">${eventTimeText(time)}</td><td class="mono" title=${source}>${source}</td>
     <td class="event" title="${what} ${text}"><b>${what}</b> ${text}</td>
   `;
 }

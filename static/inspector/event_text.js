@@ -79,7 +79,7 @@ export function pairs(data) {
     .join("  ");
 }
 
-/** Returns a time of the run [us] as text in seconds. */
-export function timeText(time) {
+/** Returns the time of an event [us] as text in seconds, without the unit. */
+export function eventTimeText(time) {
   return (time / 1e6).toFixed(3);
 }
