@@ -574,7 +574,7 @@ class TracedRun:
 
 
 class FollowedRun(TracedRun):
-    """A run that another trace records first, and passes on to this one.
+    """A run of another trace, whose events this trace receives, too.
 
     Args:
         top: Its top model.
