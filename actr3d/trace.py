@@ -21,7 +21,7 @@ from typing import Any, NamedTuple, Protocol, cast
 
 from actr3d.clock import seconds
 from actr3d.errors import ParameterError, did_you_mean
-from actr3d.trace_kinds import KINDS, LEVELS
+from actr3d.trace_kinds import LEVELS, rank_of
 from actr3d.values import Naming, plain, to_json
 
 Data = dict[str, Any] | Callable[[], dict[str, Any]]
@@ -37,7 +37,7 @@ class TraceEvent(NamedTuple):
     source: str
     """The source: the dotted path below the top model, or «top» for that model itself; for a later run `top#2` and so on."""
     kind: str
-    """The kind: one of `KINDS`."""
+    """The kind: one of `trace_kinds.KINDS`, or a name that a model chose."""
     data: dict[str, Any]
     """The data; plain values, lists and dicts only."""
 
@@ -137,7 +137,7 @@ class Trace:
                 self._records.append((time_us, source, kind, data))
             return
         event = _event((time_us, source, kind, data))
-        rank = KINDS[kind].rank if kind in KINDS else 0
+        rank = rank_of(kind)
         if self.keep and rank <= self._rank:
             self._records.append(event)  # in this form: later readers need not create its data again
         for listener, level in self._listeners:

@@ -24,7 +24,7 @@ GROUPS = {
     "reward": KindGroup("Rewards", shown=True),
     "compile": KindGroup("Compiled productions", shown=True),
     "command": KindGroup("User's commands", shown=True),
-    "contact": KindGroup("Contacts and results", shown=True),
+    "result": KindGroup("Results", shown=True),
     "plan": KindGroup("Plans (SGOMS)", shown=True),
     "choice": KindGroup("Choices"),
     "buffer": KindGroup("Buffers"),
@@ -62,6 +62,11 @@ class Kind(NamedTuple):
 
 KINDS: Registry[Kind] = Registry("kind of trace event")
 """All kinds of events by name."""
+
+
+def rank_of(kind: str) -> int:
+    """Returns the place among `LEVELS` of the lowest level at which a kind is recorded; a kind that is not registered has «all»."""
+    return KINDS[kind].rank if kind in KINDS else len(LEVELS) - 1
 
 
 def trace_kind(
@@ -114,6 +119,8 @@ trace_kind(
     data="production bound",
     meaning="a production fires, with the variables that it bound",
     group="fire",
+    title="fires",
+    text="{production}",
 )
 trace_kind(
     "changed",
@@ -163,9 +170,7 @@ trace_kind(
     title="prints",
     text="{text}",
 )
-trace_kind(
-    "result", level="production", source="top model", data="...", meaning="a run with a measure is over: its result", group="contact"
-)
+trace_kind("result", level="production", source="top model", data="...", meaning="a run with a measure is over: its result", group="result")
 trace_kind(
     "planning_unit",
     level="production",

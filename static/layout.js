@@ -52,7 +52,7 @@ export function isCollapsed(area) {
 }
 
 /** Returns whether a part can be collapsed now: something else is beside it. */
-export function canCollapse(area) {
+function canCollapse(area) {
   return area === "timeline" || (hasWorld.value && !isCollapsed(area === "scene" ? "panels" : "scene"));
 }
 

@@ -68,6 +68,13 @@ CHECKS = {
         assert "careless" in library_designs()
         assert len(specify("careless").design) == 100
     """,
+    "actr3d/experiment/analysis.py": """
+        from types import SimpleNamespace
+        from actr3d.experiment.report.analyses import find_analyses
+        (slowest,) = find_analyses(["rt", "n"])
+        (section,) = slowest(SimpleNamespace(rows={"rt": SimpleNamespace(max=lambda: 1.5)}), [])
+        assert (section.title, section.parts) == ("The slowest trial", ["It took 1.50 s."])
+    """,
     "workbench/page_commands/firings.py": """
         from types import SimpleNamespace
         from actr3d.trace import TraceEvent

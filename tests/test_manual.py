@@ -11,9 +11,11 @@ from typing import Any
 
 import pytest
 
+from actr3d.experiment.specification import library_designs
 from actr3d.vision import DETECTORS
 from tests.helpers.manual import FENCE, PAGES, ROOT, check, compare, has_code
 from tests.helpers.motor_bodies import moving, until
+from workbench.overlays import OVERLAYS
 
 
 @pytest.fixture
@@ -103,3 +105,10 @@ def test_the_table_of_motor_commands_has_commands_only(tables: Any) -> None:
 def test_the_table_of_defaults_has_the_numbers_of_agents_and_memories(tables: Any) -> None:
     found = tables.table("defaults")
     assert all(f"`{default}`" in found for default in ("production_time=0.05", "threshold=0", "finst_time=3.0", "decay=0.5", "strength=1"))
+
+
+def test_the_tables_of_overlays_and_designs_have_all_of_them(tables: Any) -> None:
+    found = tables.table("designs")
+    assert all(f"| `{name}` | " in found for name in library_designs())
+    assert "(Friedman et al. 1964)." in found
+    assert all(f"| {kind.title} | Shows " in tables.table("overlays") for kind in OVERLAYS.values())

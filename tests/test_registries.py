@@ -23,6 +23,7 @@ from actr3d.bench import find_benchmarks
 from actr3d.change import CHANGES, Change, Target, change
 from actr3d.errors import SimulationError, WorldError
 from actr3d.experiment import find_measures
+from actr3d.experiment.report.analyses import ANALYSES, find_analyses
 from actr3d.simulation import Simulation
 from actr3d.vision import DETECTORS
 from actr3d.world import Body, Car, Floor, ImportedBody, Scene, World
@@ -44,6 +45,12 @@ def example(kind: str) -> Embodied:
 def one_of_each_kind() -> list[Body]:
     """Returns bodies to look at: they are shared by tests."""
     return [World(Scene(parts=(example(kind),))).bodies.popitem()[1] for kind in BODY_KINDS]
+
+
+def analyses() -> list[str]:
+    """Returns the names of all analyses."""
+    find_analyses([])
+    return list(ANALYSES)
 
 
 @pytest.fixture
@@ -205,6 +212,17 @@ def test_each_measure_reads_a_world_and_says_what_it_cannot_find(name: str) -> N
     arguments = ["nobody" for one in inspect.signature(kind).parameters.values() if one.default is one.empty]
     with pytest.raises(WorldError, match="nobody"):
         kind(*arguments).begin(World(Scene(parts=(Floor(), Car()))))
+
+
+@pytest.mark.parametrize("name", analyses())
+def test_each_analysis_describes_itself_and_is_made_of_trials_with_its_columns_only(name: str) -> None:
+    function = ANALYSES[name]
+    columns = function.__dict__["needed_columns"]
+    assert (inspect.getdoc(function) or "").endswith(".")
+    inspect.signature(function).bind("results", "others")  # raises an error if it takes something else
+    assert columns
+    assert function in find_analyses(columns)
+    assert all(function not in find_analyses(columns - {one}) for one in columns)
 
 
 @pytest.mark.parametrize("name", DETECTORS)

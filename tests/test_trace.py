@@ -11,7 +11,8 @@ from actr3d.actr import Buffer, Model
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
 from actr3d.errors import ParameterError
-from actr3d.trace import KINDS, LEVELS, Trace, TraceEvent
+from actr3d.trace import LEVELS, Trace, TraceEvent
+from actr3d.trace_kinds import KINDS
 
 TEXT = """
 from actr3d.actr import *

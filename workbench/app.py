@@ -32,7 +32,8 @@ from workbench.retention import Keeping, stands_alone
 from workbench.sessions import Sessions
 from workbench.trash import empty_trash
 from workbench.viser_bridge import Bridge
-from workbench.worker.spawn import MEMORY, ForkServer
+from workbench.worker.memory import MODEL_MEMORY
+from workbench.worker.spawn import ForkServer
 from workbench.worker.workers import Workers
 
 DAY = 86_400.0
@@ -40,7 +41,7 @@ DAY = 86_400.0
 
 
 def make_app(
-    models: Path, gate: Gate, *, memory: int = MEMORY, keeping: Keeping | None = None, fork_server: ForkServer | None = None
+    models: Path, gate: Gate, *, memory: int = MODEL_MEMORY, keeping: Keeping | None = None, fork_server: ForkServer | None = None
 ) -> FastAPI:
     """Returns the application; its `state.leave` ends all runs and experiments.
 

@@ -53,7 +53,7 @@ class _Cursor:
 
 @dataclass
 class _Known:
-    """What is known of a memory.
+    """The settings, the buffers and the events of a memory.
 
     Attributes:
         settings: The parameters of its modules.
@@ -142,7 +142,7 @@ class ChunkCurves:
 
         Args:
             source: The name of the memory.
-            known: What is known of it.
+            known: Its settings, buffers and events.
             chosen: By the name of the curve: the text of the chunk, and the name of the part.
             asked: The interval and the maximum number of values, as for `sampled`.
             present: How many events the run has had up to the present.

@@ -22,7 +22,8 @@ from workbench.auth import LOOPBACK, REFUSAL, Gate, Token
 from workbench.built_manual import build_manual
 from workbench.retention import MAX_MEGABYTES, MAX_RECORDINGS, Keeping
 from workbench.shipped import models_folder
-from workbench.worker.spawn import MEMORY, spawn
+from workbench.worker.memory import MODEL_MEMORY
+from workbench.worker.spawn import spawn
 
 READ_TIME = 20.0
 """How long a browser may take to start and to read the file that redirects it here [s]."""
@@ -55,7 +56,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--name", action="append", default=[], metavar="NAME", help="another name by which browsers may call this server")
     parser.add_argument("--no-browser", action="store_true", help="do not open the browser")
     parser.add_argument(
-        "--memory", type=_count, default=MEMORY, metavar="MB", help=f"how much memory a model may take (default {MEMORY}; 0: no limit)"
+        "--memory",
+        type=_count,
+        default=MODEL_MEMORY,
+        metavar="MB",
+        help=f"how much memory a model may take (default {MODEL_MEMORY}; 0: no limit)",
     )
     parser.add_argument(
         "--recordings",

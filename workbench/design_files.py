@@ -12,12 +12,11 @@ from typing import Annotated, Any
 from pydantic import Field
 
 import actr3d
-from actr3d.actr.kernel.source_code import syntax_tree
+from actr3d.actr.kernel.source_code import last_name, syntax_tree
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError, ModelFileError, did_you_mean
 from actr3d.values import escape_surrogates
 from workbench.files import LARGEST, ModelFolder, file_stamp
-from workbench.loader import last_name
 from workbench.page_commands import PageMessage
 
 LIBRARY = Path(actr3d.__file__).parent / "experiment" / "designs"

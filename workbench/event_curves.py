@@ -4,7 +4,6 @@ how long modules were busy and buffers full."""
 from __future__ import annotations
 
 import math
-import re
 from array import array
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
@@ -16,6 +15,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from actr3d.actr.chunks.chunk import as_number
 from actr3d.clock import microseconds, seconds
 from actr3d.trace import TraceEvent, run_of
 from workbench.curves import Curve, Shape
@@ -26,23 +26,6 @@ LOGGED = frozenset({"add", "chunks", "buffer", "request"})
 """The kinds of the events from which activations follow."""
 MAX_CURVES = 5_000
 """Maximum number of curves of a run; others are left out."""
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
-
-_BEGINS = frozenset("+-.0123456789")
-
-
-def _number(value: Any) -> float | None:
-    """Returns a value as a number, also if it is written as text; None if it is no finite one."""
-    if type(value) is str:
-        if value[:1] not in _BEGINS or not _NUMBER.fullmatch(value):
-            return None
-    elif type(value) is not float and type(value) is not int:
-        return None
-    try:
-        number = float(value)
-    except OverflowError:
-        return None
-    return number if math.isfinite(number) else None
 
 
 class _EventCurve:
@@ -186,7 +169,7 @@ class EventCurves:
 
     def _point(self, value: Any, name: str, unit: str, group: str) -> None:
         """Adds a value of a single moment."""
-        number = _number(value)
+        number = as_number(value)
         if number is None:
             return
         curve = self._curves.get(name) or self._curve(name, unit, group, None, "points")
@@ -218,7 +201,7 @@ class EventCurves:
         self._last(chunk is not None, f"{source} full", "time full")
         now = set[str]()
         for slot, text in (chunk or {}).items():
-            value = _number(text)
+            value = as_number(text)
             if value is not None:
                 now.add(slot)
                 self._hold(self._now, value, f"{source}.{slot}", slot, source)
@@ -231,7 +214,7 @@ class EventCurves:
     def _state(self, source: str, data: Mapping[str, Any]) -> None:
         """Takes the attributes that change; most are settings, and stay as they are."""
         for name, value in data.items():
-            curve, number = f"{source}.{name}", _number(value)
+            curve, number = f"{source}.{name}", as_number(value)
             first = self._firsts.get(curve)
             if first is None:
                 if number is not None:
@@ -249,7 +232,7 @@ class EventCurves:
             self._point(value, f"{_path(source, production)} utility", "", "utility")
 
     def _utility(self, source: str, data: Mapping[str, Any]) -> None:
-        number = _number(data["value"])
+        number = as_number(data["value"])
         if number is not None:
             part = data["part"]
             self._hold(self._now, number, f"{_path(source, data['production'])} learned {part}", f"learned {part}")

@@ -27,7 +27,7 @@ from workbench.experiment_command import (
 )
 from workbench.experiment_folder import ExperimentFolder, as_values
 from workbench.retention import begun, stamp
-from workbench.sessions import Sessions, UntrustedError
+from workbench.sessions import PermissionNeededError, Sessions
 from workbench.trash import OWN, move_to_trash
 
 E = TypeVar("E", bound=ExperimentEvent)
@@ -309,7 +309,7 @@ class Experiments:
 
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            UntrustedError: If its code may not be run.
+            PermissionNeededError: If its code may not be run.
             ExperimentRunError: If it is already running, cannot be continued, too many experiments run, or the workbench is
                 closing.
             OSError: If no process can be started.
@@ -424,7 +424,7 @@ class Experiments:
 
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            UntrustedError: If its code may not be run.
+            PermissionNeededError: If its code may not be run.
             ExperimentRunError: If the trial cannot be recorded.
             OSError: If no process can be started.
         """
@@ -451,7 +451,7 @@ class Experiments:
 
         Raises:
             NoSuchExperimentError: If there is no experiment of that name.
-            UntrustedError: If its code may not be run.
+            PermissionNeededError: If its code may not be run.
             ExperimentRunError: If it fails.
             OSError: If no process can be started.
         """
@@ -515,12 +515,12 @@ class Experiments:
         """Returns the folder of an experiment whose code may be run.
 
         Raises:
-            UntrustedError: If this installation did not make it, and the user does not permit it.
+            PermissionNeededError: If this installation did not make it, and the user does not permit it.
         """
         folder = self.folder(name)
         if not folder.made_here:
             if not trust:
-                raise UntrustedError(
+                raise PermissionNeededError(
                     "this workbench did not make the experiment (or it was changed since), and the code in it would be run: "
                     'send "trust": true if you know where it comes from'
                 )

@@ -97,9 +97,6 @@ class Job(Receiver):
             self.add_notice(Notice(level="error", text=f"{self.subject} was stopped by {name}, and ended"))
             worker.kill()
 
-    def busy(self, worker: Worker) -> bool:
-        return False  # no user watches a job, so silence is not reported
-
 
 @asynccontextmanager
 async def doing(workers: Workers, start: Start, job: Job | None = None, memory: int | None = None) -> AsyncGenerator[Job]:

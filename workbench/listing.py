@@ -11,7 +11,7 @@ import msgspec
 
 from workbench.files import file_stamp
 from workbench.jobs import Job, doing
-from workbench.readers import MEMORY
+from workbench.readers import READER_MEMORY
 from workbench.recording_index import Summary, unreadable
 from workbench.recordings import NoSuchRecordingError, Recordings
 from workbench.worker.messages import Reply, Start
@@ -109,7 +109,7 @@ class Listing:
                 while left:
                     reading = _Reading(left, found)
                     start = Start(job="list", folder=str(self._models), recordings=tuple(map(str, left)))
-                    async with doing(self._workers, start, reading, memory=MEMORY):
+                    async with doing(self._workers, start, reading, memory=READER_MEMORY):
                         await reading.end()
                     left = left[reading.count :]
                     if left:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
-from actr3d.actr.kernel.source_code import syntax_tree
+from actr3d.actr.kernel.source_code import last_name, syntax_tree
 from actr3d.actr.loading.source_text import compile_source, read_source
 from actr3d.actr.loading.sweep import parameters as first_lines
 from actr3d.errors import ConfigurationError, ModelFileError, alternatives
@@ -160,11 +160,6 @@ def _of_first_lines(source: str) -> Iterator[Parameter]:
             kind = type(value).__name__
             takes = {"bool": "switch", "int": "number", "float": "number", "str": "text"}.get(kind, kind)
             yield Parameter(name=name, takes=takes, **default, optional=value is None, line=node.lineno)
-
-
-def last_name(node: ast.expr) -> str:
-    """Returns a name without the names before its last dot; an empty text for any other expression."""
-    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
 
 
 def _agents(tree: ast.Module) -> Iterator[WrittenAgent]:

@@ -16,7 +16,7 @@ from workbench.recordings import NoSuchRecordingError
 from workbench.worker.messages import Start
 from workbench.worker.workers import Workers
 
-MEMORY = 2_000
+READER_MEMORY = 2_000
 """How much memory reading a recording may take [MB]."""
 MAX_READERS = 8
 """Maximum number of files that are made at once; others wait."""
@@ -69,7 +69,7 @@ class Readers:
 
     async def _made(self, start: Start) -> None:
         job = Job()
-        async with doing(self._workers, start, job, memory=MEMORY):
+        async with doing(self._workers, start, job, memory=READER_MEMORY):
             try:
                 async for _ in job.stages(lambda: _size(start.to)):
                     pass

@@ -13,7 +13,7 @@ from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError
 from workbench.files import ModelFolder, file_stamp
 from workbench.recorded_start import Beginning
-from workbench.worker.messages import Loaded, Start, digest_of
+from workbench.worker.messages import Loaded, Start, text_digest
 from workbench.worker.workers import Worker
 
 MAX_HELPERS = 100
@@ -52,7 +52,7 @@ def start_of(path: Path, options: RunOptions, **more: Any) -> Start:
         more["source"], more["version"] = ModelFolder.text_and_version(path)
     else:
         path = Path(repeated.file)
-        more |= {"source": repeated.source, "version": digest_of(repeated.source)}
+        more |= {"source": repeated.source, "version": text_digest(repeated.source)}
         more |= {"commands": repeated.commands, "helpers": repeated.helpers, "recorded": repeated.recording}
     seed = fresh_seed() if options.seed is None else options.seed
     return Start(path=str(path), folder=str(path.parent), settings=options.settings, seed=seed, run=options.run, **more)
@@ -77,7 +77,7 @@ def digest_of_file(path: Path) -> str | None:
 
 @lru_cache(maxsize=1024)
 def _digest(path: Path, _: tuple[int, ...]) -> str:
-    return digest_of(read_source(path))
+    return text_digest(read_source(path))
 
 
 class LaunchedRun:
@@ -95,10 +95,10 @@ class LaunchedRun:
         """Set when the worker has ended and its last messages have been read."""
         self.stuck: dict[str, Any] | None = None
         """Where the model has kept its process busy for a while: `file`, `line`, `function`, and any `signal` that has stopped it."""
-        self._digest = digest_of(start.source)
+        self._digest = text_digest(start.source)
         self._helpers: dict[Path, str] = {}
         for file, text in list(start.helpers.values())[:MAX_HELPERS]:
-            self._helpers[(Path(start.folder) / file).resolve()] = digest_of(text)
+            self._helpers[(Path(start.folder) / file).resolve()] = text_digest(text)
 
     def add_helper(self, loaded: Loaded) -> None:
         """Records a helper module that the run has loaded."""

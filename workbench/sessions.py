@@ -36,7 +36,7 @@ class NoSuchSessionError(SessionError):
     status = 404
 
 
-class UntrustedError(SessionError):
+class PermissionNeededError(SessionError):
     """Code of a recording that this installation did not make would be run without the user's permission."""
 
     status = 403
@@ -138,13 +138,13 @@ class Sessions:
             trust: Whether the user permits running code that this installation has not recorded itself.
 
         Raises:
-            UntrustedError: If the code may not be run.
+            PermissionNeededError: If the code may not be run.
             Actr3dError: If there is no such recording, or it cannot be read.
             OSError: If no worker can be started.
         """
         began = await self.beginning(recording)
         if not (began.made_here or trust):
-            raise UntrustedError(
+            raise PermissionNeededError(
                 "this installation did not make the recording (or it was changed since), and the code in it would be run: "
                 'send "trust": true if you know where it comes from'
             )

@@ -44,9 +44,9 @@ class Receiver(ABC):
     def add_notice(self, notice: Notice) -> None:
         """Sends a notice to the user."""
 
-    @abstractmethod
     def busy(self, worker: Worker) -> bool:
-        """Returns whether a worker is expected to send messages."""
+        """Returns whether a user waits for messages of a worker, so that silence is reported; False unless a subclass says so."""
+        return False
 
     @abstractmethod
     def halt(self, worker: Worker, name: str) -> None:

@@ -10,7 +10,7 @@ from actr3d.registry import import_modules
 if TYPE_CHECKING:
     from actr3d.simulation.measure import Measure
 
-__all__ = ["Design", "Group", "Measured", "Normal", "Trial", "Uniform", "design", "find_measures"]
+__all__ = ["Design", "Group", "Measured", "Normal", "Trial", "Uniform", "design"]
 
 
 def find_measures() -> dict[str, type[Measure]]:

@@ -26,10 +26,10 @@ from distributed import Client, KilledWorker, LocalCluster, get_worker
 from distributed.utils import silence_logging_cmgr
 
 from actr3d.errors import ExperimentError
-from actr3d.experiment.measures import check_row
 from actr3d.experiment.specification import Experiment
 from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.trial import Row
+from actr3d.experiment.trial_measures import check_row
 from actr3d.experiment.trial_process import LEFT, TrialProcess
 from actr3d.experiment.versions import experiment_versions
 

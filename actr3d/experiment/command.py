@@ -25,11 +25,11 @@ from rich.text import Text
 from actr3d.errors import DesignError, ExperimentError, SettingError
 from actr3d.experiment.design import OWN_COLUMNS
 from actr3d.experiment.human_data import plain_text
-from actr3d.experiment.measures import NOTHING_LEFT, check_measures, check_row, ended_early, try_measures
 from actr3d.experiment.specification import Experiment, Specification, library_designs, specify
 from actr3d.experiment.store import LOCK, SPECIFICATION, Store, only_process, summary, write_whole
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import PLAIN, record_trial
+from actr3d.experiment.trial_measures import NOTHING_LEFT, check_measures, check_row, ended_early, try_measures
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
 from actr3d.experiment.versions import experiment_versions
 from actr3d.values import to_json

@@ -40,10 +40,11 @@ from actr3d.errors import ConfigurationError, DesignError, ExperimentError, Sett
 from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
 from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data, read_human_text
-from actr3d.experiment.measures import known_measures
 from actr3d.experiment.report.analyses import columns_of_people
+from actr3d.experiment.report.statistics import rmse_and_r2
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
+from actr3d.experiment.trial_measures import known_measures
 
 Shown = Callable[[str, int], AbstractContextManager[Callable[[Progress], object]]]
 """Shows the progress of an experiment inside a block: called with what it is for, and its number of trials."""
@@ -770,13 +771,12 @@ def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agre
     both = {cell: (mean, means[cell]) for cell, mean in target.items() if cell in means}
     if not both:
         raise ExperimentError("the design and the target have no conditions in common")
-    wanted, got = (np.array(values) for values in zip(*both.values(), strict=True))
-    varied = len(both) > 2 and wanted.std() > 0 and got.std() > 0
+    error, r2 = rmse_and_r2(*zip(*both.values(), strict=True))
     return Agreement(
         cells=len(both),
         missing=len(target) - len(both),
-        rmse=float(np.sqrt(np.mean((wanted - got) ** 2))),
-        r2=float(np.corrcoef(wanted, got)[0, 1] ** 2) if varied else None,
+        rmse=error,
+        r2=None if math.isnan(r2) else r2,
         rows=tuple({**dict(cell), "target": mean, "model": round(found, DIGITS)} for cell, (mean, found) in both.items()),
     )
 

@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any, cast
 import actr3d
 from actr3d.actr.compat.old_names import is_old_name
 from actr3d.actr.kernel.run_limits import RunLimits
+from actr3d.actr.kernel.source_code import last_name
 from actr3d.actr.loading import load_text
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sealed import sealed
@@ -498,15 +499,11 @@ def _entries(nodes: Sequence[ast.AST], key: str) -> list[ast.expr]:
 
 def _marked(source: Source) -> list[str]:
     """Returns the names of the functions of a file that are marked by `design`, without running it."""
-
-    def name_of(mark: ast.expr) -> str:
-        return mark.attr if isinstance(mark, ast.Attribute) else mark.id if isinstance(mark, ast.Name) else ""
-
     try:
         tree = ast.parse(source.text)
     except SyntaxError:
         load_quietly(source)  # raises the error that names the line
         raise
     return [
-        node.name for node in tree.body if isinstance(node, ast.FunctionDef) and any(name_of(d) == "design" for d in node.decorator_list)
+        node.name for node in tree.body if isinstance(node, ast.FunctionDef) and any(last_name(d) == "design" for d in node.decorator_list)
     ]

@@ -19,10 +19,10 @@ SOURCES = "actr3d sources"
 @cache
 def experiment_versions() -> dict[str, str]:
     """Returns the versions of everything that the rows of an experiment may depend on, by name; see `versions` of recordings."""
-    return {**versions(), **{package: version(package) for package in PACKAGES}, SOURCES: digest_of(Path(actr3d.__file__).parent)}
+    return {**versions(), **{package: version(package) for package in PACKAGES}, SOURCES: folder_digest(Path(actr3d.__file__).parent)}
 
 
-def digest_of(folder: Path) -> str:
+def folder_digest(folder: Path) -> str:
     """Returns twelve characters that change if a file of a package does: code or data, not what Python compiles from it.
 
     Args:

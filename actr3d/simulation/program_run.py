@@ -13,7 +13,7 @@ from actr3d.recording.schema import SIMULATION
 from actr3d.simulation.commands import Command
 from actr3d.simulation.surroundings import scene_facts
 from actr3d.trace import Run, Trace, TraceEvent, renumbered, with_number
-from actr3d.trace_kinds import KINDS, LEVELS
+from actr3d.trace_kinds import LEVELS, rank_of
 from actr3d.world import World
 
 
@@ -41,7 +41,7 @@ class ProgramRun:
         Raises:
             Exception: What a listener of that trace has raised.
         """
-        if event.kind == "output" or KINDS[event.kind].rank > self._rank:
+        if event.kind == "output" or rank_of(event.kind) > self._rank:
             return
         self._pass_on(event, self._trace)
         self._trace.raise_failures()

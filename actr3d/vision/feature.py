@@ -59,7 +59,7 @@ class Feature:
 
     @property
     def key(self) -> tuple[Any, ...]:
-        """Its identity among features of its kind, from view to view: its labels."""
+        """Its labels, by which it is found again in the next view."""
         units = units_of(type(self))
         return tuple(getattr(self, name) for name in slot_names(type(self)) if units[name] is LABEL)
 

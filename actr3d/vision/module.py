@@ -213,7 +213,7 @@ class Vision(WithParameters, Searching):
         self._send_command("gaze", *map(math.radians, angles))
 
     def _ask_bottom_up(self, query: Query) -> Search:
-        """Begins a bottom-up search, or makes it wait; it replaces an earlier one."""
+        """Begins a bottom-up search, or lets it wait for the end of a top-down one. It replaces an earlier bottom-up search."""
         for earlier in (self._bottom_up, self._waiting):
             if earlier is not None:
                 self._cancel(earlier)

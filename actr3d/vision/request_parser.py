@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from operator import ge, gt, le, lt
 from typing import Any, NamedTuple
 
-from actr3d.actr.chunks.chunk import as_text, parse_slots, variable_value
+from actr3d.actr.chunks.chunk import as_number, as_text, parse_slots, variable_value
 from actr3d.configuration import hold
 from actr3d.errors import VisionError, alternatives, did_you_mean, followed
 from actr3d.vision.detectors.registry import Detector
@@ -144,8 +144,8 @@ class _RequestReader:
                     raise VisionError(f"{self._what}: {word} cannot be compared by size (got {value!r})")
                 tests.append(Test(slot, sign or "is", self._same(unit, word, part)))
                 continue
-            number = _number(part)
-            if number is None or math.isnan(number):
+            number = math.inf if as_text(part) == "inf" else as_number(part)  # an opening may have no end
+            if number is None:
                 raise VisionError(f"{self._what}: {word} is compared with a number in {unit.name or 'its unit'} (got {value!r})")
             sign = sign or self._kind.default_comparisons.get(slot, "")
             if sign in ("", "!"):
@@ -156,7 +156,7 @@ class _RequestReader:
 
     def _same(self, unit: Unit, word: str, part: Any) -> str:
         """Returns the text to compare with a label, or with a value without a unit."""
-        number = _number(part)
+        number = as_number(part)
         if unit is LABEL:
             if number is not None and number.is_integer():
                 return str(int(number))
@@ -186,8 +186,8 @@ class _RequestReader:
 
     def _parameter(self, word: str, value: Any) -> float:
         ((sign, part), *more) = self._pieces(word, value)
-        number = _number(part)
-        if sign or more or number is None or not math.isfinite(number):
+        number = as_number(part)
+        if sign or more or number is None:
             raise VisionError(f"{self._what}: {word} takes one number [{self._detector.unit(word).name}] (got {value!r})")
         for bound in self._detector.bounds(word):
             hold(bound, number, f"{self._what}: {word}")
@@ -196,15 +196,5 @@ class _RequestReader:
 
 def _equal(value: Any, wanted: str) -> bool:
     """Returns whether a value is the wanted one: the same number, or the same text."""
-    numbers = _number(value), _number(wanted)
+    numbers = as_number(value), as_number(wanted)
     return numbers[0] == numbers[1] if None not in numbers else as_text(value) == wanted
-
-
-def _number(value: Any) -> float | None:
-    """Returns a number, also from text; None for anything else."""
-    if isinstance(value, bool):
-        return None
-    try:
-        return float(value)
-    except (TypeError, ValueError, OverflowError):
-        return None

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import math
 
-import mujoco
-import numpy as np
-from numpy.typing import NDArray
-
+from actr3d.world.frames import turn_to, yaw_in
 from actr3d.world.physics import Physics
-from actr3d.world.scene_objects import yaw_quaternion
 
 
 class Base:
@@ -32,8 +28,7 @@ class Base:
         self.q = int(model.jnt_qposadr[first]) if count else 0
         self.v = int(model.jnt_dofadr[first]) if count else 0
         self._at = tuple(float(x) for x in model.body_pos[root])
-        w, _, _, z = (float(x) for x in model.body_quat[root])
-        self.faces = 2 * math.atan2(z, w)
+        self.faces = yaw_in(model.body_quat[root].tolist())
         """Heading of a planar base when its heading joint is at 0 [rad]."""
 
     @property
@@ -79,15 +74,3 @@ class Base:
         self._qvel[self.v : self.v + 6] = 0
         if heading is not None:
             turn_to(self._qpos[self.q + 3 : self.q + 7], heading)
-
-
-def turn_to(quaternion: NDArray[np.float64], heading: float) -> None:
-    """Turns an orientation (4,) about the vertical to a heading [rad], in place; the inclination stays the same."""
-    by = np.array(yaw_quaternion(heading - heading_in(quaternion.tolist())))
-    mujoco.mju_mulQuat(quaternion, by, quaternion.copy())
-
-
-def heading_in(quaternion: list[float]) -> float:
-    """Returns the heading of an orientation (w, x, y, z) [rad]."""
-    w, x, y, z = quaternion
-    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))

@@ -75,7 +75,7 @@ class Bounds:
         """Returns the box around the geoms, and some more, in a frame at `origin` with `axes` (3, 3) as columns.
 
         Raises:
-            WorldError: If there is no geom.
+            WorldError: If no geom is visible or touchable.
         """
         box = NOTHING.copy()
         self._widen(box, self._plain, self._clouds, origin, axes)
@@ -83,7 +83,7 @@ class Bounds:
             self._widen(box, *self._shapes(np.array(also, dtype=np.intp)), origin, axes)
         (x, y, z), upper = box.tolist()
         if not math.isfinite(x + y + z):
-            raise WorldError("no visible or touchable geom has a bounding box here")
+            raise WorldError("there is no bounding box: no geom is visible or touchable")
         return BoundingBox(lower=(x, y, z), upper=tuple(upper))
 
     def _shapes(self, geoms: NDArray[np.intp]) -> tuple[NDArray[np.intp], list[tuple[int, NDArray[np.float64]]]]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,6 +22,29 @@ WORLD_FRAME: Frame = (np.zeros(3), np.eye(3))
 def heading_of(matrix: NDArray[np.float64]) -> float:
     """Returns the direction of the x axis of a rotation matrix (9,) on the floor [rad], in -pi to pi."""
     return math.atan2(matrix.item(3), matrix.item(0))
+
+
+def heading_in(quaternion: Sequence[float]) -> float:
+    """Returns the direction of the x axis of an orientation (w, x, y, z) on the floor [rad], in -pi to pi."""
+    w, x, y, z = quaternion
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+
+def turn_to(quaternion: NDArray[np.float64], heading: float) -> None:
+    """Turns an orientation (4,) about the vertical to a heading [rad], in place; the inclination stays the same."""
+    by = np.array(yaw_quaternion(heading - heading_in(quaternion.tolist())))
+    mujoco.mju_mulQuat(quaternion, by, quaternion.copy())
+
+
+def yaw_quaternion(heading: float) -> tuple[float, float, float, float]:
+    """Returns the quaternion (w, x, y, z) of a turn by `heading` [rad] about the vertical."""
+    return (math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2))
+
+
+def yaw_in(quaternion: Sequence[float]) -> float:
+    """Returns by how much a quaternion (w, x, y, z) turns about the vertical, if it does nothing else [rad], in -2 pi to 2 pi."""
+    w, _, _, z = quaternion
+    return 2 * math.atan2(z, w)
 
 
 def upright_axes(heading: float) -> NDArray[np.float64]:

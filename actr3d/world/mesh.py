@@ -18,9 +18,10 @@ from actr3d.errors import ConfigurationError, MeshError
 from actr3d.warnings import warn_modeller
 from actr3d.world.asset_folder import AssetFolder, Files, digest
 from actr3d.world.convex_decomposition import convex_parts
+from actr3d.world.frames import yaw_quaternion
 from actr3d.world.mesh_loading import Triangles, read_triangles
 from actr3d.world.mesh_repair import Surface, check_extent, surface
-from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Name, Positive, yaw_quaternion
+from actr3d.world.scene_objects import WALL_SOLREF, Colour, Heading, Name, Positive
 
 Quaternion = tuple[float, float, float, float]
 

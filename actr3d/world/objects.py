@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actr3d.errors import WorldError, alternatives
-from actr3d.world.base import heading_in, turn_to
 from actr3d.world.body import Body
 from actr3d.world.command_registry import checked_angle, number
+from actr3d.world.frames import heading_in, turn_to
 from actr3d.world.physics import Physics
 
 MAX_PENETRATION = 0.01

@@ -12,7 +12,7 @@ from mujoco import MjModel, MjSpec, mjtGeom
 
 from actr3d.configuration import Configuration
 from actr3d.errors import ConfigurationError
-from actr3d.world.frames import FULL_TURN
+from actr3d.world.frames import FULL_TURN, yaw_quaternion
 
 Name = Annotated[str, MinLen(1)]
 Length = Annotated[float, Gt(0)]
@@ -39,11 +39,6 @@ WALL_SOLREF = (5e-4, 1.0)
 """Stiffness of a wall's contacts: (time constant [s], damping ratio). MuJoCo raises the time constant to at least twice the physics
 step, the stiffest that it simulates faithfully, so in effect this is twice any step: 4 ms at 2 ms, which keeps a body that runs into
 a wall at 3 m/s within millimetres of its surface."""
-
-
-def yaw_quaternion(heading: float) -> tuple[float, float, float, float]:
-    """Returns the quaternion (w, x, y, z) of a turn by `heading` [rad] about the vertical."""
-    return (math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2))
 
 
 @dataclass(frozen=True, kw_only=True)

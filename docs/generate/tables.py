@@ -21,6 +21,7 @@ import workbench.cli
 from actr3d.actr import ACTR, BlendingMemory, Buffer, DMSpreading, Memory, MemorySubModule, Partial, ProceduralSubModule
 from actr3d.change import CHANGES
 from actr3d.experiment import find_measures
+from actr3d.experiment.specification import library_designs, specify
 from actr3d.motor import Motor
 from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportUnusedImport] # registers the sensor `view`
 from actr3d.trace_kinds import KINDS
@@ -30,6 +31,7 @@ from actr3d.world import Car, ImportedBody, Mannequin, Scene, World
 from actr3d.world.anatomy import Embodied
 from actr3d.world.body import ACTUATORS, SENSORS
 from actr3d.world.command_registry import BodyFunction
+from workbench.overlays import OVERLAYS
 
 ROBOT = """<mujoco><worldbody><body name="base"><{joint} name="joint"/><geom size="0.1"/><site name="eye"/></body></worldbody>
   <actuator>{actuator}</actuator></mujoco>"""
@@ -173,6 +175,20 @@ def measures() -> str:
     """Returns the table of all measures of the library."""
     rows = [(_code(name), _code(kind.__module__), _first_sentence(kind)) for name, kind in sorted(find_measures().items())]
     return _rows(("Measure", "Module", "What it measures"), rows)
+
+
+@_registered
+def designs() -> str:
+    """Returns the table of all designs of the library."""
+    rows = [(_code(name), specify(name).description.partition("\n\n")[0].replace("\n", " ")) for name in library_designs()]
+    return _rows(("Design", "What it is"), rows)
+
+
+@_registered
+def overlays() -> str:
+    """Returns the table of all overlays of the 3D view."""
+    rows = [(kind.title, _first_sentence(kind)) for kind in OVERLAYS.values()]
+    return _rows(("Overlay", "What it does"), rows)
 
 
 @_registered

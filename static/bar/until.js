@@ -24,7 +24,7 @@ function partsThat(holds) {
 }
 
 /** Returns the productions of all agents by name. */
-export function productionNames() {
+function productionNames() {
   return [...new Set(partsThat((part) => part.is === "system").flatMap(([, part]) => part.productions))].sort();
 }
 

@@ -6,7 +6,7 @@ import { call } from "../server.js";
 import { nameOf, whenText } from "../runs/wording.js";
 
 /** The colours of the two runs, in plots and headings. */
-export const COLOURS = ["series-1", "series-2"];
+export const SIDE_COLOURS = ["series-1", "series-2"];
 const MAX_MOMENTS = 20_000; // moments per curve: every tick of a run of up to 200 s
 const AT_FIRST = 3; // the number of curves shown before the user has chosen any
 const USUAL = ["speed", "clearance", "learned utility", "retrieval latency", "utility", "activation", "time busy", "time full"]; // their groups, in this order
@@ -100,7 +100,7 @@ function Overlaid({ curve, runs, samples, cursor, span }) {
     () =>
       both.flatMap((of, n) =>
         of?.values.some((value) => value !== null)
-          ? [{ name: `${SIDES[n]}: ${runs[n].label.name || whenText(runs[n].made)}`, unit: curve.unit, shape: curve.shape, times: of.times, values: of.values, slope: of.slope ?? undefined, until: runs[n].time, colour: COLOURS[n], dash: DASHES[n] }]
+          ? [{ name: `${SIDES[n]}: ${runs[n].label.name || whenText(runs[n].made)}`, unit: curve.unit, shape: curve.shape, times: of.times, values: of.values, slope: of.slope ?? undefined, until: runs[n].time, colour: SIDE_COLOURS[n], dash: DASHES[n] }]
           : [],
       ),
     [...both],

@@ -1,18 +1,12 @@
 // The first event at which the traces of two runs differ, with the events before and after it.
 
 import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
-import { eventText, eventValues, timeText } from "../inspector/event_text.js";
+import { eventText, eventTimeText, eventValues } from "../inspector/event_text.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
+import { GROUPS } from "../trace_kinds.js";
 
-const KINDS = [
-  ["all events", []],
-  ["firings", ["fire"]],
-  ["firings and requests", ["fire", "request"]],
-  ["commands to the body", ["request", "move", "moved", "answer"]],
-  ["what the eye sees", ["search", "sight"]],
-  ["output", ["output"]],
-];
+const KINDS = [["all events", []], ...GROUPS.filter(({ kinds }) => kinds.length > 0).map(({ text, kinds }) => [text, kinds])];
 
 const MOST = 8; // the number of different values that are shown
 
@@ -47,7 +41,7 @@ function Cells({ event, none }) {
   const [time, source] = event;
   const [what, text] = eventText(event);
   return html`
-    <td class="number">${timeText(time)}</td><td class="mono" title=${source}>${source}</td>
+    <td class="number">${eventTimeText(time)}</td><td class="mono" title=${source}>${source}</td>
     <td class="event" title="${what} ${text}"><b>${what}</b> ${text}</td>
   `;
 }

@@ -180,7 +180,7 @@ function taken(transactions, by) {
 }
 
 /** Moves to a line of the text that is shown. */
-export function goTo(line) {
+export function goToLine(line) {
   const place = view.state.doc.line(Math.max(1, Math.min(line, view.state.doc.lines)));
   view.dispatch({ selection: EditorSelection.cursor(place.from), effects: EditorView.scrollIntoView(place.from, { y: "center" }) });
   focusText();

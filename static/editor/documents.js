@@ -90,7 +90,7 @@ class Document {
 }
 
 /** Returns the change from a state to another text, without the equal parts at both ends. */
-export function minimal(state, text) {
+function minimal(state, text) {
   const now = state.doc.toString();
   let from = 0;
   while (from < Math.min(now.length, text.length) && now[from] === text[from]) from += 1;

@@ -3,7 +3,7 @@
 import { call } from "../server.js";
 
 /** The maximum length of a text that the server reads. */
-export const LONGEST_READ = 200_000;
+const LONGEST_READ = 200_000;
 
 /** Returns the path of the text in a view; code.js fills it in. */
 export const read = { path: () => null };

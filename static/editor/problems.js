@@ -4,7 +4,7 @@ import { html } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { Traceback } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
-import { goTo } from "./code.js";
+import { goToLine } from "./code.js";
 import { hasMore } from "./marks.js";
 
 const folded = remembered("problems folded", false);
@@ -34,7 +34,7 @@ export function Problems({ document }) {
 function Problem({ mark }) {
   const { level, message, detail, line, origin } = mark;
   return html`<li class=${level}>
-    <button class="bare" disabled=${line === null} onClick=${() => goTo(line)}>
+    <button class="bare" disabled=${line === null} onClick=${() => goToLine(line)}>
       <span class=${level === "error" ? "bad" : level} role="img" aria-label=${level}>${SIGNS[level]}</span>
       <span class="number">${line === null ? "" : `line ${line}`}</span>
       <span class="text">${message}</span>

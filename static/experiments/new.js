@@ -177,9 +177,9 @@ function Form({ design, facts }) {
       ${count("trials", "trials a combination", String(facts.trials_a_cell))}
       ${count("workers", "processes", String(known.value.processors))}
       ${Object.entries(facts.groups).length > 1 || grouped.size > 0
-        ? html`<tr><th scope="row">groups</th><td colspan="2">${Object.keys(facts.groups).map((name) => html`<div key=${name}><b>${name}</b> <span class="quiet mono">${valuesText(facts.group_parameters[name])}</span></div>`)}</td></tr>`
+        ? html`<tr><th scope="row">groups</th><td colspan="2">${Object.keys(facts.groups).map((name) => html`<div key=${name}><b>${name}</b> <span class="quiet mono">${settingsText(facts.group_parameters[name])}</span></div>`)}</td></tr>`
         : null}
-      ${settings.length > 0 ? html`<tr><th scope="row">settings</th><td colspan="2" class="quiet mono">${valuesText(Object.fromEntries(settings))}</td></tr>` : null}
+      ${settings.length > 0 ? html`<tr><th scope="row">settings</th><td colspan="2" class="quiet mono">${settingsText(Object.fromEntries(settings))}</td></tr>` : null}
       <tr><th scope="row">model</th><td colspan="2">${facts.model}</td></tr>
     </tbody>
   </table>`;
@@ -191,7 +191,7 @@ function defaultText(facts, name) {
   return value === undefined || value === null || typeof value === "object" ? "" : levelsText([value]);
 }
 
-function valuesText(values) {
+function settingsText(values) {
   return Object.entries(values ?? {}).map(([name, value]) => `${name}: ${value}`).join(", ");
 }
 

@@ -6,7 +6,7 @@ import { dark } from "../theme.js";
 import { drawView, extentAt } from "./drawing.js";
 
 /** Returns an extent in words. */
-export function extentText([row, label, , x1, x2, d1, d2]) {
+function extentText([row, label, , x1, x2, d1, d2]) {
   return `label ${label} · row ${row} · x ${x1.toFixed(3)} to ${x2.toFixed(3)} · ${d1.toFixed(2)} m to ${d2.toFixed(2)} m`;
 }
 

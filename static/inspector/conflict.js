@@ -6,7 +6,7 @@ import { chosenText, isGone, nothingYet } from "../run_status.js";
 import { running, state } from "../store.js";
 import { agentOf, agentsOf } from "./agents.js";
 import { at, production, shownReasons } from "./asked.js";
-import { pairs, timeText } from "./event_text.js";
+import { eventTimeText, pairs } from "./event_text.js";
 import { fixed } from "./part_names.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
 
@@ -26,8 +26,8 @@ function lastCycles(filtered, end, time) {
 }
 
 function comesOf({ select, fire, changed, conflict }) {
-  if (fire) return html`<b class="mono">${fire.production}</b> fired at ${timeText(fire.time)} s`;
-  if (changed) return html`<b class="mono">${changed.production}</b> was chosen, but no longer matched at ${timeText(changed.time)} s`;
+  if (fire) return html`<b class="mono">${fire.production}</b> fired at ${eventTimeText(fire.time)} s`;
+  if (changed) return html`<b class="mono">${changed.production}</b> was chosen, but no longer matched at ${eventTimeText(changed.time)} s`;
   if (select) return html`<b class="mono">${select.production}</b> ${chosenText(at.value === null)}`;
   return conflict.threshold === undefined ? "nothing is chosen yet" : "none reaches the threshold";
 }
@@ -53,7 +53,7 @@ function Cycle({ cycle, agents }) {
   const { names, rows, own } = rowsOf(cycle);
   const bound = (name) => (fire?.production === name ? pairs(fire.bound) : pairs(reasons.get(name)?.bindings));
   return html`<section aria-label="Conflict set of ${source}">
-    <h3>${source} <span class="quiet">at ${timeText(time)} s:</span> ${rows.length} matched, ${comesOf(cycle)}</h3>
+    <h3>${source} <span class="quiet">at ${eventTimeText(time)} s:</span> ${rows.length} matched, ${comesOf(cycle)}</h3>
     <div class="wide">
       <table class="conflict">
         <thead>

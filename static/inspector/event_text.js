@@ -6,7 +6,7 @@ import { GROUPS as REGISTERED, TEXTS } from "../trace_kinds.js";
 
 
 /** The groups of events in the trace's filter: {id, text, kinds, first: whether they are shown by default}. The page itself adds contacts. */
-export const GROUPS = REGISTERED.map((group) => (group.id === "contact" ? { ...group, kinds: ["contact", ...group.kinds] } : group));
+export const GROUPS = REGISTERED.map((group) => (group.id === "result" ? { ...group, text: "Contacts and results", kinds: ["contact", ...group.kinds] } : group));
 
 const GROUPED = new Set(GROUPS.flatMap(({ kinds }) => kinds));
 
@@ -79,7 +79,7 @@ export function pairs(data) {
     .join("  ");
 }
 
-/** Returns a time of the run [us] as text in seconds. */
-export function timeText(time) {
+/** Returns the time of an event [us] as text in seconds, without the unit. */
+export function eventTimeText(time) {
   return (time / 1e6).toFixed(3);
 }

@@ -3,13 +3,12 @@
 import { html, useEffect, useMemo, useRef, useState } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { agentsOf, isBelow, nameIn, systemsOf } from "./agents.js";
-import { eventText, GROUPS, isInGroups, timeText } from "./event_text.js";
-import { goTo } from "./go.js";
+import { eventText, eventTimeText, GROUPS, isInGroups } from "./event_text.js";
 import { Rows } from "./rows.js";
-import { useEventFilter } from "./event_filter.js";
+import { eventAt, useEventFilter } from "./event_filter.js";
 import { askWhy } from "./asked.js";
 import { Mixed, touchEvents } from "./touches.js";
-import { seek } from "../timeline/seek.js";
+import { seek, travel } from "../timeline/seek.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { fetching } from "../earlier_events.js";
 import { events, session, state } from "../store.js";
@@ -55,24 +54,31 @@ function Groups() {
   </details>`;
 }
 
+/** Takes the run to its first stop after an event. */
+function goToEvent(number) {
+  const { kind, period } = session.peek();
+  const tick = kind === "program" ? 1 : Math.round(period * 1e6);
+  travel((Math.ceil(eventAt(number)[0] / tick) * tick) / 1e6);
+}
+
 function Row({ number, event, ahead, chosen, several, onChoose }) {
   const [time, source, kind] = event;
   const [what, more] = eventText(event);
   const isTouch = number < 0;
-  const go = () => (onChoose(), isTouch ? seek(time / 1e6) : goTo(number));
+  const go = () => (onChoose(), isTouch ? seek(time / 1e6) : goToEvent(number));
   return html`<tr
     class="${kind} ${ahead ? "ahead" : ""} ${chosen ? "chosen" : ""}"
     id="event-${number}"
     aria-selected=${chosen}
-    title="${timeText(time)} s  ${source}  ${what}  ${more}${ahead ? "\nafter the present moment" : ""}\nClick: go to this moment"
+    title="${eventTimeText(time)} s  ${source}  ${what}  ${more}${ahead ? "\nafter the present moment" : ""}\nClick: go to this moment"
     onClick=${go}
   >
-    <td class="number time">${timeText(time)}</td>
+    <td class="number time">${eventTimeText(time)}</td>
     ${several ? html`<td class="source">${source}</td>` : null}
     <td class="what"><b>${what}</b><span>${more}</span></td>
     <td class="ask">
       ${!isTouch && (kind === "fire" || chosen)
-        ? html`<button class="bare" tabindex="-1" title="Why? Explains this moment, and leaves the run where it is (W)" aria-label="Why at ${timeText(time)} s" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
+        ? html`<button class="bare" tabindex="-1" title="Why? Explains this moment, and leaves the run where it is (W)" aria-label="Why at ${eventTimeText(time)} s" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
         : null}
     </td>
   </tr>`;
@@ -105,7 +111,7 @@ export function FiringTrace() {
     const event = mixed.at(number);
     return html`<${Row} key=${number} number=${number} event=${event} ahead=${number < 0 ? event[0] > time : number >= now} chosen=${number === chosen} several=${several} onChoose=${() => setChosen(number)} />`;
   };
-  const open = (n) => (mixed.numberAt(n) < 0 ? seek(mixed.at(mixed.numberAt(n))[0] / 1e6) : goTo(mixed.numberAt(n)));
+  const open = (n) => (mixed.numberAt(n) < 0 ? seek(mixed.at(mixed.numberAt(n))[0] / 1e6) : goToEvent(mixed.numberAt(n)));
   const nothing = list.length === 0 || (runStatus.value.is === "ready" && wantedWords.value === "") ? nothingYet() : "All events are filtered out.";
   return html`<section class="trace">
     <div class="tools">

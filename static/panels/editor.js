@@ -4,7 +4,7 @@ import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/prea
 import { folder, listModels, model, models } from "../bar/models.js";
 import { define, format, rename as renameName } from "../editor/actions.js";
 import { checkByLoading } from "../editor/checks.js";
-import { focusText, goTo, keys, leaveText, showText } from "../editor/code.js";
+import { focusText, goToLine, keys, leaveText, showText } from "../editor/code.js";
 import { Conflict } from "../editor/conflict.js";
 import { documents, look, open, save, shown, shownDocument, take, unsaved, wanted } from "../editor/documents.js";
 import { duplicate, makeNew, remove, rename } from "../editor/files.js";
@@ -148,7 +148,7 @@ function Editor() {
   }, [document, compares]);
   useLayoutEffect(() => {
     if (!document || compares || wanted.value?.path !== document.path) return;
-    goTo(wanted.value.line);
+    goToLine(wanted.value.line);
     wanted.value = null;
   }, [document, compares, wanted.value]);
   return html`<div class="editor">

@@ -3,7 +3,7 @@
 import { numberText, roundRange, stepFor, ticks, timeText } from "./ticks.js";
 import { cut, widthOf } from "./surface.js";
 
-export const COLOURS = 6;
+export const COLOUR_COUNT = 6;
 const MIN_RANGE = 0.01; // smaller differences are drawn as a straight line, not as amplified numerical noise
 const BETWEEN = 4; // the minimum distance between two labels of an axis [px]
 const SAME = 1e-6; // times that are no farther apart are the same [s]
@@ -15,7 +15,7 @@ const EDGE = 6; // the distance of the first and last text from the ends of an a
 
 /** Returns the name of the colour of the nth curve. */
 export function seriesColour(n) {
-  return `series-${(n % COLOURS) + 1}`;
+  return `series-${(n % COLOUR_COUNT) + 1}`;
 }
 
 /** Returns the index of the first of ascending times that is not before a given time. */

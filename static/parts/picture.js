@@ -37,14 +37,14 @@ function sizeOf({ width, height }) {
 }
 
 /** Returns a picture as the text of an SVG file. */
-export function svgText(picture) {
+function svgText(picture) {
   const surface = new SvgSurface(...sizeOf(picture));
   drawWhole(surface, picture);
   return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(surface.root)}\n`;
 }
 
 /** Returns a picture as a PNG. */
-export function pngBlob(picture) {
+function pngBlob(picture) {
   const canvas = document.createElement("canvas");
   const [width, height] = sizeOf(picture);
   // No browser makes a canvas of more than 16,384 pixels a side.

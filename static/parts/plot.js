@@ -18,7 +18,7 @@ function boxOf(width, height) {
 }
 
 /** Returns the first and last time of some curves [s]. */
-export function spanOf(series, times) {
+function spanOf(series, times) {
   const all = series.map(({ times: own }) => own ?? times).filter((list) => list?.length);
   const [from, to] = [Math.min(...all.map((list) => list[0])), Math.max(...all.map((list) => list.at(-1)))];
   return to > from ? { from, to } : { from: 0, to: 1 };

@@ -19,7 +19,7 @@ export function ticks(from, to, step) {
 }
 
 /** Returns the number of decimals for multiples of a step. */
-export function digitsOf(step) {
+function digitsOf(step) {
   return Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
 }
 

@@ -43,7 +43,7 @@ function Replayed({ run }) {
 }
 
 /** Whether the facts about the chosen run are shown; where there is little room, the list has it at first. */
-export const withFacts = remembered("run facts", innerHeight >= 900);
+const withFacts = remembered("run facts", innerHeight >= 900);
 
 function Facts({ run }) {
   const rows = [

@@ -18,7 +18,7 @@ export const problem = signal(null);
 export const warning = signal(null);
 export const loading = signal(false);
 /** Whether all recordings of the server are in `runs`. */
-export const isComplete = computed(() => runs.value !== null && runs.value.length >= total.value);
+const isComplete = computed(() => runs.value !== null && runs.value.length >= total.value);
 
 let asked = 0;
 let tries = 0;

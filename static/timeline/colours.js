@@ -1,9 +1,9 @@
 // The colours of curves: what a curve is about, such as a production or a chunk, has one colour in all plots, and keeps it while other
 // curves come and go.
 
-import { COLOURS, seriesColour } from "../parts/curve.js";
+import { COLOUR_COUNT, seriesColour } from "../parts/curve.js";
 
-const ALL = Array.from({ length: COLOURS }, (_, n) => seriesColour(n));
+const ALL = Array.from({ length: COLOUR_COUNT }, (_, n) => seriesColour(n));
 const SHOWN = 1000; // how much worse a colour is that a plotted curve has, compared with one that is not plotted any more
 
 /** Returns what a curve is about: its name without the quantity, which is its group or the last word of it. */

@@ -15,7 +15,7 @@ export const mode = signal("fit");
 
 /** Returns the length of an axis for a whole run [s]: it grows in steps, so that its contents do not move all the time;
  * one second for a run at its start. */
-export function fitEnd(furthest, least = MIN_SPAN) {
+function fitEnd(furthest, least = MIN_SPAN) {
   const wanted = furthest > 0 ? Math.max(least, furthest * 1.01) : 1;
   const power = 10 ** Math.floor(Math.log10(wanted));
   return power * LADDER.find((step) => step * power >= wanted);

@@ -136,6 +136,17 @@ def test_what_is_no_number_or_has_other_slots_stays_out_in_python_actr() -> None
     assert [chunk["n"] for chunk in agent.memory.dm][:2] == ["2", "4"]
 
 
+@pytest.mark.parametrize("profile", ["python-actr", "act-r-7"])
+@pytest.mark.parametrize("word", ["nan", "Infinity", "1_000", 10**400], ids=["nan", "Infinity", "1_000", "large"])
+def test_blends_are_of_finite_numbers_in_plain_notation(word: object, profile: str) -> None:
+    agent = blending(profile, threshold=None)
+    for value, fixed in [(2, 1.0), (word, 2.0)]:
+        agent.memory.add({"n": value}, fixed=fixed)
+    agent.memory.request("n:?")
+    agent.run(2)
+    assert agent.buffer.chunk["n"] == word
+
+
 def test_a_blend_of_partial_matches() -> None:
     buffer = Buffer()
     memory: Any = BlendingMemory(buffer, threshold=-9)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import copy
+import math
 import operator
 import pickle
 from collections.abc import Callable
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -14,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from actr3d.actr import Buffer, Chunk, Memory, Model
-from actr3d.actr.chunks.chunk import as_text
+from actr3d.actr.chunks.chunk import as_number, as_text
 from actr3d.errors import ChunkError
 
 WORDS = st.text("abcxyz0123456789_-.!", min_size=1, max_size=4)
@@ -124,6 +126,18 @@ def test_showing_and_reading_again_changes_nothing(words: list[str]) -> None:
 )
 def test_values_as_text(value: object, text: str) -> None:
     assert as_text(value) == text
+
+
+@pytest.mark.parametrize("value", [2, 2.0, "2", "+2.0", "2.", "0.2e1", ".2E+1", np.int64(2), np.float32(2), Decimal(2)])
+def test_values_that_are_numbers(value: object) -> None:
+    assert as_number(value) == 2.0
+
+
+@pytest.mark.parametrize(
+    "value", ["", "two", "nan", "inf", "1_000", " 2", "٢", True, None, np.True_, b"2", [2], 2j, math.nan, math.inf, 10**400]
+)
+def test_values_that_are_no_numbers(value: object) -> None:
+    assert as_number(value) is None
 
 
 def test_copies_know_no_memory() -> None:

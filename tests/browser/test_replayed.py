@@ -96,15 +96,22 @@ def test_it_plays_from_disk_with_scene_and_trace_at_one_time(browser: Browser, r
         canvas = page.locator("#canvas")
         drawn(page)
         rows = page.locator(".event")
-        expect(rows.first).to_contain_text("walker.goal buffer approach")  # and nothing of how the run is set up
+        expect(rows.first).to_contain_text("walker fires look")  # as in the trace of the page, buffers are among the details
+        expect(rows.first).to_have_class("event fire ahead")
+        page.get_by_label("all details").check()
+        page.get_by_label("Show").fill("buffer approach")
+        expect(rows.first).to_contain_text("walker.goal buffer approach")
         expect(rows.first).to_have_class("event now")
+        page.get_by_label("Show").fill("")
         expect(rows.last).to_have_class(re.compile("ahead"))
         assert page.evaluate(EXTENT, [0]) < 1  # all that stands there is in the picture
         first = canvas.screenshot()
         page.get_by_role("slider", name="Time").fill("3")
         expect(page.locator("#clock")).to_have_text("3.00 s")
         until(page, lambda: canvas.screenshot() != first)  # it has walked on
-        expect(page.locator(".event.now")).to_have_count(2)
+        expect(page.locator(".event.now")).to_have_count(4)
+        page.get_by_label("all details").uncheck()
+        expect(page.locator(".event.now")).to_have_text("3.000walker fires judge")
         page.get_by_role("slider", name="Time").fill("6.8")
         assert page.evaluate("drawing.camera.off[0]") > 0  # it has left what was to be seen at first, and the view has gone with it
         page.get_by_role("slider", name="Time").fill("0")

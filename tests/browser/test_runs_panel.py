@@ -17,6 +17,7 @@ from actr3d.recording import Recording
 from actr3d.runner.facts import REACHED, program_facts
 from actr3d.simulation import Simulation
 from actr3d.trace import Trace
+from actr3d.trace_kinds import GROUPS, KINDS
 from actr3d.world import Floor, Mannequin, Scene
 from tests.helpers.page import open_tab, until
 from tests.helpers.recording_forgery import forge
@@ -344,7 +345,10 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     expect(dialog.get_by_text(re.compile(r"The first \d+ events are the same; the traces first differ at"))).to_be_visible()
     around = dialog.get_by_role("table", name="Events around the first difference")
     expect(around.locator("tr.here")).to_have_count(1)
-    dialog.get_by_label("Which events are compared").select_option("firings")
+    choice = dialog.get_by_label("Which events are compared")
+    with_kinds = {kind.group for kind in KINDS.values()}
+    expect(choice.locator("option")).to_have_text(["all events", *(group.title for name, group in GROUPS.items() if name in with_kinds)])
+    choice.select_option("Firings")
     expect(around.locator("tr.here")).to_contain_text(re.compile("walker.*turn"))
     expect(dialog.get_by_role("list", name="What differs")).to_contain_text(re.compile("event.*turn"))
 

@@ -425,6 +425,14 @@ def test_targets_that_do_not_fit_are_refused(tmp_path: Path, client: Any) -> Non
         agreement({(("x", 1),): 1.0}, {(("x", 2),): 1.0})
 
 
+def test_equal_means_have_no_correlation() -> None:
+    target = {(("x", number),): 0.1 for number in range(3)}
+    means = {cell: float(number) for number, cell in enumerate(target)}
+    assert agreement(means, target).r2 is None
+    assert agreement(means, {cell: 0.1 + 0.2 * (number % 2) for number, cell in enumerate(target)}).r2 == pytest.approx(0)
+    assert agreement(dict(zip(target, (0.3, 0.1 + 0.2, 0.3), strict=True)), means).r2 is None, "they differ by rounding"
+
+
 @pytest.mark.parametrize(
     ("lines", "says"),
     [

@@ -32,7 +32,7 @@ from actr3d.experiment.cluster import Progress, cluster_versions, end_processes,
 from actr3d.experiment.specification import specify
 from actr3d.experiment.store import Store
 from actr3d.experiment.table import export
-from actr3d.experiment.versions import SOURCES, digest_of
+from actr3d.experiment.versions import SOURCES, folder_digest
 from actr3d.replacing import replacing
 from tests.helpers.experiments import COUNTER, SLOW_COUNTER, trial_processes, write_experiment
 from tests.helpers.reports import store_rows
@@ -179,11 +179,11 @@ def test_a_changed_file_of_the_library_is_another_version(tmp_path: Path) -> Non
     library = tmp_path / "library"
     (library / "__pycache__").mkdir(parents=True)
     (library / "code.py").write_text("x = 1")
-    before = digest_of(library)
+    before = folder_digest(library)
     (library / "__pycache__" / "code.pyc").write_text("compiled")
-    assert digest_of(library) == before
+    assert folder_digest(library) == before
     (library / "code.py").write_text("x = 2")
-    assert digest_of(library) != before
+    assert folder_digest(library) != before
 
 
 def waiting_experiment(folder: Path, begun: Path, enough: Path) -> str:

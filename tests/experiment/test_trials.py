@@ -24,13 +24,13 @@ import pytest
 
 from actr3d.cli import main
 from actr3d.errors import ExperimentError
-from actr3d.experiment import measures
+from actr3d.experiment import trial_measures
 from actr3d.experiment.cluster import cluster_versions, run_batch
-from actr3d.experiment.measures import variables_set_in
 from actr3d.experiment.specification import Experiment, Specification, specify
 from actr3d.experiment.store import Finished, Store
 from actr3d.experiment.table import export
 from actr3d.experiment.trial import run_trial
+from actr3d.experiment.trial_measures import variables_set_in
 from actr3d.experiment.trial_process import TIME_LIMIT, TrialProcess
 from tests.helpers.experiments import COUNTER, trial_processes, write_experiment
 from tests.helpers.folders import not_writable
@@ -369,7 +369,7 @@ def test_a_misspelled_measure_is_refused_before_anything_is_written(
 def test_a_measure_that_only_a_long_run_shows_ends_the_experiment_with_its_first_trial(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(measures, "PATIENCE", 0.05)
+    monkeypatch.setattr(trial_measures, "PATIENCE", 0.05)
     write_experiment(tmp_path, model=COUNTER.replace("model = Counter()", "import time\ntime.sleep(0.2)\nmodel = Counter()"))
     path = tmp_path / "counts.py"
     path.write_text(misspelled("'rtt'", "results=found, trials=1000, ") + RESULTS)

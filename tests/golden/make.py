@@ -20,10 +20,8 @@ IN_FULL = {"tutorial/compilation", "tutorial/counting", "tutorial/imaginal", "tu
 """The models whose golden traces hold every event; those of the others hold productions and buffers, or productions only."""
 VARIANTS = {"aperture_passage": ("predictive", "replication")}
 """By model, the variants that have golden traces besides the default."""
-EMBODIED = {"aperture_passage", "aperture_passage@predictive", "aperture_passage@replication", "doorway", "predictive_walker"}
-"""Models with bodies: what these sense is the same to the last digit only on one kind of processor, when they act everywhere."""
-PRODUCTIONS_ONLY = {*EMBODIED, "paired_associates"}
-"""The models whose golden traces hold productions, and no buffers: those with bodies, and those that are too long otherwise."""
+PRODUCTIONS_ONLY = {"paired_associates"}
+"""The models without bodies whose golden traces hold productions, and no buffers, because they are too long otherwise."""
 
 
 def model_names() -> list[str]:
@@ -37,6 +35,12 @@ def model_file(name: str) -> str:
     return f"models/{name.partition('@')[0]}.py"
 
 
+def is_embodied(name: str) -> bool:
+    """Returns whether a model has bodies: what these sense is the same to the last digit only on one kind of processor, when they act
+    everywhere."""
+    return "\ndef build(" in (ROOT / model_file(name)).read_text(encoding="utf-8")
+
+
 def golden_names() -> list[str]:
     """Returns the path of every golden trace, without its ending."""
     return sorted(path.relative_to(GOLDEN).with_suffix("").as_posix() for path in GOLDEN.rglob("*.jsonl"))
@@ -44,7 +48,7 @@ def golden_names() -> list[str]:
 
 def options(name: str, seed: int = 1) -> tuple[str, ...]:
     """Returns how a model's golden trace is made."""
-    level = "all" if name in IN_FULL else "production" if name in PRODUCTIONS_ONLY else "buffer"
+    level = "all" if name in IN_FULL else "production" if name in PRODUCTIONS_ONLY or is_embodied(name) else "buffer"
     variant = name.partition("@")[2]
     return (*(("--variant", variant) if variant else ()), "--seed", str(seed), "--trace", level, "--json")
 

@@ -18,7 +18,7 @@ from workbench.loader import Outline, outline_of
 from workbench.run_request import RunOptions, digest_of_file, start_of
 from workbench.shipped import models_folder, shipped
 from workbench.trash import restore_from_trash
-from workbench.worker.messages import digest_of
+from workbench.worker.messages import text_digest
 
 
 @pytest.fixture
@@ -316,7 +316,7 @@ def test_the_digest_of_a_file_is_computed_again_only_when_the_file_has_changed(t
     file = tmp_path / "model.py"
     for text in ("a = 1", "a = 22", "a = 1"):
         file.write_text(text, encoding="utf-8")
-        assert [digest_of_file(file) for _ in range(3)] == [digest_of(text)] * 3
+        assert [digest_of_file(file) for _ in range(3)] == [text_digest(text)] * 3
     assert len(read) == 3
     file.write_bytes(b"\xff\xff")
     assert digest_of_file(file) is None

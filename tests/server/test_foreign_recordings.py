@@ -158,7 +158,7 @@ def test_a_file_that_takes_too_long_is_left_out_and_holds_up_no_other(desk: Desk
 
 
 def test_too_much_memory_is_reported(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("workbench.readers.MEMORY", 50)
+    monkeypatch.setattr("workbench.readers.READER_MEMORY", 50)
     path = written(tmp_path, "m", firing(3))
     row(json.dumps([[0, "a", "fire", {"x": "y" * 100_000_000}]]))(path)
     with pytest.raises(ReadingError, match=r"reading it needs more memory than allowed|used more memory than it may"):

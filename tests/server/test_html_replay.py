@@ -15,8 +15,10 @@ import pytest
 
 from actr3d.actr import ACTR, Buffer
 from actr3d.errors import RecordingError
-from actr3d.recording import Recorded
+from actr3d.recording import Recorded, Recording
+from actr3d.runner.facts import program_facts
 from actr3d.simulation import Simulation
+from actr3d.trace import Trace
 from actr3d.world import Floor, Mannequin, Scene, SimpleObject
 from tests.helpers.sessions import Desk
 from tests.server.test_overlays import LOOKING
@@ -83,6 +85,25 @@ def test_scene_and_trace_are_those_of_the_recording(walked: Path, tmp_path: Path
     told_of = {row[3] for row in told["events"]["rows"] if row[2] == "buffer"}
     assert "empty" in told_of
     assert not any("{" in text for text in told_of)  # chunks stand there as modellers write them
+
+
+def test_titles_texts_and_the_kinds_that_are_shown_at_first_are_those_of_the_registry(walked: Path, tmp_path: Path) -> None:
+    write_replay(walked, tmp_path / "replay.html")
+    events = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))["events"]
+    assert events["kinds"].keys() == {row[2] for row in events["rows"]}
+    assert [events["kinds"][kind] for kind in ("fire", "select", "state")] == [["fires", True], ["chosen", False], ["state", False]]
+    assert [row[3] for row in events["rows"] if row[2] == "select"][:2] == ["look", "wait"]
+
+
+def test_an_event_of_an_unregistered_kind_is_shown_with_its_data(tmp_path: Path) -> None:
+    trace = Trace("all")
+    with Recording(tmp_path / "run.sqlite", program_facts("honk.py", "", 1, None)) as recorded:
+        trace.listen(recorded.event_alone)
+        trace.emit(0, "horn", "honk", {"loud": 0.123456, "long": None})
+    write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    events = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))["events"]
+    assert events["kinds"] == {"honk": ["honk", True]}
+    assert events["rows"] == [[0, "horn", "honk", "loud=0.1235  long=none"]]
 
 
 def followed(folder: Path, parts: Sequence[Any], *agents: str) -> Any:

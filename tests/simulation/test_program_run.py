@@ -57,6 +57,22 @@ def test_each_simulation_and_model_of_a_program_has_its_own_name_in_the_trace() 
     assert [event.source for event in trace.select("command")] == ["top", "top#3"]
 
 
+def test_an_event_of_an_unregistered_kind_passes_into_the_trace_of_a_program_that_records_everything() -> None:
+    honking: Any = load_text(
+        "from actr3d.actr import *\nclass Horn(Model):\n    def honk(self):\n        self.emit('honk', loud=1)\n"
+        "class Honking(ACTR):\n    goal, horn = Buffer(), Horn()\n    def init():\n        goal.set('a')\n"
+        "    def honk(goal='a'):\n        horn.honk()\n        goal.clear()\n",
+        "honking.py",
+    ).Honking
+    found: dict[str, list[str]] = {}
+    for level in ("all", "production"):
+        trace = Trace(level)
+        with RunLimits(seed=5, trace=trace):
+            Simulation(scene_of("walker"), {"walker": honking}, trace="all").run(0.1)
+        found[level] = [event.source for event in trace.select("honk")]
+    assert found == {"all": ["walker.horn"], "production": []}
+
+
 def test_going_back_makes_no_new_run() -> None:
     trace = Trace("all")
     with RunLimits(seed=5, trace=trace):

@@ -276,6 +276,9 @@ def test_what_is_no_detector_is_refused() -> None:
 
     with pytest.raises(VisionError, match="the library already has a detector 'opening'; rename the class Opening"):
         detector(Opening)(fits)
+    fits.__module__ = "actr3d.vision.detectors.second"
+    with pytest.raises(VisionError, match="the library already has a detector 'opening'"):
+        detector(Opening)(fits)
     with pytest.raises(VisionError, match="must be given the class that it finds"):
         detector("odd")  # type: ignore[arg-type]
     for wrong in (nothing, needs_more, by_place):

@@ -2,14 +2,11 @@
 // The list of events: only the rows that are in sight are in the page.
 
 const ROW = 22;
-const KINDS = { fire: "fires", output: "prints" };
-// Many a tick, or how a run is set up; shown where they are asked for.
-const DETAILS = new Set(["answer", "conflict", "select", "state", "start", "productions", "initialize", "observe", "run", "added"]);
-const isDetail = ([time, , kind, text]) => DETAILS.has(kind) || (time === 0 && (kind === "add" || (kind === "buffer" && text === "empty")));
 
 class Events {
   constructor(events, seek) {
     this.rows = events.rows;
+    this.kinds = events.kinds; // by kind: its title, and whether it is shown without all details
     this.seek = seek;
     this.list = document.getElementById("events");
     this.now = -1;
@@ -27,8 +24,8 @@ class Events {
   filter() {
     const words = document.getElementById("filter").value.toLowerCase().split(/\s+/).filter(Boolean);
     const details = document.getElementById("details").checked;
-    const fits = ([, source, kind, text]) => words.every((word) => `${source} ${kind} ${KINDS[kind] || ""} ${text}`.toLowerCase().includes(word));
-    this.shown = this.rows.filter((row) => (details || !isDetail(row)) && fits(row));
+    const fits = ([, source, kind, text]) => words.every((word) => `${source} ${kind} ${this.kinds[kind][0]} ${text}`.toLowerCase().includes(word));
+    this.shown = this.rows.filter((row) => (details || this.kinds[row[2]][1]) && fits(row));
     document.getElementById("height").style.height = `${this.shown.length * ROW}px`;
     this.showCount();
     this.show();
@@ -72,7 +69,7 @@ class Events {
     row.style.top = `${number * ROW}px`;
     const when = document.createElement("time"), who = document.createElement("span"), what = document.createElement("b");
     when.textContent = time.toFixed(3);
-    who.textContent = `${source} ${KINDS[kind] || kind} `;
+    who.textContent = `${source} ${this.kinds[kind][0]} `;
     what.textContent = text;
     row.append(when, who, what);
     row.title = `${source} ${kind}: ${text}`;

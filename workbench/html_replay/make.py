@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import itertools
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -15,6 +16,7 @@ import numpy as np
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.recording import Recorded
 from actr3d.trace import TraceEvent, top_path
+from actr3d.trace_kinds import GROUPS, KINDS
 from actr3d.values import to_json
 from workbench.curves import stride
 from workbench.files import ModelFolder
@@ -100,7 +102,15 @@ def _events(recorded: Recorded) -> tuple[dict[str, Any], Mapping[int, Iterable[s
         agents[event.run][_agent(event)] = None
         if event.kind == "result":
             result = dict(event.data)
-    return {"rows": rows, "more": recorded.event_count - len(rows), "result": None if result is None else _plain(result)}, agents
+    kinds = {kind: _kind(kind) for _, _, kind, _ in rows}
+    more = recorded.event_count - len(rows)
+    return {"rows": rows, "kinds": kinds, "more": more, "result": None if result is None else _plain(result)}, agents
+
+
+def _kind(name: str) -> tuple[str, bool]:
+    """Returns the title of a kind of event, and whether its group is shown at first."""
+    kind = KINDS.get(name)
+    return (name, GROUPS["other"].shown) if kind is None else (kind.title, GROUPS[kind.group].shown)
 
 
 def _plain(values: Mapping[str, Any]) -> dict[str, str]:
@@ -110,15 +120,13 @@ def _plain(values: Mapping[str, Any]) -> dict[str, str]:
 
 def _text(event: TraceEvent) -> str:
     """Returns the content of an event as one line."""
-    data = event.data
-    if event.kind == "fire":
-        text = str(data.get("production"))
-    elif event.kind == "output":
-        text = str(data.get("text"))
+    data, kind = event.data, KINDS.get(event.kind)
+    if kind is not None and kind.text:
+        text = re.sub(r"\{(\w+)\}", lambda found: _value(data.get(found[1])), kind.text)
     elif event.kind in ("buffer", "add"):
         text = _chunk(data.get("chunk"))
     else:
-        text = ", ".join(f"{name}: {_word(value)}" for name, value in data.items())
+        text = "  ".join(f"{name}={_value(value)}" for name, value in data.items())
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
 
 
@@ -128,6 +136,13 @@ def _chunk(slots: Any) -> str:
         return "empty" if slots is None else str(slots)
     named = cast("Mapping[str, Any]", slots)
     return " ".join(_word(value) if name.isdecimal() else f"{name}:{_word(value)}" for name, value in named.items())
+
+
+def _value(value: Any) -> str:
+    """Returns a value as the trace shows it: with at most four decimals."""
+    if isinstance(value, float):
+        return np.format_float_positional(value, 4, trim="-")
+    return "none" if value is None else _word(value)
 
 
 def _word(value: Any) -> str:

@@ -15,7 +15,7 @@ ANSWER_TIME = 10.0
 """Maximum time for an answer [s]; then the process is ended."""
 START_TIME = 30.0
 """Maximum time for the first answer of a process, which loads what it needs [s]."""
-MEMORY = 1_500
+LANGUAGE_MEMORY = 1_500
 """Maximum memory of the process [MB], if that of a model is not less."""
 MAX_WAITING = 20
 """Maximum number of questions that wait for their turn."""
@@ -73,7 +73,7 @@ class LanguageServer(Receiver):
         worker, limit = self._worker, ANSWER_TIME
         if worker is None:
             limit = START_TIME
-            worker = self._worker = await self._workers.launch(min(MEMORY, self._workers.memory or MEMORY))
+            worker = self._worker = await self._workers.launch(min(LANGUAGE_MEMORY, self._workers.memory or LANGUAGE_MEMORY))
             self._serving = asyncio.create_task(WorkerMonitor(worker, self._start, self).serve())
             await asyncio.sleep(0)  # it sends the start, which comes first
         self._number += 1
@@ -114,10 +114,6 @@ class LanguageServer(Receiver):
 
     def add_notice(self, notice: Notice) -> None:
         """Ignores what the process prints."""
-
-    def busy(self, worker: Worker) -> bool:
-        """Returns False: nobody asks where the process is."""
-        return False
 
     def halt(self, worker: Worker, name: str) -> None:
         """Ends a process that was stopped by a signal: nothing would continue it."""

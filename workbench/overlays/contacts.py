@@ -11,7 +11,7 @@ from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
 
 @overlay("contacts", "contacts", shown=True)
 class Contacts(Overlay):
-    """Shows the contact points and the contact forces, which viser's scene draws itself."""
+    """Shows the contact points and the contact forces. The scene of viser draws them."""
 
     def __init__(self, drawn: Drawn) -> None:
         self._scene = drawn.scene

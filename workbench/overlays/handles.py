@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from mujoco import MjData
 
+from actr3d.world.frames import yaw_in, yaw_quaternion
 from workbench.overlays.overlay import Drawn, Observed, Overlay, overlay
 from workbench.page_commands.changes import SimulationCommand
 
@@ -20,7 +20,7 @@ ABOVE = 0.02
 
 @overlay("handles", "handles to move things")
 class Handles(Overlay):
-    """Shows arrows and an arc at the foot of each body, wall or object that can be moved: dragging them puts it elsewhere, or turns it.
+    """Shows arrows and an arc at the foot of each body, wall or object that can be moved: dragging them moves or turns it.
 
     The thing moves when its handle is released. This is a user's change like any other: it is recorded, and can be undone.
     """
@@ -42,7 +42,7 @@ class Handles(Overlay):
             handle = self._handles.get(name) or self._add(name)
             if name not in self._held:
                 handle.position = (x, y, ABOVE)
-                handle.wxyz = (math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2))
+                handle.wxyz = yaw_quaternion(heading)
         self.switch()
 
     def _add(self, name: str) -> Any:
@@ -64,8 +64,7 @@ class Handles(Overlay):
         """Moves a body or object to where its handle was released."""
         self._held.discard(name)
         x, y, _ = (float(value) for value in event.target.position)
-        w, _, _, z = (float(value) for value in event.target.wxyz)
-        values = (name, round(x, 3), round(y, 3), round(2 * math.atan2(z, w), 4))
+        values = (name, round(x, 3), round(y, 3), round(yaw_in([float(value) for value in event.target.wxyz]), 4))
         self._send(SimulationCommand(word="move", values=values))
 
     def switch(self) -> None:

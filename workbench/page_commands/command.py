@@ -103,7 +103,7 @@ class Question(PageCommand):
         """Returns the answer as plain values.
 
         Raises:
-            Actr3dError: If there is nothing of a name, or the question cannot be answered.
+            Actr3dError: If a name is unknown, or the question cannot be answered.
         """
         raise NotImplementedError
 

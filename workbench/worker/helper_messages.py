@@ -9,7 +9,7 @@ from pathlib import Path
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.sealed import sealed
 from workbench.worker.channel import Channel
-from workbench.worker.messages import Loaded, digest_of
+from workbench.worker.messages import Loaded, text_digest
 
 
 class ReportedHelpers(HelperTexts):
@@ -27,7 +27,7 @@ class ReportedHelpers(HelperTexts):
     def keep(self, name: str, file: str, folder: Path | None, text: str) -> None:
         """Stores the text of a module that is about to run, and reports it."""
         super().keep(name, file, folder, text)
-        self._link.post(Loaded(file=file, digest=digest_of(text)))
+        self._link.post(Loaded(file=file, digest=text_digest(text)))
 
 
 @contextmanager

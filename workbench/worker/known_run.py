@@ -16,12 +16,10 @@ from actr3d.recording.writer import State as RecordedState
 from actr3d.runner.facts import REACHED
 from actr3d.trace import TraceEvent
 from workbench.event_curves import EventCurves
+from workbench.event_log import MAX_EVENTS
 from workbench.program_time import events_both_ways
 from workbench.worker.messages import Notice, notice
 from workbench.worker.truncation import event_json
-
-MAX_EVENTS = 50_000
-"""Maximum number of events that are shown before the run reaches them; the server keeps as many in memory."""
 
 BLOCK = 5_000
 """The number of events that are compressed together."""

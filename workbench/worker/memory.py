@@ -10,6 +10,8 @@ from pathlib import Path
 
 from actr3d.runner.before_exit import end_at_once
 
+MODEL_MEMORY = 4_000
+"""Default maximum memory of a model in addition to the worker's own at its start [MB]."""
 TOO_MUCH_MEMORY = 87
 """Exit code of a worker that has used too much memory."""
 EVERY = 0.1

@@ -26,7 +26,7 @@ def shortened(text: str, most: int = 10_000) -> str:
     return escape_surrogates(kept)
 
 
-def digest_of(text: str) -> str:
+def text_digest(text: str) -> str:
     """Returns a hash that identifies a text."""
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
@@ -181,7 +181,7 @@ class Loaded(Message, frozen=True, kw_only=True):
     file: str
     """The path of the module."""
     digest: str
-    """Identifies its text; see `digest_of`."""
+    """Identifies its text; see `text_digest`."""
 
 
 class Share(Message, frozen=True, kw_only=True):

@@ -9,8 +9,6 @@ import sys
 from contextlib import suppress
 from dataclasses import dataclass
 
-MEMORY = 4_000
-"""Default maximum memory of a model in addition to the worker's own at its start [MB]."""
 PATIENCE = 3.0
 """Time for the fork server to end [s]."""
 

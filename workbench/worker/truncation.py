@@ -14,18 +14,17 @@ LONGEST_TEXT = 2_000
 MAX_ENTRIES = 200
 
 
-def bounded_json(value: Any, most: int = LARGEST, *, whole: Callable[[Any], str] = to_json) -> bytes:
+def bounded_json(value: Any, *, whole: Callable[[Any], str] = to_json) -> bytes:
     """Returns a value as JSON; if it is too long, its long texts and collections are cut, or a message takes its place.
 
     Args:
         value: Any value that can be written as JSON.
-        most: Maximum length [characters].
         whole: Converts the uncut value to JSON.
     """
     text = whole(value)
-    if len(text) > most:
+    if len(text) > LARGEST:
         size, text = len(text), to_json(cut(value))
-        if len(text) > most:
+        if len(text) > LARGEST:
             text = to_json(_placeholder(value, f"too long to be shown: {size:,} characters"))
     return text.encode()
 

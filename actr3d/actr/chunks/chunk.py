@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Mapping, Sequence
 from enum import Enum
 from functools import lru_cache
+from numbers import Number
 from typing import Any, Protocol, Self, cast
 
 from actr3d.errors import ChunkError, did_you_mean
@@ -14,6 +17,8 @@ PLAIN_TYPES = frozenset({str, float, int, bool})
 """Plain types: a chunk copies such values from an object, and a trace keeps them unchanged."""
 IMMUTABLE_TYPES = PLAIN_TYPES | {type(None)}
 """Immutable types: their text never changes."""
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
+_BEGINS = frozenset("+-.0123456789")
 _COLLECTIONS = (tuple, list, set, frozenset)
 DEEPEST = 8
 """The maximum depth of nested collections that are examined; a collection may contain itself."""
@@ -65,6 +70,20 @@ def as_text(value: object) -> str:
     if type(value) not in IMMUTABLE_TYPES and type(value).__module__ == "numpy" and getattr(value, "shape", None) == ():
         return as_text(cast("Any", value).item())
     return repr(value)
+
+
+def as_number(value: object) -> float | None:
+    """Returns a slot's value as a number, also if it is text in plain notation; None if it is no finite number. True and False are none."""
+    if isinstance(value, str):
+        if value[:1] not in _BEGINS or not _NUMBER.fullmatch(value):
+            return None
+    elif isinstance(value, bool) or not isinstance(value, (float, int, Number)):
+        return None
+    try:
+        number = float(cast("Any", value))
+    except (OverflowError, TypeError, ValueError):
+        return None
+    return number if math.isfinite(number) else None
 
 
 def plain_text(value: Any) -> str | None:

@@ -24,7 +24,7 @@ class ActivatedMemory(Protocol):
 
     @property
     def dm(self) -> ChunkStore:
-        """Its chunks."""
+        """The chunks of the memory."""
         ...
 
     @property

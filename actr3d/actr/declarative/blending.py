@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from annotated_types import Gt
 
-from actr3d.actr.chunks.chunk import Chunk, as_text
+from actr3d.actr.chunks.chunk import Chunk, as_number, as_text
 from actr3d.actr.declarative.activation import DMNoise
 from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.declarative.partial_matching import Partial
@@ -56,7 +56,7 @@ class BlendingMemory(Memory):
         if self.effective_profile.blend_every_slot:
             chunk = self._compromise(matches)
         else:
-            numeric = [slot for slot in sorted(chunk, key=str) if _number(chunk[slot]) is not None]
+            numeric = [slot for slot in sorted(chunk, key=str) if as_number(chunk[slot]) is not None]
             if numeric:
                 blend: Any = Chunk(chunk)
                 blend.activation = chunk.activation
@@ -100,7 +100,7 @@ class BlendingMemory(Memory):
         sums = dict.fromkeys(numeric, 0.0)
         total = 0.0
         for match in matches:
-            values = [_number(match[slot]) for slot in numeric]
+            values = [as_number(match[slot]) for slot in numeric]
             weight = math.exp(match.activation / t - shift)
             present = [value for value in values if value is not None]
             if len(present) < len(values):
@@ -137,14 +137,6 @@ class BlendingMemory(Memory):
         return largest + math.log(math.fsum(math.exp(match.activation - largest) for match in matches))
 
 
-def _number(value: Any) -> float | None:
-    """Returns a slot's value as a number, or None if it is not one."""
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return None
-
-
 def _blended(held: Sequence[tuple[Any, float]], partial: Partial | None, total: float) -> Any:
     """Returns the compromise of the values of one slot, as in ACT-R 7.
 
@@ -153,7 +145,7 @@ def _blended(held: Sequence[tuple[Any, float]], partial: Partial | None, total: 
         partial: The similarities of values.
         total: The total weight of all matching chunks.
     """
-    numbers = [None if names_a_chunk(value) or isinstance(value, bool) else _number(value) for value, _ in held]
+    numbers = [None if names_a_chunk(value) else as_number(value) for value, _ in held]
     if None not in numbers:
         return math.fsum(number * weight for number, (_, weight) in zip(numbers, held, strict=True) if number is not None) / total
     weights: dict[str, float] = {}

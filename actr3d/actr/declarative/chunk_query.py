@@ -26,7 +26,7 @@ class ChunkSearch(Protocol):
 
     @property
     def equal(self) -> Sequence[tuple[Slot, str]]:
-        """The slots that must have certain values, with the text of these."""
+        """The required slots and the texts of their values."""
         ...
 
     def among(self, store: ChunkStore) -> list[Chunk]:

@@ -302,7 +302,7 @@ class Model(TreeNode):
         """Records an event of this part in the trace, if there is one that records everything.
 
         Args:
-            kind: The kind of event; `actr3d.trace_kinds.trace_kind` registers one.
+            kind: The kind of event. It need not be registered; `actr3d.trace_kinds.trace_kind` adds its meaning, and its text on pages.
             data: Its data; plain values, lists and dicts.
         """
         trace = self.sch.trace
@@ -574,7 +574,7 @@ class TracedRun:
 
 
 class FollowedRun(TracedRun):
-    """A run that another trace records first, and passes on to this one.
+    """A run of another trace, whose events this trace receives, too.
 
     Args:
         top: Its top model.

@@ -124,8 +124,8 @@ def slip_hint(name: str, known: set[str]) -> str:
 def check_parameter(part: Any, name: str, value: Any, where: str) -> None:
     """Checks a new value of a part's parameter.
 
-    It must be of the type, and within the bounds, that a class of the part declares in its body or as a parameter of `__init__`; where
-    none does, of the kind of the present value, or None.
+    It must be of the type, and within the bounds, that a class of the part declares in its body or as a parameter of `__init__`. If no
+    class declares it: of the type of the present value, or None.
 
     Args:
         part: The part.

@@ -191,6 +191,11 @@ DYNAMIC = {"exec", "globals", "vars", "locals", "setattr"}
 """A text that uses one of these may define names that are not written in it."""
 
 
+def last_name(node: ast.expr) -> str:
+    """Returns a name without the names before its last dot; an empty text for any other expression."""
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+
+
 def names_defined_in(tree: ast.AST) -> set[str] | None:
     """Returns all names that a text defines, in whatever scope; None if its code may define others."""
     nodes = list(ast.walk(tree))

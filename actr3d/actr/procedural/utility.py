@@ -24,7 +24,12 @@ class ProceduralSubModule(WithParameters, Model):
         self.parent.add_adaptor(self)  # type: ignore[union-attr]
 
     def create(self, prod: Any, parents: list[Production] | None = None) -> None:
-        """Is called for each new production; `parents` are the two that a compiled one was made from."""
+        """Is called for each new production.
+
+        Args:
+            prod: The production.
+            parents: The two productions that it was compiled from; None for any other.
+        """
 
     def selecting(self, prod: Any) -> None:
         """Is called when a production has been chosen."""

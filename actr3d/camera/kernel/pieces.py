@@ -37,7 +37,7 @@ def bound(piece: Record, floor: float, ceiling: float) -> None:
 
 @compiled
 def summit(piece: Record) -> float:
-    """Returns the nearness of the nearest point of a conic on its row, where u is a double root of its equation [1/m]."""
+    """Returns the nearness [1/m] of the nearest point of a conic on its row. There, both solutions for u are equal."""
     a = piece.a * piece.c2 - piece.b1 * piece.b1
     b = piece.c2 * piece.b0 - 0.5 * piece.b1 * piece.c1
     discriminant = b * b - a * (piece.c2 * piece.c0 - 0.25 * piece.c1 * piece.c1)

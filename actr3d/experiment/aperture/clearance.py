@@ -47,12 +47,12 @@ class Clearance:
         box = self._bounds.box(self._middle, self._axes, held)
         return max(box.lower[0] - half, -half - box.upper[0])
 
-    def clearances(self, held: Sequence[int] = ()) -> tuple[float, float] | None:
+    def clearances(self) -> tuple[float, float] | None:
         """Returns the smallest distances to the left and right segment [m]; None if no part of the body is in the doorway."""
-        if self.distance_to_wall(held) > 0:
+        if self.distance_to_wall() > 0:
             return None
-        distances = self.to_segments(held)
-        return distances if self.is_inside(distances, held) else None
+        distances = self.to_segments()
+        return distances if self.is_inside(distances) else None
 
     def to_segments(self, held: Sequence[int] = ()) -> tuple[float, float]:
         """Returns the smallest distances to the left and right segment [m]."""

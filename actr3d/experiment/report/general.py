@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from actr3d.experiment.human_data import HumanData, plain_text
-from actr3d.experiment.measures import NOTHING_LEFT, ended_early
 from actr3d.experiment.report.analyses import find_analyses
 from actr3d.experiment.report.beside import Beside, factors_of, fit_to, matched, missing
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
@@ -20,6 +19,7 @@ from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results
 from actr3d.experiment.report.statistics import FEW, FEWEST, RESAMPLES, SEED, Tests, cell_means, in_order, participant_means, run_tests
+from actr3d.experiment.trial_measures import NOTHING_LEFT, ended_early
 from actr3d.runner.traceback_report import PYTHON, failure
 from actr3d.warnings import is_library
 

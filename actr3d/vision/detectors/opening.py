@@ -60,7 +60,7 @@ class Opening(Feature):
 
     @property
     def key(self) -> tuple[int, int]:
-        """Its identity from view to view: the objects at its sides."""
+        """The labels of the objects at its sides, by which it is found again in the next view."""
         return self.left, self.right
 
     def at_most(self, slot: str, value: Any) -> Any:

@@ -69,7 +69,7 @@ DETECTORS: dict[str, Detector] = {}
 
 
 def detector(finds: type[Feature]) -> Callable[[D], D]:
-    """Returns a decorator that registers a detector for a kind of features; a later one for the same kind replaces it.
+    """Returns a decorator that registers a detector for a kind of features; a later one for the same kind replaces that of a model file.
 
     Args:
         finds: The kind of features.
@@ -87,8 +87,8 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
         raise VisionError(f"detector '{name}': '{unknown[0]}' is not a field; write @dataclass(frozen=True, kw_only=True) above the class")
 
     def add(detect: D) -> D:
-        builtin = detect.__module__.startswith("actr3d.")
-        if name in DETECTORS and DETECTORS[name].builtin and not builtin:
+        builtin, known = detect.__module__.startswith("actr3d."), DETECTORS.get(name)
+        if known is not None and known.builtin and known.detect.__module__ != detect.__module__:
             raise VisionError(f"detector: the library already has a detector '{name}'; rename the class {finds.__name__}")
         _, *others = inspect.signature(detect).parameters.values() or (None,)
         wrong = [p.name for p in others if p.kind is not p.KEYWORD_ONLY or p.default is p.empty]

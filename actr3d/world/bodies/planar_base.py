@@ -7,7 +7,7 @@ from typing import Any
 
 from mujoco import MjSpec, mjtJoint
 
-from actr3d.world.scene_objects import yaw_quaternion
+from actr3d.world.frames import yaw_quaternion
 
 
 def add_planar_base(mj_spec: MjSpec, name: str, position: tuple[float, float], heading: float) -> Any:

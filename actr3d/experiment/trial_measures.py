@@ -1,4 +1,4 @@
-"""The measures that a trial has, as far as they are known before an experiment runs, and checks of the names that a user gives."""
+"""The names of the measures of a trial, as far as they are known before an experiment runs, and checks of the names that a user gives."""
 
 from __future__ import annotations
 
