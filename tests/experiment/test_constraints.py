@@ -275,6 +275,10 @@ def test_the_interval_of_a_group_is_as_wide_as_its_participants_differ() -> None
     assert higher - lower > 3 * (high - low)
     # That of five means with these differences, by Student's t, is 0.079 to each side.
     assert (higher - lower) / 2 == pytest.approx(0.079, abs=0.02)
+    always = [[(ratio, True) for ratio in (1.4, 1.6, 1.8)] * 9 for _ in range(4)]
+    nearly = critical_ratio_of_group([*always[:-1], [*always[-1], (1.8, False)]])
+    assert nearly is not None
+    assert (nearly.low > 1.6, nearly.high) == (True, math.inf), "who turns before all doorways begins to turn beyond them"
     one_never = critical_ratio_of_group([[(1.0, True), (1.2, False)], [(1.0, False), (1.2, False)]])
     assert one_never is not None
     assert (one_never.low, one_never.high) == (-math.inf, math.inf), "without the first, there is none"

@@ -88,8 +88,8 @@ def critical_ratio_of_group(people: Sequence[Trials]) -> CriticalRatio | None:
         people: The trials of each participant, as for `critical_ratio`.
     """
     found = critical_ratio(trial for one in people for trial in one)
-    if found is None or len(people) < 2:
-        return found
+    if found is None or found.beyond or len(people) < 2:
+        return found  # an interval without an end on one side
     without = [critical_ratio(trial for one in (*people[:n], *people[n + 1 :]) for trial in one) for n in range(len(people))]
     values = [one.value for one in without if one is not None and not one.beyond]
     if len(values) < len(people):
