@@ -633,7 +633,7 @@ def load_target(name: str, experiment: Experiment, measure: str | None = None) -
         if measure in measures:  # another one may be a text
             ignored |= {*measures} - {measure}
             measures = [measure]
-    if measure is not None and measure in (trial_has or (measure,)):
+    if measure is not None and (not trial_has or measure in trial_has):
         measures = [*measures, measure]  # an error of the reader names it, whether or not the data have it
     if trial_has and measure is None and len(set(measures)) <= 1:
         measures = trial_has  # the reader names the line with another one, or says which there are

@@ -184,8 +184,8 @@ def _constraints(constraints: Sequence[Constraint]) -> Table:
     words = {True: "met", False: "not met", None: "not decided"}
     rows = [{"number": str(one.number), "constraint": one.says, "result": words[one.met], "found": one.found} for one in constraints]
     note = (
-        "As in the manual, «Human data and sources». Participants are the unit; for the fourth, the critical ratio of a cell is that of "
-        "all its trials."
+        "As in the manual, «Human data and sources». Participants are the unit; the ratios of the fourth and the ninth are those of all "
+        "trials, with intervals at least as wide as participants differ."
     )
     return Table(name="constraints", title="The nine constraints", frame=pandas().DataFrame(rows), note=note)
 

@@ -16,9 +16,9 @@ from statistics import mean, stdev, variance
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import stdtr, stdtrit
+from scipy.special import stdtr
 
-from actr3d.experiment.aperture.critical_ratio import CriticalRatio, Trials, critical_ratio_of_group
+from actr3d.experiment.aperture.critical_ratio import CriticalRatio, Trials, critical_ratio_of_group, t_interval
 from actr3d.experiment.aperture.passing import DEPTH, TURNED, Passing
 from actr3d.experiment.report.libraries import noting_warnings, pingouin
 from actr3d.experiment.report.page import number
@@ -132,8 +132,12 @@ class Findings:
 
     def mean(self, group: str, condition: str, level: float) -> float:
         """Returns the mean angle of a cell, of the participants' means [degrees]."""
-        found = (self._angles(group, condition, one).get(level) for one in self.people(group))
-        return mean(mean(angles) for angles in found if angles)
+        return mean(self._means(group, condition, level).values())
+
+    def _means(self, group: str, condition: str, level: float) -> dict[str, float]:
+        """Returns the mean angle of each participant of a cell that has one [degrees]."""
+        found = {one: self._angles(group, condition, one).get(level) for one in self.people(group)}
+        return {one: mean(angles) for one, angles in found.items() if angles}
 
     def people(self, group: str) -> list[str]:
         """Returns the participants of a group."""
@@ -185,8 +189,8 @@ class Findings:
             for condition in self.conditions:
                 there = [level for level in self.levels if self.has(group, condition, level)]
                 for before, level in pairwise(there):
-                    angles = [self._angles(group, condition, one) for one in self.people(group)]
-                    changes = [mean(of[level]) - mean(of[before]) for of in angles if before in of and level in of]
+                    narrow, wide = self._means(group, condition, before), self._means(group, condition, level)
+                    changes = [wide[one] - narrow[one] for one in narrow if one in wide]
                     if len(changes) < FEWEST:
                         return _untested(1, says, "it needs three or more participants in each group")
                     rises[group, condition, level] = change(changes)
@@ -216,10 +220,7 @@ class Findings:
             return _untested(2, says, "it needs two groups of different shoulder width at the same apertures")
         small, large = self.pair
         cells = {
-            (condition, aperture): [
-                [mean(of[aperture]) for one in self.people(group) if aperture in (of := self._angles(group, condition, one))]
-                for group in self.pair
-            ]
+            (condition, aperture): [[*self._means(group, condition, aperture).values()] for group in self.pair]
             for condition in self.conditions
             for aperture in self.levels
             if aperture < EQUAL and self.has(large, condition, aperture) and self.has(small, condition, aperture)
@@ -462,8 +463,7 @@ def difference(one: Sequence[float], other: Sequence[float]) -> Difference:
     if squared == 0:
         return Difference(value, value, value)
     freedom = squared**2 / math.fsum(error**2 / n for error, n in errors)
-    half = float(stdtrit(freedom, 0.975)) * math.sqrt(squared)
-    return Difference(value, value - half, value + half)
+    return Difference(value, *t_interval(value, math.sqrt(squared), freedom))
 
 
 def change(values: Sequence[float]) -> Difference:
@@ -473,8 +473,7 @@ def change(values: Sequence[float]) -> Difference:
         values: The change of each participant; two or more.
     """
     value = mean(values)
-    half = float(stdtrit(len(values) - 1, 0.975)) * stdev(values) / math.sqrt(len(values))
-    return Difference(value, value - half, value + half)
+    return Difference(value, *t_interval(value, stdev(values) / math.sqrt(len(values)), len(values) - 1))
 
 
 def equivalence(one: Sequence[float], other: Sequence[float], bound: float) -> Equivalence:

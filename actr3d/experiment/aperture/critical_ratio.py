@@ -95,8 +95,20 @@ def critical_ratio_of_group(people: Sequence[Trials]) -> CriticalRatio | None:
     if len(values) < len(people):
         return replace(found, low=-math.inf, high=math.inf)
     error = math.sqrt((len(values) - 1) * pvariance(values))
-    half = float(stdtrit(len(values) - 1, 0.975)) * error
-    return replace(found, low=min(found.low, found.value - half), high=max(found.high, found.value + half))
+    low, high = t_interval(found.value, error, len(values) - 1)
+    return replace(found, low=min(found.low, low), high=max(found.high, high))
+
+
+def t_interval(value: float, error: float, freedom: float) -> tuple[float, float]:
+    """Returns the ends of the 95 % interval of a value, by Student's t.
+
+    Args:
+        value: The value.
+        error: Its standard error.
+        freedom: The degrees of freedom of the standard error.
+    """
+    half = float(stdtrit(freedom, 0.975)) * error
+    return value - half, value + half
 
 
 def bend(ratios: Sequence[float], angles: Sequence[float]) -> float | None:
