@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import NamedTuple
 
 from actr3d.registry import Registry
@@ -90,7 +91,8 @@ def trace_kind(
     for what, value, known in (("level", level, LEVELS[1:]), ("group", group, GROUPS)):
         if value not in known:
             raise ValueError(f"trace kind '{name}': {what} must be one of {', '.join(known)} (got {value!r})")
-    KINDS.add(name, Kind(level, LEVELS.index(level), source, data, meaning, group, title or name, text))
+    module: str = sys._getframe(1).f_globals["__name__"]  # pyright: ignore[reportPrivateUsage] # Python documents it
+    KINDS.add(name, Kind(level, LEVELS.index(level), source, data, meaning, group, title or name, text), module)
 
 
 trace_kind(

@@ -18,6 +18,7 @@ import actr3d.actr
 import actr3d.camera  # pyright: ignore[reportUnusedImport] # it registers `view`
 import actr3d.world
 from actr3d.actr.kernel.model import Model
+from actr3d.actr.loading import load_text
 from actr3d.actr.modules import MODULES
 from actr3d.bench import find_benchmarks
 from actr3d.change import CHANGES, Change, Target, change
@@ -25,6 +26,8 @@ from actr3d.errors import SimulationError, WorldError
 from actr3d.experiment import find_measures
 from actr3d.experiment.report.analyses import ANALYSES, find_analyses
 from actr3d.simulation import Simulation
+from actr3d.simulation.measure import MEASURES
+from actr3d.trace_kinds import KINDS
 from actr3d.vision import DETECTORS
 from actr3d.world import Body, Car, Floor, ImportedBody, Scene, World
 from actr3d.world.anatomy import BODY_KINDS, Anatomy, Embodied, body_kind
@@ -56,7 +59,7 @@ def analyses() -> list[str]:
 @pytest.fixture
 def registered() -> Iterator[None]:
     """Forgets after a test what it has registered."""
-    before = [(registry, dict(registry)) for registry in (ACTUATORS, SENSORS, BODY_KINDS, CHANGES)]
+    before = [(registry, dict(registry)) for registry in (ACTUATORS, SENSORS, BODY_KINDS, CHANGES, MODULES, KINDS, MEASURES, ANALYSES)]
     yield
     for registry, known in before:
         registry.clear()
@@ -129,6 +132,90 @@ def test_a_sensor_or_an_actuator_of_the_library_is_not_replaced_and_the_same_may
             return answer
 
         assert World(Scene(parts=(Car(),))).bodies["car"].get("height") == answer
+
+
+OWN_THINGS = '''
+from actr3d.actr import *
+from actr3d.actr.modules import module
+from actr3d.change import Change, change
+from actr3d.experiment.report import analysis
+from actr3d.simulation.measure import measure
+from actr3d.trace_kinds import trace_kind
+from actr3d.world import Body, actuator, sensor
+from actr3d.world.anatomy import body_kind
+
+ANSWER = 1
+
+
+@sensor
+def north(body: Body) -> int:
+    """Senses where north is."""
+    return ANSWER
+
+
+@actuator
+def whistle(body: Body) -> None:
+    """Whistles."""
+    heard.append(ANSWER)
+
+
+heard = []
+trace_kind("whistled", source="a walker", data="loudness", meaning=f"It whistled {ANSWER} times.")
+
+
+@module
+class Ear(Model): ...
+
+
+@body_kind
+class Pebble: ...
+
+
+@measure
+class Noise: ...
+
+
+@change
+class Louder(Change):
+    word = "louder"
+    title = "Louder"
+
+
+@analysis("noise")
+def noises(results, beside):
+    return []
+'''
+OWN: dict[str, Any] = {"north": SENSORS, "whistle": ACTUATORS, "whistled": KINDS, "Ear": MODULES, "Pebble": BODY_KINDS, "Noise": MEASURES}
+OWN |= {"louder": CHANGES}
+TWICE = r"sensor '{0}' is defined twice: {1}\.{0} and actr3d_model_\w+\.{0}"
+
+
+@pytest.mark.usefixtures("registered")
+def test_each_text_of_a_model_means_what_it_defines_however_often_it_and_others_are_loaded() -> None:
+    before = len(ANALYSES)
+    kept: list[tuple[Any, Body]] = []
+    for text in (OWN_THINGS, OWN_THINGS, OWN_THINGS.replace("ANSWER = 1", "ANSWER = 2"), OWN_THINGS):
+        module: Any = load_text(text, "walker.py")
+        body = World(Scene(parts=(Car(),))).bodies["car"]
+        kept.append((module, body))
+        assert all(name in registry for name, registry in OWN.items())
+        assert (MODULES["Ear"], BODY_KINDS["Pebble"]) == (module.Ear, module.Pebble)
+        assert (MEASURES["Noise"], CHANGES["louder"]) == (module.Noise, module.Louder)
+        assert KINDS["whistled"].meaning == f"It whistled {module.ANSWER} times."
+    for module, body in kept:  # they are used at the same time
+        body.set("whistle")
+        assert (body.get("north"), module.heard) == (module.ANSWER, [module.ANSWER])
+    assert len(ANALYSES) == before + 2, "one for each of the two texts"
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_text_replaces_nothing_of_the_library_and_its_helper_module_nothing_of_the_text(tmp_path: Path) -> None:
+    own = OWN_THINGS.replace("def north(", "def pose(")
+    with pytest.raises(ValueError, match=TWICE.format("pose", r"actr3d\.world\.sensors\.motion")):
+        load_text(own, "walker.py")
+    (tmp_path / "compass.py").write_text(OWN_THINGS, encoding="utf-8")
+    with pytest.raises(ValueError, match=TWICE.format("north", r"actr3d_model_\w+_files\.compass")):
+        load_text(f"import compass\n{OWN_THINGS}", "walker.py", folder=tmp_path)
 
 
 @pytest.mark.usefixtures("registered")

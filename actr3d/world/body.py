@@ -138,13 +138,13 @@ class Body:
         """The keys of those that the agent has used up to the present, in the order of first use."""
         self.noise = SensorNoise(seed, self.name)
         self.bounds = Bounds(model, physics.mj_data, self.geoms)
-        self.actuators: tuple[str, ...] = ACTUATORS.of(self)
-        self.sensors: tuple[str, ...] = SENSORS.of(self)
+        self._actuators = ACTUATORS.of(self)
+        self._sensors = SENSORS.of(self)
         self._noise: dict[str, StandardDeviation] = {
             name: dict(sd) if isinstance(sd, tuple) else number(sd, f"{self.name}: noise of {name}", 0) for name, sd in self.anatomy.noise
         }
         for name, sd in self._noise.items():
-            self._check_noise(checked_name(name, self.sensors, self.name, "sensor"), sd)
+            self._check_noise(checked_name(name, self._sensors, self.name, "sensor"), sd)
 
     def _check_noise(self, sensor: str, sd: StandardDeviation) -> None:
         """Checks that noise can be added to the readings of a sensor.
@@ -155,12 +155,22 @@ class Body:
         assert sd is not None
         with self._unchanged():
             try:
-                reading = SENSORS[sensor](self)
+                reading = self._sensors[sensor](self)
             except Actr3dError:  # it needs values, or something that this computer does not have
                 return
             self.noise.added(sensor, reading, sd)
 
     # -- commands and sensors
+
+    @property
+    def actuators(self) -> tuple[str, ...]:
+        """The names of its commands. What they do stays the same for this body when a model's text defines one of these names anew."""
+        return tuple(self._actuators)
+
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """The names of its sensors. They stay the same for this body when a model's text defines one of these names anew."""
+        return tuple(self._sensors)
 
     def set(self, word: str, *values: Any, **named: Any) -> None:
         """Gives a command. It takes effect immediately, and lasts until another command of its kind replaces it.
@@ -175,9 +185,9 @@ class Body:
         """
         if self.physics.observed:
             raise WorldError(f"{self.name}: an observer cannot give commands (given '{word}'); call simulation.command after the run")
-        if isinstance(word, str) and word in ACTUATORS and word not in self.actuators:  # pyright: ignore[reportUnnecessaryIsInstance]
-            self.actuators = ACTUATORS.of(self)  # the module that registers it may have been imported since
-        ACTUATORS[checked_name(word, self.actuators, self.name, "actuator")](self, *values, **named)
+        if isinstance(word, str) and word in ACTUATORS and word not in self._actuators:  # pyright: ignore[reportUnnecessaryIsInstance]
+            self._actuators = ACTUATORS.of(self) | self._actuators  # the module that registers it may have been imported since
+        self._actuators[checked_name(word, self._actuators, self.name, "actuator")](self, *values, **named)
 
     def get(self, word: str, *values: Any, noise: StandardDeviation = None, **options: Any) -> Any:
         """Returns a reading of a sensor: plain numbers, tuples, dictionaries and frozen dataclasses.
@@ -195,8 +205,8 @@ class Body:
         Raises:
             WorldError: If there is no such sensor, or an option is wrong.
         """
-        if isinstance(word, str) and word in SENSORS and word not in self.sensors:  # pyright: ignore[reportUnnecessaryIsInstance]
-            self.sensors = SENSORS.of(self)
+        if isinstance(word, str) and word in SENSORS and word not in self._sensors:  # pyright: ignore[reportUnnecessaryIsInstance]
+            self._sensors = SENSORS.of(self) | self._sensors
         if self.physics.observed:
             with self._unchanged():
                 return self._read(word, values, noise, options)
@@ -204,7 +214,7 @@ class Body:
 
     def _read(self, word: str, values: tuple[Any, ...], noise: StandardDeviation, options: dict[str, Any]) -> Any:
         """Returns what `get` does; the reading may change what the agent senses later."""
-        reading = SENSORS[checked_name(word, self.sensors, self.name, "sensor")](self, *values, **options)
+        reading = self._sensors[checked_name(word, self._sensors, self.name, "sensor")](self, *values, **options)
         sd = self._noise.get(word) if noise is None else noise
         return reading if sd is None else self.noise.added(word, reading, sd)
 

@@ -88,9 +88,9 @@ class CommandRegistry(Registry[BodyFunction[B]], Generic[B]):
 
         return register
 
-    def of(self, body: B) -> tuple[str, ...]:
-        """Returns the names of those that a body has, in the order of their registration."""
-        return tuple(name for name, function in self.items() if function.available(body))
+    def of(self, body: B) -> dict[str, BodyFunction[B]]:
+        """Returns those that a body has by name, in the order of their registration."""
+        return {name: function for name, function in self.items() if function.available(body)}
 
 
 # -- checks of values

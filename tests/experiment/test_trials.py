@@ -297,6 +297,27 @@ def test_numbers_of_numpy_in_a_design_become_numbers_of_python(tmp_path: Path) -
     assert sorted(row["rt"] for row in rows) == pytest.approx([0.05, 0.1])
 
 
+OWN_SENSOR = """
+
+from actr3d.world import Body, Car, Scene, World, sensor
+
+
+@sensor
+def doubled(body: Body) -> int:
+    '''Senses twice the number.'''
+    return 2 * n
+
+
+rt = World(Scene(parts=(Car(),))).bodies["car"].get("doubled")
+"""
+
+
+def test_a_model_file_may_register_a_sensor_of_its_own_though_it_is_loaded_for_each_trial(tmp_path: Path) -> None:
+    rows = rows_of(write_experiment(tmp_path, model=COUNTER + OWN_SENSOR, factors='{"n": [1, 2]}', participants=1, trials=2))
+    assert [(row["rt"], row["error"]) for row in rows] == [(2 * row["n"], None) for row in rows]
+    assert {row["n"] for row in rows} == {1, 2}
+
+
 def test_helper_modules_of_model_and_design_travel_with_the_specification(tmp_path: Path) -> None:
     (tmp_path / "pace.py").write_text("from rates import speed\n")
     (tmp_path / "levels.py").write_text("many = [1, 2, 3]\n")

@@ -27,6 +27,7 @@ from actr3d.actr.loading.global_seed import shared_random
 from actr3d.actr.loading.helper_modules import HelperTexts
 from actr3d.actr.loading.program import Program
 from actr3d.actr.loading.source_text import read_source
+from actr3d.registry import MODEL_TEXT
 
 _LOADING = Lock()
 
@@ -156,7 +157,7 @@ def load_text(
     program = Program(None if folder is None else Path(folder).resolve(), helpers)
     with _LOADING:
         # The name depends on the text only, so that two processes give it the same; a second module of one text gets a number.
-        name = stem = f"actr3d_model_{crc32(f'{filename}:{source}'.encode(errors='replace')):08x}"
+        name = stem = f"{MODEL_TEXT}{crc32(f'{filename}:{source}'.encode(errors='replace')):08x}"
         number = 1
         while name in sys.modules:
             number += 1

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import actr3d.experiment
 from actr3d.experiment.report.parts import Section
-from actr3d.registry import Registry, import_modules
+from actr3d.registry import Registry, import_modules, lasting_name
 
 Sections = Callable[[Any, Sequence[Any]], Sequence[Section]]
 """Returns sections, from the `Results` of the experiment and the `Beside` means of people and other experiments."""
@@ -34,7 +34,7 @@ def analysis(*columns: str, people: Collection[str] = ()) -> Callable[[F], F]:
     def register(function: F) -> F:
         function.__dict__["needed_columns"] = frozenset(columns)
         function.__dict__["columns_of_people"] = tuple(people)
-        ANALYSES.add(f"{function.__module__}.{function.__qualname__}", function)
+        ANALYSES.add(f"{lasting_name(function.__module__)}.{function.__qualname__}", function)
         return function
 
     return register
