@@ -185,8 +185,15 @@ class Louder(Change):
 def noises(results, beside):
     return []
 '''
-OWN: dict[str, Any] = {"north": SENSORS, "whistle": ACTUATORS, "whistled": KINDS, "Ear": MODULES, "Pebble": BODY_KINDS, "Noise": MEASURES}
-OWN |= {"louder": CHANGES}
+OWN: dict[str, Any] = {
+    "north": SENSORS,
+    "whistle": ACTUATORS,
+    "whistled": KINDS,
+    "Ear": MODULES,
+    "Pebble": BODY_KINDS,
+    "Noise": MEASURES,
+    "louder": CHANGES,
+}
 TWICE = r"sensor '{0}' is defined twice: {1}\.{0} and actr3d_model_\w+\.{0}"
 
 
