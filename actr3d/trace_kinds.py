@@ -181,6 +181,8 @@ trace_kind(
     meaning="a planning unit is «begun», «ended», «interrupted» (by another), «resumed», «cut» (abandoned), or «going on» "
     "as a trace begins",
     group="plan",
+    title="plan",
+    text="{name} {what}",
 )
 for _level in ("unit_task", "method", "operator"):
     trace_kind(

@@ -112,13 +112,21 @@ def test_it_plays_from_disk_with_scene_and_trace_at_one_time(browser: Browser, r
         expect(page.locator(".event.now")).to_have_count(4)
         page.get_by_label("all details").uncheck()
         expect(page.locator(".event.now")).to_have_text("3.000walker fires judge")
-        page.get_by_role("slider", name="Time").fill("6.8")
-        assert page.evaluate("drawing.camera.off[0]") > 0  # it has left what was to be seen at first, and the view has gone with it
+        follow = page.get_by_label("follow")
+        expect(follow).to_be_checked()  # it leaves what is to be seen at first
+        places = [page.evaluate(PLACE, [time]) for time in (0, 3, 6.8)]
+        assert places[1:] == [pytest.approx(places[0], abs=0.01)] * 2
+        follow.uncheck()
+        still = [page.evaluate(PLACE, [time]) for time in (6.8, 3)]
+        assert still[0] == pytest.approx(places[0], abs=0.01)
+        assert still[1] != pytest.approx(places[0], abs=0.1)
+        follow.check()
         page.get_by_role("slider", name="Time").fill("0")
         page.get_by_label("Show").fill("look fires")
         expect(rows.first).to_contain_text("look")
         rows.first.click()
         expect(page.locator("#clock")).to_have_text("0.05 s")
+        expect(rows.first).to_be_focused()  # though it is drawn anew
         expect(page.locator(".event.now")).to_contain_text("look")
         page.get_by_role("button", name="Play").click()
         expect(page.get_by_role("button", name="Pause")).to_be_visible()
@@ -165,6 +173,12 @@ EXTENT = """([time]) => {
     }));
 }"""
 """How far from the middle of the picture the corners of the stage are; 1 is its edge."""
+PLACE = """([time]) => {
+    const { camera, scene, canvas } = drawing, body = drawing.pose(scene.stage.follow, time);
+    const { view } = camera.seen(body, canvas.width / canvas.height), at = (row) => view[row] * body[0] + view[4 + row] * body[1] + view[12 + row];
+    return [at(0) / at(3), at(1) / at(3)];
+}"""
+"""Where in the picture the body stands, from -1 to 1 each way."""
 
 
 def volume_of(kind: str, size: Sequence[float]) -> float:

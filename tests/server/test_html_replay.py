@@ -95,6 +95,23 @@ def test_titles_texts_and_the_kinds_that_are_shown_at_first_are_those_of_the_reg
     assert [row[3] for row in events["rows"] if row[2] == "select"][:2] == ["look", "wait"]
 
 
+def test_a_branch_says_so_and_its_changes_are_in_words(tmp_path: Path) -> None:
+    trace = Trace("all")
+    with Recording(tmp_path / "run.sqlite", program_facts("door.py", "", 1, None)) as recorded:
+        trace.listen(recorded.event_alone)
+        named = {"name": "aperture", "width": 1.2}
+        trace.emit(0, "top", "command", {"command": "aperture", "data": {"values": [], "named": named, "body": None}})
+        trace.emit(0, "top", "command", {"command": "walk", "data": {"values": [0.5], "named": {}, "body": "walker"}})
+        trace.emit(0, "top", "command", {"command": "pause", "data": {}})
+        trace.emit(0, "walker.b_plan", "planning_unit", {"name": "pass_doorway", "what": "begun", "path": ["pass_doorway"]})
+        recorded.fact("branched", 2.0)
+    write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    told = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))
+    assert (told["title"], told["branched"]) == ("door.py · seed 1 · branch at 2.00 s", 2.0)
+    texts = ["aperture name: aperture width: 1.2", "walk walker 0.5", "pause", "pass_doorway begun"]
+    assert [row[3] for row in told["events"]["rows"]] == texts
+
+
 def test_an_event_of_an_unregistered_kind_is_shown_with_its_data(tmp_path: Path) -> None:
     trace = Trace("all")
     with Recording(tmp_path / "run.sqlite", program_facts("honk.py", "", 1, None)) as recorded:

@@ -7,14 +7,16 @@ const RAISED = (25 * Math.PI) / 180; // its angle from above
 const ROOM = 1.06; // its distance, as a multiple of the smallest that shows everything
 
 class Camera {
-  constructor(stage) {
+  // The places are those of the body in turn, [x, y]: it follows a body that leaves the stage.
+  constructor(stage, places) {
     this.stage = stage;
+    this.start = places[0] || [0, 0];
     const [x, y] = stage.ahead, c = Math.cos(ASIDE), s = Math.sin(ASIDE);
     this.turn = Math.atan2(-(c * y + s * x), -(c * x - s * y));
     this.tilt = RAISED;
     this.shifted = [0, 0, 0];
     this.nearer = 1;
-    this.following = true;
+    this.following = places.some((place) => place.some((value, axis) => value < stage.low[axis] || value > stage.high[axis]));
     this.off = [0, 0, 0];
     this.from = this.back(); // at first, for which the stage is fitted into the picture
     this.fitted = {};
@@ -45,11 +47,9 @@ class Camera {
     return { target, distance: distance * ROOM };
   }
 
-  // Returns the camera's position, its target, and the matrix that projects the scene. While it follows, it moves along with a body that
-  // leaves the stage.
+  // Returns the camera's position, its target, and the matrix that projects the scene. While it follows, the body keeps its place in the picture.
   seen(body, aspect) {
-    const { low, high } = this.stage;
-    if (this.following) this.off = [0, 1].map((axis) => body[axis] - Math.min(Math.max(body[axis], low[axis]), high[axis])).concat(0);
+    if (this.following) this.off = [body[0] - this.start[0], body[1] - this.start[1], 0];
     if (this.fitted.aspect !== aspect) this.fitted = { aspect, ...this.fit(aspect) };
     const { target: middle, distance } = this.fitted;
     this.distance = distance * this.nearer;

@@ -50,7 +50,8 @@ class Drawing {
     const meshes = scene.meshes.map(({ places, faces }) => ({ places: unpacked(places, Float32Array), faces: unpacked(faces, Uint32Array) }));
     const shapes = scene.shapes.map((parts) => this.shape(joined(parts, meshes)));
     const [times, poses] = [scene.times, scene.poses].map((numbers) => unpacked(numbers, Float32Array));
-    return { scene, times, poses, shapes, camera: new Camera(scene.stage) };
+    const first = shapes.length ? [...times].map((_, frame) => (frame * shapes.length + scene.stage.follow) * 7) : [];
+    return { scene, times, poses, shapes, camera: new Camera(scene.stage, first.map((at) => [poses[at], poses[at + 1]])) };
   }
 
   // Sets the scene of a time: that of the simulation which has begun last.

@@ -10,6 +10,7 @@ class Events {
     this.seek = seek;
     this.list = document.getElementById("events");
     this.now = -1;
+    this.made = new Map(); // by number, the rows that are in the page: one that has the keyboard's focus keeps it
     this.more = events.more;
     this.filter();
     this.list.addEventListener("scroll", () => this.show());
@@ -25,6 +26,8 @@ class Events {
     const words = document.getElementById("filter").value.toLowerCase().split(/\s+/).filter(Boolean);
     const details = document.getElementById("details").checked;
     const fits = ([, source, kind, text]) => words.every((word) => `${source} ${kind} ${this.kinds[kind][0]} ${text}`.toLowerCase().includes(word));
+    for (const row of this.made.values()) row.remove();
+    this.made.clear();
     this.shown = this.rows.filter((row) => (details || this.kinds[row[2]][1]) && fits(row));
     document.getElementById("height").style.height = `${this.shown.length * ROW}px`;
     this.showCount();
@@ -56,16 +59,25 @@ class Events {
   show() {
     const list = this.list, first = Math.max(0, Math.floor(list.scrollTop / ROW) - 5);
     const last = Math.min(this.shown.length, first + Math.ceil(list.clientHeight / ROW) + 10);
-    const rows = [];
-    for (let n = first; n < last; n++) rows.push(this.row(n));
-    list.replaceChildren(document.getElementById("height") || list.firstChild, ...rows);
+    for (const [n, row] of this.made)
+      if (n < first || n >= last) {
+        row.remove();
+        this.made.delete(n);
+      }
+    let next = document.getElementById("height").nextSibling;
+    for (let n = first; n < last; n++) {
+      const [time, , kind] = this.shown[n], row = this.made.get(n) || this.row(n);
+      row.className = `event${kind === "fire" ? " fire" : ""}${n > this.now ? " ahead" : time === this.present ? " now" : ""}`;
+      if (row === next) next = row.nextSibling;
+      else list.insertBefore(row, next);
+      this.made.set(n, row);
+    }
   }
 
   row(number) {
     const [time, source, kind, text] = this.shown[number];
     const row = document.createElement("button");
     row.type = "button";
-    row.className = `event${kind === "fire" ? " fire" : ""}${number > this.now ? " ahead" : time === this.present ? " now" : ""}`;
     row.style.top = `${number * ROW}px`;
     const when = document.createElement("time"), who = document.createElement("span"), what = document.createElement("b");
     when.textContent = time.toFixed(3);

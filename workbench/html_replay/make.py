@@ -79,12 +79,14 @@ def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
     file = facts.get("file", "")
     model = Path(file).name if models is None else ModelFolder(Path(models)).shown(file)
     seed = facts.get("program_seed", facts.get("seed"))
-    ended = facts.get("ended")
+    ended, branched = facts.get("ended"), facts.get("branched")
+    branch = "" if branched is None else f" · branch at {branched:.2f} s"
     return {
-        "title": f"{model or 'a run'} · seed {seed}",
+        "title": f"{model or 'a run'} · seed {seed}{branch}",
         "model": model,
         "seed": str(seed),
         "parameters": _plain(facts.get("parameters", {})),
+        "branched": branched,
         "ended": None if ended is None else str(ended.get("by")),
         "failed": facts.get("failed") is not None,
     }
@@ -115,7 +117,7 @@ def _kind(name: str) -> tuple[str, bool]:
 
 def _plain(values: Mapping[str, Any]) -> dict[str, str]:
     """Returns names and values as texts."""
-    return {str(name): _word(value) for name, value in values.items()}
+    return {str(name): _value(value) for name, value in values.items()}
 
 
 def _text(event: TraceEvent) -> str:
@@ -125,6 +127,8 @@ def _text(event: TraceEvent) -> str:
         text = re.sub(r"\{(\w+)\}", lambda found: _value(data.get(found[1])), kind.text)
     elif event.kind in ("buffer", "add"):
         text = _chunk(data.get("chunk"))
+    elif event.kind == "command":
+        text = _command(data)
     else:
         text = "  ".join(f"{name}={_value(value)}" for name, value in data.items())
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
@@ -136,6 +140,14 @@ def _chunk(slots: Any) -> str:
         return "empty" if slots is None else str(slots)
     named = cast("Mapping[str, Any]", slots)
     return " ".join(_word(value) if name.isdecimal() else f"{name}:{_word(value)}" for name, value in named.items())
+
+
+def _command(data: Mapping[str, Any]) -> str:
+    """Returns a command with its body and its values: `aperture name: aperture width: 1.2`."""
+    given: dict[str, Any] = data.get("data") or {}
+    values = [_value(value) for value in given.get("values") or ()]
+    named = [f"{name}: {_value(value)}" for name, value in (given.get("named") or {}).items()]
+    return " ".join([str(data.get("command")), *([given["body"]] if given.get("body") else []), *values, *named])
 
 
 def _value(value: Any) -> str:

@@ -20,7 +20,7 @@ table("parameters", data.parameters);
 table("result", data.events.result);
 const came = data.events.result && data.events.result.outcome;
 const ENDINGS = { stop: "the model called stop()", done: "no agent had anything left to do", end: "the program was over", exit: "the program ended itself", limits: "its time was over",
-  left: "it was left before its end" };
+  left: data.branched === null ? "it was left before its end" : `its past was changed at ${data.branched.toFixed(2)} s` };
 
 let drawing = null;
 try {
@@ -75,6 +75,7 @@ function frame(at) {
 
 get("play").addEventListener("click", () => play(!playing));
 get("time").addEventListener("input", (event) => goTo(Number(event.target.value)));
+get("follow").checked = drawing !== null && drawing.camera.following;
 get("follow").addEventListener("change", (event) => {
   if (drawing) drawing.camera.following = event.target.checked;
   goTo(now);
