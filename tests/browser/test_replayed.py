@@ -175,7 +175,8 @@ EXTENT = """([time]) => {
 """How far from the middle of the picture the corners of the stage are; 1 is its edge."""
 PLACE = """([time]) => {
     const { camera, scene, canvas } = drawing, body = drawing.pose(scene.stage.follow, time);
-    const { view } = camera.seen(body, canvas.width / canvas.height), at = (row) => view[row] * body[0] + view[4 + row] * body[1] + view[12 + row];
+    const { view } = camera.seen(body, canvas.width / canvas.height);
+    const at = (row) => view[row] * body[0] + view[4 + row] * body[1] + view[12 + row];
     return [at(0) / at(3), at(1) / at(3)];
 }"""
 """Where in the picture the body stands, from -1 to 1 each way."""

@@ -144,10 +144,10 @@ def _chunk(slots: Any) -> str:
 
 def _command(data: Mapping[str, Any]) -> str:
     """Returns a command with its body and its values: `aperture name: aperture width: 1.2`."""
-    given: dict[str, Any] = data.get("data") or {}
-    values = [_value(value) for value in given.get("values") or ()]
-    named = [f"{name}: {_value(value)}" for name, value in (given.get("named") or {}).items()]
-    return " ".join([str(data.get("command")), *([given["body"]] if given.get("body") else []), *values, *named])
+    given = cast("dict[str, Any]", data.get("data") or {})
+    named = cast("dict[str, Any]", given.get("named") or {})
+    values = [*map(_value, cast("list[Any]", given.get("values") or [])), *(f"{name}: {_value(value)}" for name, value in named.items())]
+    return " ".join([str(data.get("command")), *([str(given["body"])] if given.get("body") else []), *values])
 
 
 def _value(value: Any) -> str:
