@@ -343,8 +343,7 @@ def _bench(options: argparse.Namespace) -> int:
     known = find_benchmarks()
     if options.name is None:
         for name, function in sorted(known.items()):
-            about = inspect.getdoc(sys.modules[function.__module__]) or ""
-            print(f"{name:<12}{' '.join(about.partition(': ')[2].split('.')[0].split())}")
+            print(f"{name:<{max(map(len, known)) + 2}}{(inspect.getdoc(function) or name).splitlines()[0]}")
         return 0
     if options.name not in known:
         print(f"actr3d bench: no benchmark '{options.name}'{alternatives(options.name, sorted(known))}", file=sys.stderr)

@@ -106,7 +106,7 @@ def _more(many: list[tuple[Any, Any]], few: list[tuple[Any, Any]]) -> float:
 
 @benchmark("camera")
 def measure() -> list[Figure]:
-    """Measures all figures."""
+    """Measures the cost of a view, relative to MuJoCo's rays in the same scene."""
     few, many = ([_scene(APERTURE + _loose(count, seed)) for seed in range(SCENES)] for count in (10, 100))
     open_few, open_many = ([_scene(_loose(count, seed)) for seed in range(SCENES)] for count in (10, 100))
     body = [_scene(_mannequin(seed)) for seed in range(SCENES)]

@@ -185,7 +185,7 @@ def _traced_ratio() -> float:
 
 @benchmark("core")
 def measure() -> list[Figure]:
-    """Measures all figures.
+    """Compares the cognitive core with python_actr, in one run on one machine.
 
     Raises:
         ModuleNotFoundError: If python_actr is not installed.

@@ -179,7 +179,7 @@ def _bare_cost(make: Callable[[], Simulation], warm: int = WARM, ticks: int = TI
 
 @benchmark("lockstep")
 def measure() -> list[Figure]:
-    """Measures all figures."""
+    """Measures the cost of lockstep, vision and recording, relative to the bare physics of the same scene on the same states."""
     times = "times the bare physics"
     plain, bare, recorded = _best(typical)
     _cost(trial, 0, 10)  # compiles the camera if necessary

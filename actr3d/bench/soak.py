@@ -28,7 +28,7 @@ def resident() -> float:
 
 @benchmark("soak")
 def measure(ticks: int = TICKS) -> list[Figure]:
-    """Runs the typical agent, and measures drift and memory."""
+    """Runs a million ticks of the typical agent, and measures drift and the growth of memory."""
     resident()  # where it cannot be measured, this is known before the run
     simulation = typical()
     memory: list[float] = []

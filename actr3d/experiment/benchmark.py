@@ -1,4 +1,5 @@
-"""`actr3d bench experiment`: measures the cost of a trial relative to its physics, and how experiments scale with workers and rows.
+"""`actr3d bench experiment`: measures the cost of a trial relative to its physics, and how experiments scale with workers and rows;
+`actr3d bench experiment-size` measures the latter with as many trials and rows as the largest experiments have.
 
 The trials are those of the aperture model, except where the cost of an experiment itself is measured: there, they are a few
 milliseconds long.
@@ -30,9 +31,9 @@ from actr3d.output import ModelOutput, printing_to
 DESIGN = "warren_whang_1987"
 SAMPLE = 8
 """The number of trials whose cost is measured."""
-ROWS = 200_000
+ROWS, MOST_ROWS = 200_000, 1_000_000
 """The number of rows that are written."""
-SMALL = 4_000
+SMALL, MOST_SMALL = 4_000, 100_000
 """The number of small trials in which a change of the cost per trial would show."""
 PROGRAM = '''
 n = 3
@@ -135,25 +136,32 @@ def _cost(work: Callable[[], object]) -> float:
         return median(once() for _ in range(3))
 
 
-def _small(folder: Path) -> list[Figure]:
-    """Returns how the cost of small trials changes over many of them."""
+def _small(folder: Path, trials: int) -> list[Figure]:
+    """Returns how the cost of small trials changes over many of them, as a multiple of other work beside them: machines change speed."""
     path = folder / "counting.py"
     path.write_text(PROGRAM, encoding="utf-8")
     specification = specify(str(path)).specification
     with specification.sealed() as helpers:
         experiment = Experiment(specification, helpers)
         costs: list[float] = []
-        for trial in islice(experiment.design.table(), SMALL):
+        for trial in islice(experiment.design.table(), trials):
             begin = time.process_time()
             run_trial(experiment, trial, helpers)
-            costs.append(time.process_time() - begin)
-    part = SMALL // 4
+            end = time.process_time()
+            _beside()
+            costs.append((end - begin) / (time.process_time() - end))
+    part = trials // 4
     change = median(costs[-part:]) / median(costs[:part])
-    what = f"cost of the last {part:,} of {SMALL:,} trials / of the first {part:,}"
+    what = f"cost of the last {part:,} of {trials:,} trials / of the first {part:,}"
     return [Figure(name="many trials", value=change, sense="at most", limit=1.1, what=what)]
 
 
-def _rows(folder: Path) -> list[Figure]:
+def _beside() -> list[str]:
+    """Does something that takes about half as long as a small trial, and always the same."""
+    return [str(number) for number in range(5_000)]
+
+
+def _rows(folder: Path, count: int) -> list[Figure]:
     """Returns how fast rows are written and how the memory for them grows."""
     from actr3d.experiment.store import Finished
 
@@ -176,18 +184,18 @@ def _rows(folder: Path) -> list[Figure]:
                 store.add([Finished(row=row, wall_s=0.1, worker="0") for row in rows], "versions")
 
         begin = time.perf_counter()
-        write(0, ROWS)
-        rate = ROWS / (time.perf_counter() - begin)
+        write(0, count)
+        rate = count / (time.perf_counter() - begin)
         for part in (10, 1):
             tracemalloc.start()
-            write(ROWS * (11 - part), ROWS * (11 - part) + ROWS // part)
-            sum(1 for _ in islice(store.rows(), ROWS // part))
+            write(count * (11 - part), count * (11 - part) + count // part)
+            sum(1 for _ in islice(store.rows(), count // part))
             peaks.append(tracemalloc.get_traced_memory()[1])
             tracemalloc.stop()
     return [
-        Figure(name="writing", value=rate, sense="at least", limit=5_000, what=f"rows a second, of {ROWS}"),
+        Figure(name="writing", value=rate, sense="at least", limit=5_000, what=f"rows a second, of {count}"),
         Figure(
-            name="memory", value=peaks[1] / peaks[0], sense="at most", limit=1.2, what=f"peak memory for {ROWS} rows / for {ROWS // 10}"
+            name="memory", value=peaks[1] / peaks[0], sense="at most", limit=1.2, what=f"peak memory for {count} rows / for {count // 10}"
         ),
     ]
 
@@ -221,7 +229,14 @@ def _workers(folder: Path) -> list[Figure]:
 
 @benchmark("experiment")
 def measure() -> list[Figure]:
-    """Measures all figures."""
+    """Measures the cost of a trial, relative to its physics, and how experiments scale with workers, trials and rows."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        return [*_aperture(folder), *_small(folder), *_rows(folder), *_workers(folder)]
+        return [*_aperture(folder), *_small(folder, SMALL), *_rows(folder, ROWS), *_workers(folder)]
+
+
+@benchmark("experiment-size")
+def measure_size() -> list[Figure]:
+    """Measures how experiments scale with 100,000 trials and 1,000,000 rows: takes about 20 minutes."""
+    with tempfile.TemporaryDirectory() as name:
+        return [*_small(Path(name), MOST_SMALL), *_rows(Path(name), MOST_ROWS)]
