@@ -105,7 +105,8 @@ class Body:
         self._geom_names = {geom: self._geom_name(geom) for geom in self.geoms.tolist()}
         self.base = Base(physics, self.root, self.anatomy.prefix)
         stepping = OWN if self.anatomy.gait is not None else ()
-        self.joints: dict[str, Joint] = {joint.name: joint for joint in self._joints() if joint.name not in stepping}
+        every = self._joints()
+        self.joints: dict[str, Joint] = {joint.name: joint for joint in every if joint.name not in stepping}
         """By name, the joints that the agent can feel and move: those that only gait moves are left out."""
         for movement in self.anatomy.movements:
             for joint, _ in movement.joints:
@@ -121,7 +122,7 @@ class Body:
         self.contacts = BodyContacts(physics, self.members, skin, tuple(self.hands.values()))
         self.reaches = reaches(model, self.members, self.touch_geoms)
         """By moving part and degree of freedom (n, nv): the greatest way of the part's farthest point per unit of it [m]."""
-        dofs = ActuatedDofs(physics, self.anatomy, self.base, self._joints(), self.members, self.reaches.max(axis=0, initial=0.0))
+        dofs = ActuatedDofs(physics, self.anatomy, self.base, every, self.members, self.reaches.max(axis=0, initial=0.0))
         cycle = None
         if self.anatomy.gait is not None:
             cycle = GaitCycle(*self.anatomy.gait, dofs.joints, (seed, *self.name.encode()))

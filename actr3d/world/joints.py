@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from mujoco import MjModel, mjtJoint, mjtTrn
@@ -88,8 +87,8 @@ def _servo_of(model: MjModel, joint: int) -> int | None:
     """Returns a joint's servo: an actuator whose force falls with the speed and not with the position."""
     moves = (model.actuator_trntype == int(mjtTrn.mjTRN_JOINT)) & (model.actuator_trnid[:, 0] == joint)
     for number in np.flatnonzero(moves).tolist():
-        actuator: Any = model.actuator(number)
-        gain, gear = actuator.gainprm[0], model.actuator_gear[number, 0]
-        if gain > 0 and gear != 0 and actuator.biasprm[2] == -gain and actuator.biasprm[1] == 0:
+        gain, gear = model.actuator_gainprm[number, 0], model.actuator_gear[number, 0]
+        _, by_position, by_speed = model.actuator_biasprm[number, :3]
+        if gain > 0 and gear != 0 and by_speed == -gain and by_position == 0:
             return number
     return None
