@@ -81,7 +81,7 @@ def _carriers(model: Any, geom: int) -> Iterator[tuple[int, tuple[float, Sequenc
     while carrier:
         yield carrier, (far, place, slide)
         far += math.hypot(*place) + slide
-        place, slide, carrier = model.body_pos[carrier], _slide(model, carrier), model.body_parentid[carrier]
+        place, slide, carrier = model.body_pos[carrier], model.slides[carrier], model.body_parentid[carrier]
 
 
 def _slide(model: Any, body: int) -> float:
@@ -93,4 +93,6 @@ def _slide(model: Any, body: int) -> float:
 
 def _listed(model: Any) -> Any:
     """Returns what is read of the compiled scene, as lists: single values of MuJoCo's arrays take ten times as long to read."""
-    return SimpleNamespace(**{name: getattr(model, name).tolist() for name in READ})
+    listed = SimpleNamespace(**{name: getattr(model, name).tolist() for name in READ})
+    listed.slides = [_slide(listed, body) for body in range(model.nbody)]
+    return listed
