@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import lru_cache
 
 from actr3d.actr.kernel.source_code import syntax_tree
 from actr3d.errors import WITHOUT_BODY, ModelFileError
@@ -37,6 +38,7 @@ def check_build(source: str, filename: str) -> None:
         raise ModelFileError(f"{filename}:{found[0]}: {found[1]}")
 
 
+@lru_cache(maxsize=64)  # an experiment loads the same text for each trial
 def problem_of_build(source: str) -> tuple[int, str] | None:
     """Returns the line of what a model's source defines as `build`, and the problem with it; None if there is no problem.
 

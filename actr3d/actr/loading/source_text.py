@@ -86,7 +86,8 @@ def compile_source(source: str, filename: str) -> CodeType:
     try:
         known = _compiled(source)
         code = compile(source, filename, "exec", dont_inherit=True) if known is None else with_filename(known, filename)
-        if not re.search(r"\bprint\s*>>", source) or (number := print_to(syntax_tree(source))) is None:
+        number = _print_to(source)
+        if number is None:
             return code
         reason = number, "a print statement"
     except SyntaxError as error:
@@ -113,6 +114,12 @@ def _compiled(source: str) -> CodeType | None:
         warnings.simplefilter("always")
         code = compile(source, "<model>", "exec", dont_inherit=True)
     return None if found else code
+
+
+@lru_cache(maxsize=64)
+def _print_to(source: str) -> int | None:
+    """Returns the line of the first `print >> file, ...` of a text; None if there is none."""
+    return print_to(syntax_tree(source)) if re.search(r"\bprint\s*>>", source) else None
 
 
 def _longest_line(source: str) -> int:
