@@ -45,6 +45,7 @@ from actr3d.experiment.report.statistics import rmse_and_r2
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
 from actr3d.experiment.trial_measures import known_measures
+from actr3d.runner.cli_options import read_settings
 
 Shown = Callable[[str, int], AbstractContextManager[Callable[[Progress], object]]]
 """Shows the progress of an experiment inside a block: called with what it is for, and its number of trials."""
@@ -477,14 +478,10 @@ class Fit:
             ExperimentError: If the change has another form than NAME=VALUE.
             DesignError: If it does not fit the model.
         """
-        name, equals, text = change.partition("=")
-        if not equals:
+        if "=" not in change:
             raise ExperimentError(f"--ablate: must be NAME=VALUE (got {change!r})")
-        try:
-            value: Any = json.loads(text)
-        except ValueError:
-            value = text
-        return self._experiment({**values, name: value}, f"--ablate {change.replace('{', '{{').replace('}', '}}')}")
+        option = f"--ablate {change.replace('{', '{{').replace('}', '}}')}"
+        return self._experiment({**values, **read_settings([change], ())}, option)
 
     def _recover(self, number: int, what: str) -> dict[str, float]:
         """Simulates data with known parameters, and estimates these from the candidates.

@@ -187,6 +187,15 @@ def test_ablated_models_that_cannot_be_are_refused_before_anything_runs(tmp_path
         fit_of(tmp_path, None).run(1, ablate=[change])
 
 
+def test_an_ablation_reads_values_as_other_options_do(tmp_path: Path, client: Any) -> None:
+    line = LINE.replace("noise = 0.1", "noise = 0\npart = True").replace("y = model.value", "y = model.value if part else 7.0")
+    changes = ["part=False", "part=false", "part=None", "part=()"]
+    options = {"participants": 1}
+    result = fit_of(tmp_path, client, "slope=0..3", line=line, options=options).run(1, ablate=[*changes, "part='False'"])
+    assert {change: {row["model"] for row in result.ablated[change].rows} for change in changes} == dict.fromkeys(changes, {7.0})
+    assert [row["model"] for row in result.ablated["part='False'"].rows] == [row["model"] for row in result.fit.rows]
+
+
 def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anything_runs(tmp_path: Path, client: Any) -> None:
     (tmp_path / "line.py").write_text(LINE, encoding="utf-8")
     ranges = [Range.from_text("slope=0..3")]
