@@ -292,16 +292,17 @@ class Fit:
             recover: The number of simulated data sets whose parameters are estimated.
 
         Raises:
-            ExperimentError: If no candidate has all means of the target, or an ablation is not NAME=VALUE.
+            ExperimentError: If no candidate has all means of the target. Before anything runs: if an ablation is not NAME=VALUE, or a
+                held-out design or ablated model has no condition of its target.
             DesignError: If a held-out design or an ablated model does not fit the values; before anything runs.
         """
         hold_out = hold_out or {}
         lowest = {one.name: one.low for one in self._ranges}
         for name, means in hold_out.items():
-            self._other(name, lowest)
-            cells_of_target(means, f"--hold-out {name}")
+            cells = cells_of_target(means, f"--hold-out {name}")
+            _check_in_common(cells, self._other(name, lowest).design, f"--hold-out {name}")
         for change in ablate:
-            self._ablated(change, lowest)
+            _check_in_common(self.target, self._ablated(change, lowest).design, f"--ablate {change}")
         with self._open_cluster() as self._client:
             return self._result(candidates, hold_out, ablate, recover)
 
@@ -691,6 +692,12 @@ def _in_cell(level: Any) -> Any:
     return plain_text(level) if isinstance(level, (list, tuple, dict)) else level
 
 
+def _absent_factor(cell: Cell, of: Design) -> str | None:
+    """Returns the first factor of whose levels a design lacks that of a cell; None if it has them all."""
+    levels = ((name, level, of.factors.get(name)) for name, level in cell)
+    return next((name for name, level, known in levels if known is not None and level not in map(_in_cell, known)), None)
+
+
 def _check_conditions(target: Mapping[Cell, float], of: Design) -> None:
     """Checks that a design has the conditions of a target.
 
@@ -698,12 +705,28 @@ def _check_conditions(target: Mapping[Cell, float], of: Design) -> None:
         ExperimentError: If the target has a mean for a level that the design lacks.
     """
     for cell in target:
-        for name, level in cell:
-            levels = of.factors.get(name)
-            if levels is not None and level not in map(_in_cell, levels):
-                known = ", ".join(map(str, levels))
-                what = f"{level:g}" if isinstance(level, float) else level
-                raise ExperimentError(f"--target: has a mean for {name} {what}, which the design does not have; it has: {known}")
+        if (name := _absent_factor(cell, of)) is not None:
+            level, known = dict(cell)[name], ", ".join(map(str, of.factors[name]))
+            what = f"{level:g}" if isinstance(level, float) else level
+            raise ExperimentError(f"--target: has a mean for {name} {what}, which the design does not have; it has: {known}")
+
+
+def _check_in_common(target: Mapping[Cell, float], of: Design, option: str) -> None:
+    """Checks that a design has some conditions of a target.
+
+    Args:
+        target: The target.
+        of: The design.
+        option: The option that gave the design, for errors.
+
+    Raises:
+        ExperimentError: If it has none.
+    """
+    absent = {cell: _absent_factor(cell, of) for cell in target}
+    if (name := next(iter(absent.values()))) is not None and None not in absent.values():
+        there = ", ".join(dict.fromkeys(str(dict(cell)[name]) for cell in target))
+        design = ", ".join(map(str, of.factors[name]))
+        raise ExperimentError(f"{option}: the target has no mean for {name} {design}; it has: {there}")
 
 
 def cells_of_target(target: Sequence[TargetMean], option: str = "--target") -> dict[Cell, float]:
