@@ -27,7 +27,7 @@ from actr3d.experiment.report.analyses import ANALYSES
 from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of, missing
 from actr3d.experiment.report.command import write_report
 from actr3d.experiment.report.figures import LOOKS, Curve, Look, Pane, curves_figure, legend_columns, svg
-from actr3d.experiment.report.general import comparison_section, what_was_run
+from actr3d.experiment.report.general import comparison_section, measure_sections, what_was_run
 from actr3d.experiment.report.libraries import pingouin
 from actr3d.experiment.report.parts import Caution, Plot, Table
 from actr3d.experiment.report.results import Results, by_number, read_results
@@ -154,6 +154,25 @@ def test_an_error_in_a_measure_ends_its_own_section_and_is_named(
     assert len(re.findall(rf"The rest of this section could not be made: {named}\.", text)) == 1
     assert len(table(folder, "means_rt")) == len(table(folder, "means_luck")), "what was made before the error is there"
     assert table(folder, "anova_luck")
+
+
+def test_the_measures_that_a_design_names_are_open_and_in_the_contents(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path, participants=3))
+    folder = store_rows(tmp_path / "out", path, count, trials=1)
+    write_report(folder)
+    assert '<section id="rt--s-">' in page(folder)
+    assert '<a href="#rt--s-">rt [s]</a>' in page(folder)
+    parts = by_number(read_results(folder))
+    assert not [one.title for one in measure_sections(parts, [], secondary=True) if one.folded]
+    unnamed = [replace(part, design=replace(part.design, measures=())) for part in parts]
+    assert [one.title for one in measure_sections(unnamed, [], secondary=True) if one.folded] == ["rt [s]", "luck"]
+    assert not [one.title for one in measure_sections(unnamed, []) if one.folded], "no other section has results"
+
+
+def test_measures_are_folded_below_an_analysis_that_shows_what_matters(walked: Path) -> None:
+    folded = re.findall(r'<details class="section" id="([^"]+)"', page(walked))
+    assert "contacts" in folded
+    assert "wall-angle--degrees-" not in folded, "people have it"
 
 
 def test_the_same_rows_give_the_same_files(tmp_path: Path) -> None:

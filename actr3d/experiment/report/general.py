@@ -169,8 +169,15 @@ def _matched_table(parts: Sequence[Results], beside: Beside, name: str, title: s
     return Table(name=name, title=title, frame=frame, heads={"beside": beside.label}, folded=True)
 
 
-def measure_sections(parts: Sequence[Results], others: Sequence[Beside]) -> list[Section]:
-    """Returns a section for each measure, and one that explains what all measures show."""
+def measure_sections(parts: Sequence[Results], others: Sequence[Beside], *, secondary: bool = False) -> list[Section]:
+    """Returns a section for each measure, and one that explains what all measures show.
+
+    Args:
+        parts: The experiment, from `by_number`.
+        others: Means beside its own.
+        secondary: Whether other sections show results, too: then those of measures that neither the design names nor people have are
+            folded.
+    """
     note = (
         "Means are of participants: first the trials of a participant in a cell are averaged, then the participants. Intervals are 95 % "
         f"percentile bootstrap intervals over participants ({RESAMPLES:,} samples, seed {SEED}). The tests describe the simulated sample: "
@@ -178,7 +185,7 @@ def measure_sections(parts: Sequence[Results], others: Sequence[Beside]) -> list
         "number of measures."
     )
     found = [Section(title="All measures", parts=[note, *_outcomes(parts[0])])]
-    return found + [_measure_section(part, name, others) for part in parts for name in part.measures]
+    return found + [_measure_section(part, name, others, secondary=secondary) for part in parts for name in part.measures]
 
 
 def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
@@ -193,8 +200,8 @@ def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
     return found
 
 
-def _measure_section(results: Results, measure: str, others: Sequence[Beside]) -> Section:
-    """Returns the section of a measure; an error ends this section, and no other."""
+def _measure_section(results: Results, measure: str, others: Sequence[Beside], *, secondary: bool) -> Section:
+    """Returns the section of a measure, see `measure_sections`; an error ends this section, and no other."""
     parts, failed = list[str | Table | Plot | Caution](), ""
     try:
         for part in _measure_parts(results, measure, others):
@@ -202,7 +209,8 @@ def _measure_section(results: Results, measure: str, others: Sequence[Beside]) -
     except Exception as error:  # noqa: BLE001 - it is shown here, and `write_report` raises it when the other sections are written
         failed = _failed(f"measure '{measure}'", error, parts)
     human = any(one.look == "human" and len(one.of(measure)) for one in others)
-    return Section(title=results.name_with_unit(measure), parts=parts, folded=not (human or failed), failed=failed)
+    folded = secondary and not (results.design.kept or human or failed)  # a design that names measures has no others
+    return Section(title=results.name_with_unit(measure), parts=parts, folded=folded, failed=failed)
 
 
 def _measure_parts(results: Results, measure: str, others: Sequence[Beside]) -> Iterator[str | Table | Plot | Caution]:
