@@ -275,8 +275,8 @@ def _show_fit(result: FitResult, out: Output) -> None:
         out.line(f"  {one.name} = {one.value:g}   95 % interval: {low if low == high else f'{low} to {high}'}")
     for title, agreements in (("the fit", {"": result.fit}), ("held out", result.held_out), ("changed", result.ablated)):
         for what, found in agreements.items():
-            r2 = "none" if found.r2 is None else f"{found.r2:.3f}"
-            out.line(f"{title} {what}".rstrip() + f": RMSE {found.rmse:.4g}, r2 {r2}, {found.cells} means", *_lost(found))
+            r, r2 = ("none" if value is None else f"{value:.3f}" for value in (found.r, found.r2))
+            out.line(f"{title} {what}".rstrip() + f": RMSE {found.rmse:.4g}, r {r}, r2 {r2}, {found.cells} means", *_lost(found))
     for line in _effects(result.fit, result.ablated):
         out.line(line)
     if failing := [one for one in result.tried if one.failed]:

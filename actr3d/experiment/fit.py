@@ -41,7 +41,7 @@ from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
 from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data, read_human_text
 from actr3d.experiment.report.analyses import columns_of_people
-from actr3d.experiment.report.statistics import rmse_and_r2
+from actr3d.experiment.report.statistics import rmse_and_r
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
 from actr3d.experiment.trial_measures import known_measures
@@ -137,8 +137,10 @@ class Agreement:
     """The number of means of the target that are not compared: the model has none there, or a trial failed."""
     rmse: float
     """The root mean square difference, in the unit of the measure."""
+    r: float | None
+    """The correlation; None if there is none. A negative one is that of a model that falls where the target rises."""
     r2: float | None
-    """The square of the correlation; None if there is none."""
+    """Its square."""
     rows: tuple[dict[str, Any], ...] = ()
     """Each mean: its conditions, `target` and `model`."""
     failed: int = 0
@@ -791,12 +793,13 @@ def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agre
     both = {cell: (mean, means[cell]) for cell, mean in target.items() if cell in means}
     if not both:
         raise ExperimentError("the design and the target have no conditions in common")
-    error, r2 = rmse_and_r2(*zip(*both.values(), strict=True))
+    error, r = rmse_and_r(*zip(*both.values(), strict=True))
     return Agreement(
         cells=len(both),
         missing=len(target) - len(both),
         rmse=error,
-        r2=None if math.isnan(r2) else r2,
+        r=None if math.isnan(r) else r,
+        r2=None if math.isnan(r) else r * r,
         rows=tuple({**dict(cell), "target": mean, "model": round(found, DIGITS)} for cell, (mean, found) in both.items()),
     )
 

@@ -153,7 +153,7 @@ def test_a_held_out_design_may_have_another_measure_than_the_fit(
         assert re.search(says, capsys.readouterr().err)
     others.write_text("x,measure,mean,source\n10,z,15,ours\n", encoding="utf-8")
     assert main(words) == 0
-    assert re.search(r"held out .*:steeper: RMSE [\d.]+, r2 none, 1 means", capsys.readouterr().out)
+    assert re.search(r"held out .*:steeper: RMSE [\d.]+, r none, r2 none, 1 means", capsys.readouterr().out)
 
 
 def test_held_out_designs_are_run_with_the_model_and_their_own_numbers(tmp_path: Path, client: Any) -> None:
@@ -445,12 +445,14 @@ def test_targets_that_do_not_fit_are_refused(tmp_path: Path, client: Any) -> Non
         agreement({(("x", 1),): 1.0}, {(("x", 2),): 1.0})
 
 
-def test_equal_means_have_no_correlation() -> None:
+def test_equal_means_have_no_correlation_and_opposite_ones_a_negative_one() -> None:
     target = {(("x", number),): 0.1 for number in range(3)}
     means = {cell: float(number) for number, cell in enumerate(target)}
     assert agreement(means, target).r2 is None
     assert agreement(means, {cell: 0.1 + 0.2 * (number % 2) for number, cell in enumerate(target)}).r2 == pytest.approx(0)
     assert agreement(dict(zip(target, (0.3, 0.1 + 0.2, 0.3), strict=True)), means).r2 is None, "they differ by rounding"
+    falling = agreement({cell: -mean for cell, mean in means.items()}, means)
+    assert (falling.r, falling.r2) == (pytest.approx(-1), pytest.approx(1)), "a model that does the opposite"
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from actr3d.experiment.aperture.passing import baseline_angle
 from actr3d.experiment.report import statistics
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.report.results import Results, read_results
-from actr3d.experiment.report.statistics import bootstrap_interval, cell_means, participant_means, rmse_and_r2, run_tests
+from actr3d.experiment.report.statistics import bootstrap_interval, cell_means, participant_means, rmse_and_r, run_tests
 from tests.helpers.experiments import write_experiment
 from tests.helpers.reports import store_rows
 
@@ -74,10 +74,11 @@ def test_bootstrap_intervals_are_the_same_each_time_and_cover_the_mean() -> None
     assert all(math.isnan(bound) for bound in bootstrap_interval([1.0])), "one participant says nothing about others"
 
 
-def test_agreement_is_rmse_and_squared_correlation() -> None:
-    assert rmse_and_r2([1, 2, 3, 4], [1, 2, 3, 4]) == (0.0, pytest.approx(1))
-    assert rmse_and_r2([3, 4, 5, 6], [1, 2, 3, 4]) == (2.0, pytest.approx(1)), "a correlation alone would hide the difference"
-    assert math.isnan(rmse_and_r2([1, 1, 1], [1, 2, 3])[1])
+def test_agreement_is_rmse_and_correlation() -> None:
+    assert rmse_and_r([1, 2, 3, 4], [1, 2, 3, 4]) == (0.0, pytest.approx(1))
+    assert rmse_and_r([3, 4, 5, 6], [1, 2, 3, 4]) == (2.0, pytest.approx(1)), "a correlation alone would hide the difference"
+    assert rmse_and_r([3, 2, 1], [1, 2, 3])[1] == pytest.approx(-1), "r² would hide that the model does the opposite"
+    assert math.isnan(rmse_and_r([1, 1, 1], [1, 2, 3])[1])
 
 
 def test_a_known_effect_of_groups_and_levels_is_found(tmp_path: Path) -> None:

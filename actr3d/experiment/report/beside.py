@@ -18,7 +18,7 @@ from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.figures import Look
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.report.results import Results
-from actr3d.experiment.report.statistics import cell_means, rmse_and_r2
+from actr3d.experiment.report.statistics import cell_means, rmse_and_r
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,12 +166,12 @@ def fit_to(parts: Sequence[Results], beside: Beside) -> Any:
     for results, measure in ((part, measure) for part in parts for measure in part.measures):
         cells = matched(results, beside, measure)
         if len(cells):
-            rmse, r2 = rmse_and_r2(cells["model"], cells["beside"])
+            rmse, r = rmse_and_r(cells["model"], cells["beside"])
             difference = float((cells["model"] - cells["beside"]).mean())
             unit = results.unit(measure)
             row = {"measure": measure, "unit": unit, "beside": beside.label, "cells": len(cells)}
-            found.append({**row, "mean_difference": difference, "rmse": rmse, "r2": r2})
-    return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "mean_difference", "rmse", "r2"])
+            found.append({**row, "mean_difference": difference, "rmse": rmse, "r": r, "r2": r * r})
+    return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "mean_difference", "rmse", "r", "r2"])
 
 
 def missing(value: Any) -> bool:

@@ -95,16 +95,17 @@ def in_order(cells: Any, by: Sequence[str], rows: Any) -> Any:
     return cells.sort_values(list(by), key=rank, kind="stable", ignore_index=True)
 
 
-def rmse_and_r2(found: Sequence[float], target: Sequence[float]) -> tuple[float, float]:
-    """Returns the root mean square difference of two lists of means, and the squared correlation.
+def rmse_and_r(found: Sequence[float], target: Sequence[float]) -> tuple[float, float]:
+    """Returns the root mean square difference of two lists of means, and their correlation.
 
-    It is NaN for fewer than three means, and if those of one list are equal but for rounding.
+    Its sign must be shown, too: a model that falls where people rise has an r² of 1. The correlation is NaN for fewer than three means,
+    and if those of one list are equal but for rounding.
     """
     one, other = np.asarray(found, dtype=float), np.asarray(target, dtype=float)
     rmse = float(np.sqrt(np.mean((one - other) ** 2)))
     if len(one) < 3 or any(np.ptp(means) <= NOTHING * np.abs(means).max() for means in (one, other)):
         return rmse, float("nan")
-    return rmse, float(np.corrcoef(one, other)[0, 1] ** 2)
+    return rmse, float(np.corrcoef(one, other)[0, 1])
 
 
 @dataclass(frozen=True, kw_only=True)
