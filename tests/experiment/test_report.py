@@ -24,7 +24,7 @@ from actr3d.experiment.aperture.constraints import Findings
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.report import general, statistics
 from actr3d.experiment.report.analyses import ANALYSES
-from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of, missing
+from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, fit_to, human_data_of, missing
 from actr3d.experiment.report.command import write_report
 from actr3d.experiment.report.figures import LOOKS, Curve, Look, Pane, curves_figure, legend_columns, svg
 from actr3d.experiment.report.general import comparison_section, measure_sections, what_was_run
@@ -347,6 +347,33 @@ def test_failures_and_missing_trials_are_said_plainly(tmp_path: Path) -> None:
     assert "3 of 32 trials failed" in text
     assert "ValueError: &lt;b&gt;no&lt;/b&gt;" in text
     assert "The design names no human data" in text
+
+
+def test_cells_with_failed_trials_are_named_and_not_compared(tmp_path: Path) -> None:
+    """What is left of a cell would be the mean of its easier trials; a fit compares none of it, either."""
+    path = str(write_experiment(tmp_path, participants=4, trials=1))
+
+    def measures(trial: Any) -> dict[str, Any]:
+        return {"error": "ValueError: no"} if trial.values["n"] == 5 and trial.participant.name == "all 3" else count(trial)
+
+    whole, failing = (read_results(store_rows(tmp_path / name, path, of)) for name, of in (("whole", count), ("failing", measures)))
+    said = cautions(what_was_run(failing).parts)
+    assert "Cells with failed trials: n 5. What is left may be the easier ones" in said
+    for one, other in ((failing, whole), (whole, failing)):
+        beside = beside_experiment([other], [one])
+        assert beside is not None
+        assert list(fit_to([one], beside)["cells"]) == [2, 2]
+
+
+def test_few_participants_are_those_with_results(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path, participants=10))
+
+    def measures(trial: Any) -> dict[str, Any]:
+        return count(trial) if trial.participant.name in ("all 3", "all 7") else {"error": "ValueError: no"}
+
+    said = cautions(what_was_run(read_results(store_rows(tmp_path / "out", path, measures, trials=1))).parts)
+    assert "A group has 2 participants with results, of 10 in the design. With fewer than 3 nothing can be said" in said
+    assert "intervals over two participants are no more than their range" in said
 
 
 def test_a_report_says_if_the_description_of_the_design_is_of_other_numbers(tmp_path: Path) -> None:

@@ -137,8 +137,20 @@ def _is_fixed(results: Results, name: str) -> bool:
 
 def matched(results: Results, beside: Beside, measure: str) -> Any:
     """Returns a `DataFrame` of the cells that both have: `model`, `beside` and what makes the cell. Means over all groups or levels are
-    compared with the model's means over all."""
-    return matched_means(results.rows, measure, ["group", *results.all_factors], beside.of(measure))
+    compared with the model's means over all.
+
+    Cells in which a trial failed are left out, as in a fit: their means would be those of the easier trials.
+    """
+    keys = ["group", *results.all_factors]
+    found = matched_means(results.rows, measure, keys, beside.of(measure))
+    failed: list[dict[str, Any]] = []
+    for one in (results, *([] if beside.results is None else [beside.results])):
+        failed += one.failures[[key for key in keys if key in one.failures]].drop_duplicates().to_dict("records")
+    whole = [
+        not any(all(missing(cell[key]) or cell[key] == level for key, level in one.items()) for one in failed)
+        for cell in found.to_dict("records")
+    ]
+    return found[whole].reset_index(drop=True)
 
 
 def matched_means(trials: Any, measure: str, keys: Sequence[str], means: Any) -> Any:
@@ -161,7 +173,7 @@ def matched_means(trials: Any, measure: str, keys: Sequence[str], means: Any) ->
 
 
 def fit_to(parts: Sequence[Results], beside: Beside) -> Any:
-    """Returns a `DataFrame` with a row for each measure: the agreement of the means of all cells that both have."""
+    """Returns a `DataFrame` with a row for each measure: the agreement of the means of all cells that both have; see `matched`."""
     found: list[dict[str, Any]] = []
     for results, measure in ((part, measure) for part in parts for measure in part.measures):
         cells = matched(results, beside, measure)

@@ -29,6 +29,8 @@ MAX_TICKS = 12
 """An axis has a tick for each level if all are whole numbers and there are at most this many."""
 MAX_KINDS = 20
 """A measure with more different texts than this is not counted."""
+MAX_CELLS = 6
+"""The maximum number of cells with failed trials that are named."""
 TAIL = 700
 """The characters of a failure's message that the page shows: its end."""
 
@@ -64,7 +66,7 @@ def cautions(results: Results) -> list[Caution]:
     if done < total:
         found.append(f"Only {done:,} of {total:,} trials have finished; all numbers are preliminary.")
     if len(results.failures):
-        found.append(f"{len(results.failures):,} of {done:,} trials failed. They are left out of all means.")
+        found.append(f"{len(results.failures):,} of {done:,} trials failed. They are left out of all means.{_failed_cells(results)}")
     if cut := sum(results.rows["end"] == "limits") if len(results.rows) else 0:
         found.append(
             f"{cut:,} of {done:,} trials were stopped at their limit of {results.design.until:g} simulated seconds, `until` in the design. "
@@ -72,18 +74,35 @@ def cautions(results: Results) -> list[Caution]:
         )
     if len(results.rows) and ended_early(results.rows["end"]):
         found.append(f"All trials {NOTHING_LEFT}")
-    least = min(group.participants for group in results.design.groups.values())
+    there = results.rows.groupby("group")["participant"].nunique()
+    people = {name: (int(there.get(name, 0)), group.participants) for name, group in results.design.groups.items()}
+    least, planned = min(people.values())
+    many = {0: "no participants", 1: "one participant"}.get(least, f"{least} participants")
+    many += f" with results, of {planned} in the design" if least < planned else ""
     if least < FEWEST:
-        many = "one participant" if least == 1 else f"{least} participants"
         narrow = ", and intervals over two participants are no more than their range" if least == 2 else ""
         found.append(
             f"A group has {many}. With fewer than {FEWEST} nothing can be said about other participants: nothing is tested{narrow}."
         )
     elif least < FEW:
-        found.append(f"A group has {least} participants. With fewer than {FEW}, bootstrap intervals are too narrow.")
+        found.append(f"A group has {many}. With fewer than {FEW}, bootstrap intervals are too narrow.")
     if len(results.versions) > 1:
         found.append(f"The trials were run with {len(results.versions)} different sets of versions.")
     return [Caution(text) for text in found]
+
+
+def _failed_cells(results: Results) -> str:
+    """Returns sentences that name the cells in which trials failed, and say what that means for their means."""
+    by = [*(["group"] if len(results.groups) > 1 else []), *(name for name in results.factors if name in results.failures)]
+    means = " What is left may be the easier ones: read its means and tests with care. They are not compared with other means."
+    if not by:
+        return means
+    cells = results.failures[by].drop_duplicates().to_dict("records")
+    named = [
+        ", ".join(f"{name.replace('_', ' ').strip()} {plain_text(level)}" for name, level in cell.items()) for cell in cells[:MAX_CELLS]
+    ]
+    more = [f"and {len(cells) - MAX_CELLS:,} more"] if len(cells) > MAX_CELLS else []
+    return f" Cells with failed trials: {'; '.join([*named, *more])}.{means}"
 
 
 def failures(results: Results) -> Table:
@@ -157,7 +176,7 @@ def comparison_section(results: Results, other: Results, parts: Sequence[Results
         found.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
         found.append(_matched_table(parts, beside, "means_beside_other", f"Means beside those of {other.label}"))
     else:
-        found.append(Caution("The two experiments have no cell in common: their means are not compared."))
+        found.append(Caution("The two experiments have no cell in common without failed trials: their means are not compared."))
     return Section(title=title, parts=found)
 
 
