@@ -479,12 +479,13 @@ class Fit:
 
         Raises:
             ExperimentError: If the change has another form than NAME=VALUE.
+            SettingError: If its value is a list that is not one of Python.
             DesignError: If it does not fit the model.
         """
         if "=" not in change:
             raise ExperimentError(f"--ablate: must be NAME=VALUE (got {change!r})")
         option = f"--ablate {change.replace('{', '{{').replace('}', '}}')}"
-        return self._experiment({**values, **read_settings([change], ())}, option)
+        return self._experiment({**values, **read_settings([change], (), "--ablate")}, option)
 
     def _recover(self, number: int, what: str) -> dict[str, float]:
         """Simulates data with known parameters, and estimates these from the candidates.
