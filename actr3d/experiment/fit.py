@@ -294,14 +294,16 @@ class Fit:
             recover: The number of simulated data sets whose parameters are estimated.
 
         Raises:
-            ExperimentError: If no candidate has all means of the target. Before anything runs: if an ablation is not NAME=VALUE, or a
-                held-out design or ablated model has no condition of its target.
+            ExperimentError: If no candidate has all means of the target. Before anything runs: if an ablation is not NAME=VALUE, a
+                held-out design or ablated model has no condition of its target, or held-out means are those of the fit.
             DesignError: If a held-out design or an ablated model does not fit the values; before anything runs.
         """
         hold_out = hold_out or {}
         lowest = {one.name: one.low for one in self._ranges}
         for name, means in hold_out.items():
             cells = cells_of_target(means, f"--hold-out {name}")
+            if means[0].measure == self.measure and cells == self.target:
+                raise ExperimentError(f"--hold-out {name}: its means are those of the fit; name a design, or data, that are not fitted")
             _check_in_common(cells, self._other(name, lowest).design, f"--hold-out {name}")
         for change in ablate:
             _check_in_common(self.target, self._ablated(change, lowest).design, f"--ablate {change}")

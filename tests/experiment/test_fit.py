@@ -179,6 +179,12 @@ def test_held_out_designs_that_the_values_do_not_fit_are_refused_before_anything
         fit.run(1, hold_out={f"{tmp_path / 'other.py'}:steeper": means((10, 20, 30))})
 
 
+def test_held_out_means_that_are_those_of_the_fit_are_refused_before_anything_runs(tmp_path: Path) -> None:
+    line = f"{tmp_path / 'line.py'}:line"
+    with pytest.raises(ExperimentError, match=r"--hold-out .*:line: its means are those of the fit; name a design, or data, that are not"):
+        fit_of(tmp_path, None).run(1, hold_out={line: means((5, 4, 3, 2, 1))})
+
+
 @pytest.mark.parametrize(
     ("change", "says"),
     [
