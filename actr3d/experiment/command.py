@@ -107,6 +107,11 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     out.line((str(about["name"]), "bold"), f": {_trials(total)} of '{about['model']}' by participants: {people}")
     for factor, levels in design.factors.items():
         out.line(f"  {factor}: {', '.join(map(str, levels))}")
+    for group, values in about["group_parameters"].items():
+        for name, value in values.items():
+            out.line(f"  {name} of {group}: {value}")
+    for name, value in about["settings"].items():
+        out.line(f"  {name}: {value}")
     out.line(
         f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / (os.cpu_count() or 1):,.0f} s on this computer"
     )
@@ -236,6 +241,11 @@ def fit(
     held_out = {design: held_out_means(design, data) for design, _, data in named}
     options = {"values": values, "participants": participants, "trials": trials}
     searched = [Range.from_text(text) for text in ranges]
+    for one in searched:
+        groups = fitted.design.groups.items()
+        drawn = [f"{group}: {of.parameters[one.name]}" for group, of in groups if one.name in of.parameters]
+        if drawn:
+            out.line(f"{one.name} is fitted as one value for all participants, instead of those of the design ({'; '.join(drawn)})")
 
     @contextmanager
     def open_cluster() -> Generator[Any]:

@@ -376,6 +376,16 @@ def test_failed_trials_are_shown(tmp_path: Path, capsys: Any) -> None:
     assert "warning: in 2 of 2 candidates, 8 of 40 trials failed" in told
 
 
+def test_a_fit_says_that_one_value_replaces_those_of_groups(tmp_path: Path, capsys: Any) -> None:
+    model, people = tmp_path / "line.py", tmp_path / "people.csv"
+    model.write_text(LINE.replace("Group(participants=4)", 'Group(parameters={"slope": 2.0})'), encoding="utf-8")
+    people.write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit"), "--workers", "1"]
+    assert main([*words, "--candidates", "1"]) == 0
+    says = "slope is fitted as one value for all participants, instead of those of the design (all: 2.0)\n"
+    assert says in capsys.readouterr().out
+
+
 def test_all_candidates_are_of_one_model_whatever_becomes_of_its_file(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client, "slope=0..3", options={"values": {"noise": 0}})
     (tmp_path / "line.py").write_text("half of a fi", encoding="utf-8")

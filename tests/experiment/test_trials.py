@@ -927,6 +927,15 @@ def test_a_check_says_if_trials_end_while_a_body_still_moves(tmp_path: Path, cap
     assert "its first trials ended because no agent had anything left to do (`done`)." in capsys.readouterr().out
 
 
+def test_a_check_shows_factors_parameters_of_groups_and_settings(tmp_path: Path, capsys: Any) -> None:
+    path = write_experiment(tmp_path, factors='{"mode": ["count"]}', trials=1)
+    text = path.read_text(encoding="utf-8").replace("participants=2", 'participants=2, parameters={"n": 3}')
+    path.write_text(text.replace("limit=60", 'limit=60, settings={"pause": Uniform(low=1, high=2)}'), encoding="utf-8")
+    (tmp_path / "counter.py").write_text(COUNTER.replace("n = 3", "n = 3\npause = 1.0"), encoding="utf-8")
+    assert main(["experiment", str(path), "--check"]) == 0
+    assert "participants: 2 all\n  mode: count\n  n of all: 3\n  pause: Uniform(low=1.0, high=2.0)\n" in capsys.readouterr().out
+
+
 def test_a_check_names_the_trial_that_fails_and_takes_no_options_of_a_run(tmp_path: Path, capsys: Any) -> None:
     model = COUNTER.replace('if mode == "fail"', "if n == 1")
     path = write_experiment(tmp_path, factors='{"n": [1, 2]}', participants=1, trials=1, model=model)
