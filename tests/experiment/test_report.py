@@ -29,6 +29,7 @@ from actr3d.experiment.report.command import write_report
 from actr3d.experiment.report.figures import LOOKS, Curve, Look, Pane, curves_figure, legend_columns, svg
 from actr3d.experiment.report.general import comparison_section, measure_sections, what_was_run
 from actr3d.experiment.report.libraries import pingouin
+from actr3d.experiment.report.page import page as report_page
 from actr3d.experiment.report.parts import Caution, Plot, Table
 from actr3d.experiment.report.results import Results, by_number, read_results
 from actr3d.experiment.report.statistics import cell_means
@@ -395,6 +396,15 @@ def test_a_legend_has_the_markers_that_are_drawn(label: str, marker: str) -> Non
     assert (shown["model"], shown["people"]) == (marker, marker)
 
 
+def test_code_in_a_caution_is_shown_as_code(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path, factors='{"n": [2]}', trials=1))
+    results = read_results(store_rows(tmp_path / "out", path, count))
+    section = what_was_run(replace(results, rows=results.rows.assign(end="done")))
+    text = report_page("counting", "", {}, [section], {})
+    assert "(<code>done</code>)" in text
+    assert "`" not in text
+
+
 def test_trials_that_all_ended_with_nothing_left_to_do_are_a_caution(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, participants=10, trials=1)
     results = read_results(store_rows(tmp_path / "out", str(path), count))
@@ -409,6 +419,7 @@ def test_one_participant_is_described_and_not_tested(tmp_path: Path) -> None:
     folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
     write_report(folder)
     assert "(1 rows)" not in page(folder)
+    assert "1 participants" not in page(folder)
     assert "A group has one participant. With fewer than 3 nothing can be said" in page(folder)
     assert {row["low"] for row in table(folder, "means_rt")} == {""}
     assert not list((folder / "report/tables").glob("anova*"))

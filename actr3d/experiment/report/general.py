@@ -42,7 +42,8 @@ def what_was_run(results: Results) -> Section:
     rows += [(f"factor {name}", ", ".join(map(plain_text, levels)) + _unit(results, name)) for name, levels in design.factors.items()]
     for name, group in design.groups.items():
         drawn = "; ".join(f"{key} = {value!r}" for key, value in group.parameters.items())
-        rows.append((f"group {name}", f"{group.participants} participants{': ' + drawn if drawn else ''}"))
+        people = "1 participant" if group.participants == 1 else f"{group.participants} participants"
+        rows.append((f"group {name}", f"{people}{': ' + drawn if drawn else ''}"))
     rows += [(f"setting {name}", repr(value)) for name, value in design.settings.items()]
     rows += [(f"changed {name}", repr(value)) for name, value in specification.values.items()]
     rows += [("trials of each cell", f"{design.trials:,} by each participant"), ("order", design.order), ("seed", str(design.seed))]
