@@ -461,7 +461,7 @@ class Returned:
     def look(self) -> None:
         pass
 
-    def result(self, *, over: bool) -> Any:  # noqa: ARG002 - see `Measure`
+    def result(self, *, over: bool) -> Any:
         return self.returned
 
 
