@@ -107,10 +107,10 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     out.line((str(about["name"]), "bold"), f": {_trials(total)} of '{about['model']}' by participants: {people}")
     for factor, levels in design.factors.items():
         out.line(f"  {factor}: {', '.join(map(str, levels))}")
-    for group, values in about["group_parameters"].items():
-        for name, value in values.items():
+    for group, own in facts["group_parameters"].items():
+        for name, value in own.items():
             out.line(f"  {name} of {group}: {value}")
-    for name, value in about["settings"].items():
+    for name, value in facts["settings"].items():
         out.line(f"  {name}: {value}")
     out.line(
         f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / (os.cpu_count() or 1):,.0f} s on this computer"
