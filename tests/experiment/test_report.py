@@ -28,9 +28,9 @@ from actr3d.experiment.report.beside import Beside, beside_experiment, beside_pe
 from actr3d.experiment.report.command import write_report
 from actr3d.experiment.report.figures import LOOKS, Curve, Look, Pane, curves_figure, legend_columns, svg
 from actr3d.experiment.report.general import comparison_section, measure_sections, what_was_run
-from actr3d.experiment.report.libraries import pingouin
+from actr3d.experiment.report.libraries import pandas, pingouin
 from actr3d.experiment.report.page import page as report_page
-from actr3d.experiment.report.parts import Caution, Plot, Table
+from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results, by_number, read_results
 from actr3d.experiment.report.statistics import cell_means
 from actr3d.experiment.specification import specify
@@ -394,6 +394,12 @@ def test_a_legend_has_the_markers_that_are_drawn(label: str, marker: str) -> Non
     assert [line.get_marker() for line in figure.axes[0].lines] == [marker] * 2
     shown = {handle.get_label(): handle.get_marker() for handle in figure.legends[0].legend_handles}
     assert (shown["model"], shown["people"]) == (marker, marker)
+
+
+def test_a_factor_with_the_name_of_another_column_is_called_a_factor() -> None:
+    table = Table(name="means", title="Means", frame=pandas().DataFrame({"n_": [5.0], "mean": [0.3], "n": [3]}))
+    text = report_page("counting", "", {}, [Section(title="rt", parts=[table])], {})
+    assert re.findall(r"<th [^>]*>([^<]*)", text) == ["factor n", "mean", "n"]
 
 
 def test_code_in_a_caution_is_shown_as_code(tmp_path: Path) -> None:

@@ -134,8 +134,12 @@ def _table(table: Table) -> str:
 
 
 def _head(name: str, table: Table) -> str:
-    """Returns the name of a column with its unit; degrees are short there, because many columns have them."""
-    return name_with_unit(table.heads.get(name, name), table.units.get(name, "")).replace("[degrees]", "[°]")
+    """Returns the name of a column with its unit; degrees are short there, because many columns have them.
+
+    A factor with the name of another column (`n_`, see `factor_name`) is called a factor.
+    """
+    shown = table.heads.get(name, f"factor {name[:-1]}" if name.endswith("_") else name)
+    return name_with_unit(shown, table.units.get(name, "")).replace("[degrees]", "[°]")
 
 
 def _cell(name: str, value: Any, numeric: set[str], table: Table) -> str:
