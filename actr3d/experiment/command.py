@@ -107,6 +107,11 @@ def check(name: str, out: Output, *, values: Mapping[str, Any], participants: in
     out.line((str(about["name"]), "bold"), f": {_trials(total)} of '{about['model']}' by participants: {people}")
     for factor, levels in design.factors.items():
         out.line(f"  {factor}: {', '.join(map(str, levels))}")
+    for group, own in facts["group_parameters"].items():
+        for name, value in own.items():
+            out.line(f"  {name} of {group}: {value}")
+    for name, value in facts["settings"].items():
+        out.line(f"  {name}: {value}")
     out.line(
         f"a trial takes {seconds:.2f} s on one processor; all take about {seconds * total / (os.cpu_count() or 1):,.0f} s on this computer"
     )
@@ -236,6 +241,11 @@ def fit(
     held_out = {design: held_out_means(design, data) for design, _, data in named}
     options = {"values": values, "participants": participants, "trials": trials}
     searched = [Range.from_text(text) for text in ranges]
+    for one in searched:
+        groups = fitted.design.groups.items()
+        drawn = [f"{group}: {of.parameters[one.name]}" for group, of in groups if one.name in of.parameters]
+        if drawn:
+            out.line(f"{one.name} is fitted as one value for all participants, instead of those of the design ({'; '.join(drawn)})")
 
     @contextmanager
     def open_cluster() -> Generator[Any]:
@@ -275,8 +285,8 @@ def _show_fit(result: FitResult, out: Output) -> None:
         out.line(f"  {one.name} = {one.value:g}   95 % interval: {low if low == high else f'{low} to {high}'}")
     for title, agreements in (("the fit", {"": result.fit}), ("held out", result.held_out), ("changed", result.ablated)):
         for what, found in agreements.items():
-            r2 = "none" if found.r2 is None else f"{found.r2:.3f}"
-            out.line(f"{title} {what}".rstrip() + f": RMSE {found.rmse:.4g}, r2 {r2}, {found.cells} means", *_lost(found))
+            r, r2 = ("none" if value is None else f"{value:.3f}" for value in (found.r, found.r2))
+            out.line(f"{title} {what}".rstrip() + f": RMSE {found.rmse:.4g}, r {r}, r2 {r2}, {found.cells} means", *_lost(found))
     for line in _effects(result.fit, result.ablated):
         out.line(line)
     if failing := [one for one in result.tried if one.failed]:

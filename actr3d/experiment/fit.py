@@ -41,10 +41,11 @@ from actr3d.experiment.cluster import Progress, run_experiment
 from actr3d.experiment.design import DIGITS, OWN_COLUMNS, OWN_NUMBERS, Design, Measured
 from actr3d.experiment.human_data import Schema, factor_name, library_human_data, plain_levels, plain_text, read_human_data, read_human_text
 from actr3d.experiment.report.analyses import columns_of_people
-from actr3d.experiment.report.statistics import rmse_and_r2
+from actr3d.experiment.report.statistics import rmse_and_r
 from actr3d.experiment.specification import Experiment, specify
 from actr3d.experiment.store import SPECIFICATION, Store, summary
 from actr3d.experiment.trial_measures import known_measures
+from actr3d.runner.cli_options import read_settings
 
 Shown = Callable[[str, int], AbstractContextManager[Callable[[Progress], object]]]
 """Shows the progress of an experiment inside a block: called with what it is for, and its number of trials."""
@@ -136,8 +137,10 @@ class Agreement:
     """The number of means of the target that are not compared: the model has none there, or a trial failed."""
     rmse: float
     """The root mean square difference, in the unit of the measure."""
+    r: float | None
+    """The correlation; None if there is none. A negative one is that of a model that falls where the target rises."""
     r2: float | None
-    """The square of the correlation; None if there is none."""
+    """Its square."""
     rows: tuple[dict[str, Any], ...] = ()
     """Each mean: its conditions, `target` and `model`."""
     failed: int = 0
@@ -291,16 +294,19 @@ class Fit:
             recover: The number of simulated data sets whose parameters are estimated.
 
         Raises:
-            ExperimentError: If no candidate has all means of the target, or an ablation is not NAME=VALUE.
+            ExperimentError: If no candidate has all means of the target. Before anything runs: if an ablation is not NAME=VALUE, a
+                held-out design or ablated model has no condition of its target, or held-out means are those of the fit.
             DesignError: If a held-out design or an ablated model does not fit the values; before anything runs.
         """
         hold_out = hold_out or {}
         lowest = {one.name: one.low for one in self._ranges}
         for name, means in hold_out.items():
-            self._other(name, lowest)
-            cells_of_target(means, f"--hold-out {name}")
+            cells = cells_of_target(means, f"--hold-out {name}")
+            if means[0].measure == self.measure and cells == self.target:
+                raise ExperimentError(f"--hold-out {name}: its means are those of the fit; name a design, or data, that are not fitted")
+            _check_in_common(cells, self._other(name, lowest).design, f"--hold-out {name}")
         for change in ablate:
-            self._ablated(change, lowest)
+            _check_in_common(self.target, self._ablated(change, lowest).design, f"--ablate {change}")
         with self._open_cluster() as self._client:
             return self._result(candidates, hold_out, ablate, recover)
 
@@ -475,16 +481,13 @@ class Fit:
 
         Raises:
             ExperimentError: If the change has another form than NAME=VALUE.
+            SettingError: If its value is a list that is not one of Python.
             DesignError: If it does not fit the model.
         """
-        name, equals, text = change.partition("=")
-        if not equals:
+        if "=" not in change:
             raise ExperimentError(f"--ablate: must be NAME=VALUE (got {change!r})")
-        try:
-            value: Any = json.loads(text)
-        except ValueError:
-            value = text
-        return self._experiment({**values, name: value}, f"--ablate {change.replace('{', '{{').replace('}', '}}')}")
+        option = f"--ablate {change.replace('{', '{{').replace('}', '}}')}"
+        return self._experiment({**values, **read_settings([change], (), "--ablate")}, option)
 
     def _recover(self, number: int, what: str) -> dict[str, float]:
         """Simulates data with known parameters, and estimates these from the candidates.
@@ -694,6 +697,12 @@ def _in_cell(level: Any) -> Any:
     return plain_text(level) if isinstance(level, (list, tuple, dict)) else level
 
 
+def _absent_factor(cell: Cell, of: Design) -> str | None:
+    """Returns the first factor of whose levels a design lacks that of a cell; None if it has them all."""
+    levels = ((name, level, of.factors.get(name)) for name, level in cell)
+    return next((name for name, level, known in levels if known is not None and level not in map(_in_cell, known)), None)
+
+
 def _check_conditions(target: Mapping[Cell, float], of: Design) -> None:
     """Checks that a design has the conditions of a target.
 
@@ -701,12 +710,28 @@ def _check_conditions(target: Mapping[Cell, float], of: Design) -> None:
         ExperimentError: If the target has a mean for a level that the design lacks.
     """
     for cell in target:
-        for name, level in cell:
-            levels = of.factors.get(name)
-            if levels is not None and level not in map(_in_cell, levels):
-                known = ", ".join(map(str, levels))
-                what = f"{level:g}" if isinstance(level, float) else level
-                raise ExperimentError(f"--target: has a mean for {name} {what}, which the design does not have; it has: {known}")
+        if (name := _absent_factor(cell, of)) is not None:
+            level, known = dict(cell)[name], ", ".join(map(str, of.factors[name]))
+            what = f"{level:g}" if isinstance(level, float) else level
+            raise ExperimentError(f"--target: has a mean for {name} {what}, which the design does not have; it has: {known}")
+
+
+def _check_in_common(target: Mapping[Cell, float], of: Design, option: str) -> None:
+    """Checks that a design has some conditions of a target.
+
+    Args:
+        target: The target.
+        of: The design.
+        option: The option that gave the design, for errors.
+
+    Raises:
+        ExperimentError: If it has none.
+    """
+    absent = {cell: _absent_factor(cell, of) for cell in target}
+    if (name := next(iter(absent.values()))) is not None and None not in absent.values():
+        there = ", ".join(dict.fromkeys(str(dict(cell)[name]) for cell in target))
+        design = ", ".join(map(str, of.factors[name]))
+        raise ExperimentError(f"{option}: the target has no mean for {name} {design}; it has: {there}")
 
 
 def cells_of_target(target: Sequence[TargetMean], option: str = "--target") -> dict[Cell, float]:
@@ -771,12 +796,13 @@ def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agre
     both = {cell: (mean, means[cell]) for cell, mean in target.items() if cell in means}
     if not both:
         raise ExperimentError("the design and the target have no conditions in common")
-    error, r2 = rmse_and_r2(*zip(*both.values(), strict=True))
+    error, r = rmse_and_r(*zip(*both.values(), strict=True))
     return Agreement(
         cells=len(both),
         missing=len(target) - len(both),
         rmse=error,
-        r2=None if math.isnan(r2) else r2,
+        r=None if math.isnan(r) else r,
+        r2=None if math.isnan(r) else r * r,
         rows=tuple({**dict(cell), "target": mean, "model": round(found, DIGITS)} for cell, (mean, found) in both.items()),
     )
 

@@ -74,10 +74,19 @@ class Specification(Configuration):
     trials: int | None = None
     """The number of trials of each combination of levels; None for that of the design."""
     values: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    """Values that replace those of the design; see `Design.changed`."""
+    """Values that replace those of the design, as JSON has them; see `Design.changed`."""
     versions: Mapping[str, str] = field(default_factory=dict[str, str])
     """The versions of everything that the rows may depend on."""
     format: int = FORMAT
+
+    def __post_init__(self) -> None:
+        """Converts the values to those that JSON has on a worker: seeds name them.
+
+        Raises:
+            ConfigurationError: If a field has the wrong type.
+        """
+        super().__post_init__()
+        object.__setattr__(self, "values", _as_json(self.values))
 
     def to_json(self) -> str:
         """Returns the specification as JSON."""
@@ -284,7 +293,7 @@ def specify(
         model=_source_of(model),
         participants=participants,
         trials=trials,
-        values=_as_json(values or {}),
+        values=values or {},
         versions=experiment_versions(),
     )
     experiment, people = Experiment(specification), library_human_data()
@@ -298,7 +307,7 @@ def specify(
 
 
 def _as_json(value: Any) -> Any:
-    """Returns a value as the specification's JSON has it on a worker: a tuple is a list. Seeds name values, so both must be the same."""
+    """Returns a value as JSON has it: a tuple is a list."""
     if isinstance(value, Mapping):
         return {name: _as_json(one) for name, one in cast("Mapping[Any, Any]", value).items()}
     return [*map(_as_json, cast("Sequence[Any]", value))] if isinstance(value, (list, tuple)) else value

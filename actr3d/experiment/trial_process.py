@@ -9,6 +9,7 @@ from __future__ import annotations
 import gc
 import json
 import os
+import re
 import selectors
 import shutil
 import signal
@@ -35,6 +36,9 @@ ATTEMPTS = 3
 
 LEFT: set[str] = set()
 """The clients that have left the cluster; no more of their trials are started."""
+
+ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
+"""The address of an object in memory, as Python writes it in the text of the object: it is another one in each process."""
 
 TIME_LIMIT = "time limit"
 """What the column `end` says of a trial that was ended at its limit."""
@@ -218,12 +222,15 @@ def main(folder: str) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the client ends this process
     asked = _Questions(questions, folder)
     with suppress(BrokenPipeError):
-        _answer(asked, answers)
+        _answer(asked, answers, folder)
     asked.reader.join()  # it ends this process
 
 
-def _answer(asked: _Questions, answers: BinaryIO) -> None:
-    """Answers with what `run_trial` returns, or with the error of an experiment that cannot be loaded."""
+def _answer(asked: _Questions, answers: BinaryIO, folder: str) -> None:
+    """Answers with what `run_trial` returns, or with the error of an experiment that cannot be loaded.
+
+    The error of a trial is the same in every process: without addresses in memory, and with TMPDIR for the folder of temporary files.
+    """
     question: str | int = asked.next()
     while True:
         try:
@@ -238,6 +245,8 @@ def _answer(asked: _Questions, answers: BinaryIO) -> None:
                     columns, row = _row_of(experiment, question, helpers)
                     if os.getpid() != own:  # the model has forked, and this is its child
                         os._exit(0)
+                    if row["error"] is not None:
+                        row["error"] = ADDRESS.sub("", row["error"]).replace(folder, "TMPDIR")
                     news = experiment.about if len(experiment.about) > described else {}
                     described = len(experiment.about)
                     answers.write(json.dumps({"columns": columns, "row": row, "about": news}, allow_nan=False).encode() + b"\n")

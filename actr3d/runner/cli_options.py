@@ -49,11 +49,16 @@ def read_options(words: Sequence[str], fields: Sequence[Parameter], others: Iter
     return settings
 
 
-def read_settings(texts: Sequence[str], fields: Sequence[Parameter]) -> dict[str, Any]:
+def read_settings(texts: Sequence[str], fields: Sequence[Parameter], option: str = "--set") -> dict[str, Any]:
     """Returns parameters from texts `name=value`; an unknown name gets a value too, so that the builder can reject it.
 
+    Args:
+        texts: The texts.
+        fields: The parameters whose types are known.
+        option: The option that gave the texts, for errors.
+
     Raises:
-        SettingError: If a text does not have this form, or a name has two values.
+        SettingError: If a text does not have this form, a name has two values, or a list or tuple is not one of Python.
     """
     known = {field.name: field for field in fields}
     settings: dict[str, Any] = {}
@@ -63,9 +68,12 @@ def read_settings(texts: Sequence[str], fields: Sequence[Parameter]) -> dict[str
         if not equals or not name.isidentifier():
             raise SettingError(f"a parameter is set by name=value (got {text!r})")
         if name in given:
-            raise SettingError(f"--set {name}: is given twice ({given[name]!r}, {value!r}); give one value")
+            raise SettingError(f"{option} {name}: is given twice ({given[name]!r}, {value!r}); give one value")
         given[name] = value
         settings[name] = known[name].value(value) if name in known else literal(value)
+        if name not in known and settings[name] == value and value.startswith(("[", "(")):  # one text, where several values were meant
+            quoted = f"a shell removes quotes, so quote the whole: {option} \"{name}=['a', 'b']\""
+            raise SettingError(f"{option} {name}: must be a list or tuple of Python (got {value!r}); {quoted}")
     return settings
 
 

@@ -28,7 +28,7 @@ class Measure(Protocol):
         ...
 
     def result(self, *, over: bool) -> Any:
-        """Returns the result up to now: a frozen dataclass of plain values, whose `str` is for people.
+        """Returns the result up to now: an object of a frozen dataclass of plain values, whose `str` is for people; None for none yet.
 
         Args:
             over: Whether the agents have ended the run; otherwise it was cut short, or continues.

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, is_dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal
@@ -482,11 +482,19 @@ class Simulation:
         self._measure = measure
 
     def result(self) -> Any:
-        """Returns the result of the measure up to now; None without one."""
+        """Returns the result of the measure up to now; None if there is none.
+
+        Raises:
+            SimulationError: If it is not an object of a dataclass.
+            Exception: What the measure raises.
+        """
         if self._measure is None:
             return None
         lockstep = self.timeline.lockstep
-        return self._measure.result(over=lockstep.agents.stopped or lockstep.done)
+        found = self._measure.result(over=lockstep.agents.stopped or lockstep.done)
+        if found is not None and (not is_dataclass(found) or isinstance(found, type)):
+            raise SimulationError(f"{type(self._measure).__name__}.result: must return an object of a dataclass (returned {found!r})")
+        return found
 
     def conclude(self) -> Any:
         """Returns the result, and traces it; the run must not continue."""

@@ -153,7 +153,7 @@ def test_a_held_out_design_may_have_another_measure_than_the_fit(
         assert re.search(says, capsys.readouterr().err)
     others.write_text("x,measure,mean,source\n10,z,15,ours\n", encoding="utf-8")
     assert main(words) == 0
-    assert re.search(r"held out .*:steeper: RMSE [\d.]+, r2 none, 1 means", capsys.readouterr().out)
+    assert re.search(r"held out .*:steeper: RMSE [\d.]+, r none, r2 none, 1 means", capsys.readouterr().out)
 
 
 def test_held_out_designs_are_run_with_the_model_and_their_own_numbers(tmp_path: Path, client: Any) -> None:
@@ -179,12 +179,38 @@ def test_held_out_designs_that_the_values_do_not_fit_are_refused_before_anything
         fit.run(1, hold_out={f"{tmp_path / 'other.py'}:steeper": means((10, 20, 30))})
 
 
+def test_held_out_means_that_are_those_of_the_fit_are_refused_before_anything_runs(tmp_path: Path) -> None:
+    line = f"{tmp_path / 'line.py'}:line"
+    with pytest.raises(ExperimentError, match=r"--hold-out .*:line: its means are those of the fit; name a design, or data, that are not"):
+        fit_of(tmp_path, None).run(1, hold_out={line: means((5, 4, 3, 2, 1))})
+
+
 @pytest.mark.parametrize(
-    ("change", "says"), [("slope", r"--ablate: must be NAME=VALUE"), ("slop=0", r"--ablate slop=0: Design: the model has no")]
+    ("change", "says"),
+    [
+        ("slope", r"--ablate: must be NAME=VALUE"),
+        ("slop=0", r"--ablate slop=0: Design: the model has no"),
+        ("x=7", r"--ablate x=7: the target has no mean for x 7; it has: 1, 2, 3, 4, 5"),
+    ],
 )
 def test_ablated_models_that_cannot_be_are_refused_before_anything_runs(tmp_path: Path, change: str, says: str) -> None:
     with pytest.raises(Actr3dError, match=says):
         fit_of(tmp_path, None).run(1, ablate=[change])
+
+
+def test_held_out_designs_without_any_condition_of_their_target_are_refused_before_anything_runs(tmp_path: Path) -> None:
+    says = r"--hold-out .*:steeper: the target has no mean for x 10, 20, 30; it has: 1, 2"
+    with pytest.raises(ExperimentError, match=says):
+        fit_of(tmp_path, None).run(1, hold_out={f"{tmp_path / 'line.py'}:steeper": means((1, 2))})
+
+
+def test_an_ablation_reads_values_as_other_options_do(tmp_path: Path, client: Any) -> None:
+    line = LINE.replace("noise = 0.1", "noise = 0\npart = True").replace("y = model.value", "y = model.value if part else 7.0")
+    changes = ["part=False", "part=false", "part=None", "part=()"]
+    options = {"participants": 1}
+    result = fit_of(tmp_path, client, "slope=0..3", line=line, options=options).run(1, ablate=[*changes, "part='False'"])
+    assert all({row["model"] for row in result.ablated[change].rows} == {7.0} for change in changes)
+    assert [row["model"] for row in result.ablated["part='False'"].rows] == [row["model"] for row in result.fit.rows]
 
 
 def test_a_target_for_conditions_that_the_design_lacks_is_refused_before_anything_runs(tmp_path: Path, client: Any) -> None:
@@ -350,6 +376,16 @@ def test_failed_trials_are_shown(tmp_path: Path, capsys: Any) -> None:
     assert "warning: in 2 of 2 candidates, 8 of 40 trials failed" in told
 
 
+def test_a_fit_says_that_one_value_replaces_those_of_groups(tmp_path: Path, capsys: Any) -> None:
+    model, people = tmp_path / "line.py", tmp_path / "people.csv"
+    model.write_text(LINE.replace("Group(participants=4)", 'Group(parameters={"slope": 2.0})'), encoding="utf-8")
+    people.write_text("x,measure,mean,source\n1,y,2.4,ours\n3,y,5.2,ours\n", encoding="utf-8")
+    words = ["fit", f"{model}:line", "--parameter", "slope=0..3", "--target", str(people), "--out", str(tmp_path / "fit"), "--workers", "1"]
+    assert main([*words, "--candidates", "1"]) == 0
+    says = "slope is fitted as one value for all participants, instead of those of the design (all: 2.0)\n"
+    assert says in capsys.readouterr().out
+
+
 def test_all_candidates_are_of_one_model_whatever_becomes_of_its_file(tmp_path: Path, client: Any) -> None:
     fit = fit_of(tmp_path, client, "slope=0..3", options={"values": {"noise": 0}})
     (tmp_path / "line.py").write_text("half of a fi", encoding="utf-8")
@@ -425,12 +461,14 @@ def test_targets_that_do_not_fit_are_refused(tmp_path: Path, client: Any) -> Non
         agreement({(("x", 1),): 1.0}, {(("x", 2),): 1.0})
 
 
-def test_equal_means_have_no_correlation() -> None:
+def test_equal_means_have_no_correlation_and_opposite_ones_a_negative_one() -> None:
     target = {(("x", number),): 0.1 for number in range(3)}
     means = {cell: float(number) for number, cell in enumerate(target)}
     assert agreement(means, target).r2 is None
     assert agreement(means, {cell: 0.1 + 0.2 * (number % 2) for number, cell in enumerate(target)}).r2 == pytest.approx(0)
     assert agreement(dict(zip(target, (0.3, 0.1 + 0.2, 0.3), strict=True)), means).r2 is None, "they differ by rounding"
+    falling = agreement({cell: -mean for cell, mean in means.items()}, means)
+    assert (falling.r, falling.r2) == (pytest.approx(-1), pytest.approx(1)), "a model that does the opposite"
 
 
 @pytest.mark.parametrize(

@@ -24,12 +24,13 @@ from actr3d.experiment.aperture.constraints import Findings
 from actr3d.experiment.fit import load_target
 from actr3d.experiment.report import general, statistics
 from actr3d.experiment.report.analyses import ANALYSES
-from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, human_data_of, missing
+from actr3d.experiment.report.beside import Beside, beside_experiment, beside_people, fit_to, human_data_of, missing
 from actr3d.experiment.report.command import write_report
 from actr3d.experiment.report.figures import LOOKS, Curve, Look, Pane, curves_figure, legend_columns, svg
-from actr3d.experiment.report.general import comparison_section, what_was_run
-from actr3d.experiment.report.libraries import pingouin
-from actr3d.experiment.report.parts import Caution, Plot, Table
+from actr3d.experiment.report.general import comparison_section, measure_sections, what_was_run
+from actr3d.experiment.report.libraries import pandas, pingouin
+from actr3d.experiment.report.page import page as report_page
+from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results, by_number, read_results
 from actr3d.experiment.report.statistics import cell_means
 from actr3d.experiment.specification import specify
@@ -154,6 +155,25 @@ def test_an_error_in_a_measure_ends_its_own_section_and_is_named(
     assert len(re.findall(rf"The rest of this section could not be made: {named}\.", text)) == 1
     assert len(table(folder, "means_rt")) == len(table(folder, "means_luck")), "what was made before the error is there"
     assert table(folder, "anova_luck")
+
+
+def test_the_measures_that_a_design_names_are_open_and_in_the_contents(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path, participants=3))
+    folder = store_rows(tmp_path / "out", path, count, trials=1)
+    write_report(folder)
+    assert '<section id="rt--s-">' in page(folder)
+    assert '<a href="#rt--s-">rt [s]</a>' in page(folder)
+    parts = by_number(read_results(folder))
+    assert not [one.title for one in measure_sections(parts, [], secondary=True) if one.folded]
+    unnamed = [replace(part, design=replace(part.design, measures=())) for part in parts]
+    assert [one.title for one in measure_sections(unnamed, [], secondary=True) if one.folded] == ["rt [s]", "luck"]
+    assert not [one.title for one in measure_sections(unnamed, []) if one.folded], "no other section has results"
+
+
+def test_measures_are_folded_below_an_analysis_that_shows_what_matters(walked: Path) -> None:
+    folded = re.findall(r'<details class="section" id="([^"]+)"', page(walked))
+    assert "contacts" in folded
+    assert "wall-angle--degrees-" not in folded, "people have it"
 
 
 def test_the_same_rows_give_the_same_files(tmp_path: Path) -> None:
@@ -330,6 +350,33 @@ def test_failures_and_missing_trials_are_said_plainly(tmp_path: Path) -> None:
     assert "The design names no human data" in text
 
 
+def test_cells_with_failed_trials_are_named_and_not_compared(tmp_path: Path) -> None:
+    """What is left of a cell would be the mean of its easier trials; a fit compares none of it, either."""
+    path = str(write_experiment(tmp_path, participants=4, trials=1))
+
+    def measures(trial: Any) -> dict[str, Any]:
+        return {"error": "ValueError: no"} if trial.values["n"] == 5 and trial.participant.name == "all 3" else count(trial)
+
+    whole, failing = (read_results(store_rows(tmp_path / name, path, of)) for name, of in (("whole", count), ("failing", measures)))
+    said = cautions(what_was_run(failing).parts)
+    assert "Cells with failed trials: n 5. What is left may be the easier ones" in said
+    for one, other in ((failing, whole), (whole, failing)):
+        beside = beside_experiment([other], [one])
+        assert beside is not None
+        assert list(fit_to([one], beside)["cells"]) == [2, 2]
+
+
+def test_few_participants_are_those_with_results(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path, participants=10))
+
+    def measures(trial: Any) -> dict[str, Any]:
+        return count(trial) if trial.participant.name in ("all 3", "all 7") else {"error": "ValueError: no"}
+
+    said = cautions(what_was_run(read_results(store_rows(tmp_path / "out", path, measures, trials=1))).parts)
+    assert "A group has 2 participants with results, of 10 in the design. With fewer than 3 nothing can be said" in said
+    assert "intervals over two participants are no more than their range" in said
+
+
 def test_a_report_says_if_the_description_of_the_design_is_of_other_numbers(tmp_path: Path) -> None:
     path = str(write_experiment(tmp_path))
     text = "The description is that of the design as it was written. This experiment has its own: --trials, n."
@@ -349,6 +396,21 @@ def test_a_legend_has_the_markers_that_are_drawn(label: str, marker: str) -> Non
     assert (shown["model"], shown["people"]) == (marker, marker)
 
 
+def test_a_factor_with_the_name_of_another_column_is_called_a_factor() -> None:
+    table = Table(name="means", title="Means", frame=pandas().DataFrame({"n_": [5.0], "mean": [0.3], "n": [3]}))
+    text = report_page("counting", "", {}, [Section(title="rt", parts=[table])], {})
+    assert re.findall(r"<th [^>]*>([^<]*)", text) == ["factor n", "mean", "n"]
+
+
+def test_code_in_a_caution_is_shown_as_code(tmp_path: Path) -> None:
+    path = str(write_experiment(tmp_path, factors='{"n": [2]}', trials=1))
+    results = read_results(store_rows(tmp_path / "out", path, count))
+    section = what_was_run(replace(results, rows=results.rows.assign(end="done")))
+    text = report_page("counting", "", {}, [section], {})
+    assert "(<code>done</code>)" in text
+    assert "`" not in text
+
+
 def test_trials_that_all_ended_with_nothing_left_to_do_are_a_caution(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, participants=10, trials=1)
     results = read_results(store_rows(tmp_path / "out", str(path), count))
@@ -363,6 +425,7 @@ def test_one_participant_is_described_and_not_tested(tmp_path: Path) -> None:
     folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
     write_report(folder)
     assert "(1 rows)" not in page(folder)
+    assert "1 participants" not in page(folder)
     assert "A group has one participant. With fewer than 3 nothing can be said" in page(folder)
     assert {row["low"] for row in table(folder, "means_rt")} == {""}
     assert not list((folder / "report/tables").glob("anova*"))

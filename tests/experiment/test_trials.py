@@ -76,6 +76,26 @@ def test_a_failing_trial_is_a_row_with_its_traceback(tmp_path: Path) -> None:
     assert "site-packages" not in bad["error"]
 
 
+def test_a_failing_trial_has_the_same_row_in_every_process(tmp_path: Path) -> None:
+    """Addresses of objects and the folder of temporary files are not the same."""
+    end = """
+import tempfile
+if n == 1:
+    rt = object()
+if n == 2:
+    open(tempfile.gettempdir() + "/words.txt")
+if n == 3:
+    raise ValueError(f"cannot use {(lambda: 1)}, 0x7f")
+"""
+    path = write_experiment(tmp_path, model=f"{COUNTER}{end}", factors='{"n": [1, 2, 3]}', participants=1, trials=1)
+    one, other = rows_of(path), rows_of(path)
+    assert one == other
+    errors = {row["n"]: row["error"].splitlines()[-1] for row in one}
+    assert "True, False or None (got <object object>)" in errors[1]
+    assert errors[2] == "FileNotFoundError: [Errno 2] No such file or directory: 'TMPDIR/words.txt'"
+    assert errors[3] == "ValueError: cannot use <function <lambda>>, 0x7f"
+
+
 def test_a_trial_that_hangs_is_ended_at_its_limit_and_the_rest_goes_on(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, factors='{"mode": ["hang", "count"]}', participants=1, trials=2, limit=1)
     rows = rows_of(path)
@@ -905,6 +925,15 @@ def test_a_check_says_if_trials_end_while_a_body_still_moves(tmp_path: Path, cap
     path.write_text(f"from actr3d.experiment import *\n\n\n@design\ndef walking():\n    return Design(model='walk.py', {results})\n")
     assert main(["experiment", str(path), "--check"]) == 0
     assert "its first trials ended because no agent had anything left to do (`done`)." in capsys.readouterr().out
+
+
+def test_a_check_shows_factors_parameters_of_groups_and_settings(tmp_path: Path, capsys: Any) -> None:
+    path = write_experiment(tmp_path, factors='{"mode": ["count"]}', trials=1)
+    text = path.read_text(encoding="utf-8").replace("participants=2", 'participants=2, parameters={"n": 3}')
+    path.write_text(text.replace("limit=60", 'limit=60, settings={"pause": Uniform(low=1, high=2)}'), encoding="utf-8")
+    (tmp_path / "counter.py").write_text(COUNTER.replace("n = 3", "n = 3\npause = 1.0"), encoding="utf-8")
+    assert main(["experiment", str(path), "--check"]) == 0
+    assert "participants: 2 all\n  mode: count\n  n of all: 3\n  pause: Uniform(low=1.0, high=2.0)\n" in capsys.readouterr().out
 
 
 def test_a_check_names_the_trial_that_fails_and_takes_no_options_of_a_run(tmp_path: Path, capsys: Any) -> None:

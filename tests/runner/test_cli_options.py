@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -164,6 +165,14 @@ def test_a_setting_that_is_given_twice_is_refused() -> None:
 )
 def test_settings_of_unknown_parameters_are_python_literals(text: str, value: Any) -> None:
     assert read_settings([f"lit={text}"], ()) == {"lit": value}
+
+
+@pytest.mark.parametrize("text", ["[cat,dog]", "(cat)", "['cat'"])
+def test_a_list_whose_quotes_the_shell_has_removed_is_refused(text: str) -> None:
+    says = f'--ablate word: must be a list or tuple of Python (got {text!r}); a shell removes quotes, so quote the whole: --ablate "word='
+    with pytest.raises(SettingError, match=re.escape(says)):
+        read_settings([f"word={text}"], (), "--ablate")
+    assert read_settings([f"word={text!r}"], ()) == {"word": text}, "a text in quotes of its own"
 
 
 @pytest.fixture

@@ -24,7 +24,7 @@ from actr3d.errors import Actr3dError, SchedulerError, SimulationError, WorldErr
 from actr3d.simulation import Glimpse, Simulation, agents, timeline
 from actr3d.simulation.agents import Environment
 from actr3d.trace import Trace
-from actr3d.world import Body, Floor, Mannequin, Scene, Wall
+from actr3d.world import Body, Floor, Mannequin, Scene, Wall, World
 from actr3d.world.body import SENSORS, sensor
 from tests.helpers.small_agents import near
 from tests.helpers.walkers import Driver, digest, driving, scene_of
@@ -447,6 +447,30 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
 def test_what_is_wrong_is_said(wrong: Callable[[Simulation], object], message: str) -> None:
     with pytest.raises(Actr3dError, match=message):
         wrong(driving())
+
+
+class Returned:
+    """A measure with the result that it is given."""
+
+    def __init__(self, returned: Any) -> None:
+        self.returned = returned
+
+    def begin(self, world: World) -> None:
+        pass
+
+    def look(self) -> None:
+        pass
+
+    def result(self, *, over: bool) -> Any:
+        return self.returned
+
+
+@pytest.mark.parametrize("returned", [{"a": 1}, 1.5, Returned])
+def test_a_result_that_is_not_of_a_dataclass_is_an_error_that_names_the_measure(returned: Any) -> None:
+    simulation = Simulation(Scene(parts=(Floor(),)))
+    simulation.measure(Returned(returned))
+    with pytest.raises(SimulationError, match=r"^Returned\.result: must return an object of a dataclass \(returned "):
+        simulation.result()
 
 
 def test_numbers_of_numpy_are_numbers() -> None:

@@ -22,7 +22,7 @@ from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
 from actr3d.experiment.report.results import Results
-from actr3d.experiment.report.statistics import bootstrap_interval, cell_means, in_order, rmse_and_r2
+from actr3d.experiment.report.statistics import bootstrap_interval, cell_means, in_order, rmse_and_r
 
 Parts = list[str | Table | Plot | Caution]
 ORIGINAL, GEOMETRY = "original ACT-R 3D", "geometry (baseline)"
@@ -448,9 +448,9 @@ def _agreement(name: str, cells: Any, own: Any, note: str = "", people: Any = No
             continue
         both = frame[frame[two].notna()]
         if len(both):
-            rmse, r2 = rmse_and_r2(both[one], both[two])
-            rows.append({"means_of": what, "compared_with": other, "cells": len(both), "rmse": rmse, "r2": r2})
-    frame, digits = pandas().DataFrame(rows), {"rmse": 2, "r2": 3}
+            rmse, r = rmse_and_r(both[one], both[two])
+            rows.append({"means_of": what, "compared_with": other, "cells": len(both), "rmse": rmse, "r": r, "r2": r * r})
+    frame, digits = pandas().DataFrame(rows), {"rmse": 2, "r": 3, "r2": 3}
     return Table(name=name, title="Agreement", frame=frame, units={"rmse": "degrees"}, digits=digits, note=note)
 
 

@@ -18,7 +18,7 @@ from actr3d.experiment.report.analyses import columns_of_people
 from actr3d.experiment.report.figures import Look
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.report.results import Results
-from actr3d.experiment.report.statistics import cell_means, rmse_and_r2
+from actr3d.experiment.report.statistics import cell_means, rmse_and_r
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,8 +137,20 @@ def _is_fixed(results: Results, name: str) -> bool:
 
 def matched(results: Results, beside: Beside, measure: str) -> Any:
     """Returns a `DataFrame` of the cells that both have: `model`, `beside` and what makes the cell. Means over all groups or levels are
-    compared with the model's means over all."""
-    return matched_means(results.rows, measure, ["group", *results.all_factors], beside.of(measure))
+    compared with the model's means over all.
+
+    Cells in which a trial failed are left out, as in a fit: their means would be those of the easier trials.
+    """
+    keys = ["group", *results.all_factors]
+    found = matched_means(results.rows, measure, keys, beside.of(measure))
+    failed: list[dict[str, Any]] = []
+    for one in (results, *([] if beside.results is None else [beside.results])):
+        failed += one.failures[[key for key in keys if key in one.failures]].drop_duplicates().to_dict("records")
+    whole = [
+        not any(all(missing(cell[key]) or cell[key] == level for key, level in one.items()) for one in failed)
+        for cell in found.to_dict("records")
+    ]
+    return found[whole].reset_index(drop=True)
 
 
 def matched_means(trials: Any, measure: str, keys: Sequence[str], means: Any) -> Any:
@@ -161,17 +173,17 @@ def matched_means(trials: Any, measure: str, keys: Sequence[str], means: Any) ->
 
 
 def fit_to(parts: Sequence[Results], beside: Beside) -> Any:
-    """Returns a `DataFrame` with a row for each measure: the agreement of the means of all cells that both have."""
+    """Returns a `DataFrame` with a row for each measure: the agreement of the means of all cells that both have; see `matched`."""
     found: list[dict[str, Any]] = []
     for results, measure in ((part, measure) for part in parts for measure in part.measures):
         cells = matched(results, beside, measure)
         if len(cells):
-            rmse, r2 = rmse_and_r2(cells["model"], cells["beside"])
+            rmse, r = rmse_and_r(cells["model"], cells["beside"])
             difference = float((cells["model"] - cells["beside"]).mean())
             unit = results.unit(measure)
             row = {"measure": measure, "unit": unit, "beside": beside.label, "cells": len(cells)}
-            found.append({**row, "mean_difference": difference, "rmse": rmse, "r2": r2})
-    return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "mean_difference", "rmse", "r2"])
+            found.append({**row, "mean_difference": difference, "rmse": rmse, "r": r, "r2": r * r})
+    return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "mean_difference", "rmse", "r", "r2"])
 
 
 def missing(value: Any) -> bool:

@@ -54,10 +54,11 @@ def write_report(
     other = None if compare is None else read_results(compare)
     beside = None if other is None else beside_experiment(by_number(other), parts)
     others: list[Beside] = [one for one in (people, beside) if one is not None]
-    sections = [what_was_run(results), *analysis_sections(results, others), human_section(parts, data, why, people)]
+    analyses = analysis_sections(results, others)
+    sections = [what_was_run(results), *analyses, human_section(parts, data, why, people)]
     if other is not None:
         sections.append(comparison_section(results, other, parts, beside))
-    sections += measure_sections(parts, others)
+    sections += measure_sections(parts, others, secondary=not all(section.failed for section in analyses))
     _write(final, results, sections)
     if failed := [section.failed for section in sections if section.failed]:
         raise ExperimentError(f"'{named / PAGE}' is written, but some of its sections are not complete: {'; '.join(failed)}")

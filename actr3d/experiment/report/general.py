@@ -29,6 +29,8 @@ MAX_TICKS = 12
 """An axis has a tick for each level if all are whole numbers and there are at most this many."""
 MAX_KINDS = 20
 """A measure with more different texts than this is not counted."""
+MAX_CELLS = 6
+"""The maximum number of cells with failed trials that are named."""
 TAIL = 700
 """The characters of a failure's message that the page shows: its end."""
 
@@ -40,7 +42,8 @@ def what_was_run(results: Results) -> Section:
     rows += [(f"factor {name}", ", ".join(map(plain_text, levels)) + _unit(results, name)) for name, levels in design.factors.items()]
     for name, group in design.groups.items():
         drawn = "; ".join(f"{key} = {value!r}" for key, value in group.parameters.items())
-        rows.append((f"group {name}", f"{group.participants} participants{': ' + drawn if drawn else ''}"))
+        people = "1 participant" if group.participants == 1 else f"{group.participants} participants"
+        rows.append((f"group {name}", f"{people}{': ' + drawn if drawn else ''}"))
     rows += [(f"setting {name}", repr(value)) for name, value in design.settings.items()]
     rows += [(f"changed {name}", repr(value)) for name, value in specification.values.items()]
     rows += [("trials of each cell", f"{design.trials:,} by each participant"), ("order", design.order), ("seed", str(design.seed))]
@@ -64,7 +67,7 @@ def cautions(results: Results) -> list[Caution]:
     if done < total:
         found.append(f"Only {done:,} of {total:,} trials have finished; all numbers are preliminary.")
     if len(results.failures):
-        found.append(f"{len(results.failures):,} of {done:,} trials failed. They are left out of all means.")
+        found.append(f"{len(results.failures):,} of {done:,} trials failed. They are left out of all means.{_failed_cells(results)}")
     if cut := sum(results.rows["end"] == "limits") if len(results.rows) else 0:
         found.append(
             f"{cut:,} of {done:,} trials were stopped at their limit of {results.design.until:g} simulated seconds, `until` in the design. "
@@ -72,18 +75,35 @@ def cautions(results: Results) -> list[Caution]:
         )
     if len(results.rows) and ended_early(results.rows["end"]):
         found.append(f"All trials {NOTHING_LEFT}")
-    least = min(group.participants for group in results.design.groups.values())
+    there = results.rows.groupby("group")["participant"].nunique()
+    people = {name: (int(there.get(name, 0)), group.participants) for name, group in results.design.groups.items()}
+    least, planned = min(people.values())
+    many = {0: "no participants", 1: "one participant"}.get(least, f"{least} participants")
+    many += f" with results, of {planned} in the design" if least < planned else ""
     if least < FEWEST:
-        many = "one participant" if least == 1 else f"{least} participants"
         narrow = ", and intervals over two participants are no more than their range" if least == 2 else ""
         found.append(
             f"A group has {many}. With fewer than {FEWEST} nothing can be said about other participants: nothing is tested{narrow}."
         )
     elif least < FEW:
-        found.append(f"A group has {least} participants. With fewer than {FEW}, bootstrap intervals are too narrow.")
+        found.append(f"A group has {many}. With fewer than {FEW}, bootstrap intervals are too narrow.")
     if len(results.versions) > 1:
         found.append(f"The trials were run with {len(results.versions)} different sets of versions.")
     return [Caution(text) for text in found]
+
+
+def _failed_cells(results: Results) -> str:
+    """Returns sentences that name the cells in which trials failed, and say what that means for their means."""
+    by = [*(["group"] if len(results.groups) > 1 else []), *(name for name in results.factors if name in results.failures)]
+    means = " What is left may be the easier ones: read its means and tests with care. They are not compared with other means."
+    if not by:
+        return means
+    cells = results.failures[by].drop_duplicates().to_dict("records")
+    named = [
+        ", ".join(f"{name.replace('_', ' ').strip()} {plain_text(level)}" for name, level in cell.items()) for cell in cells[:MAX_CELLS]
+    ]
+    more = [f"and {len(cells) - MAX_CELLS:,} more"] if len(cells) > MAX_CELLS else []
+    return f" Cells with failed trials: {'; '.join([*named, *more])}.{means}"
 
 
 def failures(results: Results) -> Table:
@@ -157,7 +177,7 @@ def comparison_section(results: Results, other: Results, parts: Sequence[Results
         found.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
         found.append(_matched_table(parts, beside, "means_beside_other", f"Means beside those of {other.label}"))
     else:
-        found.append(Caution("The two experiments have no cell in common: their means are not compared."))
+        found.append(Caution("The two experiments have no cell in common without failed trials: their means are not compared."))
     return Section(title=title, parts=found)
 
 
@@ -169,8 +189,15 @@ def _matched_table(parts: Sequence[Results], beside: Beside, name: str, title: s
     return Table(name=name, title=title, frame=frame, heads={"beside": beside.label}, folded=True)
 
 
-def measure_sections(parts: Sequence[Results], others: Sequence[Beside]) -> list[Section]:
-    """Returns a section for each measure, and one that explains what all measures show."""
+def measure_sections(parts: Sequence[Results], others: Sequence[Beside], *, secondary: bool = False) -> list[Section]:
+    """Returns a section for each measure, and one that explains what all measures show.
+
+    Args:
+        parts: The experiment, from `by_number`.
+        others: Means beside its own.
+        secondary: Whether other sections show results, too: then those of measures that neither the design names nor people have are
+            folded.
+    """
     note = (
         "Means are of participants: first the trials of a participant in a cell are averaged, then the participants. Intervals are 95 % "
         f"percentile bootstrap intervals over participants ({RESAMPLES:,} samples, seed {SEED}). The tests describe the simulated sample: "
@@ -178,7 +205,7 @@ def measure_sections(parts: Sequence[Results], others: Sequence[Beside]) -> list
         "number of measures."
     )
     found = [Section(title="All measures", parts=[note, *_outcomes(parts[0])])]
-    return found + [_measure_section(part, name, others) for part in parts for name in part.measures]
+    return found + [_measure_section(part, name, others, secondary=secondary) for part in parts for name in part.measures]
 
 
 def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
@@ -193,8 +220,8 @@ def _outcomes(results: Results) -> list[str | Table | Plot | Caution]:
     return found
 
 
-def _measure_section(results: Results, measure: str, others: Sequence[Beside]) -> Section:
-    """Returns the section of a measure; an error ends this section, and no other."""
+def _measure_section(results: Results, measure: str, others: Sequence[Beside], *, secondary: bool) -> Section:
+    """Returns the section of a measure, see `measure_sections`; an error ends this section, and no other."""
     parts, failed = list[str | Table | Plot | Caution](), ""
     try:
         for part in _measure_parts(results, measure, others):
@@ -202,7 +229,8 @@ def _measure_section(results: Results, measure: str, others: Sequence[Beside]) -
     except Exception as error:  # noqa: BLE001 - it is shown here, and `write_report` raises it when the other sections are written
         failed = _failed(f"measure '{measure}'", error, parts)
     human = any(one.look == "human" and len(one.of(measure)) for one in others)
-    return Section(title=results.name_with_unit(measure), parts=parts, folded=not (human or failed), failed=failed)
+    folded = secondary and not (results.design.kept or human or failed)  # a design that names measures has no others
+    return Section(title=results.name_with_unit(measure), parts=parts, folded=folded, failed=failed)
 
 
 def _measure_parts(results: Results, measure: str, others: Sequence[Beside]) -> Iterator[str | Table | Plot | Caution]:

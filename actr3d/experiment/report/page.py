@@ -101,10 +101,9 @@ def _section(section: Section, drawings: Mapping[str, str]) -> str:
 def _part(part: str | Table | Plot | Caution, drawings: Mapping[str, str]) -> str:
     match part:
         case str():
-            code = re.sub(r"`([^`]+)`", r"<code>\1</code>", _text(part))
-            return f"<p>{code}</p>"
+            return f"<p>{_with_code(part)}</p>"
         case Caution():
-            return f'<div class="caution">{_text(part.text)}</div>'
+            return f'<div class="caution">{_with_code(part.text)}</div>'
         case Plot():
             drawing = inline_svg(drawings[part.name], part.name, part.title)
             links = f'<a href="figures/{part.name}.svg">SVG</a> <a href="figures/{part.name}.png">PNG</a>'
@@ -135,8 +134,12 @@ def _table(table: Table) -> str:
 
 
 def _head(name: str, table: Table) -> str:
-    """Returns the name of a column with its unit; degrees are short there, because many columns have them."""
-    return name_with_unit(table.heads.get(name, name), table.units.get(name, "")).replace("[degrees]", "[°]")
+    """Returns the name of a column with its unit; degrees are short there, because many columns have them.
+
+    A factor with the name of another column (`n_`, see `factor_name`) is called a factor.
+    """
+    shown = table.heads.get(name, f"factor {name[:-1]}" if name.endswith("_") else name)
+    return name_with_unit(shown, table.units.get(name, "")).replace("[degrees]", "[°]")
 
 
 def _cell(name: str, value: Any, numeric: set[str], table: Table) -> str:
@@ -167,6 +170,11 @@ def number(value: float, digits: int | None = None, *, p: bool = False) -> str:
     else:
         text = f"{value:.3g}" if abs(value) < 1000 else f"{value:,.0f}"
     return text.replace("-", "−") if float(text.replace(",", "")) != 0 else text.replace("-", "")
+
+
+def _with_code(text: str) -> str:
+    """Returns a text in which what is between backticks is shown as code."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", _text(text))
 
 
 def _text(text: str) -> str:

@@ -95,16 +95,17 @@ def in_order(cells: Any, by: Sequence[str], rows: Any) -> Any:
     return cells.sort_values(list(by), key=rank, kind="stable", ignore_index=True)
 
 
-def rmse_and_r2(found: Sequence[float], target: Sequence[float]) -> tuple[float, float]:
-    """Returns the root mean square difference of two lists of means, and the squared correlation.
+def rmse_and_r(found: Sequence[float], target: Sequence[float]) -> tuple[float, float]:
+    """Returns the root mean square difference of two lists of means, and their correlation.
 
-    It is NaN for fewer than three means, and if those of one list are equal but for rounding.
+    Its sign must be shown, too: a model that falls where people rise has an r² of 1. The correlation is NaN for fewer than three means,
+    and if those of one list are equal but for rounding.
     """
     one, other = np.asarray(found, dtype=float), np.asarray(target, dtype=float)
     rmse = float(np.sqrt(np.mean((one - other) ** 2)))
     if len(one) < 3 or any(np.ptp(means) <= NOTHING * np.abs(means).max() for means in (one, other)):
         return rmse, float("nan")
-    return rmse, float(np.corrcoef(one, other)[0, 1] ** 2)
+    return rmse, float(np.corrcoef(one, other)[0, 1])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,14 +204,14 @@ def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]],
         if within and (levels := len(results.factors[factor])) > 2:
             testable = data["participant"].nunique() - max(1, data["group"].nunique()) >= levels - 1
             _add_sphericity(checks, factor, found, testable=testable)
-    for one, other in combinations(factors, 2):
-        data = _over(whole, [one, other])
+    for pair in combinations(factors, 2):
+        data, both, (one, other) = _over(whole, pair), " × ".join(pair), pair
         if not grouped:
-            if not differ(data, [one, other], [f"{one} × {other}"]):
+            if not differ(data, pair, [both]):
                 continue
             found = pg.rm_anova(data=data, dv="value", within=[one, other], subject="participant", correction=True)
             found = found[found["Source"] == f"{one} * {other}"]  # the others are those of the single factors
-            _add(anova, f"{one} × {other}", found, {f"{one} * {other}": f"{one} × {other}"})
+            _add(anova, both, found, {f"{one} * {other}": both})
             continue
         if len(results.factors[one]) != 2:
             one, other = other, one
@@ -218,8 +219,8 @@ def _analyse_variance(whole: Any, results: Results, anova: list[dict[str, Any]],
         if len(levels) != 2:
             notes.append(f"The interactions of {one} and {other} are in the mixed model only.")
             continue
-        names = {other: f"{one} × {other}", "Interaction": f"group × {one} × {other}"}
-        if not differ(data, [one, other], list(names.values())):
+        names = {other: both, "Interaction": f"group × {both}"}
+        if not differ(data, pair, list(names.values())):
             continue
         # An interaction with a factor of two levels is an effect on the difference between them.
         wide = data.pivot(index=["participant", "group", other], columns=one, values="value")
