@@ -111,32 +111,41 @@ function drawLane(surface, { lane, label, height }, y, scene) {
 
 function drawBands(surface, bands, y, height, scene) {
   const { column, width, span, end } = scene;
+  const scale = secondsPerPixel(scene);
+  const left = column + MARGIN - span.from / scale;
+  const isOver = ({ from, to }, time) => (to ?? Math.max(end, from)) >= time;
   const first = firstWhere(bands, (band) => band.to === null || band.to >= span.from);
   let last = column - 10; // the end of the last drawn band: of several in one pixel, one is enough
-  const endOf = (band) => Math.min(width + 4, placeOf(band.to ?? Math.max(end, band.from), scene));
-  const isSeen = (band) => endOf(band) >= last + 0.7;
   let written = column; // the end of the last text of a mark
-  let thin = null; // thin bands of one tone that touch are drawn as one: {from, to, tone}
+  let thin = null; // thin bands of one tone that touch are drawn as one: this is the tone
+  let [begun, over] = [0, 0]; // where it begins and ends
   const drawThin = () => {
-    if (thin) surface.fill(thin.from, y + 1.5, thin.to - thin.from, height - 3, thin.tone, 0.75);
+    if (thin) surface.fill(begun, y + 1.5, over - begun, height - 3, thin, 0.75);
     thin = null;
   };
-  for (let n = first; n < bands.length && bands[n].from <= span.to; n = nextWhere(bands, isSeen, n + 1)) {
+  for (let n = first; n < bands.length && bands[n].from <= span.to; ) {
     const band = bands[n];
-    const from = Math.max(column - 4, placeOf(band.from, scene));
-    const to = endOf(band);
+    const from = Math.max(column - 4, left + band.from / scale);
+    const to = Math.min(width + 4, left + (band.to ?? Math.max(end, band.from)) / scale);
     last = Math.max(to, from + 1);
     if (!band.mark && to - from <= THIN) {
       const tone = toneOf(band);
-      if (thin?.tone !== tone || from > thin.to + 0.7) drawThin();
-      thin = { from: thin?.from ?? from, to: last, tone };
-      continue;
+      if (thin !== tone || from > over + 0.7) {
+        drawThin();
+        thin = tone;
+        begun = from;
+      }
+      over = last;
+    } else {
+      drawThin();
+      if (band.mark) {
+        const next = bands[n + 1] ? placeOf(bands[n + 1].from, scene) : width;
+        written = drawMark(surface, band, from, { next, written, last: n === bands.length - 1, end: placeOf(end, scene) }, y, height);
+      } else drawBand(surface, band, from, to, y, height);
     }
-    drawThin();
-    if (band.mark) {
-      const next = bands[n + 1] ? placeOf(bands[n + 1].from, scene) : width;
-      written = drawMark(surface, band, from, { next, written, last: n === bands.length - 1, end: placeOf(end, scene) }, y, height);
-    } else drawBand(surface, band, from, to, y, height);
+    if (last > width + 3.3) break;
+    const seen = (last + 0.7 - left) * scale; // what is over before this time has no pixel of its own
+    n = nextWhere(bands, (other) => isOver(other, seen), n + 1);
   }
   drawThin();
 }
