@@ -72,6 +72,8 @@ def test_the_last_change_by_hand_is_undone_by_its_key_and_from_the_palette(pages
     for chunk in ("first", "second"):
         say(page, type="command", word="set_buffer", named={"buffer": "goal", "chunk": chunk})
     shows(page, "tr[data-path=goal]", "second")
+    counting = "set buffer goal task:count number:2 last:5 -> first"
+    until(page, lambda: commands(page) == [counting, "set buffer goal first -> second"])  # each that one undo takes back
     say(page, type="step", ticks=10)
     shows(page, "#time", r"0\.20")
     page.get_by_label("Filter rows").focus()
@@ -82,10 +84,10 @@ def test_the_last_change_by_hand_is_undone_by_its_key_and_from_the_palette(pages
     page.keyboard.press("Control+z")
     shows(page, "#status", r"undone at 0\.10 s; a branch was kept")
     shows(page, "tr[data-path=goal]", "first")
-    until(page, lambda: len(commands(page)) == 1)
+    until(page, lambda: commands(page) == [counting])
     page.keyboard.press("Control+k")
     search.fill("undo")
-    expect(options.first).to_contain_text("Undo the last change by hand: set buffer goal task:count number:2 last:5 -> first")
+    expect(options.first).to_contain_text(f"Undo the last change by hand: {counting}")
     page.keyboard.press("Enter")
     shows(page, "tr[data-path=goal]", "count")
     until(page, lambda: commands(page) == [])
