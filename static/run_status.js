@@ -3,7 +3,7 @@
 
 import { computed } from "./vendor/preact.js";
 import { toShowOne } from "./bar/models.js";
-import { connected, opening, restarted, session, state } from "./store.js";
+import { alive as stated, connected, opening, restarted, session, state } from "./store.js";
 import { embedded } from "./windows.js";
 
 const AGAIN = embedded === null ? "«Run again» starts it from the beginning." : "Run its cell again to start a new run.";
@@ -44,12 +44,18 @@ function stoppedLine({ status, reason }) {
   return reason === "stopped" || !reason ? "stopped" : `${withReason({ status, reason })}; stopped`;
 }
 
+/** Whether a new run is under way, while the page still shows the previous one. */
+export const isRestarting = computed(() => {
+  const { loading, alive, kind } = session.value ?? {};
+  return kind !== undefined && Boolean(loading || (alive && !stated.value));
+});
+
 /** Returns a summary of the session and the newest state. */
 function known() {
   const { alive = false, loading = false, kind, stuck, ending = "" } = session.value ?? {};
   const { status, reason = "", furthest = 0 } = state.value ?? {};
   const at = stuck?.line ? ` at line ${stuck.line}` : "";
-  return { alive, loading, kind, stuck: Boolean(stuck), signal: stuck?.signal ?? "", at, status, reason, furthest, ending: ending || reason || "its process has ended" };
+  return { alive, loading: loading || isRestarting.value, kind, stuck: Boolean(stuck), signal: stuck?.signal ?? "", at, status, reason, furthest, ending: ending || reason || "its process has ended" };
 }
 
 function nameOf({ alive, loading, kind, stuck, signal, status, furthest, ending }) {

@@ -390,6 +390,32 @@ def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_dele
     shows(page, "#time", r"t = 0\.20 s")
 
 
+SEEN = """() => {
+  window.seen = new Set();
+  const look = () => seen.add(document.querySelector("#time").textContent).add(document.querySelector("#status").textContent);
+  new MutationObserver(look).observe(document.body, { subtree: true, childList: true, characterData: true });
+}"""
+"""Notes all times and states of the run that the page shows from now on."""
+
+
+def test_a_branch_that_is_shown_is_at_its_moment_from_the_first_and_said_to_be_opened_before(pages: Pages) -> None:
+    page = pages("doorway.py")
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.3)
+    shows(page, "#time", r"t = 0\.30 s")
+    at(page, 0.1)
+    say(page, type="command", word="aperture", values=[0.8])
+    say(page, type="until", time=0.15)
+    shows(page, "#time", r"t = 0\.15 s")
+    page.evaluate(SEEN)
+    page.locator(".branch-name", has_text="at 0.10 s").click()
+    expect(page.locator(".recording-banner")).to_contain_text("0.30 s recorded")
+    shows(page, "#time", r"t = 0\.10 s")
+    seen = page.evaluate("[...seen]")
+    assert "t = 0.00 s" not in seen
+    assert "no run" not in seen
+
+
 def in_frame(page: Page, address: str) -> None:
     """Waits until the 3D view has a picture of the scene of an address."""
     until(page, lambda: any(frame.url.partition("?")[0].endswith(address.partition("?")[0]) for frame in page.frames[1:]))
