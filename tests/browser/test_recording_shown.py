@@ -90,6 +90,7 @@ def test_the_page_fits_its_window_whatever_a_recording_is_called(pages: Pages, w
         for width, height in ((1280, 800), (853, 533)):
             page.set_viewport_size({"width": width, "height": height})
             assert page.evaluate("document.documentElement.scrollWidth") == width
+            assert page.locator(".bar").evaluate("one => one.scrollHeight <= one.clientHeight"), "the banner covers nothing of the bar"
             for part in (".name", ".path", ".facts > span >> nth=-1"):
                 assert banner.locator(part).evaluate("one => one.scrollWidth <= one.clientWidth"), f"{part} is not cut"
             expect(banner.locator(".path")).to_have_text("walks/doorway.py")
