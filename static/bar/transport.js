@@ -63,6 +63,14 @@ function isIdle(id) {
   return ["step", "cycle", "until"].includes(id) && isDone();
 }
 
+/** Registers a command that changes the speed, up to a limit. */
+function registeredSpeed(text, key, by, limit) {
+  const isAtLimit = () => speedNumber() === limit;
+  const ready = () => !isIdle("speed") && !isAtLimit();
+  const why = () => (session.value && isAtLimit() ? `The speed is «${SPEEDS[limit][0]}» already.` : runStatus.value.text);
+  return command({ text, key, group: "Run", work: () => changeSpeed(by), ready, why });
+}
+
 /** Registers a command of the run, with the id of its button. */
 function registered(id, text, key, work) {
   return command({ text, key, group: "Run", work, ready: () => !isIdle(id), why: () => (id === "back" && alive.value ? "The run is at its start." : runStatus.value.text) });
@@ -71,9 +79,9 @@ function registered(id, text, key, work) {
 const toggling = registered("run", "Run or pause; in the past, continue from here", " ", toggle);
 const byButton = new Map(BUTTONS.map(({ id, text, key, what, say = order }) => [id, registered(id, text, key, () => say(what))]));
 const until = registered("until", "Run until …", "u", runUntil);
-const faster = registered("speed", "Faster", "+", () => changeSpeed(1));
-const slower = registered("speed", "Slower", "-", () => changeSpeed(-1));
-commandsOf(() => SPEEDS.map(([text], n) => ({ text: `Speed: ${text}`, group: "Run", work: () => setSpeed(n), ready: () => Boolean(session.value) })));
+const faster = registeredSpeed("Faster", "+", 1, SPEEDS.length - 1);
+const slower = registeredSpeed("Slower", "-", -1, 0);
+commandsOf(() => SPEEDS.map(([text], n) => ({ text: `Speed: ${text}`, group: "Run", work: () => setSpeed(n), ready: () => Boolean(session.value), why: () => runStatus.value.text })));
 
 /** Returns the maximum speed of this and later runs: the chosen one; if none was chosen, that of the run, which depends on whether it has a body. */
 function reportedSpeed() {
@@ -97,7 +105,7 @@ function setSpeed(number) {
 }
 
 function changeSpeed(by) {
-  setSpeed(Math.max(0, Math.min(SPEEDS.length - 1, speedNumber() + by)));
+  setSpeed(speedNumber() + by);
 }
 
 bindFaster(() => run(faster));

@@ -107,12 +107,13 @@ function branchName(run) {
 commandsOf(() =>
   (tree.value.length > 1 ? tree.value : []).flatMap(({ run }) => {
     const mine = run.id === shown.value;
-    const of = (text, work, ready) => ({ text: `${text}: ${branchName(run)}`, group: `Branch ${run.id}`, work, ready: () => ready });
+    const of = (text, work, why = "") => ({ text: `${text}: ${branchName(run)}`, group: `Branch ${run.id}`, work, ready: () => !why, why: () => why });
+    const isShown = mine ? "It is shown now." : "";
     return [
-      of("Show the branch", () => show(run), !mine && !run.problem),
-      of("Compare the shown run with the branch", () => compare(run), !mine),
-      of("Rename the branch (name, note, tags)", () => labelRun(run), true),
-      of("Delete the branch", () => deleteRuns([run]), !mine && !run.session),
+      of("Show the branch", () => show(run), isShown || run.problem || ""),
+      of("Compare the shown run with the branch", () => compare(run), isShown),
+      of("Rename the branch (name, note, tags)", () => labelRun(run)),
+      of("Delete the branch", () => deleteRuns([run]), isShown || (run.session ? "An open run writes it." : "")),
     ];
   }),
 );
