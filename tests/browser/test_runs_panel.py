@@ -103,6 +103,9 @@ def test_a_small_window_lists_several_runs(page: Page, recordings: Path, two: li
     if chosen:
         page.get_by_role("button", name="Details").click()
         expect(page.get_by_role("table", name="Parameters")).to_contain_text("width0.5")
+    else:
+        page.set_viewport_size({"width": 900, "height": 600})
+        until(page, lambda: page.locator(".runs-chosen").evaluate("box => box.offsetHeight") < 44)  # one line, as nothing is chosen
 
 
 HALF = """import os, time
