@@ -31,6 +31,6 @@ export function Strip({ document, compare }) {
   if (!run || run.path !== document.path) return null;
   return html`<div class="strip" role="status">
     <span>${run.text}</span>
-    ${run.gone ? null : html`<button onClick=${() => runNew(run.path)}>${run.action}</button>`}
+    ${run.gone || run.unsaved ? null : html`<button onClick=${() => runNew(run.path)}>Run the new one</button>`}
   </div>`;
 }

@@ -15,20 +15,21 @@ export async function saveAndRun(document) {
   await runModel(document.path).catch((error) => complain(error.message));
 }
 
-/** Returns a notice if the run that is shown is not one of the file's text, or that text is not saved: {text, failed, gone, action, path};
+/** Returns a notice if the run that is shown is not one of the file's text, or that text is not saved: {text, failed, gone, unsaved, path};
  * otherwise null. */
 export const former = computed(() => {
   const facts = session.value;
   if (!facts || facts.recorded !== null) return null; // a recording is a run of the text of its time
   if (facts.gone) return { text: "The file of this run is gone from the folder: the run can go on, but cannot be restarted.", gone: true, path: facts.model };
   if (facts.loading) return null;
-  const isDirty = documents.value.get(facts.model)?.dirty.value ?? false;
-  const action = isDirty ? "Save and run" : "Run the new one";
-  if (!facts.stale) return isDirty ? { text: "The text in the editor is not saved: runs are of the saved text.", action, path: facts.model } : null;
+  if (!facts.stale) {
+    const unsaved = documents.value.get(facts.model)?.dirty.value;
+    return unsaved ? { text: "The text in the editor is not saved: runs are of the saved text.", unsaved, path: facts.model } : null;
+  }
   // The newest attempt failed if it reported an error and is not the run that is shown.
   const failed = facts.attempt !== facts.shown_attempt && notices.value.some(({ level, attempt }) => level === "error" && attempt === facts.attempt);
   const text = `This run was made from an earlier version of the file${failed ? "; the new one cannot be loaded" : ""}.`;
-  return { text, failed, action, path: facts.model };
+  return { text, failed, path: facts.model };
 });
 
 /** Runs the new text of the file of the run that is shown. */
@@ -44,6 +45,6 @@ export function Former() {
   if (!facts || (openTab.value === "editor" && shown.value.path === facts.path)) return null;
   return html`<span class="former" role="status" title=${facts.text}>
     <span>${facts.text}</span>
-    ${facts.gone ? null : html`<button onClick=${() => runNew(facts.path)}>${facts.action}</button>`}
+    ${facts.gone ? null : html`<button onClick=${() => runNew(facts.path)}>${facts.unsaved ? "Save and run" : "Run the new one"}</button>`}
   </span>`;
 }
