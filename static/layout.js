@@ -34,6 +34,8 @@ function ofKind(name, otherwise) {
 const isWhole = addressed("panel") === null;
 const isThere = (area) => isWhole && area in AREAS && (area !== "scene" || hasWorld.value);
 
+const notThere = (area) => (isWhole && area === "scene" ? "This model has no 3D view." : "This window shows one panel.");
+
 const ROWS = 336; // the height of the default rows of a model with a body [px]
 /** The width of the panels [px]. By default, all tabs can be seen, and wide windows give the panels more room too. */
 export const panelsWidth = ofKind("side width", embedded === null ? Math.max(784, Math.round(0.38 * innerWidth)) : Math.round(0.45 * innerWidth));
@@ -75,19 +77,21 @@ const KEYS = { panels: "m", scene: "Shift+m", timeline: null };
 /** The commands of a part: {maximise, collapse, expand}. */
 export const layoutCommands = Object.fromEntries(
   Object.entries(AREAS).map(([area, title]) => {
-    const named = (text, work, ready, key = null) => command({ text: `${text} the ${title === "3D view" ? title : title.toLowerCase()}`, key, group: "Page", work, ready });
+    const name = title === "3D view" ? title : title.toLowerCase();
+    const named = (text, work, ready, why = () => "", key = null) =>
+      command({ text: `${text} the ${name}`, key, group: "Page", work, ready: () => isThere(area) && ready(), why: () => (isThere(area) ? why() : notThere(area)) });
     return [
       area,
       {
-        maximise: named("Maximise", () => maximise(area), () => isThere(area), KEYS[area]),
-        collapse: named("Collapse", () => collapse(area), () => isThere(area) && !isCollapsed(area) && canCollapse(area)),
-        expand: named("Expand", () => expand(area), () => isThere(area) && isCollapsed(area)),
+        maximise: named("Maximise", () => maximise(area), () => true, undefined, KEYS[area]),
+        collapse: named("Collapse", () => collapse(area), () => !isCollapsed(area) && canCollapse(area), () => (isCollapsed(area) ? "It is collapsed already." : "Nothing else is beside it.")),
+        expand: named("Expand", () => expand(area), () => isCollapsed(area), () => "It is not collapsed."),
       },
     ];
   }),
 );
 
 /** Swaps the 3D view and the panels. */
-export const swap = command({ text: "Swap the sides of the 3D view and the panels", group: "Page", work: () => (swapped.value = !swapped.value), ready: () => isThere("scene") });
+export const swap = command({ text: "Swap the sides of the 3D view and the panels", group: "Page", work: () => (swapped.value = !swapped.value), ready: () => isThere("scene"), why: () => notThere("scene") });
 
-command({ text: "All parts of the page again, after one was maximised", key: "Escape", group: "Page", work: () => (largest.value = ""), ready: () => maximised.value !== null });
+command({ text: "All parts of the page again, after one was maximised", key: "Escape", group: "Page", work: () => (largest.value = ""), ready: () => maximised.value !== null, why: () => "No part is maximised." });

@@ -3,7 +3,7 @@
 
 import { computed } from "./vendor/preact.js";
 import { toShowOne } from "./bar/models.js";
-import { connected, opening, restarted, session, state } from "./store.js";
+import { alive as stated, connected, events, opening, restarted, session, state } from "./store.js";
 import { embedded } from "./windows.js";
 
 const AGAIN = embedded === null ? "«Run again» starts it from the beginning." : "Run its cell again to start a new run.";
@@ -25,7 +25,7 @@ const STATUSES = {
   busy: { line: ({ status, at }) => `${status ?? "loading"} (busy${at})`, text: ({ at }) => `The model is busy${at}; ${STOP}` },
   halted: { line: ({ signal }) => `stopped by ${signal}`, text: ({ signal }) => `The model's process was stopped by ${signal} and does not continue. Stop ends it.` },
   paused: { line: withReason, text: () => "The run is paused." },
-  ended: { line: withReason, text: () => `The run is over; you can go back on the timeline. ${AGAIN}` },
+  ended: { line: endedLine, text: () => `The run is over; you can go back on the timeline. ${AGAIN}` },
   failed: { line: withReason, text: () => `The run has failed: ${FIX}` },
   stopped: { line: stoppedLine, text: () => `The run was stopped: nothing more can be asked of it. ${AGAIN}` },
   lost: { line: ({ ending }) => `failed: ${ending}`, text: ({ ending }) => `There is no run any more: ${ending}. What happened just before that may be missing. ${AGAIN}` },
@@ -39,17 +39,31 @@ function withReason({ status, reason }) {
   return reason ? `${status}: ${reason}` : status;
 }
 
+/** Time may pass before a run ends in which nothing happens, such as that in which a memory knows what was retrieved recently. */
+function endedLine(facts) {
+  const { period = 0.01 } = session.value;
+  const [last = null] = events.value.list.findLast(([, , kind]) => kind !== "stop") ?? [];
+  const isQuiet = last !== null && facts.furthest - last / 1e6 > 2 * period;
+  return `${withReason(facts)}${isQuiet ? `; the last event was at ${Number((last / 1e6).toFixed(3))} s` : ""}`;
+}
+
 /** A run that has ended by itself may be stopped too: then it can no longer answer questions. */
 function stoppedLine({ status, reason }) {
   return reason === "stopped" || !reason ? "stopped" : `${withReason({ status, reason })}; stopped`;
 }
+
+/** Whether a new run is under way, while the page still shows the previous one. */
+export const isRestarting = computed(() => {
+  const { loading, alive, kind } = session.value ?? {};
+  return kind !== undefined && Boolean(loading || (alive && !stated.value));
+});
 
 /** Returns a summary of the session and the newest state. */
 function known() {
   const { alive = false, loading = false, kind, stuck, ending = "" } = session.value ?? {};
   const { status, reason = "", furthest = 0 } = state.value ?? {};
   const at = stuck?.line ? ` at line ${stuck.line}` : "";
-  return { alive, loading, kind, stuck: Boolean(stuck), signal: stuck?.signal ?? "", at, status, reason, furthest, ending: ending || reason || "its process has ended" };
+  return { alive, loading: loading || isRestarting.value, kind, stuck: Boolean(stuck), signal: stuck?.signal ?? "", at, status, reason, furthest, ending: ending || reason || "its process has ended" };
 }
 
 function nameOf({ alive, loading, kind, stuck, signal, status, furthest, ending }) {

@@ -94,6 +94,7 @@ export function sinceNow() {
 export function show(session) {
   if (session === shown) return;
   leave();
+  opening.value ??= { text: "The run is being opened …", slow: false }; // until its first message
   shown = session;
   if (socket?.readyState === WebSocket.OPEN) attach();
   else connect();
@@ -143,12 +144,17 @@ export async function showModel(model, { run = false } = {}) {
 }
 
 /** Shows a recording: the session that replays it, or a new one. With `trust` its code runs regardless of its origin; with `run` it goes on.
- * Returns whether it is shown: the user may have chosen something else meanwhile. */
-export async function showRecording(id, { trust = false, run = false } = {}) {
+ * With `at` it is at that moment [s] when it is shown, unless another page shows it already. Returns whether it is shown: the user may have
+ * chosen something else meanwhile. */
+export async function showRecording(id, { trust = false, run = false, at = null } = {}) {
   const wanted = wish();
   if (session.peek() === null) opening.value = { text: `The recording ${id} is being opened …`, slow: false };
   try {
     const found = await call("POST", `/api/recordings/${encodeURIComponent(id)}/open`, { real_time: true, trust });
+    if (at !== null && wanted() && found.watching.length === 0) {
+      const seek = { command: { type: "seek", time: at } };
+      await call("POST", `/api/sessions/${found.id}/command`, seek).catch(() => {}); // if it cannot be built, it is shown, and says why
+    }
     if (!wanted()) return false;
     show(found.id);
     if (run) order({ type: "run" });
@@ -202,7 +208,10 @@ function refused({ error, id, session: asked }) {
   const { reject } = waiting.get(id) ?? {};
   waiting.delete(id);
   if (reject) reject(new Error(error));
-  else if (asked === undefined || asked !== shown || session.peek() === null) complain(error);
+  else if (asked === undefined || asked !== shown || session.peek() === null) {
+    if (asked === shown) opening.value = null;
+    complain(error);
+  }
   else {
     const { model, recorded } = session.peek();
     leave();

@@ -34,8 +34,9 @@ const VIEWS = { ...Object.fromEntries(PANELS.map(({ id, title, View }) => [id, {
 /** The tabs: in a notebook, without those of a models folder. */
 const TABS = PANELS.filter(({ id }) => embedded === null || !["about", "parameters", "editor", "experiments", "runs"].includes(id));
 
-TABS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => (openTab.value = id), ready: () => alone === null, why: () => "This window shows one panel." }));
-const openPanel = command({ text: "Open the panel in a window of its own", group: "Page", work: () => openWindow(openTab.value), ready: () => alone === null });
+const onePanel = () => "This window shows one panel.";
+TABS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => (openTab.value = id), ready: () => alone === null, why: onePanel }));
+const openPanel = command({ text: "Open the panel in a window of its own", group: "Page", work: () => openWindow(openTab.value), ready: () => alone === null, why: onePanel });
 noteKey("1 … 9, 0", "Open a tab", "Panels");
 noteKey("w", "Why, of a line of the firing trace", "Panels");
 noteKey("b", "Breakpoint, in the list of productions", "Panels");

@@ -408,9 +408,10 @@ class Session(Broadcast, Receiver):
     async def ask(self, command: object, *, of_shown_run: bool = False) -> Reply:
         """Sends a page command to a worker: that of the run on screen if the command is for that run, otherwise that of the newest run.
 
-        After a user has started a new run, commands go to it, although the previous run is on screen until the new one is built.
+        After a user has started a new run, commands go to it, although the previous run is on screen until the new one is built. Before
+        the first run is on screen, all commands go to it.
         """
-        if not of_shown_run:
+        if not of_shown_run or self._shown is None:
             async with self._beginning:
                 loading = self._loading
             if loading is not None:

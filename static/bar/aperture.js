@@ -1,6 +1,7 @@
 // The free width of an aperture, in cm and in shoulder widths (A/S); if there are several, a list chooses which. A drag, or a key held down,
 // sends one change: the final value.
 
+import { noChange } from "../changes/changes.js";
 import { computed, html, signal } from "../vendor/preact.js";
 import { optimistic } from "../parts/optimistic_value.js";
 import { session, state } from "../store.js";
@@ -64,7 +65,7 @@ export function Aperture() {
   const reading = html`<output id="width">${cm.toFixed(0)} cm${shoulders ? html` <span class="quiet">A/S ${(cm / 100 / shoulders).toFixed(2)}</span>` : null}</output>`;
   if (!widths[name.value]) return html`<span class="aperture" title="The free width of the doorway"><${Name} /> ${reading}</span>`;
   const [least, most] = widths[name.value];
-  return html`<span class="aperture" title="The free width of the doorway; it changes while the run goes on, and is recorded">
+  return html`<span class="aperture" title=${noChange.value || "The free width of the doorway; it changes while the run goes on, and is recorded"}>
     <${Name} />
     <input
       id="aperture"
@@ -74,7 +75,7 @@ export function Aperture() {
       max=${most}
       step="1"
       value=${Math.round(cm)}
-      disabled=${!session.value?.alive}
+      disabled=${Boolean(noChange.value)}
       onInput=${(event) => move(Number(event.currentTarget.value))}
       onPointerDown=${() => (holding = true)}
       onPointerUp=${release}

@@ -58,10 +58,10 @@ export async function choose(path) {
 }
 
 /** Shows a recording, which has its own address, so that the browser's «back» leads to what was shown before. Returns whether it is shown:
- * null if the user declines, false if the user has chosen something else meanwhile. With `run` it goes on at once. */
-export async function chooseRecording(id, { run = false } = {}) {
+ * null if the user declines, false if the user has chosen something else meanwhile. With `run` it goes on at once; `at` as in `showRecording`. */
+export async function chooseRecording(id, { run = false, at = null } = {}) {
   const left = session.peek();
-  const isShown = await openRecording(id, run);
+  const isShown = await withTrust(id, "Opening it", (trust) => showRecording(id, { trust, run, at }));
   if (!isShown) return isShown;
   if (left && left.recorded === null) before.value = { model: left.model, id: left.id };
   goToAddress("run", id);
@@ -120,11 +120,6 @@ async function chooseAddressed(id) {
   const isShown = await chooseRecording(id);
   if (text !== null) complain(`The link's time must be a number of seconds >= 0, such as t=1.5 (got t=${text}).`);
   return isShown;
-}
-
-/** Shows a recording, after asking if its code comes from elsewhere; returns whether it is shown, as `chooseRecording`. */
-function openRecording(id, run = false) {
-  return withTrust(id, "Opening it", (trust) => showRecording(id, { trust, run }));
 }
 
 /** What was shown before a recording, for returning to it; null for nothing. */

@@ -7,7 +7,7 @@ import { Icon } from "../parts/icon.js";
 import { optimistic } from "../parts/optimistic_value.js";
 import { order, say } from "../server.js";
 import { chooseRecording } from "./models.js";
-import { isOver, runStatus } from "../run_status.js";
+import { isOver, isRestarting, runStatus } from "../run_status.js";
 import { alive, complain, running, session, state } from "../store.js";
 import { orderThere } from "../timeline/seek.js";
 import { embedded } from "../windows.js";
@@ -23,15 +23,9 @@ function isDone() {
   return isOver.value || !session.value?.alive;
 }
 
-/** Whether a new run is under way, while the page still shows the previous one. */
-function isRestarting() {
-  const { loading, alive: lives, kind } = session.value ?? {};
-  return kind !== undefined && Boolean(loading || (lives && !alive.value));
-}
-
 /** Runs or pauses; restarts a run that is over. */
 function toggle() {
-  if (isRestarting()) say({ type: "run" }).catch(() => {}); // goes to the new run; a message says why it cannot be made
+  if (isRestarting.value) say({ type: "run" }).catch(() => {}); // goes to the new run; a message says why it cannot be made
   else if (running.value) order({ type: "pause" });
   else if (isDone() && session.value.recorded !== null) runAgain();
   else if (isDone()) order({ type: "restart", run: true });
@@ -63,10 +57,18 @@ const shownButtons = BUTTONS.filter(({ id }) => embedded === null || !OF_MODELS.
 function isIdle(id) {
   const { alive, loading } = session.value ?? {};
   if (!session.value || runStatus.value.is === "restarted" || (embedded !== null && OF_MODELS.includes(id))) return true;
-  if (id === "run") return embedded === null ? loading && !isRestarting() : !alive;
+  if (id === "run") return embedded === null ? loading && !isRestarting.value : !alive;
   if (id === "stop") return !alive && !loading;
   if (id === "back") return !alive || !state.value?.time;
   return ["step", "cycle", "until"].includes(id) && isDone();
+}
+
+/** Registers a command that changes the speed, up to a limit. */
+function registeredSpeed(text, key, by, limit) {
+  const isAtLimit = () => speedNumber() === limit;
+  const ready = () => !isIdle("speed") && !isAtLimit();
+  const why = () => (session.value && isAtLimit() ? `The speed is «${SPEEDS[limit][0]}» already.` : runStatus.value.text);
+  return command({ text, key, group: "Run", work: () => changeSpeed(by), ready, why });
 }
 
 /** Registers a command of the run, with the id of its button. */
@@ -77,9 +79,9 @@ function registered(id, text, key, work) {
 const toggling = registered("run", "Run or pause; in the past, continue from here", " ", toggle);
 const byButton = new Map(BUTTONS.map(({ id, text, key, what, say = order }) => [id, registered(id, text, key, () => say(what))]));
 const until = registered("until", "Run until …", "u", runUntil);
-const faster = registered("speed", "Faster", "+", () => changeSpeed(1));
-const slower = registered("speed", "Slower", "-", () => changeSpeed(-1));
-commandsOf(() => SPEEDS.map(([text], n) => ({ text: `Speed: ${text}`, group: "Run", work: () => setSpeed(n), ready: () => Boolean(session.value) })));
+const faster = registeredSpeed("Faster", "+", 1, SPEEDS.length - 1);
+const slower = registeredSpeed("Slower", "-", -1, 0);
+commandsOf(() => SPEEDS.map(([text], n) => ({ text: `Speed: ${text}`, group: "Run", work: () => setSpeed(n), ready: () => Boolean(session.value), why: () => runStatus.value.text })));
 
 /** Returns the maximum speed of this and later runs: the chosen one; if none was chosen, that of the run, which depends on whether it has a body. */
 function reportedSpeed() {
@@ -103,14 +105,14 @@ function setSpeed(number) {
 }
 
 function changeSpeed(by) {
-  setSpeed(Math.max(0, Math.min(SPEEDS.length - 1, speedNumber() + by)));
+  setSpeed(speedNumber() + by);
 }
 
 bindFaster(() => run(faster));
 
 export function Transport() {
-  const goes = running.value && !isRestarting();
-  const text = goes ? "Pause" : session.value && isDone() && !session.value.loading && !isRestarting() ? "Run again" : "Run";
+  const goes = running.value && !isRestarting.value;
+  const text = goes ? "Pause" : session.value && isDone() && !session.value.loading && !isRestarting.value ? "Run again" : "Run";
   return html`<div class="transport" role="toolbar" aria-label="Run">
     <button id="run" class="primary" disabled=${isIdle("run")} title=${buttonTitle(toggling, text)} onClick=${() => run(toggling)}>
       <${Icon} name=${goes ? "pause" : "run"} />${text}

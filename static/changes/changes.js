@@ -8,11 +8,18 @@ import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { Problem } from "../parts/problem.js";
 import { Inline, plain } from "../parts/prose.js";
+import { isOver, runStatus } from "../run_status.js";
 import { alive, complain, session, state } from "../store.js";
 import { computed, html, signal, useId, useRef, useState } from "../vendor/preact.js";
 
 /** All changes that this run accepts: {word, of, title, help, text, fields: [{name, takes, required, default, unit, help}]}. */
 export const changes = computed(() => session.value?.changes ?? []);
+
+/** Why the run cannot be changed now, as a sentence; an empty text if it can. */
+export const noChange = computed(() => {
+  if (!alive.value) return runStatus.value.text;
+  return isOver.value ? "The run is over: go back to an earlier time, or restart it." : "";
+});
 
 /** Returns the changes of one kind of thing. */
 export function changesOf(of) {
@@ -127,7 +134,7 @@ export async function askAndMake(one, given = {}) {
   closed = true;
 }
 
-commandsOf(() => (alive.value ? changes.value.map((one) => ({ text: `${one.title} …`, group: `Change by hand: ${one.of}`, work: () => askAndMake(one) })) : []));
+commandsOf(() => (alive.value ? changes.value.map((one) => ({ text: `${one.title} …`, group: `Change by hand: ${one.of}`, work: () => askAndMake(one), ready: () => !noChange.value, why: () => noChange.value })) : []));
 
 /** Returns whether a change needs more than is given. */
 const needsMore = (one, given) => one.fields.some(({ name, required }) => required && !(name in given));
@@ -139,7 +146,7 @@ export function ChangeButtons({ of, given, without = [] }) {
   if (list.length === 0) return null;
   const act = (one) => (needsMore(one, given) ? askAndMake(one, given) : send(one.word, given));
   return html`<span class="change-buttons">
-      ${list.map((one) => html`<button key=${one.word} disabled=${!alive.value} title=${plain(one.help)} onClick=${() => act(one)}>${one.title}</button>`)}
+      ${list.map((one) => html`<button key=${one.word} disabled=${Boolean(noChange.value)} title=${noChange.value || plain(one.help)} onClick=${() => act(one)}>${one.title}</button>`)}
     </span>
     <${Problem} text=${problem} />`;
 }
@@ -162,7 +169,7 @@ export function ChangeMenu({ of, given, label }) {
     box.current?.togglePopover(!done); // a dialog that has asked has closed the menu, which shows the problem
     if (more) askAndMake(one, given);
   };
-  return html`<button class="bare change-more" popovertarget=${id} aria-label="Change ${label}" title="Change ${label}" disabled=${!alive.value} onClick=${place}><${Icon} name="more" /></button>
+  return html`<button class="bare change-more" popovertarget=${id} aria-label="Change ${label}" title=${noChange.value || `Change ${label}`} disabled=${Boolean(noChange.value)} onClick=${place}><${Icon} name="more" /></button>
     <div id=${id} ref=${box} popover="auto" class="change-menu" role="group" aria-label="Change ${label}">
       ${list.map((one) => html`<button key=${one.word} title=${plain(one.help)} onClick=${() => act(one)}>${one.title}</button>`)}
       <${Problem} text=${problem} />

@@ -3,7 +3,7 @@
 import { html, useEffect, useMemo, useSignal } from "../vendor/preact.js";
 import { Plot } from "../parts/plot.js";
 import { call } from "../server.js";
-import { nameOf, whenText } from "../runs/wording.js";
+import { beginningText, nameOf } from "../runs/wording.js";
 
 /** The colours of the two runs, in plots and headings. */
 export const SIDE_COLOURS = ["series-1", "series-2"];
@@ -100,7 +100,7 @@ function Overlaid({ curve, runs, samples, cursor, span }) {
     () =>
       both.flatMap((of, n) =>
         of?.values.some((value) => value !== null)
-          ? [{ name: `${SIDES[n]}: ${runs[n].label.name || whenText(runs[n].made)}`, unit: curve.unit, shape: curve.shape, times: of.times, values: of.values, slope: of.slope ?? undefined, until: runs[n].time, colour: SIDE_COLOURS[n], dash: DASHES[n] }]
+          ? [{ name: `${SIDES[n]}: ${beginningText(runs[n], runs[n].label.name)}`, unit: curve.unit, shape: curve.shape, times: of.times, values: of.values, slope: of.slope ?? undefined, until: runs[n].time, colour: SIDE_COLOURS[n], dash: DASHES[n] }]
           : [],
       ),
     [...both],

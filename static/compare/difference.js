@@ -51,6 +51,7 @@ function headline({ same_events: same, whole, difference }) {
   const first = same === 1 ? "The first event is" : `The first ${count} are`;
   if (!difference) return whole ? `The traces are the same: ${count}.` : `${first} the same; no more are compared.`;
   const [one, other] = difference.events;
+  if (same === 0 && (!one || !other)) return `Only the ${one ? "first" : "second"} run has such events.`;
   if (!one || !other) return `${first} the same; then the ${one ? "second" : "first"} run has no more.`;
   if (same === 0) return `The traces differ from the first event on, at ${difference.time.toFixed(3)} s.`;
   return `${first} the same; the traces first differ at ${difference.time.toFixed(3)} s.`;
@@ -60,7 +61,7 @@ function What({ difference }) {
   const what = difference.events.includes(null) ? [] : differing(difference.events);
   if (what.length === 0) return null;
   return html`<ul class="what" aria-label="What differs">
-    ${what.slice(0, MOST).map(([name, one, other]) => html`<li key=${name}><b>${name}</b> <span class="mono"><span class="dot first"></span>${one}</span> <span class="mono"><span class="dot second"></span>${other}</span></li>`)}
+    ${what.slice(0, MOST).map(([name, one, other]) => html`<li key=${name}><b>${name}</b> <span class="mono" title=${one}><span class="dot first"></span>${one}</span> <span class="mono" title=${other}><span class="dot second"></span>${other}</span></li>`)}
     ${what.length > MOST ? html`<li class="quiet">and ${what.length - MOST} more</li>` : null}
   </ul>`;
 }

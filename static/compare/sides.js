@@ -17,7 +17,7 @@ function rowsOf(runs, part, word, label = (name) => name) {
   return namesOf(runs, part).map((name) => {
     const values = runs.map((run) => (name in (run[part] ?? {}) ? run[part][name] : undefined));
     const [one, other] = values.map((value) => (value === undefined ? "–" : word(name, value)));
-    return [label(name), one, other, JSON.stringify(values[0]) !== JSON.stringify(values[1])];
+    return [label(name), one, other, JSON.stringify(values[0] ?? null) !== JSON.stringify(values[1] ?? null)];
   });
 }
 

@@ -1,4 +1,4 @@
-// A banner between the text and its problems for decisions: the file has changed, or the run is one of an earlier text.
+// A banner between the text and its problems for decisions: the file has changed, or the run is not one of this text.
 
 import { confirmed } from "../parts/dialog.js";
 import { html } from "../vendor/preact.js";
@@ -31,6 +31,6 @@ export function Strip({ document, compare }) {
   if (!run || run.path !== document.path) return null;
   return html`<div class="strip" role="status">
     <span>${run.text}</span>
-    ${run.gone ? null : html`<button onClick=${() => runNew(run.path)}>Run the new one</button>`}
+    ${run.gone || run.unsaved ? null : html`<button onClick=${() => runNew(run.path)}>Run the new one</button>`}
   </div>`;
 }

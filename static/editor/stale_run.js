@@ -15,13 +15,17 @@ export async function saveAndRun(document) {
   await runModel(document.path).catch((error) => complain(error.message));
 }
 
-/** Returns a notice if the run that is shown is not one of the file's text: {text, failed, gone, path}; otherwise null. */
+/** Returns a notice if the run that is shown is not one of the file's text, or that text is not saved: {text, failed, gone, unsaved, path};
+ * otherwise null. */
 export const former = computed(() => {
   const facts = session.value;
   if (!facts || facts.recorded !== null) return null; // a recording is a run of the text of its time
   if (facts.gone) return { text: "The file of this run is gone from the folder: the run can go on, but cannot be restarted.", gone: true, path: facts.model };
   if (facts.loading) return null;
-  if (!facts.stale) return null;
+  if (!facts.stale) {
+    const unsaved = documents.value.get(facts.model)?.dirty.value;
+    return unsaved ? { text: "The text in the editor is not saved: runs are of the saved text.", unsaved, path: facts.model } : null;
+  }
   // The newest attempt failed if it reported an error and is not the run that is shown.
   const failed = facts.attempt !== facts.shown_attempt && notices.value.some(({ level, attempt }) => level === "error" && attempt === facts.attempt);
   const text = `This run was made from an earlier version of the file${failed ? "; the new one cannot be loaded" : ""}.`;
@@ -34,13 +38,13 @@ export function runNew(path) {
   return open ? saveAndRun(open) : runModel(path).catch((error) => complain(error.message));
 }
 
-/** Shows in the status line that the run is one of an earlier text, with a button to run the new one. */
+/** Shows in the status line that the run is not one of the text in the editor, with a button to run that one. */
 export function Former() {
   const facts = former.value;
   // The editor shows this itself, beside the text.
   if (!facts || (openTab.value === "editor" && shown.value.path === facts.path)) return null;
   return html`<span class="former" role="status" title=${facts.text}>
     <span>${facts.text}</span>
-    ${facts.gone ? null : html`<button onClick=${() => runNew(facts.path)}>Run the new one</button>`}
+    ${facts.gone ? null : html`<button onClick=${() => runNew(facts.path)}>${facts.unsaved ? "Save and run" : "Run the new one"}</button>`}
   </span>`;
 }

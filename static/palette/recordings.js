@@ -22,7 +22,7 @@ function read() {
 }
 
 commandsOf(
-  () => (runs.value ?? []).slice(0, MAX_RECORDINGS).map((run) => ({ text: `Recording: ${nameOf(run)}`, group: run.id, work: () => openRun(run), ready: () => !run.problem })),
+  () => (runs.value ?? []).slice(0, MAX_RECORDINGS).map((run) => ({ text: `Recording: ${nameOf(run)}`, group: run.id, work: () => openRun(run), ready: () => !run.problem, why: () => run.problem })),
   read,
 );
 

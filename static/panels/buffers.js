@@ -9,11 +9,11 @@ import { Module, Plain, useRequests } from "../inspector/modules.js";
 import { Result } from "../inspector/result.js";
 import { Icon } from "../parts/icon.js";
 import { chunkText, slotsOf, writtenChunk } from "../parts/chunk.js";
-import { changesOf, useChange } from "../changes/changes.js";
+import { changesOf, noChange, useChange } from "../changes/changes.js";
 import { Problem } from "../parts/problem.js";
 import { counted } from "../parts/count.js";
 import { nothing, runStatus } from "../run_status.js";
-import { alive, running, session, state } from "../store.js";
+import { running, session, state } from "../store.js";
 
 const LINES = 3; // the number of lines of a chunk shown unless expanded
 const KEPT = 1000; // how long a row keeps its height while the run is active [ms]
@@ -87,7 +87,7 @@ function Buffer({ path, name, chunk }) {
   useEffect(() => {
     if (draft && !edits) keepDraft(path, undefined);
   }, [draft, edits]);
-  const canEdit = alive.value && changesOf("buffer").some(({ word }) => word === "set_buffer");
+  const canEdit = !noChange.value && changesOf("buffer").some(({ word }) => word === "set_buffer");
   const edit = () => {
     if (!canEdit || edits) return;
     chosen.current = true;

@@ -11,7 +11,7 @@ import { saveFile } from "../parts/picture.js";
 import { Place } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
 import { openTab } from "../open_tab.js";
-import { nothingYet } from "../run_status.js";
+import { nothingYet, runStatus } from "../run_status.js";
 import { alive, isGiven, moment, notices, session, state } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 import { inThePast } from "../timeline/seek.js";
@@ -147,6 +147,7 @@ const registered = (text, work) =>
       work();
     },
     ready: () => Boolean(session.value) && listing().listed.count > 0,
+    why: () => (session.value ? "The console has no lines." : runStatus.value.text),
   });
 registered("Copy the lines of the console", () => copyText(listing().listed.text));
 registered("Save the lines of the console as a text file", save);

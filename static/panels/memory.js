@@ -1,7 +1,7 @@
 // Declarative memory: its chunks with their activations, the body schema in it, and what the eyes found last.
 
 import { html, signal, useEffect, useState } from "../vendor/preact.js";
-import { changesOf, useChange } from "../changes/changes.js";
+import { changesOf, noChange, useChange } from "../changes/changes.js";
 import { Problem } from "../parts/problem.js";
 import { AtStart } from "../inspector/at_start.js";
 import { MemoryTable } from "../inspector/memory_table.js";
@@ -13,7 +13,7 @@ import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { remembered } from "../local_storage.js";
 import { nothing } from "../run_status.js";
-import { alive, running, session, state } from "../store.js";
+import { running, session, state } from "../store.js";
 
 const MAX_CHUNKS = 5000; // the maximum number of chunks requested
 const LIVE = 150; // a memory with at most this many chunks is also shown while the run is active
@@ -52,7 +52,7 @@ function AddChunk({ memory }) {
     else if (chunk && (await send("add_chunk", { memory, chunk }))) field.value = "";
   }
 
-  return html`<input class="mono add-chunk" aria-label="Add a chunk" aria-invalid=${problem !== null} placeholder="Add a chunk, such as item:cup" title="Enter adds it, or strengthens the equal chunk that is there" maxlength="10000" disabled=${!alive.value} onKeyDown=${press} />
+  return html`<input class="mono add-chunk" aria-label="Add a chunk" aria-invalid=${problem !== null} placeholder="Add a chunk, such as item:cup" title=${noChange.value || "Enter adds it, or strengthens the equal chunk that is there"} maxlength="10000" disabled=${Boolean(noChange.value)} onKeyDown=${press} />
     <${Problem} text=${problem} />`;
 }
 

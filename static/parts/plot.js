@@ -89,7 +89,7 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
 
   return html`<figure class="plot" aria-label=${title}>
     <figcaption>
-      <b>${title}</b>${unit ? html` <span class="quiet">[${unit}]</span>` : null}
+      <b title=${title}>${title}</b>${unit ? html` <span class="quiet">[${unit}]</span>` : null}
       <span class="plot-names">
         ${series.map(({ name, colour, dash, ...curve }, n) => {
           const value = at === null ? "" : numberText(valueAt({ times, ...curve }, at));

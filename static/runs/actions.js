@@ -20,14 +20,14 @@ export const busy = signal(null);
 const LOOK = 300; // the interval between two requests for the progress of a replay [ms]
 const cancels = new Map();
 
-/** Shows a recording, in a session that replays it; closes the sessions of others that nobody views any more. */
-export async function openRun(run) {
+/** Shows a recording, in a session that replays it; closes the sessions of others that nobody views any more. `at` as in `showRecording`. */
+export async function openRun(run, at = null) {
   if (busy.value || run.problem) return;
   busy.value = { text: "Opening …" };
   const wanted = sinceNow();
   try {
     await leaveOthers(run.id);
-    if (wanted()) await chooseRecording(run.id);
+    if (wanted()) await chooseRecording(run.id, { at });
   } catch (error) {
     complain(`${run.model} of ${whenText(run.made)} cannot be opened: ${error.message}`);
   }

@@ -37,6 +37,11 @@ export function nameOf(run) {
   return run.label?.name || [run.model || run.id, whenText(run.made), branchText(run)].filter(Boolean).join(" ");
 }
 
+/** Returns when a run began, or another text instead, and where it is a branch: branches begin with their run. */
+export function beginningText(run, instead = "") {
+  return [instead || whenText(run.made), branchText(run)].filter(Boolean).join(", ");
+}
+
 /** Returns where a branch leaves its run, which began at the same time; an empty text if it is none. */
 export function branchText(run) {
   return run.branched === null ? "" : `branch at ${run.branched.toFixed(2)} s`;

@@ -11,11 +11,11 @@ import { followRuns, isOrphan, runs } from "../runs/list.js";
 import { outcomeText, whenText } from "../runs/wording.js";
 import { counted } from "../parts/count.js";
 import { chooseLive } from "../bar/models.js";
-import { alive, complain, isShared, session, shownRecording as shown } from "../store.js";
-import { computed, effect, html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { complain, session, shownRecording as shown } from "../store.js";
+import { computed, html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { placeOf } from "./draw.js";
 import { column } from "./rows.js";
-import { furthest, seek } from "./seek.js";
+import { furthest } from "./seek.js";
 import { span } from "./view.js";
 
 const open = remembered("branches open", true);
@@ -85,31 +85,15 @@ function endOf(run) {
 /** The newest time of the run and of the branches that are shown [s]: the axis goes as far. */
 export const reach = computed(() => Math.max(furthest.value, ...(open.value && tree.value.length > 1 ? tree.value.map(({ run }) => endOf(run)) : [])));
 
-/** Shows another branch: the open session that writes it, where it is, or its recording. */
+/** Shows another branch: the open session that writes it, where it is, or its recording, at the moment from which it differs from the shown run. */
 async function show(run) {
-  const moment = run.session ? null : sameUntil(runs.value ?? [], run.id, shown.value);
   try {
     if (run.session && (await chooseLive(run.id))) return;
   } catch (error) {
     complain(error.message);
     return;
   }
-  await openRun(run);
-  beginAt(run, moment);
-}
-
-/** Goes to the moment from which an opened branch differs from the run that was shown, once its run is known; not if other pages show it. */
-function beginAt({ id }, moment) {
-  if (moment === null) return;
-  const end = effect(() => {
-    const here = session.value?.recorded === id;
-    if (session.value !== null && !here) queueMicrotask(() => end()); // another run is shown by now
-    if (!here || !alive.value || furthest.value < moment - 1e-6) return;
-    queueMicrotask(() => {
-      end();
-      if (!isShared.peek()) seek(moment);
-    });
-  });
+  await openRun(run, sameUntil(runs.value ?? [], run.id, shown.value));
 }
 
 function compare(run) {
@@ -123,12 +107,13 @@ function branchName(run) {
 commandsOf(() =>
   (tree.value.length > 1 ? tree.value : []).flatMap(({ run }) => {
     const mine = run.id === shown.value;
-    const of = (text, work, ready) => ({ text: `${text}: ${branchName(run)}`, group: `Branch ${run.id}`, work, ready: () => ready });
+    const of = (text, work, why = "") => ({ text: `${text}: ${branchName(run)}`, group: `Branch ${run.id}`, work, ready: () => !why, why: () => why });
+    const isShown = mine ? "It is shown now." : "";
     return [
-      of("Show the branch", () => show(run), !mine && !run.problem),
-      of("Compare the shown run with the branch", () => compare(run), !mine),
-      of("Rename the branch (name, note, tags)", () => labelRun(run), true),
-      of("Delete the branch", () => deleteRuns([run]), !mine && !run.session),
+      of("Show the branch", () => show(run), isShown || run.problem || ""),
+      of("Compare the shown run with the branch", () => compare(run), isShown),
+      of("Rename the branch (name, note, tags)", () => labelRun(run)),
+      of("Delete the branch", () => deleteRuns([run]), isShown || (run.session ? "An open run writes it." : "")),
     ];
   }),
 );

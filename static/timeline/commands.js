@@ -84,13 +84,13 @@ function placeText({ x, y, heading }) {
   return `(${valueText(x)}, ${valueText(y)}) m${turned}`;
 }
 
-/** Returns a command as text, without its name. With `first`, it covers all commands from that one on, for example of one drag. */
-function dataText(event, first) {
+/** Returns a command as text, without its name. */
+function dataText(event) {
   const command = event[3];
   const setting = settingOf(command);
   const values = named(command);
   if (setting) {
-    const was = before.has(first) ? `${before.get(first)} -> ` : "";
+    const was = before.has(event) ? `${before.get(event)} -> ` : "";
     if (setting.of === "aperture") return `${values.name === "aperture" ? "" : `${values.name} `}${was}${setting.text} cm`;
     if (setting.parameter) return `${was}${setting.text}${setting.parameter.unit ? ` ${setting.parameter.unit}` : ""}`;
     if (setting.of === "place") return `${values.object} to ${setting.text}`;
@@ -104,21 +104,15 @@ function dataText(event, first) {
 }
 
 /** Returns [name, arguments] of a command. */
-export function commandText(event, first = event) {
+export function commandText(event) {
   const { command } = event[3];
   const { parameter } = settingOf(event[3]) ?? {};
-  if (parameter) return [parameter.name, dataText(event, first)];
-  return [changeOf(event[3]) && command !== "aperture" ? command.replaceAll("_", " ") : command, dataText(event, first)];
+  if (parameter) return [parameter.name, dataText(event)];
+  return [changeOf(event[3]) && command !== "aperture" ? command.replaceAll("_", " ") : command, dataText(event)];
 }
 
 /** Returns the key of what a command sets; the simulations of a program have things of the same name. */
 const keyOf = ([, source], { key }) => `${source} ${key}`;
-
-/** Whether two commands set the same value. */
-export function setTheSame(event, other) {
-  const [one, two] = [settingOf(event[3]), settingOf(other[3])];
-  return one !== null && two !== null && keyOf(event, one) === keyOf(other, two);
-}
 
 /** Whether a command comes from a user: a program can give its simulations commands itself. */
 export function isOfUser([, , , { by }]) {

@@ -1,7 +1,7 @@
 // The effect of each kind of event (`actr3d/trace_kinds.py`) on the lanes.
 
 import { requestText, valueText } from "../parts/chunk.js";
-import { commandText, setTheSame } from "./commands.js";
+import { commandText } from "./commands.js";
 
 const LEVELS = { planning_unit: "planning unit", unit_task: "unit task", method: "method", operator: "operator" };
 const BEGINS = new Set(["begun", "resumed", "going on"]);
@@ -115,16 +115,12 @@ function output(lanes, time, _source, { text }) {
   lanes.lane("said", "marks", "printed").mark(time, { text: String(text), tone: "text" });
 }
 
-/** All changes of one moment are one mark; of several changes of one value, only the last has an effect. */
+/** All changes of one moment are one mark, which lists each of them: `undo` takes back the last one. */
 function command(lanes, time, _source, _data, event) {
   lanes.former.take(event);
   const lane = lanes.lane("commands", "marks", "commands");
-  const changes = lane.bands.at(-1)?.from === time ? lane.bands.pop().changes : [];
-  const same = changes.find(({ last }) => setTheSame(event, last));
-  if (same) same.last = event;
-  else changes.push({ first: event, last: event });
-  const text = changes.map(({ first, last }) => commandText(last, first).join(" ")).join("; ");
-  lane.mark(time, { text, tone: "accent", changes });
+  const earlier = lane.bands.at(-1)?.from === time ? [lane.bands.pop().text] : [];
+  lane.mark(time, { text: [...earlier, commandText(event).join(" ")].join("; "), tone: "accent" });
 }
 
 function reward(lanes, time, source, { value }) {

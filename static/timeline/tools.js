@@ -7,6 +7,7 @@ import { AreaMenu } from "../parts/area_menu.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
+import { runStatus } from "../run_status.js";
 import { order } from "../server.js";
 import { alive, running, session } from "../store.js";
 import { reach } from "./branches.js";
@@ -37,9 +38,11 @@ function near(factor) {
 }
 
 /** Registers a command of the timeline. */
-function registered(text, key, work, ready) {
-  return command({ text, key, group: "Timeline", work, ready });
+function registered(text, key, work, ready, why = () => runStatus.value.text) {
+  return command({ text, key, group: "Timeline", work, ready, why });
 }
+
+const noCurves = () => (session.value ? "This run has no curves yet." : runStatus.value.text);
 
 const canGo = () => alive.value;
 registered("To the beginning of the run", "Home", () => seek(0), canGo);
@@ -48,10 +51,10 @@ registered("Five ticks back", "Shift+ArrowLeft", () => goTicks(-FEW), canGo);
 registered("Five ticks on", "Shift+ArrowRight", () => goTicks(FEW), canGo);
 const zoomIn = registered("Zoom in", "z", () => near(1 / STEP));
 const zoomOut = registered("Zoom out", "Shift+z", () => near(STEP));
-registered("Make the plots taller", "h", () => grow(1), () => names.value.length > 0);
-registered("Make the plots lower", "Shift+h", () => grow(-1), () => names.value.length > 0);
+registered("Make the plots taller", "h", () => grow(1), () => names.value.length > 0, noCurves);
+registered("Make the plots lower", "Shift+h", () => grow(-1), () => names.value.length > 0, noCurves);
 const showAll = registered("Show all of the run", "f", fit);
-const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0 || running.value);
+const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0 || running.value, noCurves);
 const keep = registered("Save the timeline or a plot as a picture, or its values as CSV", null, savePictures, () => Boolean(session.value));
 const openTimeline = command({ text: "Open the timeline in a window of its own", group: "Page", work: () => openWindow("timeline") });
 commandsOf(() => names.value.map(({ name }) => {

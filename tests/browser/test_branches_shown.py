@@ -144,11 +144,11 @@ def test_a_branch_of_a_paused_run_is_not_listed_as_ended_and_its_notice_is_shown
     assert names.evaluate_all("all => all.map((one) => one.style.paddingLeft)") == ["8px", "18px", "28px"]
     page.get_by_role("button", name="Dismiss").click()
     expect(page.locator(".branched")).to_have_count(0)
-    # All changes of one moment are in one mark; of one value, the last.
+    # All changes of one moment are in one mark, each as one undo takes it back.
     say(page, type="command", word="move", named={"object": "walker", "x": 1.0, "y": 0.5})
     say(page, type="command", word="aperture", values=[0.7])
     marks = "async () => (await part('timeline/record.js')).lanes.lane('commands').bands.map(({ text }) => text)"
-    until(page, lambda: page.evaluate(marks) == ["aperture 50 -> 70 cm; move walker to (1, 0.5) m"])
+    until(page, lambda: page.evaluate(marks) == ["aperture 50 -> 80 cm; move walker to (1, 0.5) m; aperture 80 -> 70 cm"])
 
 
 @pytest.mark.slow

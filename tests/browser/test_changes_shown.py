@@ -72,6 +72,8 @@ def test_the_last_change_by_hand_is_undone_by_its_key_and_from_the_palette(pages
     for chunk in ("first", "second"):
         say(page, type="command", word="set_buffer", named={"buffer": "goal", "chunk": chunk})
     shows(page, "tr[data-path=goal]", "second")
+    counting = "set buffer goal task:count number:2 last:5 -> first"
+    until(page, lambda: commands(page) == [counting, "set buffer goal first -> second"])  # each that one undo takes back
     say(page, type="step", ticks=10)
     shows(page, "#time", r"0\.20")
     page.get_by_label("Filter rows").focus()
@@ -81,11 +83,15 @@ def test_the_last_change_by_hand_is_undone_by_its_key_and_from_the_palette(pages
     page.locator("#status").click()
     page.keyboard.press("Control+z")
     shows(page, "#status", r"undone at 0\.10 s; a branch was kept")
+    shows(page, ".branched", r"The run up to 0\.20 s is kept as a branch")
+    expect(page.locator("#status .kept")).to_be_hidden()  # it is said once
+    page.get_by_role("button", name="Dismiss").click()
+    expect(page.locator("#status .kept")).to_be_visible()
     shows(page, "tr[data-path=goal]", "first")
-    until(page, lambda: len(commands(page)) == 1)
+    until(page, lambda: commands(page) == [counting])
     page.keyboard.press("Control+k")
     search.fill("undo")
-    expect(options.first).to_contain_text("Undo the last change by hand: set buffer goal task:count number:2 last:5 -> first")
+    expect(options.first).to_contain_text(f"Undo the last change by hand: {counting}")
     page.keyboard.press("Enter")
     shows(page, "tr[data-path=goal]", "count")
     until(page, lambda: commands(page) == [])
@@ -135,7 +141,9 @@ def test_an_agent_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[.
     expect(field).to_be_focused()
     page.keyboard.press("Tab")  # nothing was written, so nothing is kept
     expect(field).to_have_count(0)
-    assert commands(other) == ["set buffer goal task:count number:2 last:5 -> task:count number:7 last:9 <b>"]
+    typed, foreign = "task:count number:7 last:9 <b>", "of another browser"
+    steps = [f"task:count number:2 last:5 -> {typed}", f"<b> task:count number:7 last:9 -> {foreign}", f"{foreign} -> {typed}"]
+    assert commands(other) == [f"set buffer goal {step}" for step in steps]
 
     # a memory
     open_tab(page, "Memory")
@@ -145,7 +153,7 @@ def test_an_agent_is_changed_by_hand_and_every_browser_sees_it(pages: Callable[.
     row.click()
     page.get_by_role("button", name="Strengthen").click()
     expect(page.get_by_role("alert")).to_contain_text("'memory' has no base level")
-    assert commands(page)[1:] == ["add chunk memory count 7 8 again"]
+    assert commands(page)[3:] == ["add chunk memory count 7 8 again"]
 
     # productions: what is forbidden is marked, and the explanation says who did it
     open_tab(page, "Productions")

@@ -110,6 +110,28 @@ def test_the_last_good_run_stays_until_the_text_loads_again(pages: Callable[...,
     assert path.read_text(encoding="utf-8") == "# mended\n" + MIND.read_text(encoding="utf-8")
 
 
+def test_a_run_beside_unsaved_text_is_said_to_be_of_the_saved_text(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
+    path = written("unsaved.py", "print(undefined_name)\n")
+    page = pages("unsaved.py")
+    edit(page, "unsaved.py")
+    page.click("#run")
+    shows(page, "#status", "failed")
+    expect(page.locator(".strip")).to_have_count(0)
+    page.locator(CODE).focus()
+    page.keyboard.press("Control+a")
+    page.keyboard.insert_text("print('mended')\n")
+    shows(page, ".strip", "The text in the editor is not saved: runs are of the saved text.")
+    page.click("#run")  # the saved text once more
+    until(page, lambda: page.evaluate("async () => (await part('store.js')).session.value.run") > 1)
+    shows(page, "#status", "failed")
+    open_tab(page, "Messages")
+    shows(page, ".former", "The text in the editor is not saved")
+    page.get_by_role("button", name="Save and run").click()
+    shows(page, "#status", "ended")
+    expect(page.locator(".former")).to_have_count(0)
+    assert path.read_text(encoding="utf-8") == "print('mended')\n"
+
+
 @pytest.mark.slow
 def test_what_a_run_says_is_marked_at_its_lines(pages: Callable[..., Page], written: Callable[[str, str], Path]) -> None:
     written(

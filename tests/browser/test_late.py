@@ -557,14 +557,15 @@ def test_nothing_is_asked_of_a_new_run_before_its_own_first_state_is_there(pages
     told = page.evaluate(
         """async () => {
           const { alive, moment, session, state, take } = await part("store.js");
+          const { runStatus } = await part("run_status.js");
           const [before, run] = [moment.value, session.value.run + 1];
           take([{ run, epoch: 1, session: { ...session.value, run } }]);
-          const between = [alive.value, moment.value === before];
+          const between = [alive.value, moment.value === before, runStatus.value.line];
           take([{ run, epoch: 1, state: state.value }]);
           return [...between, alive.value, moment.value === before];
         }"""
     )
-    assert told == [False, True, True, False]
+    assert told == [False, True, "loading …", True, False]
 
 
 @pytest.mark.slow

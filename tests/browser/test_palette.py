@@ -143,6 +143,41 @@ def test_the_palette_has_the_experiments_and_what_can_be_done_with_the_present_r
     expect(page.get_by_role("dialog", name="Name of the run")).to_be_visible()
 
 
+REFUSED_WITHOUT_REASON = """async () => {
+  const { permanent } = await part("commands.js");
+  return permanent().filter((one) => !one.ready() && !one.why()).map(({ text }) => text);
+}"""
+
+
+def test_each_command_that_is_not_possible_says_why_and_none_is_offered_that_a_run_refuses(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    shows(page, "#status", "at its start")
+    assert page.evaluate(REFUSED_WITHOUT_REASON) == []
+    expect(page.locator("#aperture")).to_be_enabled()
+    page.locator("body").press("+")  # there is none above «fastest»
+    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'until', time: 20 }))")
+    shows(page, "#status", "ended")
+    assert page.evaluate(REFUSED_WITHOUT_REASON) == []
+    expect(page.locator("#aperture")).to_be_disabled()
+    expect(page.locator(".aperture")).to_have_attribute("title", "The run is over: go back to an earlier time, or restart it.")
+    expect(page.get_by_role("button", name="Move, push …")).to_be_disabled()
+    page.keyboard.press("Control+k")
+    page.get_by_role("combobox", name="Search commands").fill("Set the width")
+    option = page.get_by_role("option").filter(has_text="Set the width").first
+    expect(option).to_have_attribute("aria-disabled", "true")
+    page.get_by_role("combobox", name="Search commands").fill("Faster")
+    page.keyboard.press("Enter")
+    expect(page.locator(".palette-refusal")).to_have_text("«Faster» is not possible now. The speed is «fastest» already.")
+    page.keyboard.press("Escape")
+    page.evaluate("async () => void (await (await part('timeline/seek.js')).seek(1))")
+    shows(page, "#time", r"t = 1\.00 s")
+    expect(page.locator("#aperture")).to_be_enabled()
+    page.click("#stop")
+    shows(page, "#status", "stopped")
+    assert page.evaluate(REFUSED_WITHOUT_REASON) == []
+    expect(page.get_by_role("button", name="Make a video of the 3D view")).to_be_disabled()
+
+
 def test_the_palette_opens_again_as_soon_as_it_is_closed(page: Page) -> None:
     shows(page, "#status", "at its start")
     search(page, "step")

@@ -90,6 +90,7 @@ def test_the_page_fits_its_window_whatever_a_recording_is_called(pages: Pages, w
         for width, height in ((1280, 800), (853, 533)):
             page.set_viewport_size({"width": width, "height": height})
             assert page.evaluate("document.documentElement.scrollWidth") == width
+            assert page.locator(".bar").evaluate("one => one.scrollHeight <= one.clientHeight"), "the banner covers nothing of the bar"
             for part in (".name", ".path", ".facts > span >> nth=-1"):
                 assert banner.locator(part).evaluate("one => one.scrollWidth <= one.clientWidth"), f"{part} is not cut"
             expect(banner.locator(".path")).to_have_text("walks/doorway.py")
@@ -388,6 +389,32 @@ def test_a_recording_and_its_branch_are_switched_in_the_tree_and_one_can_be_dele
     page.go_back()
     expect(banner).to_contain_text(branch)
     shows(page, "#time", r"t = 0\.20 s")
+
+
+SEEN = """() => {
+  window.seen = new Set();
+  const look = () => seen.add(document.querySelector("#time").textContent).add(document.querySelector("#status").textContent);
+  new MutationObserver(look).observe(document.body, { subtree: true, childList: true, characterData: true });
+}"""
+"""Notes all times and states of the run that the page shows from now on."""
+
+
+def test_a_branch_that_is_shown_is_at_its_moment_from_the_first_and_said_to_be_opened_before(pages: Pages) -> None:
+    page = pages("doorway.py")
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.3)
+    shows(page, "#time", r"t = 0\.30 s")
+    at(page, 0.1)
+    say(page, type="command", word="aperture", values=[0.8])
+    say(page, type="until", time=0.15)
+    shows(page, "#time", r"t = 0\.15 s")
+    page.evaluate(SEEN)
+    page.locator(".branch-name", has_text="at 0.10 s").click()
+    expect(page.locator(".recording-banner")).to_contain_text("0.30 s recorded")
+    shows(page, "#time", r"t = 0\.10 s")
+    seen = page.evaluate("[...seen]")
+    assert "t = 0.00 s" not in seen
+    assert "no run" not in seen
 
 
 def in_frame(page: Page, address: str) -> None:

@@ -19,7 +19,7 @@ from actr3d.simulation import Simulation
 from actr3d.trace import Trace
 from actr3d.trace_kinds import GROUPS, KINDS
 from actr3d.world import Floor, Mannequin, Scene
-from tests.helpers.page import open_tab, until
+from tests.helpers.page import answers, open_tab, until
 from tests.helpers.recording_forgery import forge
 from tests.helpers.workbench_server import Served
 
@@ -103,6 +103,9 @@ def test_a_small_window_lists_several_runs(page: Page, recordings: Path, two: li
     if chosen:
         page.get_by_role("button", name="Details").click()
         expect(page.get_by_role("table", name="Parameters")).to_contain_text("width0.5")
+    else:
+        page.set_viewport_size({"width": 900, "height": 600})
+        until(page, lambda: page.locator(".runs-chosen").evaluate("box => box.offsetHeight") < 44)  # one line, as nothing is chosen
 
 
 HALF = """import os, time
@@ -378,6 +381,36 @@ def test_two_runs_are_compared(page: Page, two: list[str]) -> None:
     assert page.evaluate(first) == "2.0 N s"
     page.keyboard.press("Escape")
     expect(dialog).to_have_count(0)
+
+
+def test_compared_branches_are_told_apart_and_what_neither_has_is_no_difference(blank: Page) -> None:
+    def branch(at: float | None, result: dict[str, Any] | None) -> dict[str, Any]:
+        own = {"id": f"run_{at}", "model": "doorway.py", "made": 1.7e9, "label": {"name": ""}, "branched": at, "origin": None}
+        end = {"result": result, "ended": "left", "time": 1, "events": 1, "size": 1, "problem": None, "failed": None}
+        return own | end | {"ancestors": [], "parameters": {}, "seed": 1}
+
+    runs = [branch(2.0, {"onset_time": None, "peak": 2}), branch(0.5, {"peak": 3})]
+    event = [10, "walker", "output", {"text": "long " * 100}]
+    difference: dict[str, Any] = {"time": 1e-5, "before": [], "events": [event, None], "after": [[], []]}
+    compared: dict[str, Any] = {"runs": runs, "changed": [{}, {}], "units": {}, "text": [], "same_events": 0, "whole": True}
+    answers(blank, "/api/compare", compared | {"difference": difference})
+    long = {"name": "walker.DM: " + "plan:1 " * 50, "unit": "", "group": "activation", "of": None, "shape": "line"}
+    curves = {"names": [{"name": "walker speed", "unit": "m/s", "group": "speed", "of": None, "shape": "line"}, long]}
+    for run in runs:
+        answers(blank, f"/api/recordings/{run['id']}/curves", curves | {"times": [0, 1], "curves": {"walker speed": [0, 1]}, "events": {}})
+    blank.evaluate("async (ids) => (await part('compare/compare.js')).compareRuns(...ids)", [run["id"] for run in runs])
+    dialog = blank.get_by_role("dialog", name="Two runs")
+    plot = dialog.get_by_role("figure", name="walker speed")
+    names = [re.compile(r"^first: .+, branch at 2\.00 s$"), re.compile(r"^second: .+, branch at 0\.50 s$")]
+    expect(plot.locator(".plot-of")).to_have_text(names)
+    plot.locator("canvas").hover()
+    expect(plot.locator("output").first).not_to_be_empty()
+    fits = "all => all.every((one) => one.scrollWidth <= one.clientWidth)"
+    assert plot.locator(".plot-of").evaluate_all(fits), "no name is cut"
+    assert dialog.locator(".compare-course").evaluate_all(fits), "the list of curves is no wider than the dialog"
+    expect(dialog.locator("tr.other").filter(has_text=re.compile("onset|peak"))).to_have_text(["≠peak23"])
+    expect(dialog.locator(".headline")).to_have_text("Only the first run has such events.")
+    blank.keyboard.press("Escape")
 
 
 @pytest.mark.slow

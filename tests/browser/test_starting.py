@@ -124,6 +124,14 @@ def test_all_keys_are_named(page: Page) -> None:
     assert all(text.strip() for text in keys.all_inner_texts())
 
 
+def test_a_run_that_ends_after_a_time_without_events_says_when_the_last_one_was(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "paused")
+    page.click("#run")
+    shows(page, "#time", r"3\.\d\d s")  # the memory knows for 3 s what was retrieved
+    shows(page, "#status", r"^ended: the program is over; the last event was at 0\.\d+ s$")
+
+
 def test_the_time_of_the_present_run_is_that_of_the_moment(page: Page) -> None:
     shows(page, "#status", "paused")
     open_tab(page, "Runs")

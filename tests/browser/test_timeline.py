@@ -233,7 +233,10 @@ def test_going_back_and_forth(ended: Page) -> None:
     page.click("#run")
     shows(page, "#status", "ended")
     page.get_by_label("Filter rows").fill("commands")
-    assert [text for text in told(page, 0.25) if "commands" in text] == ["commands\naperture 50 -> 90 cm\nat 2.000 s"]
+    (mark,) = [text for text in told(page, 0.25) if "commands" in text]
+    assert re.fullmatch(r"commands\naperture 50 -> .* -> 90 cm\nat 2\.000 s", mark)
+    steps: list[tuple[str, str]] = re.findall(r"aperture (\d+) -> (\d+) cm", mark)  # each that one undo takes back
+    assert [was for was, _ in steps[1:]] == [now for _, now in steps[:-1]]
     page.get_by_label("Filter rows").fill("joints")
     assert any(re.search(r"torso\w* -?[01]\.\d+ deg", text) for text in told(page, 5.8 / 8))  # it is wide enough not to turn
 

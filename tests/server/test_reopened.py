@@ -186,6 +186,17 @@ def test_a_run_that_ends_before_its_recording_says_so(desk: Desk, tmp_path: Path
     assert len(whole(again)) == 1
 
 
+def test_a_recording_that_is_still_being_opened_goes_to_a_moment_at_once(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, BUILT, record=True)
+    talk.say("until", time=0.2)
+    talk.until("paused", time=0.2)
+    name = talk.facts["recording"]
+    desk.do(talk.sessions.close(talk.session.name))
+    again = Talk(desk, desk.do(talk.sessions.reopen(name)), talk.sessions)
+    again.say("seek", time=0.1)
+    assert (again.state["time"], again.state["status"]) == (0.1, "paused")
+
+
 def test_who_opens_a_recording_twice_gets_one_session(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, COUNTING, record=True, run=True, wait="ended")
     again = reopened(talk)

@@ -238,6 +238,7 @@ def test_a_wrong_command_to_a_body_names_its_line_and_its_production(desk: Desk,
     assert (notice["file"], notice["line"]) == ("model.py", 12)
     assert "in production 'go'" in notice["text"]
     assert "in production 'go'" in talk.state["reason"]
+    assert str(tmp_path) not in notice["text"] + talk.state["reason"]
 
 
 @pytest.mark.parametrize("head", ['goal="task:wait ink?ink:"', 'gaol="go"'])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from actr3d.runner.traceback_report import traceback_report
@@ -21,7 +22,10 @@ def describe_error(error: BaseException) -> str:
     if isinstance(error, SystemExit):
         return f"the model ended its process (SystemExit: {error.code})"
     try:
-        return shortened(traceback_report(error, _HERE).message) or type(error).__name__
+        report = traceback_report(error, _HERE)
+        # A production of the same file is found by its name.
+        text = re.sub(rf" \({re.escape(report.file)}:\d+\)", "", report.message) if report.file else report.message
+        return shortened(text) or type(error).__name__
     except MemoryError:
         return f"{type(error).__name__}, and not enough memory is left to say more"
 
