@@ -6,17 +6,17 @@ import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Problem } from "../parts/problem.js";
 import { savePicture } from "../parts/picture.js";
-import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
+import { CanvasSurface, scaled } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
 import { unitOf } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { whenText } from "../runs/wording.js";
 import { dark } from "../theme.js";
 import { useFresh } from "./answer.js";
-import { colourOf, drawFigure, drawPoint, layout, levelsOf } from "./drawing.js";
+import { drawFigure, drawLegend, drawSample, layout, layoutLegend, levelsOf } from "./drawing.js";
 import { experiments, showExperiment } from "./list.js";
 import { Parts } from "./parts.js";
-import { columnText, doneText } from "./wording.js";
+import { changedText, columnText, doneText } from "./wording.js";
 
 const MAX_LINES = 12;
 const MAX_BUTTONS = 300; // points that keys can reach
@@ -108,11 +108,14 @@ function unitOfMeasure({ unit: declared, measure }) {
   return declared ?? (factor === 1 ? unit : ""); // the values are in the unit of the table
 }
 
-/** Returns the entries of the legend for two experiments, whose lines are whole and dashed; null if there is only one. */
-function pairOf(experiment, other) {
-  if (other === null) return null;
-  const names = [experiment, other].map((one) => `${one.name} ${whenText(one.made)}`);
-  return names.map((name, n) => ({ key: `experiment ${n}`, name, dashed: n === 1, colour: "quiet", number: 0 }));
+const sourceText = ({ name, made }) => `${name} ${whenText(made)}`;
+
+/** Returns the name of an experiment among several of one design: when it began, and what was changed in the design. */
+const nameAmong = (experiment) => `${sourceText(experiment)}, ${changedText(experiment.changed) || "as designed"}`;
+
+/** Returns the entries of the legend for experiments, the lines of the second of which are dashed; none for a single one. */
+function entriesOf(drawn) {
+  return drawn.length === 1 ? [] : drawn.map((one, n) => ({ key: `experiment ${n}`, name: nameAmong(one), dashed: n === 1, colour: "quiet", number: 0 }));
 }
 
 function Menus({ experiment, facts, columns, chosen }) {
@@ -148,7 +151,7 @@ function ComparedChoice({ others, other }) {
   if (others.length === 0) return null;
   return html`<select aria-label="Compare with" title="Draw another experiment beside it" value=${other?.id ?? ""} onChange=${(event) => (compared.value = event.currentTarget.value)}>
     <option value="">compare with …</option>
-    ${others.map((one) => html`<option key=${one.id} value=${one.id}>${one.name}, ${whenText(one.made)}</option>`)}
+    ${others.map((one) => html`<option key=${one.id} value=${one.id}>${nameAmong(one)}</option>`)}
   </select>`;
 }
 
@@ -156,9 +159,7 @@ function ComparedChoice({ others, other }) {
 function Sample({ line }) {
   const canvas = useRef(null);
   useEffect(() => {
-    const surface = new CanvasSurface(scaled(canvas.current, 22, 10));
-    surface.line([0, 5, 22, 5], colourOf(line), { width: 1.5, dash: line.dashed ? [5, 3] : [] });
-    drawPoint(surface, 11, 5, line);
+    drawSample(new CanvasSurface(scaled(canvas.current, 22, 10)), 0, 5, line);
   }, [line.number, line.dashed, dark.value]);
   return html`<canvas ref=${canvas} style="width: 22px; height: 10px" aria-hidden="true"></canvas>`;
 }
@@ -177,7 +178,8 @@ function Plot({ lines, known, about, children }) {
   const pointed = useSignal(null);
   const { width, height } = size.value;
   const figure = useMemo(() => layout(lines, known, width, height), [lines, known, width, height]);
-  const legend = [...lines.filter(({ name, dashed, number }) => name && !(dashed && lines.some((one) => one.number === number && !one.dashed))), ...(about.pair ?? [])];
+  const legend = [...lines.filter(({ name, dashed, number }) => name && !(dashed && lines.some((one) => one.number === number && !one.dashed))), ...about.entries];
+  const caption = `Means over participants, ± 1 standard error. ${about.counts}`;
   const title = `${columnText(about.measure)}${about.unit ? ` [${about.unit}]` : ""}`;
 
   useEffect(() => {
@@ -192,19 +194,14 @@ function Plot({ lines, known, about, children }) {
 
   function save(kind) {
     const [wide, high] = [Math.max(640, width), Math.max(360, height)];
+    const entries = layoutLegend(legend, wide);
     const draw = (surface) => {
-      let at = 52;
-      for (const line of legend) {
-        surface.line([at, 8, at + 20, 8], colourOf(line), { width: 1.5, dash: line.dashed ? [5, 3] : [] });
-        drawPoint(surface, at + 10, 8, line);
-        surface.text(line.name, at + 25, 8, "text");
-        at += 40 + widthOf(line.name);
-      }
-      const below = layout(lines, known, wide, high - 20);
-      below.box.y += 20; // below the legend
-      drawFigure(surface, lines, below, columnText(about.x));
+      drawLegend(surface, entries);
+      surface.at(0, entries.height, () => drawFigure(surface, lines, layout(lines, known, wide, high), columnText(about.x)));
+      surface.text(caption, 0, entries.height + high + 8, "quiet");
     };
-    savePicture({ name: `${about.source} ${about.measure}`, title: `${title}, ${about.source}`, width: wide, height: high, draw }, kind);
+    const [source] = about.sources;
+    savePicture({ name: `${source} ${about.measure}`, title: `${title}, ${about.sources.join(" and ")}`, width: wide, height: entries.height + high + 16, draw }, kind);
   }
 
   const points = lines.flatMap((line) => line.points.map((point) => ({ line, point, x: figure.xOf(point.at[0]), y: figure.yOf(point.mean), text: pointText(point, about, line) })));
@@ -240,7 +237,7 @@ function Plot({ lines, known, about, children }) {
         return html`<button key=${key} class="point ${hit.includes(one) ? "hit" : ""}" style=${{ left: `${one.x}px`, top: `${one.y}px` }} aria-label="Trials of ${one.text}" onClick=${press} onFocus=${() => (pointed.value = [one.text])} onBlur=${leave}></button>`;
       })}
     </div>
-    <p class="pointed" role="status">${hit.length > 0 ? html`${hit.length > 1 ? `${hit.length} points, ${hit[0].text}` : hit[0].text} <span class="quiet">– click for the trials</span>` : html`<span class="quiet">Means over participants, ± 1 standard error. ${about.counts}</span>`}</p>
+    <p class="pointed" role="status">${hit.length > 0 ? html`${hit.length > 1 ? `${hit.length} points, ${hit[0].text}` : hit[0].text} <span class="quiet">– click for the trials</span>` : html`<span class="quiet">${caption}</span>`}</p>
   </figure>`;
 }
 
@@ -272,6 +269,7 @@ export function Figure({ experiment, facts, columns: all }) {
     const [first, dashed] = both.map((one, n) => linesOf(one, facts, combinations, n === 1, n === 1 ? other?.id : experiment.id));
     return [...first, ...dashed];
   }, [answer, second, other?.id]);
+  const drawn = lines.some(({ dashed }) => dashed) ? [experiment, other] : [experiment];
   const combined = answer ? combinationsOf([answer], answer.by, facts).length : 0;
   const error = own.error ?? (other ? others.error && `${other.name}: ${others.error}` : null);
   if (failed) {
@@ -282,7 +280,7 @@ export function Figure({ experiment, facts, columns: all }) {
     <${Problem} text=${error} />
     ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
     ${answer && lines.length > 0
-      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOfMeasure(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOfMeasure(answer), sources: drawn.map(sourceText), counts: doneText(experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
       : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
   `;
 }

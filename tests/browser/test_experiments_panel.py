@@ -323,8 +323,8 @@ TWO_EXPERIMENTS = """async () => {
     const { experiments, shown, where } = await part("experiments/list.js");
     const column = (name, role) => ({ name, role, type: "real", unit: null, meaning: "" });
     const columns = [column("n", "value"), column("rt", "measure"), column("wall_s", "own")];
-    const one = (id, columns) => ({ id, name: id, done: 4, failures: 0, made: 0, total: 4, columns });
-    experiments.value = [one("mine", ["n", "rt"]), one("theirs", ["n", "rt"]), one("others", ["n", "luck"])];
+    const one = (id, columns, changed = {}) => ({ id, name: id, done: 4, failures: 0, made: 0, total: 4, columns, changed });
+    experiments.value = [one("mine", ["n", "rt"]), one("theirs", ["n", "rt"], { "latency_factor": 0.9 }), one("others", ["n", "luck"])];
     const place = document.body.appendChild(Object.assign(document.createElement("div"), { id: "drawn" }));
     place.style.cssText = "display: flex; flex-direction: column; width: 600px; height: 400px";
     render(html`<${Figure} experiment=${experiments.value[0]} facts=${{ factors: { n: [1, 2] } }} columns=${columns} />`, place);
@@ -345,13 +345,47 @@ def test_another_experiment_is_drawn_beside_the_one_that_is_shown(blank: Page) -
     expect(legend).to_have_text("")
     choice = blank.get_by_label("Compare with")
     expect(choice.locator("option")).to_have_count(2)  # without the experiment that has no such measure
+    expect(choice.locator("option").last).to_have_text(re.compile("^theirs .*, latency_factor 0.9$"))
     choice.select_option("theirs")
     expect(points).to_have_count(4)
     expect(points.nth(0)).to_have_attribute("aria-label", re.compile(r"^Trials of n 1: 0\.1\d* s \(1 participant, 2 trials\)$"))
     expect(points.nth(3)).to_have_attribute("aria-label", re.compile(r"^Trials of n 2 · the other experiment: 0\.4\d* s "))
     expect(legend.locator("canvas")).to_have_count(2)
-    expect(legend).to_contain_text(re.compile("mine .*theirs "))
+    expect(legend).to_contain_text(re.compile("mine .*, as designed.*theirs .*, latency_factor 0.9"))
     points.nth(3).press("Enter")
     assert blank.evaluate("chosen()") == {"shown": "theirs", "where": {"n": 2}}
     choice.select_option("")
     expect(points).to_have_count(2)
+
+
+TEXTS_OF_A_PICTURE = """(svg) => {
+    document.body.innerHTML = svg.replace(/^<[?].*[?]>/, "");
+    const whole = document.querySelector("svg").getBoundingClientRect();
+    const inside = (box) => box.left >= whole.left && box.right <= whole.right && box.top >= whole.top && box.bottom <= whole.bottom;
+    return Array.from(document.querySelectorAll("svg text"), (text) => [text.textContent, inside(text.getBoundingClientRect())]);
+}"""
+
+
+def test_a_saved_figure_says_which_experiments_it_shows_and_what_its_bars_are(blank: Page) -> None:
+    def answer(route: Route) -> None:
+        points = [
+            {"at": [n, f"{level} of the conditions of the second factor"], "mean": n, "error": 0.1, "participants": 2, "trials": 4}
+            for n in (1, 2)
+            for level in ("first", "other", "third")
+        ]
+        route.fulfill(json={"x": "n", "by": ["kind"], "measure": "rt", "unit": "s", "columns": [], "points": points})
+
+    blank.route("**/means?*", answer)
+    blank.evaluate(TWO_EXPERIMENTS)
+    blank.get_by_label("Compare with").select_option("theirs")
+    expect(blank.locator("#drawn .legend canvas")).to_have_count(5)
+    with blank.expect_download() as download:
+        blank.get_by_role("button", name="SVG").click()
+    texts: list[tuple[str, bool]] = blank.evaluate(TEXTS_OF_A_PICTURE, download.value.path().read_text(encoding="utf-8"))
+    assert [text for text, is_inside in texts if not is_inside] == []
+    title, first, other, third, mine, theirs, *rest = (text for text, _ in texts)
+    assert re.fullmatch(r"rt \[s\], mine .* and theirs .*", title)
+    assert [text.partition(" ")[0] for text in (first, other, third)] == ["first", "other", "third"]
+    assert mine.startswith("mine ")
+    assert theirs.startswith("theirs ")
+    assert rest[-1].startswith("Means over participants, ± 1 standard error.")
