@@ -10,13 +10,12 @@ import { CanvasSurface, scaled } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
 import { unitOf } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
-import { whenText } from "../runs/wording.js";
 import { dark } from "../theme.js";
 import { useFresh } from "./answer.js";
 import { drawFigure, drawLegend, drawSample, layout, layoutLegend, levelsOf } from "./drawing.js";
 import { experiments, showExperiment } from "./list.js";
 import { Parts } from "./parts.js";
-import { changedText, columnText, doneText } from "./wording.js";
+import { changedText, columnText, doneText, experimentText } from "./wording.js";
 
 const MAX_LINES = 12;
 const MAX_BUTTONS = 300; // points that keys can reach
@@ -108,10 +107,8 @@ function unitOfMeasure({ unit: declared, measure }) {
   return declared ?? (factor === 1 ? unit : ""); // the values are in the unit of the table
 }
 
-const sourceText = ({ name, made }) => `${name} ${whenText(made)}`;
-
 /** Returns the name of an experiment among several of one design: when it began, and what was changed in the design. */
-const nameAmong = (experiment) => `${sourceText(experiment)}, ${changedText(experiment.changed) || "as designed"}`;
+const nameAmong = (experiment) => `${experimentText(experiment)}, ${changedText(experiment.changed) || "as designed"}`;
 
 /** Returns the entries of the legend for experiments, the lines of the second of which are dashed; none for a single one. */
 function entriesOf(drawn) {
@@ -280,7 +277,7 @@ export function Figure({ experiment, facts, columns: all }) {
     <${Problem} text=${error} />
     ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
     ${answer && lines.length > 0
-      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOfMeasure(answer), sources: drawn.map(sourceText), counts: doneText(experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOfMeasure(answer), sources: drawn.map(experimentText), counts: doneText(experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
       : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
   `;
 }

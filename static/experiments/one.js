@@ -8,14 +8,14 @@ import { Prose } from "../parts/prose.js";
 import { whenInFull, whenText } from "../runs/wording.js";
 import { useFresh } from "./answer.js";
 import { Figure } from "./figure.js";
-import { busy, canMakeReport, canResume, canStop, deleteExperiment, experiments, isRunning, makeReport, part, pathOf, problem, resumeExperiment, shown, stopExperiment } from "./list.js";
+import { canMakeReport, canResume, canStop, deleteExperiment, experiments, isRunning, makeReport, part, pathOf, problem, resumeExperiment, shown, stopExperiment, waitOf } from "./list.js";
 import { Parts } from "./parts.js";
 import { Trials } from "./trials.js";
 import { changedText, doneText, durationText, failuresText, levelsText, rateText, stateText } from "./wording.js";
 
 function Actions({ experiment }) {
-  const { state, work } = experiment;
-  const waits = busy.value !== null;
+  const { id, state, work } = experiment;
+  const waits = waitOf(id) !== null;
   const inWork = waits || work.length > 0; // perhaps of another page
   return html`
     ${isRunning(experiment) ? html`<button disabled=${waits || !canStop(experiment)} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop</button>` : null}
@@ -28,7 +28,8 @@ function Actions({ experiment }) {
 const processesText = ({ processes }) => (processes ? `in ${counted(processes, "process", "processes")}` : "on all processors");
 
 function Progress({ experiment }) {
-  const { done, total, failures, rate, remaining, state, workers, work } = experiment;
+  const { id, done, total, failures, rate, remaining, state, workers, work } = experiment;
+  const wait = waitOf(id);
   const going = state === "running" || state === "stopping";
   const facts = [
     going && done === 0 ? (workers > 0 ? "the first trials are running …" : "starting …") : null,
@@ -41,7 +42,7 @@ function Progress({ experiment }) {
     <span class="number">${doneText(experiment)}</span>
     ${facts.map((text) => html`<span key=${text.replace(/[\d.,]+/g, "")} class="number quiet">${text}</span>`)}
     ${failures > 0 ? html`<span class="bad number">${failuresText(failures)}</span>` : null}
-    ${busy.value ? html`<span class="stretch"></span><span class="doing"><progress aria-label=${busy.value.text}></progress> ${busy.value.text} ${busy.value.cancel ? html`<button class="bare" onClick=${() => busy.value?.cancel.abort()}>Cancel</button>` : null}</span>` : work.map((text) => html`<span key=${text} class="quiet">${text} …</span>`)}
+    ${wait ? html`<span class="stretch"></span><span class="doing"><progress aria-label=${wait.text}></progress> ${wait.text} ${wait.cancel ? html`<button class="bare" onClick=${() => wait.cancel.abort()}>Cancel</button>` : null}</span>` : work.map((text) => html`<span key=${text} class="quiet">${text} …</span>`)}
   </div>`;
 }
 

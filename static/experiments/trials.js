@@ -5,7 +5,7 @@ import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { useFresh } from "./answer.js";
-import { busy, openTrial, where } from "./list.js";
+import { openTrial, waitOf, where } from "./list.js";
 import { Parts } from "./parts.js";
 import { columnText } from "./wording.js";
 
@@ -35,11 +35,12 @@ function Cell({ column, row }) {
 }
 
 function Row({ experiment, columns, row }) {
+  const waits = waitOf(experiment.id) !== null;
   const open = () => openTrial(experiment.id, row.trial);
-  return html`<tr title="Open this trial in the 3D view" onClick=${open}>
+  return html`<tr class=${waits ? "" : "opens"} title=${waits ? null : "Open this trial in the 3D view"} onClick=${waits ? null : open}>
     ${columns.map((column) =>
       column.name === "trial"
-        ? html`<td key="trial" class="number"><button class="link" disabled=${busy.value !== null} aria-label="Open trial ${row.trial}" onClick=${(event) => (event.stopPropagation(), open())}>${row.trial}</button></td>`
+        ? html`<td key="trial" class="number"><button class="link" disabled=${waits} aria-label="Open trial ${row.trial}" onClick=${(event) => (event.stopPropagation(), open())}>${row.trial}</button></td>`
         : html`<${Cell} key=${column.name} column=${column} row=${row} />`,
     )}
   </tr>`;

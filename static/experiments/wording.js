@@ -3,9 +3,12 @@
 import { literal } from "../parameters/values.js";
 import { counted } from "../parts/count.js";
 import { valueText } from "../parts/chunk.js";
-import { labelOf } from "../runs/wording.js";
+import { labelOf, whenText } from "../runs/wording.js";
 
 const STATES = { running: "running", stopping: "stopping …", stopped: "stopped", finished: "finished", failed: "ended early", elsewhere: "run by another process" };
+
+/** Returns the name of an experiment: its design, and when it began. */
+export const experimentText = ({ name, made }) => `${name} ${whenText(made)}`;
 
 export const stateText = ({ state }) => STATES[state] ?? state;
 

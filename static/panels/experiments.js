@@ -8,8 +8,16 @@ import { NewExperiment } from "../experiments/new.js";
 import { Experiment } from "../experiments/one.js";
 import { changedText, doneText, durationText, failuresText, stateText } from "../experiments/wording.js";
 
+/** What a row says below the state: what is made of the experiment now, how long it still takes, or what failed. */
+function Note({ experiment }) {
+  const { failures, remaining, work } = experiment;
+  if (work.length > 0) return html`<span title=${work.join("\n")}>${work.join(", ")} …</span>`;
+  if (isRunning(experiment) && remaining !== null) return `${durationText(remaining)} left`;
+  return failures > 0 ? html`<span class="bad">${failuresText(failures)}</span>` : null;
+}
+
 function Row({ experiment }) {
-  const { id, name, model, made, state, done, total, failures, remaining, changed } = experiment;
+  const { id, name, model, made, state, done, total, changed } = experiment;
   const open = () => showExperiment(id);
   const how = changedText(changed) || "as designed";
   return html`<tr data-experiment=${id} onClick=${open}>
@@ -18,7 +26,7 @@ function Row({ experiment }) {
       <small>${model ? html`<span class="path"><bdi>${model}</bdi></span>` : null}<span>${how}</span></small>
     </td>
     <td class="when" title=${whenInFull(made)}><span class="number">${whenText(made)}</span><small>${agoText(made)}</small></td>
-    <td class="state ${state}"><span>${stateText(experiment)}</span><small>${isRunning(experiment) && remaining !== null ? `${durationText(remaining)} left` : failures > 0 ? html`<span class="bad">${failuresText(failures)}</span>` : ""}</small></td>
+    <td class="state ${state}"><span>${stateText(experiment)}</span><small><${Note} experiment=${experiment} /></small></td>
     <td class="done"><span class="number">${doneText(experiment)}</span><progress aria-label="Finished trials" value=${done} max=${total ?? Math.max(1, done)}></progress></td>
   </tr>`;
 }

@@ -301,6 +301,46 @@ def test_a_report_that_another_page_makes_is_shown_and_the_experiment_cannot_be_
         expect(page.get_by_role("button", name=name)).to_be_enabled()
 
 
+def test_what_is_made_of_one_experiment_is_said_at_that_one_only(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="experiments", refusals=True)
+    column = {"type": "integer", "role": "own", "unit": None, "meaning": ""}
+    columns = [column | {"name": name} for name in ("trial", "participant")]
+    one: dict[str, Any] = {"name": "sums", "made": 0, "state": "finished", "done": 2, "total": 2, "failures": 0}
+    one |= {"changed": {}, "model": "", "remaining": None, "columns": [], "work": []}
+    first, second = (one | {"id": name, "name": name, "work": []} for name in ("first", "second"))
+    wanted: list[Route] = []
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"total": 2, "experiments": [first, second]}))
+    page.route(re.compile("/api/experiments/(first|second)$"), lambda route: route.fulfill(json=one | {"facts": {"factors": {}}}))
+    rows = {"columns": columns, "first": 0, "total": 2, "rows": [{"trial": number, "participant": 1} for number in (1, 2)]}
+    page.route("**/rows?*", lambda route: route.fulfill(json=rows))
+    page.route(re.compile("/report$|/trial$"), lambda route: wanted.append(route))
+
+    page.locator("tr[data-experiment=first]").click()
+    page.get_by_role("button", name="Trials", exact=True).click()
+    trial = page.locator(".trials tbody tr").first
+    expect(trial).to_have_css("cursor", "pointer")
+    page.get_by_role("button", name="Make report").click()
+    expect(page.locator(".progress")).to_contain_text("Making the report …")
+    expect(trial).not_to_have_css("cursor", "pointer")
+    trial.click()
+    first["work"].append("its report is being made")
+
+    page.get_by_role("button", name="Experiments", exact=True).click()
+    expect(page.locator("tr[data-experiment=first] .state")).to_contain_text("its report is being made")
+    page.locator("tr[data-experiment=second]").click()
+    expect(page.locator(".tools .name")).to_have_text("second")
+    expect(page.locator(".progress")).to_have_text("2 of 2 trials")
+    expect(page.get_by_role("button", name="Make report")).to_be_enabled()
+    assert len(wanted) == 1  # no trial is run again meanwhile
+    first["work"].clear()
+    wanted[0].fulfill(json={"report": "first"})
+    toast = page.locator(".toast")
+    expect(toast).to_contain_text(re.compile("^The report of first .* is made"))
+    expect(page.locator(".tools .name")).to_have_text("second")
+    toast.get_by_role("button", name="Open it").click()
+    expect(page.locator(".tools .name")).to_have_text("first")
+
+
 def test_of_trials_that_have_all_failed_there_is_no_figure(blank: Page) -> None:
     blank.evaluate("""async () => {
         const { html, render } = await part("vendor/preact.js");
