@@ -332,11 +332,13 @@ def test_failures_and_missing_trials_are_said_plainly(tmp_path: Path) -> None:
 
 def test_a_report_says_if_the_description_of_the_design_is_of_other_numbers(tmp_path: Path) -> None:
     path = str(write_experiment(tmp_path))
-    text = "The description is that of the design as it was written. This experiment has its own: --trials, n."
+    text = "The description is that of the design as it was written. Changed in this experiment: trials, n."
     changed = read_results(store_rows(tmp_path / "changed", path, count, trials=1, values={"n": [1, 2]}))
     assert text in what_was_run(changed).parts
-    written = read_results(store_rows(tmp_path / "written", path, count))
-    assert not [part for part in what_was_run(written).parts if isinstance(part, str) and "has its own" in part]
+    same = {"trials": 4, "participants": 2, "values": {"n": [1, 2, 5]}}
+    for name, given in (("written", {}), ("same", same)):
+        written = read_results(store_rows(tmp_path / name, path, count, **given))
+        assert not [part for part in what_was_run(written).parts if isinstance(part, str) and "Changed in" in part]
 
 
 @pytest.mark.parametrize(("label", "marker"), [("small", "o"), ("", "D")])
