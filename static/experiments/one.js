@@ -1,11 +1,12 @@
 // One experiment: its state and progress, its figure, trials, facts and report.
 
-import { html } from "../vendor/preact.js";
+import { html, useEffect, useRef } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Prose } from "../parts/prose.js";
 import { whenInFull, whenText } from "../runs/wording.js";
+import { dark } from "../theme.js";
 import { useFresh } from "./answer.js";
 import { Figure } from "./figure.js";
 import { canMakeReport, canResume, canStop, deleteExperiment, experiments, isRunning, makeReport, part, pathOf, problem, resumeExperiment, shown, stopExperiment, waitOf } from "./list.js";
@@ -74,6 +75,14 @@ function useFacts(experiment) {
   return path === wanted ? { facts: answer?.facts ?? null, error } : { facts: null, error: null };
 }
 
+/** The report, in the theme of the page: it has no script that could follow it. */
+function Report({ address }) {
+  const frame = useRef(null);
+  const paint = () => frame.current.contentDocument?.documentElement.style.setProperty("color-scheme", dark.value ? "dark" : "light");
+  useEffect(paint, [dark.value]);
+  return html`<iframe ref=${frame} class="report" title="Report" sandbox="allow-downloads allow-same-origin" src=${address} onLoad=${paint}></iframe>`;
+}
+
 function Contents({ experiment, facts, error }) {
   const path = pathOf(experiment.id);
   const columns = useFresh(`${path}/rows?most=1`, experiment.done > 0 ? experiment.state : "").answer?.columns ?? [];
@@ -86,7 +95,7 @@ function Contents({ experiment, facts, error }) {
     const report = `${path}/report/index.html?${experiment.report}`;
     return html`
       <div class="menus"><${Parts} experiment=${experiment} /><a href=${report} target="_blank" rel="noopener">in a tab of its own</a></div>
-      <iframe class="report" title="Report" sandbox="allow-downloads allow-same-origin" src=${report}></iframe>
+      <${Report} address=${report} />
     `;
   }
   if (columns.length > 2) return html`<${Figure} experiment=${experiment} facts=${facts} columns=${columns} />`;

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, Route, expect
 
+from actr3d.experiment.report.page import page as report_page
 from tests.helpers.experiments import SLOW_COUNTER, write_experiment
 from tests.helpers.page import open_tab, until
 from tests.helpers.workbench_server import Served
@@ -339,6 +340,28 @@ def test_what_is_made_of_one_experiment_is_said_at_that_one_only(pages: Callable
     expect(page.locator(".tools .name")).to_have_text("second")
     toast.get_by_role("button", name="Open it").click()
     expect(page.locator(".tools .name")).to_have_text("first")
+
+
+@pytest.mark.parametrize(("chosen", "paper"), [("light", "rgb(255, 255, 255)"), ("dark", "rgb(20, 24, 31)")])
+def test_a_report_has_the_theme_that_was_chosen_on_the_page(pages: Callable[..., Page], chosen: str, paper: str) -> None:
+    other = "dark" if chosen == "light" else "light"
+    page = pages("counting.py", tab="experiments", theme=other)
+    one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "finished", "done": 2, "total": 2, "failures": 0}
+    one |= {"changed": {}, "model": "", "remaining": None, "columns": [], "work": [], "report": 1}
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"total": 1, "experiments": [one]}))
+    page.route("**/api/experiments/sums", lambda route: route.fulfill(json=one | {"facts": {"factors": {}}}))
+    page.route("**/rows?*", lambda route: route.fulfill(json={"columns": [], "first": 0, "total": 0, "rows": []}))
+    text = report_page("Sums", "", {}, [], {})
+    page.route("**/report/index.html*", lambda route: route.fulfill(body=text, content_type="text/html"))
+    page.locator("tr[data-experiment=sums]").click()
+    page.get_by_role("button", name="Report", exact=True).click()
+    body = page.frame_locator("iframe.report").locator("body")
+    expect(body).not_to_have_css("background-color", paper)
+    page.evaluate("async (chosen) => (await part('theme.js')).chosen.value = chosen", chosen)
+    expect(body).to_have_css("background-color", paper)
+    page.get_by_role("button", name="Trials", exact=True).click()
+    page.get_by_role("button", name="Report", exact=True).click()
+    expect(body).to_have_css("background-color", paper)  # of a page that is loaded again
 
 
 def test_of_trials_that_have_all_failed_there_is_no_figure(blank: Page) -> None:
