@@ -14,7 +14,6 @@ import { dark } from "../theme.js";
 import { useFresh } from "./answer.js";
 import { drawFigure, drawLegend, drawSample, layout, layoutLegend, levelsOf } from "./drawing.js";
 import { experiments, showExperiment } from "./list.js";
-import { Parts } from "./parts.js";
 import { changedText, columnText, doneText, experimentText } from "./wording.js";
 
 const MAX_LINES = 12;
@@ -124,7 +123,6 @@ function Menus({ experiment, facts, columns, chosen }) {
   const lines = [[], ...keys.filter((name) => name !== chosen.x).map((name) => [name]), ...(factors.length > 1 ? [factors.slice(0, 2)] : []), ...(factors.length > 2 ? [factors.slice(0, 3)] : [])];
   if (!lines.some((by) => by.join() === chosen.by.join())) lines.push(chosen.by);
   return html`<div class="menus">
-    <${Parts} experiment=${experiment} />
     <select aria-label="Measure" title="What is averaged" value=${chosen.measure} onChange=${(event) => measured(event.currentTarget.value)}>
       ${measures.map(({ name, meaning }) => html`<option key=${name} value=${name} title=${meaning}>${columnText(name)}</option>`)}
     </select>
@@ -270,14 +268,16 @@ export function Figure({ experiment, facts, columns: all }) {
   const combined = answer ? combinationsOf([answer], answer.by, facts).length : 0;
   const error = own.error ?? (other ? others.error && `${other.name}: ${others.error}` : null);
   if (failed) {
-    return html`<p class="empty" role="status">${done === 1 ? "The finished trial has failed" : `All ${done.toLocaleString("en")} finished trials have failed`}: there is nothing to draw. The table of trials has the errors.</p>`;
+    return html`<p class="part empty" role="status">${done === 1 ? "The finished trial has failed" : `All ${done.toLocaleString("en")} finished trials have failed`}: there is nothing to draw. The table of trials has the errors.</p>`;
   }
   return html`
     <${Menus} experiment=${experiment} facts=${facts} columns=${columns} chosen=${chosen} />
-    <${Problem} text=${error} />
-    ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
-    ${answer && lines.length > 0
-      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOfMeasure(answer), sources: drawn.map(experimentText), counts: doneText(experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
-      : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
+    <div class="part">
+      <${Problem} text=${error} />
+      ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
+      ${answer && lines.length > 0
+        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOfMeasure(answer), sources: drawn.map(experimentText), counts: doneText(experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+        : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
+    </div>
   `;
 }

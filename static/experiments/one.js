@@ -10,9 +10,18 @@ import { dark } from "../theme.js";
 import { useFresh } from "./answer.js";
 import { Figure } from "./figure.js";
 import { canMakeReport, canResume, canStop, deleteExperiment, experiments, isRunning, makeReport, part, pathOf, problem, resumeExperiment, shown, stopExperiment, waitOf } from "./list.js";
-import { Parts } from "./parts.js";
 import { Trials } from "./trials.js";
 import { changedText, doneText, durationText, failuresText, levelsText, rateText, stateText } from "./wording.js";
+
+const PARTS = [["figure", "Figure"], ["trials", "Trials"], ["about", "Design"], ["report", "Report"]];
+
+/** The choice of what is shown of an experiment. */
+function Parts({ experiment }) {
+  const all = PARTS.filter(([id]) => id !== "report" || experiment.report);
+  return html`<div class="parts"><span class="choices" role="group" aria-label="What is shown">
+    ${all.map(([id, text]) => html`<button key=${id} aria-pressed=${part.value === id} onClick=${() => (part.value = id)}>${text}</button>`)}
+  </span></div>`;
+}
 
 function Actions({ experiment }) {
   const { id, state, work } = experiment;
@@ -62,7 +71,7 @@ function About({ experiment, facts }) {
     ["trials a combination", facts.trials_a_cell],
     ["seed", facts.seed],
   ];
-  return html`<div class="about-design">
+  return html`<div class="part about-design">
     <div class="description"><${Prose} text=${facts.description ?? ""} /></div>
     <table><tbody>${rows.filter(([, value]) => value !== undefined && value !== "").map(([name, value]) => html`<tr key=${name}><th scope="row">${name}</th><td>${value}</td></tr>`)}</tbody></table>
   </div>`;
@@ -78,28 +87,27 @@ function useFacts(experiment) {
 /** The report, in the theme of the page: it has no script that could follow it. */
 function Report({ address }) {
   const frame = useRef(null);
-  const paint = () => frame.current.contentDocument?.documentElement.style.setProperty("color-scheme", dark.value ? "dark" : "light");
+  const paint = () => frame.current.contentDocument?.documentElement?.style.setProperty("color-scheme", dark.value ? "dark" : "light");
   useEffect(paint, [dark.value]);
-  return html`<iframe ref=${frame} class="report" title="Report" sandbox="allow-downloads allow-same-origin" src=${address} onLoad=${paint}></iframe>`;
+  return html`<iframe ref=${frame} class="part report" title="Report" sandbox="allow-downloads allow-same-origin" src=${address} onLoad=${paint}></iframe>`;
 }
 
 function Contents({ experiment, facts, error }) {
   const path = pathOf(experiment.id);
   const columns = useFresh(`${path}/rows?most=1`, experiment.done > 0 ? experiment.state : "").answer?.columns ?? [];
-  const parts = html`<div class="menus"><${Parts} experiment=${experiment} /></div>`;
-  if (facts === null && error !== null) return html`${parts}<p class="problem bad" role="alert">The experiment cannot be read: ${error}</p>`;
-  if (facts === null) return html`${parts}<p class="empty" role="status"><progress aria-label="Reading"></progress> Reading the experiment …</p>`;
-  if (part.value === "about") return html`${parts}<${About} experiment=${experiment} facts=${facts} />`;
+  if (facts === null && error !== null) return html`<p class="part problem bad" role="alert">The experiment cannot be read: ${error}</p>`;
+  if (facts === null) return html`<p class="part empty" role="status"><progress aria-label="Reading"></progress> Reading the experiment …</p>`;
+  if (part.value === "about") return html`<${About} experiment=${experiment} facts=${facts} />`;
   if (part.value === "trials") return html`<${Trials} experiment=${experiment} facts=${facts} />`;
   if (part.value === "report" && experiment.report) {
     const report = `${path}/report/index.html?${experiment.report}`;
     return html`
-      <div class="menus"><${Parts} experiment=${experiment} /><a href=${report} target="_blank" rel="noopener">in a tab of its own</a></div>
+      <div class="menus"><a href=${report} target="_blank" rel="noopener">in a tab of its own</a></div>
       <${Report} address=${report} />
     `;
   }
   if (columns.length > 2) return html`<${Figure} experiment=${experiment} facts=${facts} columns=${columns} />`;
-  return html`${parts}<p class="empty" role="status">${isRunning(experiment) ? "The figure appears with the first finished trials." : experiment.done > 0 ? html`<progress aria-label="Reading"></progress> Reading the trials …` : "No trial has finished."}</p>`;
+  return html`<p class="part empty" role="status">${isRunning(experiment) ? "The figure appears with the first finished trials." : experiment.done > 0 ? html`<progress aria-label="Reading"></progress> Reading the trials …` : "No trial has finished."}</p>`;
 }
 
 export function Experiment() {
@@ -118,6 +126,6 @@ export function Experiment() {
     <${Progress} experiment=${experiment} />
     ${problem.value ? html`<p class="problem bad" role="alert">The state of the experiment is not known: ${problem.value}</p>` : null}
     ${experiment.problem ? html`<pre class="trouble" role="alert">${experiment.problem}</pre>` : null}
-    <div class="contents"><${Contents} key="${experiment.id}" experiment=${experiment} facts=${facts} error=${error} /></div>
+    <div class="contents"><${Parts} experiment=${experiment} /><${Contents} key="${experiment.id}" experiment=${experiment} facts=${facts} error=${error} /></div>
   `;
 }

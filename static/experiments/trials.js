@@ -6,7 +6,6 @@ import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { useFresh } from "./answer.js";
 import { openTrial, waitOf, where } from "./list.js";
-import { Parts } from "./parts.js";
 import { columnText } from "./wording.js";
 
 const PAGE = 50; // rows
@@ -40,7 +39,7 @@ function Row({ experiment, columns, row }) {
   return html`<tr class=${waits ? "" : "opens"} title=${waits ? null : "Open this trial in the 3D view"} onClick=${waits ? null : open}>
     ${columns.map((column) =>
       column.name === "trial"
-        ? html`<td key="trial" class="number"><button class="link" disabled=${waits} aria-label="Open trial ${row.trial}" onClick=${(event) => (event.stopPropagation(), open())}>${row.trial}</button></td>`
+        ? html`<td key="trial" class="number"><button class="link" aria-disabled=${waits} aria-label="Open trial ${row.trial}" onClick=${(event) => (event.stopPropagation(), open())}>${row.trial}</button></td>`
         : html`<${Cell} key=${column.name} column=${column} row=${row} />`,
     )}
   </tr>`;
@@ -66,7 +65,6 @@ export function Trials({ experiment, facts }) {
   const last = answer ? Math.min(answer.total, answer.first + PAGE) : 0;
   return html`
     <div class="menus">
-      <${Parts} experiment=${experiment} />
       <${Filter} />
       ${experiment.failures > 0 || failed.value ? html`<label><input type="checkbox" checked=${failed.value} onChange=${(event) => (failed.value = event.currentTarget.checked)} /> failed only</label>` : null}
       <span class="pages">
@@ -79,14 +77,16 @@ export function Trials({ experiment, facts }) {
           : null}
       </span>
     </div>
-    ${error ? html`<p class="problem bad" role="alert">The trials cannot be read: ${error}</p>` : null}
-    <div class="trials" aria-busy=${waiting}>
-      ${answer?.rows.length > 0
-        ? html`<table aria-label="Trials">
-            <thead><tr>${columns.map((column) => html`<${Head} key=${column.name} column=${column} sort=${sort.value} onSort=${sortBy(column)} />`)}</tr></thead>
-            <tbody>${answer.rows.map((row) => html`<${Row} key=${row.trial} experiment=${experiment} columns=${columns} row=${row} />`)}</tbody>
-          </table>`
-        : html`<p class="empty">${answer ? "No finished trial." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
+    <div class="part">
+      ${error ? html`<p class="problem bad" role="alert">The trials cannot be read: ${error}</p>` : null}
+      <div class="trials" aria-busy=${waiting}>
+        ${answer?.rows.length > 0
+          ? html`<table aria-label="Trials">
+              <thead><tr>${columns.map((column) => html`<${Head} key=${column.name} column=${column} sort=${sort.value} onSort=${sortBy(column)} />`)}</tr></thead>
+              <tbody>${answer.rows.map((row) => html`<${Row} key=${row.trial} experiment=${experiment} columns=${columns} row=${row} />`)}</tbody>
+            </table>`
+          : html`<p class="empty">${answer ? "No finished trial." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
+      </div>
     </div>
   `;
 }

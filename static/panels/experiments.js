@@ -1,6 +1,6 @@
 // Experiments: a design run by many trials; their progress, figures and rows, and each trial in the 3D view.
 
-import { html, useEffect } from "../vendor/preact.js";
+import { html, useEffect, useRef } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { agoText, whenInFull, whenText } from "../runs/wording.js";
 import { experiments, followExperiments, isRunning, listExperiments, problem, showExperiment, shown, total } from "../experiments/list.js";
@@ -56,8 +56,19 @@ function List() {
 function Experiments() {
   useEffect(followExperiments, []);
   const isThere = experiments.value?.some(({ id }) => id === shown.value);
+  const place = useRef(null);
+  const last = useRef(null);
+  const now = shown.value === "new" || isThere ? shown.value : "";
+  // What had the focus may be gone with the view before: then it goes to the row of that view, or to the first control.
+  useEffect(() => {
+    const before = last.current;
+    last.current = now;
+    if (before === null || document.activeElement !== document.body) return;
+    const row = before && place.current.querySelector(`[data-experiment="${CSS.escape(before)}"] button`);
+    (row || place.current.querySelector(".tools button")).focus();
+  }, [now]);
   const view = shown.value === "new" ? html`<${NewExperiment} />` : isThere ? html`<${Experiment} />` : html`<${List} />`;
-  return html`<div class="experiments">${view}</div>`;
+  return html`<div class="experiments" ref=${place}>${view}</div>`;
 }
 
 export const panel = { id: "experiments", title: "Experiments", order: 8.5, View: Experiments };

@@ -302,20 +302,26 @@ def test_a_report_that_another_page_makes_is_shown_and_the_experiment_cannot_be_
         expect(page.get_by_role("button", name=name)).to_be_enabled()
 
 
-def test_what_is_made_of_one_experiment_is_said_at_that_one_only(pages: Callable[..., Page]) -> None:
+@pytest.fixture
+def two_finished(pages: Callable[..., Page]) -> tuple[Page, list[dict[str, Any]], list[Route]]:
+    """A page with two finished experiments; their summaries; and the requests for reports and trials, which the test answers."""
     page = pages("counting.py", tab="experiments", refusals=True)
     column = {"type": "integer", "role": "own", "unit": None, "meaning": ""}
     columns = [column | {"name": name} for name in ("trial", "participant")]
     one: dict[str, Any] = {"name": "sums", "made": 0, "state": "finished", "done": 2, "total": 2, "failures": 0}
     one |= {"changed": {}, "model": "", "remaining": None, "columns": [], "work": []}
-    first, second = (one | {"id": name, "name": name, "work": []} for name in ("first", "second"))
+    both = [one | {"id": name, "name": name, "work": []} for name in ("first", "second")]
     wanted: list[Route] = []
-    page.route("**/api/experiments", lambda route: route.fulfill(json={"total": 2, "experiments": [first, second]}))
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"total": 2, "experiments": both}))
     page.route(re.compile("/api/experiments/(first|second)$"), lambda route: route.fulfill(json=one | {"facts": {"factors": {}}}))
     rows = {"columns": columns, "first": 0, "total": 2, "rows": [{"trial": number, "participant": 1} for number in (1, 2)]}
     page.route("**/rows?*", lambda route: route.fulfill(json=rows))
     page.route(re.compile("/report$|/trial$"), lambda route: wanted.append(route))
+    return page, both, wanted
 
+
+def test_what_is_made_of_one_experiment_is_said_at_that_one_only(two_finished: tuple[Page, list[dict[str, Any]], list[Route]]) -> None:
+    page, (first, _), wanted = two_finished
     page.locator("tr[data-experiment=first]").click()
     page.get_by_role("button", name="Trials", exact=True).click()
     trial = page.locator(".trials tbody tr").first
@@ -340,6 +346,29 @@ def test_what_is_made_of_one_experiment_is_said_at_that_one_only(pages: Callable
     expect(page.locator(".tools .name")).to_have_text("second")
     toast.get_by_role("button", name="Open it").click()
     expect(page.locator(".tools .name")).to_have_text("first")
+
+
+def test_the_keyboard_goes_on_where_the_view_changes(two_finished: tuple[Page, list[dict[str, Any]], list[Route]]) -> None:
+    page, _, wanted = two_finished
+    page.get_by_role("button", name="second").press("Enter")
+    back = page.get_by_role("button", name="Experiments", exact=True)
+    expect(back).to_be_focused()
+    trials = page.get_by_role("button", name="Trials", exact=True)
+    trials.press("Enter")
+    link = page.get_by_role("button", name="Open trial 2")
+    expect(link).to_be_visible()
+    expect(trials).to_be_focused()
+    link.press("Enter")
+    expect(page.locator(".progress")).to_contain_text("Running trial 2 again …")
+    expect(link).to_be_focused()
+    wanted[0].fulfill(status=409, json={"error": "no worker can be started"})
+    expect(page.locator(".progress")).not_to_contain_text("Running trial 2 again …")
+    expect(link).to_be_focused()
+    back.press("Enter")
+    expect(page.get_by_role("button", name="second")).to_be_focused()
+    new = page.get_by_role("button", name="New experiment")
+    new.press("Enter")
+    expect(back).to_be_focused()
 
 
 @pytest.mark.parametrize(("chosen", "paper"), [("light", "rgb(255, 255, 255)"), ("dark", "rgb(20, 24, 31)")])
