@@ -200,6 +200,28 @@ def test_the_duration_of_a_trial_is_measured_for_the_values_that_were_changed(pa
     assert asked == [{}, {"n": [9]}, {"n": [9], "mode": "fail"}]
 
 
+def test_a_new_experiment_begins_with_a_design_of_the_model_and_keeps_what_was_typed(
+    pages: Callable[..., Page], workbench: Served, design: str
+) -> None:
+    page = pages("course/counter.py", tab="experiments")
+    checked: dict[str, Any] = {"factors": {"n": [1, 2]}, "groups": {"all": 2}, "group_parameters": {}, "settings": {}, "trials_a_cell": 1}
+    checked |= {"parameters": [{"name": "mode", "help": "", "default": "count"}], "seed": 1, "model": "", "seconds_a_trial": 1, "error": ""}
+    page.route("**/api/designs/check", lambda route: route.fulfill(json=checked))
+    new = page.get_by_role("button", name="New experiment")
+    new.click()
+    expect(page.get_by_label("Design", exact=True)).to_have_value(design)
+    page.get_by_label("participants").fill("9")
+    page.get_by_label("Set another parameter").select_option("mode")
+    value = page.get_by_label("Value of mode")
+    expect(value).to_be_focused()
+    page.keyboard.type("fail")  # in place of the default
+    expect(value).to_have_value("fail")
+    page.reload()
+    expect(page.get_by_label("participants")).to_have_value("9")
+    expect(value).to_have_value("fail")
+    expect(value).not_to_be_focused()
+
+
 TIMERS = """async () => {
   const { followExperiments, shown } = await part("experiments/list.js");
   const later = new Set();

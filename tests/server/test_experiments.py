@@ -86,12 +86,14 @@ def test_designs_of_the_library_and_of_model_files_are_listed_without_running_th
         "id": COUNTING,
         "name": "counting",
         "file": "counting_design.py",
+        "model": "counter.py",
         "description": "Counts to several numbers.",
     }
     assert listed["bad_design.py:bad"]["description"] == "Never runs."
-    assert listed["warren_whang_1987"]["file"] is None
+    assert listed["bad_design.py:bad"]["model"] is None
+    assert (listed["warren_whang_1987"]["file"], listed["warren_whang_1987"]["model"]) == (None, "aperture_passage.py")
+    assert listed["slow/counting_design.py:counting"]["model"] == "slow/counter.py"
     assert workbench.get("/api/designs").json()["most"] == {"participants": 1_000_000, "trials": 1_000_000, "workers": 256}
-    assert "slow/counting_design.py:counting" in listed
     answer = workbench.post("/api/designs/check", {"design": "bad_design.py:bad"})
     assert answer.status_code == 422
     assert "nothing_like_this" in answer.json()["error"]
