@@ -109,6 +109,12 @@ function unitOfMeasure({ unit: declared, measure }) {
 /** Returns the name of an experiment among several of one design: when it began, and what was changed in the design. */
 const nameAmong = (experiment) => `${experimentText(experiment)}, ${changedText(experiment.changed) || "as designed"}`;
 
+/** Returns how many trials the points of an answer are of; of a measure with several values a trial, how many values. */
+function countsText({ points }, { over }, { total }) {
+  const drawn = points.reduce((sum, { trials }) => sum + trials, 0);
+  return over ? counted(drawn, "value") : doneText({ done: drawn, total });
+}
+
 /** Returns the entries of the legend for experiments, the lines of the second of which are dashed; none for a single one. */
 function entriesOf(drawn) {
   return drawn.length === 1 ? [] : drawn.map((one, n) => ({ key: `experiment ${n}`, name: nameAmong(one), dashed: n === 1, colour: "quiet", number: 0 }));
@@ -276,7 +282,7 @@ export function Figure({ experiment, facts, columns: all }) {
       <${Problem} text=${error} />
       ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
       ${answer && lines.length > 0
-        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOfMeasure(answer), sources: drawn.map(experimentText), counts: doneText(experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOfMeasure(answer), sources: drawn.map(experimentText), counts: countsText(answer, chosen, experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
         : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
     </div>
   `;

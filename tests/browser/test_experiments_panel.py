@@ -437,7 +437,7 @@ TWO_EXPERIMENTS = """async () => {
     const { experiments, shown, where } = await part("experiments/list.js");
     const column = (name, role) => ({ name, role, type: "real", unit: null, meaning: "" });
     const columns = [column("n", "value"), column("rt", "measure"), column("wall_s", "own")];
-    const one = (id, columns, changed = {}) => ({ id, name: id, done: 4, failures: 0, made: 0, total: 4, columns, changed });
+    const one = (id, columns, changed = {}) => ({ id, name: id, done: 5, failures: 0, made: 0, total: 5, columns, changed });
     experiments.value = [one("mine", ["n", "rt"]), one("theirs", ["n", "rt"], { "latency_factor": 0.9 }), one("others", ["n", "luck"])];
     const place = document.body.appendChild(Object.assign(document.createElement("div"), { id: "drawn" }));
     place.style.cssText = "display: flex; flex-direction: column; width: 600px; height: 400px";
@@ -456,6 +456,7 @@ def test_another_experiment_is_drawn_beside_the_one_that_is_shown(blank: Page) -
     blank.evaluate(TWO_EXPERIMENTS)
     points, legend = blank.locator("#drawn .point"), blank.locator("#drawn .legend")
     expect(points).to_have_count(2)
+    expect(blank.locator("#drawn .pointed")).to_have_text("Means over participants, ± 1 standard error. 4 of 5 trials")
     expect(legend).to_have_text("")
     choice = blank.get_by_label("Compare with")
     expect(choice.locator("option")).to_have_count(2)  # without the experiment that has no such measure
