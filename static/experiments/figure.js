@@ -8,13 +8,12 @@ import { Problem } from "../parts/problem.js";
 import { savePicture } from "../parts/picture.js";
 import { CanvasSurface, scaled } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
-import { unitOf } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { dark } from "../theme.js";
 import { useFresh } from "./answer.js";
 import { drawFigure, drawLegend, drawSample, layout, layoutLegend, levelsOf } from "./drawing.js";
 import { experiments, showExperiment } from "./list.js";
-import { changedText, columnText, doneText, experimentText } from "./wording.js";
+import { changedText, columnText, doneText, experimentText, headText, unitText } from "./wording.js";
 
 const MAX_LINES = 12;
 const MAX_BUTTONS = 300; // points that keys can reach
@@ -101,11 +100,6 @@ function combinationsOf(answers, by, facts) {
   return all.toSorted((one, other) => rank(one).reduce((found, place, n) => found || place - rank(other)[n], 0));
 }
 
-function unitOfMeasure({ unit: declared, measure }) {
-  const { unit, factor } = unitOf(measure);
-  return declared ?? (factor === 1 ? unit : ""); // the values are in the unit of the table
-}
-
 /** Returns the name of an experiment among several of one design: when it began, and what was changed in the design. */
 const nameAmong = (experiment) => `${experimentText(experiment)}, ${changedText(experiment.changed) || "as designed"}`;
 
@@ -181,7 +175,7 @@ function Plot({ lines, known, about, children }) {
   const figure = useMemo(() => layout(lines, known, width, height), [lines, known, width, height]);
   const legend = [...lines.filter(({ name, dashed, number }) => name && !(dashed && lines.some((one) => one.number === number && !one.dashed))), ...about.entries];
   const caption = `Means over participants, ± 1 standard error. ${about.counts}`;
-  const title = `${columnText(about.measure)}${about.unit ? ` [${about.unit}]` : ""}`;
+  const title = headText({ name: about.measure, unit: about.unit });
 
   useEffect(() => {
     const watch = new ResizeObserver(([{ contentRect }]) => (size.value = { width: Math.floor(contentRect.width), height: Math.floor(contentRect.height) }));
@@ -282,7 +276,7 @@ export function Figure({ experiment, facts, columns: all }) {
       <${Problem} text=${error} />
       ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
       ${answer && lines.length > 0
-        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOfMeasure(answer), sources: drawn.map(experimentText), counts: countsText(answer, chosen, experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitText({ name: answer.measure, unit: answer.unit }), sources: drawn.map(experimentText), counts: countsText(answer, chosen, experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
         : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
     </div>
   `;

@@ -7,7 +7,7 @@ import { openTab } from "../open_tab.js";
 import { withTrust } from "../runs/trust.js";
 import { call, isLeft, sinceNow } from "../server.js";
 import { chooseRecording } from "../bar/models.js";
-import { complain } from "../store.js";
+import { complain, session } from "../store.js";
 import { effect, signal, untracked } from "../vendor/preact.js";
 import { experimentText } from "./wording.js";
 
@@ -26,6 +26,10 @@ export const shown = remembered("experiment shown", "");
 export const part = signal("figure");
 /** The values that the listed trials must have: {column: value}. */
 export const where = signal({});
+/** The trial that was opened last: {id, number, recording}, of which experiment, and the recording of it. */
+const opened = remembered("trial opened", {});
+/** Returns whether a recording of a trial is shown. */
+export const isOpen = (id, number) => opened.value.id === id && opened.value.number === number && opened.value.recording === session.value?.recorded;
 /** What the page waits for, by experiment: {id: {text, cancel}}; `cancel` is null for what cannot be cancelled. */
 const waits = signal({});
 
@@ -147,6 +151,7 @@ export function openTrial(id, number) {
     async () => {
       const made = await withTrust(id, "Opening a trial", record, "experiments");
       if (made === null) return null;
+      opened.value = { id, number, recording: made.recording };
       if (wanted()) await chooseRecording(made.recording);
       else complain(`Trial ${number} was run again and recorded as ${made.recording}: it is among the runs.`, "info");
       return made;

@@ -415,6 +415,43 @@ def test_a_report_has_the_theme_that_was_chosen_on_the_page(pages: Callable[...,
     expect(body).to_have_css("background-color", paper)  # of a page that is loaded again
 
 
+TRIALS = """async (recorded) => {
+    const { html, render } = await part("vendor/preact.js");
+    const { Trials } = await part("experiments/trials.js");
+    const { session } = await part("store.js");
+    const { openTrial } = await part("experiments/list.js");
+    const place = document.body.appendChild(Object.assign(document.createElement("div"), { id: "drawn", className: "experiments" }));
+    const experiment = { id: "sums", done: 2, failures: 0 };
+    render(html`<${Trials} experiment=${experiment} facts=${{ factors: {}, groups: { all: 2 } }} />`, place);
+    window.open_one = () => void openTrial("sums", 1);
+    window.show = (recorded) => (session.value = { ...session.value, recorded });
+}"""
+
+
+def test_trials_have_units_heads_above_their_numbers_and_a_mark_at_the_one_that_is_open(blank: Page) -> None:
+    column = {"type": "real", "role": "measure", "unit": None, "meaning": ""}
+    columns = [column | one for one in ({"name": "trial"}, {"name": "participant", "type": "text"}, {"name": "rt", "unit": "s"}, {"name": "turn_deg"})]
+    rows = [{"trial": number, "participant": f"all {number}", "rt": 1.5, "turn_deg": 20} for number in (1, 2)]
+    blank.route("**/rows?*", lambda route: route.fulfill(json={"columns": columns, "first": 0, "total": 2, "rows": rows}))
+    blank.route("**/api/experiments", lambda route: route.fulfill(json={"total": 0, "experiments": []}))
+    blank.route("**/trial", lambda route: route.fulfill(json={"recording": "sums_trial_1"}))
+    blank.route("**/api/recordings/**", lambda route: None)  # still being opened
+    blank.evaluate(TRIALS)
+    heads, cells = blank.locator("#drawn thead button"), blank.locator("#drawn tbody tr").first.locator("td")
+    expect(heads).to_have_text(["trial▴", "participant", "rt [s]", "turn [°]"])
+    expect(cells).to_have_text(["1", "1", "1.5", "20"])
+    ends = "(cell) => { const text = document.createRange(); text.selectNodeContents(cell); return text.getBoundingClientRect().right; }"
+    name = "(button) => { const text = document.createRange(); text.selectNode(button.firstChild); return text.getBoundingClientRect().right; }"
+    assert abs(heads.nth(2).evaluate(name) - cells.nth(2).evaluate(ends)) < 2
+    marked = blank.locator("#drawn [aria-current=true]")
+    expect(marked).to_have_count(0)
+    blank.evaluate("open_one()")
+    blank.evaluate("show('sums_trial_1')")
+    expect(marked.get_by_role("button")).to_have_text("1")
+    blank.evaluate("show(null)")
+    expect(marked).to_have_count(0)
+
+
 def test_of_trials_that_have_all_failed_there_is_no_figure(blank: Page) -> None:
     blank.evaluate("""async () => {
         const { html, render } = await part("vendor/preact.js");
