@@ -324,6 +324,9 @@ def test_a_report_that_another_page_makes_is_shown_and_the_experiment_cannot_be_
         expect(page.get_by_role("button", name=name)).to_be_enabled()
 
 
+FACTS: dict[str, Any] = {"facts": {"factors": {}}}
+
+
 @pytest.fixture
 def two_finished(pages: Callable[..., Page]) -> tuple[Page, list[dict[str, Any]], list[Route]]:
     """A page with two finished experiments; their summaries; and the requests for reports and trials, which the test answers."""
@@ -332,10 +335,10 @@ def two_finished(pages: Callable[..., Page]) -> tuple[Page, list[dict[str, Any]]
     columns = [column | {"name": name} for name in ("trial", "participant")]
     one: dict[str, Any] = {"name": "sums", "made": 0, "state": "finished", "done": 2, "total": 2, "failures": 0}
     one |= {"changed": {}, "model": "", "remaining": None, "columns": [], "work": []}
-    both = [one | {"id": name, "name": name, "work": []} for name in ("first", "second")]
+    both: list[dict[str, Any]] = [{**one, "id": name, "name": name, "work": []} for name in ("first", "second")]
     wanted: list[Route] = []
     page.route("**/api/experiments", lambda route: route.fulfill(json={"total": 2, "experiments": both}))
-    page.route(re.compile("/api/experiments/(first|second)$"), lambda route: route.fulfill(json=one | {"facts": {"factors": {}}}))
+    page.route(re.compile("/api/experiments/(first|second)$"), lambda route: route.fulfill(json=one | FACTS))
     rows = {"columns": columns, "first": 0, "total": 2, "rows": [{"trial": number, "participant": 1} for number in (1, 2)]}
     page.route("**/rows?*", lambda route: route.fulfill(json=rows))
     page.route(re.compile("/report$|/trial$"), lambda route: wanted.append(route))
@@ -400,7 +403,7 @@ def test_a_report_has_the_theme_that_was_chosen_on_the_page(pages: Callable[...,
     one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "finished", "done": 2, "total": 2, "failures": 0}
     one |= {"changed": {}, "model": "", "remaining": None, "columns": [], "work": [], "report": 1}
     page.route("**/api/experiments", lambda route: route.fulfill(json={"total": 1, "experiments": [one]}))
-    page.route("**/api/experiments/sums", lambda route: route.fulfill(json=one | {"facts": {"factors": {}}}))
+    page.route("**/api/experiments/sums", lambda route: route.fulfill(json=one | FACTS))
     page.route("**/rows?*", lambda route: route.fulfill(json={"columns": [], "first": 0, "total": 0, "rows": []}))
     text = report_page("Sums", "", {}, [], {})
     page.route("**/report/index.html*", lambda route: route.fulfill(body=text, content_type="text/html"))
@@ -428,9 +431,22 @@ TRIALS = """async (recorded) => {
 }"""
 
 
+TEXT_END = """(element) => {
+    const text = document.createRange();
+    text.selectNode(element.firstChild);
+    return text.getBoundingClientRect().right;
+}"""
+
+
 def test_trials_have_units_heads_above_their_numbers_and_a_mark_at_the_one_that_is_open(blank: Page) -> None:
     column = {"type": "real", "role": "measure", "unit": None, "meaning": ""}
-    columns = [column | one for one in ({"name": "trial"}, {"name": "participant", "type": "text"}, {"name": "rt", "unit": "s"}, {"name": "turn_deg"})]
+    names: list[dict[str, Any]] = [
+        {"name": "trial"},
+        {"name": "participant", "type": "text"},
+        {"name": "rt", "unit": "s"},
+        {"name": "turn_deg"},
+    ]
+    columns = [column | one for one in names]
     rows = [{"trial": number, "participant": f"all {number}", "rt": 1.5, "turn_deg": 20} for number in (1, 2)]
     blank.route("**/rows?*", lambda route: route.fulfill(json={"columns": columns, "first": 0, "total": 2, "rows": rows}))
     blank.route("**/api/experiments", lambda route: route.fulfill(json={"total": 0, "experiments": []}))
@@ -440,9 +456,7 @@ def test_trials_have_units_heads_above_their_numbers_and_a_mark_at_the_one_that_
     heads, cells = blank.locator("#drawn thead button"), blank.locator("#drawn tbody tr").first.locator("td")
     expect(heads).to_have_text(["trial▴", "participant", "rt [s]", "turn [°]"])
     expect(cells).to_have_text(["1", "1", "1.5", "20"])
-    ends = "(cell) => { const text = document.createRange(); text.selectNodeContents(cell); return text.getBoundingClientRect().right; }"
-    name = "(button) => { const text = document.createRange(); text.selectNode(button.firstChild); return text.getBoundingClientRect().right; }"
-    assert abs(heads.nth(2).evaluate(name) - cells.nth(2).evaluate(ends)) < 2
+    assert abs(heads.nth(2).evaluate(TEXT_END) - cells.nth(2).evaluate(TEXT_END)) < 2
     marked = blank.locator("#drawn [aria-current=true]")
     expect(marked).to_have_count(0)
     blank.evaluate("open_one()")

@@ -335,8 +335,8 @@ def test_a_report_says_if_the_description_of_the_design_is_of_other_numbers(tmp_
     text = "The description is that of the design as it was written. Changed in this experiment: trials, n."
     changed = read_results(store_rows(tmp_path / "changed", path, count, trials=1, values={"n": [1, 2]}))
     assert text in what_was_run(changed).parts
-    same = {"trials": 4, "participants": 2, "values": {"n": [1, 2, 5]}}
-    for name, given in (("written", {}), ("same", same)):
+    same: dict[str, Any] = {"trials": 4, "participants": 2, "values": {"n": [1, 2, 5]}}
+    for name, given in {"written": dict[str, Any](), "same": same}.items():
         written = read_results(store_rows(tmp_path / name, path, count, **given))
         assert not [part for part in what_was_run(written).parts if isinstance(part, str) and "Changed in" in part]
 
