@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import os
+import posixpath
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -46,6 +47,8 @@ class DesignOutline:
     name: str
     file: str | None
     """The model file; None for one of the library's."""
+    model: str | None
+    """The file of its model inside the models folder, or only the name of the library's; None if the text does not say it."""
     description: str
     """Its docstring."""
 
@@ -109,11 +112,24 @@ def _read(path: Path, file: str | None, _: tuple[int, ...]) -> tuple[DesignOutli
             id=node.name if file is None else f"{file}:{node.name}",
             name=node.name,
             file=file,
+            model=_model_of(node, file),
             description=escape_surrogates(ast.get_docstring(node) or ""),
         )
         for node in functions
         if "design" in map(last_name, node.decorator_list)  # also as `@experiment.design`
     )
+
+
+def _model_of(function: ast.FunctionDef, file: str | None) -> str | None:
+    """Returns the model file that a design names, as `Design(model="FILE")`; without one, it is the file of the design."""
+    made = next((node for node in ast.walk(function) if isinstance(node, ast.Call) and last_name(node.func) == "Design"), None)
+    if made is None:
+        return None
+    given = next((keyword.value for keyword in made.keywords if keyword.arg == "model"), None)
+    if given is None:
+        return file
+    named = given.value if isinstance(given, ast.Constant) and isinstance(given.value, str) else None
+    return None if named is None else posixpath.normpath(posixpath.join(posixpath.dirname(file or ""), escape_surrogates(named)))
 
 
 # -- what a user wants of a design

@@ -84,6 +84,8 @@ class RunningExperiment:
         self.ended = False
         """Whether the command has reported its end."""
         self.task: asyncio.Task[None] | None = None
+        self._begun: int | None = None
+        """The number of trials that had finished before; None before the command has reported it."""
         self._seen: deque[tuple[float, int]] = deque()
 
     def take(self, event: AnyExperimentEvent) -> None:
@@ -92,6 +94,10 @@ class RunningExperiment:
             self.facts = event
         elif isinstance(event, ExperimentProgress):
             self.progress = event
+            if self._begun is None:
+                self._begun = event.done
+            if event.done - self._begun < max(1, event.workers):
+                return  # the first trial of each process takes longer: it loads the model
             now = time.monotonic()
             self._seen.append((now, event.done))
             while len(self._seen) > 2 and self._seen[1][0] < now - WINDOW:
@@ -100,7 +106,7 @@ class RunningExperiment:
             self.ended = True
 
     def summary(self) -> dict[str, Any]:
-        """Returns the state: trials, rate [1/s] and remaining time [s], None before they are known."""
+        """Returns the state: trials, rate [1/s] and remaining time [s], None before each process has loaded the model."""
         rate = remaining = None
         progress = self.progress
         if len(self._seen) > 1:

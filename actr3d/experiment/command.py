@@ -327,7 +327,6 @@ def _lost(found: Agreement) -> list[tuple[str, str]]:
 def facts_of(experiment: Experiment) -> dict[str, Any]:
     """Returns what programs show of an experiment: its size, factors, groups, and the parameters of its model."""
     design, specification = experiment.design, experiment.specification
-    counts = {"participants": specification.participants, "trials": specification.trials}
     return {
         "name": specification.name,
         "description": experiment.description,
@@ -340,7 +339,7 @@ def facts_of(experiment: Experiment) -> dict[str, Any]:
             for name, group in design.groups.items()
         },
         "settings": {name: value if isinstance(value, PLAIN) else str(value) for name, value in design.settings.items()},
-        "changed": {**{name: count for name, count in counts.items() if count is not None}, **specification.values},
+        "changed": experiment.changes,
         "measures": [asdict(one) for one in design.kept],
         "seed": design.seed,
         "model": specification.model.file,

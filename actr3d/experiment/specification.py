@@ -211,6 +211,13 @@ class Experiment:
         """Returns the design of the file with the numbers and values of a specification."""
         return self.written.changed(participants=specification.participants, trials=specification.trials, values=specification.values)
 
+    @property
+    def changes(self) -> dict[str, Any]:
+        """The numbers and values of the specification that are not those of the design as its file has it, by name."""
+        counts = {"participants": self.specification.participants, "trials": self.specification.trials}
+        different = {name.removeprefix("--") for name in self.written.different(self.design)}
+        return {name: value for name, value in {**counts, **self.specification.values}.items() if name in different}
+
     def differences(self, there: Specification) -> list[str]:
         """Returns in words how a stored experiment differs from this one, apart from versions.
 

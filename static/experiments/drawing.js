@@ -12,6 +12,8 @@ const AXIS = 34; // the height of the axis with its name [px]
 const SIZE = 3.5; // the radius of a point [px]
 const BETWEEN = 6; // the least distance between two labels [px]
 const MAX_LABELS = 16;
+const SAMPLE = 22; // the length of a line in the legend [px]
+const ROW = 20; // the height of a row of the legend [px]
 const SHAPES = [12, 4, 3, 5, 6, 7]; // corners: a circle, a square, a triangle …
 
 /** Returns a value as a key that differs between 1, "1" and true. */
@@ -52,7 +54,7 @@ export function layout(lines, known, width, height) {
 }
 
 /** Returns the name of the colour of a line. */
-export const colourOf = (line) => line.colour ?? seriesColour(line.number);
+const colourOf = (line) => line.colour ?? seriesColour(line.number);
 
 /** Draws a figure; `name` is the name of the axis. */
 export function drawFigure(surface, lines, { box, levels, range, xOf, yOf, room }, name) {
@@ -102,8 +104,35 @@ function drawLine(surface, line, xOf, yOf) {
   }
 }
 
+/** Draws a sample of a line, 22 px wide, its middle at height y: its colour, dashes and mark. */
+export function drawSample(surface, x, y, line) {
+  surface.line([x, y, x + SAMPLE, y], colourOf(line), { width: 1.5, dash: line.dashed ? [5, 3] : [] });
+  drawPoint(surface, x + SAMPLE / 2, y, line);
+}
+
+/** Returns the places of the entries of a legend, in as many rows as a width needs: {places: [{line, text, x, y}], height}. */
+export function layoutLegend(lines, width) {
+  const places = [];
+  let [x, row] = [LEFT, 0];
+  for (const line of lines) {
+    const text = cut(line.name, width - LEFT - SAMPLE - 4);
+    const length = SAMPLE + 4 + widthOf(text);
+    if (x + length > width && x > LEFT) [x, row] = [LEFT, row + 1];
+    places.push({ line, text, x, y: ROW * (row + 0.5) });
+    x += length + 14;
+  }
+  return { places, height: lines.length > 0 ? ROW * (row + 1) : 0 };
+}
+
+export function drawLegend(surface, { places }) {
+  for (const { line, text, x, y } of places) {
+    drawSample(surface, x, y, line);
+    surface.text(text, x + SAMPLE + 4, y, "text");
+  }
+}
+
 /** Draws the mark of a line; that of a second experiment is hollow. */
-export function drawPoint(surface, x, y, line) {
+function drawPoint(surface, x, y, line) {
   surface.polygon(corners(x, y, SIZE, line.number), colourOf(line));
   if (line.dashed) surface.polygon(corners(x, y, SIZE - 1.5, line.number), "panel");
 }

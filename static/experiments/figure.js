@@ -6,17 +6,14 @@ import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Problem } from "../parts/problem.js";
 import { savePicture } from "../parts/picture.js";
-import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
+import { CanvasSurface, scaled } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
-import { unitOf } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
-import { whenText } from "../runs/wording.js";
 import { dark } from "../theme.js";
 import { useFresh } from "./answer.js";
-import { colourOf, drawFigure, drawPoint, layout, levelsOf } from "./drawing.js";
+import { drawFigure, drawLegend, drawSample, layout, layoutLegend, levelsOf } from "./drawing.js";
 import { experiments, showExperiment } from "./list.js";
-import { Parts } from "./parts.js";
-import { columnText, doneText } from "./wording.js";
+import { changedText, columnText, doneText, experimentText, headText, unitText } from "./wording.js";
 
 const MAX_LINES = 12;
 const MAX_BUTTONS = 300; // points that keys can reach
@@ -103,16 +100,18 @@ function combinationsOf(answers, by, facts) {
   return all.toSorted((one, other) => rank(one).reduce((found, place, n) => found || place - rank(other)[n], 0));
 }
 
-function unitOfMeasure({ unit: declared, measure }) {
-  const { unit, factor } = unitOf(measure);
-  return declared ?? (factor === 1 ? unit : ""); // the values are in the unit of the table
+/** Returns the name of an experiment among several of one design: when it began, and what was changed in the design. */
+const nameAmong = (experiment) => `${experimentText(experiment)}, ${changedText(experiment.changed) || "as designed"}`;
+
+/** Returns how many trials the points of an answer are of; of a measure with several values a trial, how many values. */
+function countsText({ points }, { over }, { total }) {
+  const drawn = points.reduce((sum, { trials }) => sum + trials, 0);
+  return over ? counted(drawn, "value") : doneText({ done: drawn, total });
 }
 
-/** Returns the entries of the legend for two experiments, whose lines are whole and dashed; null if there is only one. */
-function pairOf(experiment, other) {
-  if (other === null) return null;
-  const names = [experiment, other].map((one) => `${one.name} ${whenText(one.made)}`);
-  return names.map((name, n) => ({ key: `experiment ${n}`, name, dashed: n === 1, colour: "quiet", number: 0 }));
+/** Returns the entries of the legend for experiments, the lines of the second of which are dashed; none for a single one. */
+function entriesOf(drawn) {
+  return drawn.length === 1 ? [] : drawn.map((one, n) => ({ key: `experiment ${n}`, name: nameAmong(one), dashed: n === 1, colour: "quiet", number: 0 }));
 }
 
 function Menus({ experiment, facts, columns, chosen }) {
@@ -124,7 +123,6 @@ function Menus({ experiment, facts, columns, chosen }) {
   const lines = [[], ...keys.filter((name) => name !== chosen.x).map((name) => [name]), ...(factors.length > 1 ? [factors.slice(0, 2)] : []), ...(factors.length > 2 ? [factors.slice(0, 3)] : [])];
   if (!lines.some((by) => by.join() === chosen.by.join())) lines.push(chosen.by);
   return html`<div class="menus">
-    <${Parts} experiment=${experiment} />
     <select aria-label="Measure" title="What is averaged" value=${chosen.measure} onChange=${(event) => measured(event.currentTarget.value)}>
       ${measures.map(({ name, meaning }) => html`<option key=${name} value=${name} title=${meaning}>${columnText(name)}</option>`)}
     </select>
@@ -148,7 +146,7 @@ function ComparedChoice({ others, other }) {
   if (others.length === 0) return null;
   return html`<select aria-label="Compare with" title="Draw another experiment beside it" value=${other?.id ?? ""} onChange=${(event) => (compared.value = event.currentTarget.value)}>
     <option value="">compare with …</option>
-    ${others.map((one) => html`<option key=${one.id} value=${one.id}>${one.name}, ${whenText(one.made)}</option>`)}
+    ${others.map((one) => html`<option key=${one.id} value=${one.id}>${nameAmong(one)}</option>`)}
   </select>`;
 }
 
@@ -156,9 +154,7 @@ function ComparedChoice({ others, other }) {
 function Sample({ line }) {
   const canvas = useRef(null);
   useEffect(() => {
-    const surface = new CanvasSurface(scaled(canvas.current, 22, 10));
-    surface.line([0, 5, 22, 5], colourOf(line), { width: 1.5, dash: line.dashed ? [5, 3] : [] });
-    drawPoint(surface, 11, 5, line);
+    drawSample(new CanvasSurface(scaled(canvas.current, 22, 10)), 0, 5, line);
   }, [line.number, line.dashed, dark.value]);
   return html`<canvas ref=${canvas} style="width: 22px; height: 10px" aria-hidden="true"></canvas>`;
 }
@@ -177,8 +173,9 @@ function Plot({ lines, known, about, children }) {
   const pointed = useSignal(null);
   const { width, height } = size.value;
   const figure = useMemo(() => layout(lines, known, width, height), [lines, known, width, height]);
-  const legend = [...lines.filter(({ name, dashed, number }) => name && !(dashed && lines.some((one) => one.number === number && !one.dashed))), ...(about.pair ?? [])];
-  const title = `${columnText(about.measure)}${about.unit ? ` [${about.unit}]` : ""}`;
+  const legend = [...lines.filter(({ name, dashed, number }) => name && !(dashed && lines.some((one) => one.number === number && !one.dashed))), ...about.entries];
+  const caption = `Means over participants, ± 1 standard error. ${about.counts}`;
+  const title = headText({ name: about.measure, unit: about.unit });
 
   useEffect(() => {
     const watch = new ResizeObserver(([{ contentRect }]) => (size.value = { width: Math.floor(contentRect.width), height: Math.floor(contentRect.height) }));
@@ -192,19 +189,14 @@ function Plot({ lines, known, about, children }) {
 
   function save(kind) {
     const [wide, high] = [Math.max(640, width), Math.max(360, height)];
+    const entries = layoutLegend(legend, wide);
     const draw = (surface) => {
-      let at = 52;
-      for (const line of legend) {
-        surface.line([at, 8, at + 20, 8], colourOf(line), { width: 1.5, dash: line.dashed ? [5, 3] : [] });
-        drawPoint(surface, at + 10, 8, line);
-        surface.text(line.name, at + 25, 8, "text");
-        at += 40 + widthOf(line.name);
-      }
-      const below = layout(lines, known, wide, high - 20);
-      below.box.y += 20; // below the legend
-      drawFigure(surface, lines, below, columnText(about.x));
+      drawLegend(surface, entries);
+      surface.at(0, entries.height, () => drawFigure(surface, lines, layout(lines, known, wide, high), columnText(about.x)));
+      surface.text(caption, 0, entries.height + high + 8, "quiet");
     };
-    savePicture({ name: `${about.source} ${about.measure}`, title: `${title}, ${about.source}`, width: wide, height: high, draw }, kind);
+    const [source] = about.sources;
+    savePicture({ name: `${source} ${about.measure}`, title: `${title}, ${about.sources.join(" and ")}`, width: wide, height: entries.height + high + 16, draw }, kind);
   }
 
   const points = lines.flatMap((line) => line.points.map((point) => ({ line, point, x: figure.xOf(point.at[0]), y: figure.yOf(point.mean), text: pointText(point, about, line) })));
@@ -240,7 +232,7 @@ function Plot({ lines, known, about, children }) {
         return html`<button key=${key} class="point ${hit.includes(one) ? "hit" : ""}" style=${{ left: `${one.x}px`, top: `${one.y}px` }} aria-label="Trials of ${one.text}" onClick=${press} onFocus=${() => (pointed.value = [one.text])} onBlur=${leave}></button>`;
       })}
     </div>
-    <p class="pointed" role="status">${hit.length > 0 ? html`${hit.length > 1 ? `${hit.length} points, ${hit[0].text}` : hit[0].text} <span class="quiet">– click for the trials</span>` : html`<span class="quiet">Means over participants, ± 1 standard error. ${about.counts}</span>`}</p>
+    <p class="pointed" role="status">${hit.length > 0 ? html`${hit.length > 1 ? `${hit.length} points, ${hit[0].text}` : hit[0].text} <span class="quiet">– click for the trials</span>` : html`<span class="quiet">${caption}</span>`}</p>
   </figure>`;
 }
 
@@ -272,17 +264,20 @@ export function Figure({ experiment, facts, columns: all }) {
     const [first, dashed] = both.map((one, n) => linesOf(one, facts, combinations, n === 1, n === 1 ? other?.id : experiment.id));
     return [...first, ...dashed];
   }, [answer, second, other?.id]);
+  const drawn = lines.some(({ dashed }) => dashed) ? [experiment, other] : [experiment];
   const combined = answer ? combinationsOf([answer], answer.by, facts).length : 0;
   const error = own.error ?? (other ? others.error && `${other.name}: ${others.error}` : null);
   if (failed) {
-    return html`<p class="empty" role="status">${done === 1 ? "The finished trial has failed" : `All ${done.toLocaleString("en")} finished trials have failed`}: there is nothing to draw. The table of trials has the errors.</p>`;
+    return html`<p class="part empty" role="status">${done === 1 ? "The finished trial has failed" : `All ${done.toLocaleString("en")} finished trials have failed`}: there is nothing to draw. The table of trials has the errors.</p>`;
   }
   return html`
     <${Menus} experiment=${experiment} facts=${facts} columns=${columns} chosen=${chosen} />
-    <${Problem} text=${error} />
-    ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
-    ${answer && lines.length > 0
-      ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitOfMeasure(answer), source: `${experiment.name} ${whenText(experiment.made)}`, counts: doneText(experiment), pair: pairOf(experiment, lines.some(({ dashed }) => dashed) ? other : null) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
-      : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
+    <div class="part">
+      <${Problem} text=${error} />
+      ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
+      ${answer && lines.length > 0
+        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitText({ name: answer.measure, unit: answer.unit }), sources: drawn.map(experimentText), counts: countsText(answer, chosen, experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+        : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
+    </div>
   `;
 }

@@ -3,11 +3,13 @@
 import { confirmed } from "../parts/dialog.js";
 import { offerRestore } from "../parts/restore.js";
 import { remembered } from "../local_storage.js";
+import { openTab } from "../open_tab.js";
 import { withTrust } from "../runs/trust.js";
 import { call, isLeft, sinceNow } from "../server.js";
 import { chooseRecording } from "../bar/models.js";
-import { complain } from "../store.js";
+import { complain, session } from "../store.js";
 import { effect, signal, untracked } from "../vendor/preact.js";
+import { experimentText } from "./wording.js";
 
 const WHILE_RUNNING = 1000; // the interval between two requests for the list [ms]
 const OTHERWISE = 5000;
@@ -24,8 +26,15 @@ export const shown = remembered("experiment shown", "");
 export const part = signal("figure");
 /** The values that the listed trials must have: {column: value}. */
 export const where = signal({});
-/** What the page waits for: {text, cancel?}; null for nothing. */
-export const busy = signal(null);
+/** The trial that was opened last: {id, number, recording}, of which experiment, and the recording of it. */
+const opened = remembered("trial opened", {});
+/** Returns whether a recording of a trial is shown. */
+export const isOpen = (id, number) => opened.value.id === id && opened.value.number === number && opened.value.recording === session.value?.recorded;
+/** What the page waits for, by experiment: {id: {text, cancel}}; `cancel` is null for what cannot be cancelled. */
+const waits = signal({});
+
+/** Returns what the page waits for of an experiment: {text, cancel}; null for nothing. */
+export const waitOf = (id) => waits.value[id] ?? null;
 
 /** Whether something happens to an experiment that ends by itself. */
 const isChanging = (one) => isRunning(one) || one.state === "elsewhere" || one.work.length > 0;
@@ -81,18 +90,18 @@ export function showExperiment(id, values = null) {
   shown.value = id;
 }
 
-/** Does something that takes a while, with a text that says so; shows an error as a message. Returns whether it was done. */
-async function doing(text, work, cancel = null) {
-  if (busy.value) return false;
-  busy.value = { text, cancel };
+/** Does something with an experiment that takes a while, with a text that says so; shows an error as a message. Returns whether it was done:
+ * `work` returns null if the user has declined. */
+async function doing(id, text, work, cancel = null) {
+  if (waitOf(id)) return false;
+  waits.value = { ...waits.value, [id]: { text, cancel } };
   try {
-    await work();
-    return true;
+    return (await work()) !== null;
   } catch (error) {
     if (!isLeft(error) && !cancel?.signal.aborted) complain(error.message);
     return false;
   } finally {
-    busy.value = null;
+    waits.value = { ...waits.value, [id]: null };
     await listExperiments();
   }
 }
@@ -109,18 +118,26 @@ export async function startExperiment(wanted) {
 }
 
 export function stopExperiment({ id }) {
-  return doing("Stopping …", () => call("POST", `${pathOf(id)}/stop`, {}));
+  return doing(id, "Stopping …", () => call("POST", `${pathOf(id)}/stop`, {}));
 }
 
 export function resumeExperiment({ id }) {
-  return doing("Starting …", () => withTrust(id, "Continuing it", (trust) => call("POST", `${pathOf(id)}/resume`, { trust }), "experiments"));
+  return doing(id, "Starting …", () => withTrust(id, "Continuing it", (trust) => call("POST", `${pathOf(id)}/resume`, { trust }), "experiments"));
 }
 
-/** Makes the report, and shows it. */
-export async function makeReport({ id }) {
+/** Makes the report, and shows it; if the user looks at something else meanwhile, says that it is made. */
+export async function makeReport(experiment) {
+  const { id } = experiment;
   const cancel = new AbortController();
   const make = () => withTrust(id, "Its report", (trust) => call("POST", `${pathOf(id)}/report`, { trust }, cancel.signal), "experiments");
-  if ((await doing("Making the report …", make, cancel)) && shown.value === id) part.value = "report";
+  if (!(await doing(id, "Making the report …", make, cancel))) return;
+  const show = () => {
+    openTab.value = "experiments";
+    shown.value = id;
+    part.value = "report";
+  };
+  if (shown.value === id) part.value = "report";
+  else complain(`The report of ${experimentText(experiment)} is made.`, "info", { text: "Open it", work: show });
 }
 
 /** Runs a trial again, records it, and shows the recording, unless the user has chosen something else meanwhile. */
@@ -129,12 +146,15 @@ export function openTrial(id, number) {
   const wanted = sinceNow();
   const record = (trust) => call("POST", `${pathOf(id)}/trial`, { number, trust }, cancel.signal);
   return doing(
+    id,
     `Running trial ${number} again …`,
     async () => {
       const made = await withTrust(id, "Opening a trial", record, "experiments");
-      if (made === null) return;
+      if (made === null) return null;
+      opened.value = { id, number, recording: made.recording };
       if (wanted()) await chooseRecording(made.recording);
       else complain(`Trial ${number} was run again and recorded as ${made.recording}: it is among the runs.`, "info");
+      return made;
     },
     cancel,
   );
@@ -148,5 +168,5 @@ export async function deleteExperiment({ id, name, done }) {
     const { trash } = await call("POST", `${pathOf(id)}/delete`, {});
     offerRestore(`The experiment ${name} is`, [trash], listExperiments);
   };
-  if ((await doing("Deleting …", remove)) && shown.value === id) shown.value = "";
+  if ((await doing(id, "Deleting …", remove)) && shown.value === id) shown.value = "";
 }

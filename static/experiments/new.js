@@ -1,6 +1,6 @@
 // The form of a new experiment: a design, its levels and numbers, and how long it would take.
 
-import { html, signal, useEffect, useLayoutEffect, useSignal } from "../vendor/preact.js";
+import { html, signal, useEffect, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { remembered } from "../local_storage.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
@@ -15,15 +15,15 @@ const DESIGN = remembered("design", "");
 const UNKNOWN = { facts: null, seconds: null, error: null };
 const EMPTY_DRAFT = { values: {}, participants: "", trials: "", workers: "" };
 
-/** The designs, and the number of processors: {designs: [{id, name, file, description}], processors, most: {participants, trials, workers}}; null before they are known. */
+/** The designs, and the number of processors: {designs: [{id, name, file, model, description}], processors, most: {participants, trials, workers}}; null before they are known. */
 const known = signal(null);
 /** What was entered, by design: {values: {name: text}, participants, trials, workers}. */
-const drafts = signal({});
+const drafts = remembered("drafts of experiments", {});
 
 const draftOf = (design) => drafts.value[design] ?? EMPTY_DRAFT;
 
 function change(design, changes) {
-  drafts.value = { ...drafts.value, [design]: { ...draftOf(design), ...changes } };
+  drafts.value = { ...drafts.newest(), [design]: { ...draftOf(design), ...changes } };
 }
 
 /** Returns the number of `name`, a whole number from 1 to what the server takes; null for an empty text, NaN for any other. */
@@ -124,8 +124,11 @@ function DesignChoice({ design, choose }) {
   </select>`;
 }
 
-function Field({ label, value, otherwise, onInput, invalid, wide = false }) {
-  return html`<input class=${wide ? "" : "count"} aria-label=${label} value=${value} placeholder=${otherwise} inputmode=${wide ? "text" : "numeric"} spellcheck=${false} autocomplete="off" aria-invalid=${invalid} onInput=${(event) => onInput(event.currentTarget.value)} />`;
+/** @param isNew Whether the user has just asked for the field, and goes on in it. */
+function Field({ label, value, otherwise, onInput, invalid, wide = false, isNew = false }) {
+  const input = useRef(null);
+  useLayoutEffect(() => void (isNew && input.current.select()), []);
+  return html`<input ref=${input} class=${wide ? "" : "count"} size=${wide ? Math.max(24, value.length + 2) : null} aria-label=${label} value=${value} placeholder=${otherwise} inputmode=${wide ? "text" : "numeric"} spellcheck=${false} autocomplete="off" aria-invalid=${invalid} onInput=${(event) => onInput(event.currentTarget.value)} />`;
 }
 
 /** Returns the participants of each group of a design, if all have the same number, or else those of each. */
@@ -138,6 +141,12 @@ function Form({ design, facts }) {
   const draft = draftOf(design);
   const set = (name, text) => change(design, { values: { ...draft.values, [name]: text } });
   const unset = (name) => change(design, { values: Object.fromEntries(Object.entries(draft.values).filter(([other]) => other !== name)) });
+  const added = useRef(null);
+  function add({ currentTarget }) {
+    added.current = currentTarget.value;
+    set(added.current, defaultText(facts, added.current));
+    currentTarget.value = "";
+  }
   const more = Object.keys(draft.values).filter((name) => !facts.factors[name]);
   const grouped = new Set(Object.values(facts.group_parameters).flatMap(Object.keys));
   const others = ["seed", ...facts.parameters.map(({ name }) => name)].filter((name) => !facts.factors[name] && !more.includes(name));
@@ -161,13 +170,13 @@ function Form({ design, facts }) {
       })}
       ${more.map((name) => html`<tr key=${name}>
         <th scope="row" title=${plain(facts.parameters.find((one) => one.name === name)?.help ?? "")}>${name}</th>
-        <td><${Field} wide label="Value of ${name}" value=${draft.values[name]} invalid=${readLevels(draft.values[name]).levels?.length !== 1} onInput=${(entered) => set(name, entered)} /></td>
+        <td><${Field} wide isNew=${added.current === name} label="Value of ${name}" value=${draft.values[name]} invalid=${readLevels(draft.values[name]).levels?.length !== 1} onInput=${(entered) => set(name, entered)} /></td>
         <td class="quiet"><button class="bare" aria-label="Remove ${name}" title="Remove" onClick=${() => unset(name)}><${Icon} name="close" /></button></td>
       </tr>`)}
       ${others.length > 0
         ? html`<tr>
             <th scope="row"></th>
-            <td colspan="2"><select class="quiet" aria-label="Set another parameter" value="" onChange=${(event) => (set(event.currentTarget.value, defaultText(facts, event.currentTarget.value)), (event.currentTarget.value = ""))}>
+            <td colspan="2"><select class="quiet" aria-label="Set another parameter" value="" onChange=${add}>
               <option value="">Set another parameter …</option>
               ${others.map((name) => html`<option key=${name} value=${name}>${name}${grouped.has(name) ? " (of all groups)" : ""}</option>`)}
             </select></td>
@@ -243,8 +252,9 @@ export function NewExperiment() {
   }
   const designs = known.value?.designs ?? [];
   const last = designs.find(({ id }) => id === DESIGN.value);
-  // At first one of the model that is shown.
-  const own = designs.filter(({ file }) => file !== null && file === session.value?.model);
+  // At first one of the file that is shown, or of the model that is shown.
+  const model = session.value?.model ?? "";
+  const own = [...designs.filter(({ file }) => file === model), ...designs.filter((one) => one.model === model)];
   const wanted = isPicked.value || own.includes(last) ? last : (own[0] ?? last);
   const chosen = wanted ?? designs.find(({ file }) => file !== null) ?? designs[0];
   const design = chosen?.id ?? "";

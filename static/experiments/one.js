@@ -1,21 +1,31 @@
 // One experiment: its state and progress, its figure, trials, facts and report.
 
-import { html } from "../vendor/preact.js";
+import { html, useEffect, useRef } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Prose } from "../parts/prose.js";
 import { whenInFull, whenText } from "../runs/wording.js";
+import { dark } from "../theme.js";
 import { useFresh } from "./answer.js";
 import { Figure } from "./figure.js";
-import { busy, canMakeReport, canResume, canStop, deleteExperiment, experiments, isRunning, makeReport, part, pathOf, problem, resumeExperiment, shown, stopExperiment } from "./list.js";
-import { Parts } from "./parts.js";
+import { canMakeReport, canResume, canStop, deleteExperiment, experiments, isRunning, makeReport, part, pathOf, problem, resumeExperiment, shown, stopExperiment, waitOf } from "./list.js";
 import { Trials } from "./trials.js";
 import { changedText, doneText, durationText, failuresText, levelsText, rateText, stateText } from "./wording.js";
 
+const PARTS = [["figure", "Figure"], ["trials", "Trials"], ["about", "Design"], ["report", "Report"]];
+
+/** The choice of what is shown of an experiment. */
+function Parts({ experiment }) {
+  const all = PARTS.filter(([id]) => id !== "report" || experiment.report);
+  return html`<div class="parts"><span class="choices" role="group" aria-label="What is shown">
+    ${all.map(([id, text]) => html`<button key=${id} aria-pressed=${part.value === id} onClick=${() => (part.value = id)}>${text}</button>`)}
+  </span></div>`;
+}
+
 function Actions({ experiment }) {
-  const { state, work } = experiment;
-  const waits = busy.value !== null;
+  const { id, state, work } = experiment;
+  const waits = waitOf(id) !== null;
   const inWork = waits || work.length > 0; // perhaps of another page
   return html`
     ${isRunning(experiment) ? html`<button disabled=${waits || !canStop(experiment)} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop</button>` : null}
@@ -28,7 +38,8 @@ function Actions({ experiment }) {
 const processesText = ({ processes }) => (processes ? `in ${counted(processes, "process", "processes")}` : "on all processors");
 
 function Progress({ experiment }) {
-  const { done, total, failures, rate, remaining, state, workers, work } = experiment;
+  const { id, done, total, failures, rate, remaining, state, workers, work } = experiment;
+  const wait = waitOf(id);
   const going = state === "running" || state === "stopping";
   const facts = [
     going && done === 0 ? (workers > 0 ? "the first trials are running …" : "starting …") : null,
@@ -41,7 +52,7 @@ function Progress({ experiment }) {
     <span class="number">${doneText(experiment)}</span>
     ${facts.map((text) => html`<span key=${text.replace(/[\d.,]+/g, "")} class="number quiet">${text}</span>`)}
     ${failures > 0 ? html`<span class="bad number">${failuresText(failures)}</span>` : null}
-    ${busy.value ? html`<span class="stretch"></span><span class="doing"><progress aria-label=${busy.value.text}></progress> ${busy.value.text} ${busy.value.cancel ? html`<button class="bare" onClick=${() => busy.value?.cancel.abort()}>Cancel</button>` : null}</span>` : work.map((text) => html`<span key=${text} class="quiet">${text} …</span>`)}
+    ${wait ? html`<span class="stretch"></span><span class="doing"><progress aria-label=${wait.text}></progress> ${wait.text} ${wait.cancel ? html`<button class="bare" onClick=${() => wait.cancel.abort()}>Cancel</button>` : null}</span>` : work.map((text) => html`<span key=${text} class="quiet">${text} …</span>`)}
   </div>`;
 }
 
@@ -60,7 +71,7 @@ function About({ experiment, facts }) {
     ["trials a combination", facts.trials_a_cell],
     ["seed", facts.seed],
   ];
-  return html`<div class="about-design">
+  return html`<div class="part about-design">
     <div class="description"><${Prose} text=${facts.description ?? ""} /></div>
     <table><tbody>${rows.filter(([, value]) => value !== undefined && value !== "").map(([name, value]) => html`<tr key=${name}><th scope="row">${name}</th><td>${value}</td></tr>`)}</tbody></table>
   </div>`;
@@ -73,23 +84,30 @@ function useFacts(experiment) {
   return path === wanted ? { facts: answer?.facts ?? null, error } : { facts: null, error: null };
 }
 
+/** The report, in the theme of the page: it has no script that could follow it. */
+function Report({ address }) {
+  const frame = useRef(null);
+  const paint = () => frame.current.contentDocument?.documentElement?.style.setProperty("color-scheme", dark.value ? "dark" : "light");
+  useEffect(paint, [dark.value]);
+  return html`<iframe ref=${frame} class="part report" title="Report" sandbox="allow-downloads allow-same-origin" src=${address} onLoad=${paint}></iframe>`;
+}
+
 function Contents({ experiment, facts, error }) {
   const path = pathOf(experiment.id);
   const columns = useFresh(`${path}/rows?most=1`, experiment.done > 0 ? experiment.state : "").answer?.columns ?? [];
-  const parts = html`<div class="menus"><${Parts} experiment=${experiment} /></div>`;
-  if (facts === null && error !== null) return html`${parts}<p class="problem bad" role="alert">The experiment cannot be read: ${error}</p>`;
-  if (facts === null) return html`${parts}<p class="empty" role="status"><progress aria-label="Reading"></progress> Reading the experiment …</p>`;
-  if (part.value === "about") return html`${parts}<${About} experiment=${experiment} facts=${facts} />`;
+  if (facts === null && error !== null) return html`<p class="part problem bad" role="alert">The experiment cannot be read: ${error}</p>`;
+  if (facts === null) return html`<p class="part empty" role="status"><progress aria-label="Reading"></progress> Reading the experiment …</p>`;
+  if (part.value === "about") return html`<${About} experiment=${experiment} facts=${facts} />`;
   if (part.value === "trials") return html`<${Trials} experiment=${experiment} facts=${facts} />`;
   if (part.value === "report" && experiment.report) {
     const report = `${path}/report/index.html?${experiment.report}`;
     return html`
-      <div class="menus"><${Parts} experiment=${experiment} /><a href=${report} target="_blank" rel="noopener">in a tab of its own</a></div>
-      <iframe class="report" title="Report" sandbox="allow-downloads allow-same-origin" src=${report}></iframe>
+      <div class="menus"><a href=${report} target="_blank" rel="noopener">in a tab of its own</a></div>
+      <${Report} address=${report} />
     `;
   }
   if (columns.length > 2) return html`<${Figure} experiment=${experiment} facts=${facts} columns=${columns} />`;
-  return html`${parts}<p class="empty" role="status">${isRunning(experiment) ? "The figure appears with the first finished trials." : experiment.done > 0 ? html`<progress aria-label="Reading"></progress> Reading the trials …` : "No trial has finished."}</p>`;
+  return html`<p class="part empty" role="status">${isRunning(experiment) ? "The figure appears with the first finished trials." : experiment.done > 0 ? html`<progress aria-label="Reading"></progress> Reading the trials …` : "No trial has finished."}</p>`;
 }
 
 export function Experiment() {
@@ -108,6 +126,6 @@ export function Experiment() {
     <${Progress} experiment=${experiment} />
     ${problem.value ? html`<p class="problem bad" role="alert">The state of the experiment is not known: ${problem.value}</p>` : null}
     ${experiment.problem ? html`<pre class="trouble" role="alert">${experiment.problem}</pre>` : null}
-    <div class="contents"><${Contents} key="${experiment.id}" experiment=${experiment} facts=${facts} error=${error} /></div>
+    <div class="contents"><${Parts} experiment=${experiment} /><${Contents} key="${experiment.id}" experiment=${experiment} facts=${facts} error=${error} /></div>
   `;
 }

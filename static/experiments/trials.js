@@ -1,13 +1,11 @@
 // The table of trials of an experiment, page by page; a row opens its trial in the 3D view.
 
 import { html, useEffect, useSignal } from "../vendor/preact.js";
-import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { useFresh } from "./answer.js";
-import { busy, openTrial, where } from "./list.js";
-import { Parts } from "./parts.js";
-import { columnText } from "./wording.js";
+import { isOpen, openTrial, waitOf, where } from "./list.js";
+import { cellText, columnText, headText } from "./wording.js";
 
 const PAGE = 50; // rows
 const NUMBERS = ["integer", "real"];
@@ -22,33 +20,35 @@ function shownOf(columns, facts) {
 
 function Head({ column, sort, onSort }) {
   const here = sort.by === column.name;
-  return html`<th scope="col" class=${NUMBERS.includes(column.type) ? "number" : ""} aria-sort=${here ? (sort.down ? "descending" : "ascending") : "none"} title=${[column.meaning, column.unit && `[${column.unit}]`].filter(Boolean).join(" ")}>
-    <button class="bare" aria-label="Sort by ${column.name}" onClick=${onSort}>${columnText(column.name)}<span class="arrow" aria-hidden="true">${here ? (sort.down ? "▾" : "▴") : ""}</span></button>
+  return html`<th scope="col" class=${NUMBERS.includes(column.type) ? "number" : ""} aria-sort=${here ? (sort.down ? "descending" : "ascending") : "none"} title=${column.meaning}>
+    <button class="bare" aria-label="Sort by ${column.name}" onClick=${onSort}>${headText(column)}<span class="arrow" aria-hidden="true">${here ? (sort.down ? "▾" : "▴") : ""}</span></button>
   </th>`;
 }
 
-function Cell({ column, row }) {
+function Cell({ column, row, facts }) {
   const value = row[column.name];
   if (column.name === "end" && row.error) return html`<td class="bad" title=${row.error}>${row.end}: <span class="mono">${row.error.trim().split("\n").at(-1)}</span></td>`;
-  if (column.name === "wall_s") return html`<td class="number quiet">${value === null ? "" : `${value.toFixed(2)} s`}</td>`;
-  return html`<td class=${NUMBERS.includes(column.type) ? "number" : ""}>${value === null || value === undefined ? "" : valueText(value)}</td>`;
+  if (column.name === "wall_s") return html`<td class="number quiet">${value === null ? "" : value.toFixed(2)}</td>`;
+  return html`<td class=${NUMBERS.includes(column.type) ? "number" : ""}>${value === null || value === undefined ? "" : cellText(column.name, value, facts)}</td>`;
 }
 
-function Row({ experiment, columns, row }) {
+function Row({ experiment, facts, columns, row }) {
+  const waits = waitOf(experiment.id) !== null;
   const open = () => openTrial(experiment.id, row.trial);
-  return html`<tr title="Open this trial in the 3D view" onClick=${open}>
+  const isShown = isOpen(experiment.id, row.trial);
+  return html`<tr class=${`${waits ? "" : "opens"} ${isShown ? "chosen" : ""}`} aria-current=${isShown} title=${waits ? null : "Open this trial in the 3D view"} onClick=${waits ? null : open}>
     ${columns.map((column) =>
       column.name === "trial"
-        ? html`<td key="trial" class="number"><button class="link" disabled=${busy.value !== null} aria-label="Open trial ${row.trial}" onClick=${(event) => (event.stopPropagation(), open())}>${row.trial}</button></td>`
-        : html`<${Cell} key=${column.name} column=${column} row=${row} />`,
+        ? html`<td key="trial" class="number"><button class="link" aria-disabled=${waits} aria-label="Open trial ${row.trial}" onClick=${(event) => (event.stopPropagation(), open())}>${row.trial}</button></td>`
+        : html`<${Cell} key=${column.name} column=${column} row=${row} facts=${facts} />`,
     )}
   </tr>`;
 }
 
-function Filter() {
+function Filter({ facts }) {
   const names = Object.entries(where.value);
   const drop = (name) => (where.value = Object.fromEntries(names.filter(([other]) => other !== name)));
-  return names.map(([name, value]) => html`<button key=${name} class="filter" title="Show trials with any ${name}" aria-label="Any ${name}" onClick=${() => drop(name)}>${columnText(name)} ${valueText(value)} <${Icon} name="close" /></button>`);
+  return names.map(([name, value]) => html`<button key=${name} class="filter" title="Show trials with any ${name}" aria-label="Any ${name}" onClick=${() => drop(name)}>${columnText(name)} ${cellText(name, value, facts)} <${Icon} name="close" /></button>`);
 }
 
 /** @param experiment The summary of the experiment. @param facts Its facts. */
@@ -65,8 +65,7 @@ export function Trials({ experiment, facts }) {
   const last = answer ? Math.min(answer.total, answer.first + PAGE) : 0;
   return html`
     <div class="menus">
-      <${Parts} experiment=${experiment} />
-      <${Filter} />
+      <${Filter} facts=${facts} />
       ${experiment.failures > 0 || failed.value ? html`<label><input type="checkbox" checked=${failed.value} onChange=${(event) => (failed.value = event.currentTarget.checked)} /> failed only</label>` : null}
       <span class="pages">
         ${answer ? html`<span class="number quiet" role="status">${answer.total === 0 ? "no trials" : `${(answer.first + 1).toLocaleString("en")}–${last.toLocaleString("en")} of ${counted(answer.total, "trial")}`}</span>` : null}
@@ -78,14 +77,16 @@ export function Trials({ experiment, facts }) {
           : null}
       </span>
     </div>
-    ${error ? html`<p class="problem bad" role="alert">The trials cannot be read: ${error}</p>` : null}
-    <div class="trials" aria-busy=${waiting}>
-      ${answer?.rows.length > 0
-        ? html`<table aria-label="Trials">
-            <thead><tr>${columns.map((column) => html`<${Head} key=${column.name} column=${column} sort=${sort.value} onSort=${sortBy(column)} />`)}</tr></thead>
-            <tbody>${answer.rows.map((row) => html`<${Row} key=${row.trial} experiment=${experiment} columns=${columns} row=${row} />`)}</tbody>
-          </table>`
-        : html`<p class="empty">${answer ? "No finished trial." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
+    <div class="part">
+      ${error ? html`<p class="problem bad" role="alert">The trials cannot be read: ${error}</p>` : null}
+      <div class="trials" aria-busy=${waiting}>
+        ${answer?.rows.length > 0
+          ? html`<table aria-label="Trials">
+              <thead><tr>${columns.map((column) => html`<${Head} key=${column.name} column=${column} sort=${sort.value} onSort=${sortBy(column)} />`)}</tr></thead>
+              <tbody>${answer.rows.map((row) => html`<${Row} key=${row.trial} experiment=${experiment} facts=${facts} columns=${columns} row=${row} />`)}</tbody>
+            </table>`
+          : html`<p class="empty">${answer ? "No finished trial." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
+      </div>
     </div>
   `;
 }

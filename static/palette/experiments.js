@@ -2,8 +2,8 @@
 
 import { command, commandsOf } from "../commands.js";
 import { canMakeReport, canResume, canStop, experiments, listExperiments, makeReport, resumeExperiment, showExperiment, stopExperiment } from "../experiments/list.js";
+import { experimentText } from "../experiments/wording.js";
 import { openTab } from "../open_tab.js";
-import { whenText } from "../runs/wording.js";
 
 /** Shows an experiment; "new" for the form of a new one. */
 function show(id) {
@@ -22,7 +22,7 @@ const ACTIONS = [
 commandsOf(
   () =>
     (experiments.value ?? []).flatMap((one) => {
-      const name = `${one.name} ${whenText(one.made)}`;
+      const name = experimentText(one);
       const actions = ACTIONS.filter(([, can]) => can(one)).map(([text, , work]) => ({ text: `${text} the experiment ${name}`, group: one.id, work: () => (show(one.id), work(one)) }));
       return [{ text: `Experiment: ${name}`, group: one.id, work: () => show(one.id) }, ...actions];
     }),

@@ -1,6 +1,6 @@
 // Experiments: a design run by many trials; their progress, figures and rows, and each trial in the 3D view.
 
-import { html, useEffect } from "../vendor/preact.js";
+import { html, useEffect, useRef } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { agoText, whenInFull, whenText } from "../runs/wording.js";
 import { experiments, followExperiments, isRunning, listExperiments, problem, showExperiment, shown, total } from "../experiments/list.js";
@@ -8,8 +8,16 @@ import { NewExperiment } from "../experiments/new.js";
 import { Experiment } from "../experiments/one.js";
 import { changedText, doneText, durationText, failuresText, stateText } from "../experiments/wording.js";
 
+/** What a row says below the state: what is made of the experiment now, how long it still takes, or what failed. */
+function Note({ experiment }) {
+  const { failures, remaining, work } = experiment;
+  if (work.length > 0) return html`<span title=${work.join("\n")}>${work.join(", ")} …</span>`;
+  if (isRunning(experiment) && remaining !== null) return `${durationText(remaining)} left`;
+  return failures > 0 ? html`<span class="bad">${failuresText(failures)}</span>` : null;
+}
+
 function Row({ experiment }) {
-  const { id, name, model, made, state, done, total, failures, remaining, changed } = experiment;
+  const { id, name, model, made, state, done, total, changed } = experiment;
   const open = () => showExperiment(id);
   const how = changedText(changed) || "as designed";
   return html`<tr data-experiment=${id} onClick=${open}>
@@ -18,7 +26,7 @@ function Row({ experiment }) {
       <small>${model ? html`<span class="path"><bdi>${model}</bdi></span>` : null}<span>${how}</span></small>
     </td>
     <td class="when" title=${whenInFull(made)}><span class="number">${whenText(made)}</span><small>${agoText(made)}</small></td>
-    <td class="state ${state}"><span>${stateText(experiment)}</span><small>${isRunning(experiment) && remaining !== null ? `${durationText(remaining)} left` : failures > 0 ? html`<span class="bad">${failuresText(failures)}</span>` : ""}</small></td>
+    <td class="state ${state}"><span>${stateText(experiment)}</span><small><${Note} experiment=${experiment} /></small></td>
     <td class="done"><span class="number">${doneText(experiment)}</span><progress aria-label="Finished trials" value=${done} max=${total ?? Math.max(1, done)}></progress></td>
   </tr>`;
 }
@@ -48,8 +56,19 @@ function List() {
 function Experiments() {
   useEffect(followExperiments, []);
   const isThere = experiments.value?.some(({ id }) => id === shown.value);
+  const place = useRef(null);
+  const last = useRef(null);
+  const now = shown.value === "new" || isThere ? shown.value : "";
+  // What had the focus may be gone with the view before: then it goes to the row of that view, or to the first control.
+  useEffect(() => {
+    const before = last.current;
+    last.current = now;
+    if (before === null || document.activeElement !== document.body) return;
+    const row = before && place.current.querySelector(`[data-experiment="${CSS.escape(before)}"] button`);
+    (row || place.current.querySelector(".tools button")).focus();
+  }, [now]);
   const view = shown.value === "new" ? html`<${NewExperiment} />` : isThere ? html`<${Experiment} />` : html`<${List} />`;
-  return html`<div class="experiments">${view}</div>`;
+  return html`<div class="experiments" ref=${place}>${view}</div>`;
 }
 
 export const panel = { id: "experiments", title: "Experiments", order: 8.5, View: Experiments };

@@ -1,6 +1,6 @@
 // Saved pictures: anything that draws on a surface, as PNG or SVG.
 
-import { CanvasSurface, SvgSurface } from "./surface.js";
+import { CanvasSurface, cut, SvgSurface } from "./surface.js";
 
 export const SHARPNESS = 2; // pixels of a PNG per pixel of the page
 const TITLE = 26; // height of the line above a picture [px]
@@ -28,7 +28,8 @@ export function runName({ model, run, seed }) {
 /** Draws a picture with its title and background. */
 function drawWhole(surface, { title, width, height, draw }) {
   surface.fill(0, 0, width + 2 * MARGIN, height + TITLE + 2 * MARGIN, "panel");
-  surface.text(title, MARGIN, MARGIN + TITLE / 2 - 4, "text", { size: 12, bold: true });
+  const style = { size: 12, bold: true };
+  surface.text(cut(title, width, style), MARGIN, MARGIN + TITLE / 2 - 4, "text", style);
   surface.at(MARGIN, MARGIN + TITLE, () => draw(surface));
 }
 

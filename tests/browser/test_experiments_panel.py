@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, Route, expect
 
+from actr3d.experiment.report.page import page as report_page
 from tests.helpers.experiments import SLOW_COUNTER, write_experiment
 from tests.helpers.page import open_tab, until
 from tests.helpers.workbench_server import Served
@@ -199,6 +200,28 @@ def test_the_duration_of_a_trial_is_measured_for_the_values_that_were_changed(pa
     assert asked == [{}, {"n": [9]}, {"n": [9], "mode": "fail"}]
 
 
+def test_a_new_experiment_begins_with_a_design_of_the_model_and_keeps_what_was_typed(
+    pages: Callable[..., Page], workbench: Served, design: str
+) -> None:
+    page = pages("course/counter.py", tab="experiments")
+    checked: dict[str, Any] = {"factors": {"n": [1, 2]}, "groups": {"all": 2}, "group_parameters": {}, "settings": {}, "trials_a_cell": 1}
+    checked |= {"parameters": [{"name": "mode", "help": "", "default": "count"}], "seed": 1, "model": "", "seconds_a_trial": 1, "error": ""}
+    page.route("**/api/designs/check", lambda route: route.fulfill(json=checked))
+    new = page.get_by_role("button", name="New experiment")
+    new.click()
+    expect(page.get_by_label("Design", exact=True)).to_have_value(design)
+    page.get_by_label("participants").fill("9")
+    page.get_by_label("Set another parameter").select_option("mode")
+    value = page.get_by_label("Value of mode")
+    expect(value).to_be_focused()
+    page.keyboard.type("fail")  # in place of the default
+    expect(value).to_have_value("fail")
+    page.reload()
+    expect(page.get_by_label("participants")).to_have_value("9")
+    expect(value).to_have_value("fail")
+    expect(value).not_to_be_focused()
+
+
 TIMERS = """async () => {
   const { followExperiments, shown } = await part("experiments/list.js");
   const later = new Set();
@@ -301,6 +324,150 @@ def test_a_report_that_another_page_makes_is_shown_and_the_experiment_cannot_be_
         expect(page.get_by_role("button", name=name)).to_be_enabled()
 
 
+FACTS: dict[str, Any] = {"facts": {"factors": {}}}
+
+
+@pytest.fixture
+def two_finished(pages: Callable[..., Page]) -> tuple[Page, list[dict[str, Any]], list[Route]]:
+    """A page with two finished experiments; their summaries; and the requests for reports and trials, which the test answers."""
+    page = pages("counting.py", tab="experiments", refusals=True)
+    column = {"type": "integer", "role": "own", "unit": None, "meaning": ""}
+    columns = [column | {"name": name} for name in ("trial", "participant")]
+    one: dict[str, Any] = {"name": "sums", "made": 0, "state": "finished", "done": 2, "total": 2, "failures": 0}
+    one |= {"changed": {}, "model": "", "remaining": None, "columns": [], "work": []}
+    both: list[dict[str, Any]] = [{**one, "id": name, "name": name, "work": []} for name in ("first", "second")]
+    wanted: list[Route] = []
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"total": 2, "experiments": both}))
+    page.route(re.compile("/api/experiments/(first|second)$"), lambda route: route.fulfill(json=one | FACTS))
+    rows = {"columns": columns, "first": 0, "total": 2, "rows": [{"trial": number, "participant": 1} for number in (1, 2)]}
+    page.route("**/rows?*", lambda route: route.fulfill(json=rows))
+    page.route(re.compile("/report$|/trial$"), lambda route: wanted.append(route))
+    return page, both, wanted
+
+
+def test_what_is_made_of_one_experiment_is_said_at_that_one_only(two_finished: tuple[Page, list[dict[str, Any]], list[Route]]) -> None:
+    page, (first, _), wanted = two_finished
+    page.locator("tr[data-experiment=first]").click()
+    page.get_by_role("button", name="Trials", exact=True).click()
+    trial = page.locator(".trials tbody tr").first
+    expect(trial).to_have_css("cursor", "pointer")
+    page.get_by_role("button", name="Make report").click()
+    expect(page.locator(".progress")).to_contain_text("Making the report …")
+    expect(trial).not_to_have_css("cursor", "pointer")
+    trial.click()
+    first["work"].append("its report is being made")
+
+    page.get_by_role("button", name="Experiments", exact=True).click()
+    expect(page.locator("tr[data-experiment=first] .state")).to_contain_text("its report is being made")
+    page.locator("tr[data-experiment=second]").click()
+    expect(page.locator(".tools .name")).to_have_text("second")
+    expect(page.locator(".progress")).to_have_text("2 of 2 trials")
+    expect(page.get_by_role("button", name="Make report")).to_be_enabled()
+    assert len(wanted) == 1  # no trial is run again meanwhile
+    first["work"].clear()
+    wanted[0].fulfill(json={"report": "first"})
+    toast = page.locator(".toast")
+    expect(toast).to_contain_text(re.compile("^The report of first .* is made"))
+    expect(page.locator(".tools .name")).to_have_text("second")
+    toast.get_by_role("button", name="Open it").click()
+    expect(page.locator(".tools .name")).to_have_text("first")
+
+
+def test_the_keyboard_goes_on_where_the_view_changes(two_finished: tuple[Page, list[dict[str, Any]], list[Route]]) -> None:
+    page, _, wanted = two_finished
+    page.get_by_role("button", name="second").press("Enter")
+    back = page.get_by_role("button", name="Experiments", exact=True)
+    expect(back).to_be_focused()
+    trials = page.get_by_role("button", name="Trials", exact=True)
+    trials.press("Enter")
+    link = page.get_by_role("button", name="Open trial 2")
+    expect(link).to_be_visible()
+    expect(trials).to_be_focused()
+    link.press("Enter")
+    expect(page.locator(".progress")).to_contain_text("Running trial 2 again …")
+    expect(link).to_be_focused()
+    wanted[0].fulfill(status=409, json={"error": "no worker can be started"})
+    expect(page.locator(".progress")).not_to_contain_text("Running trial 2 again …")
+    expect(link).to_be_focused()
+    back.press("Enter")
+    expect(page.get_by_role("button", name="second")).to_be_focused()
+    new = page.get_by_role("button", name="New experiment")
+    new.press("Enter")
+    expect(back).to_be_focused()
+
+
+@pytest.mark.parametrize(("chosen", "paper"), [("light", "rgb(255, 255, 255)"), ("dark", "rgb(20, 24, 31)")])
+def test_a_report_has_the_theme_that_was_chosen_on_the_page(pages: Callable[..., Page], chosen: str, paper: str) -> None:
+    other = "dark" if chosen == "light" else "light"
+    page = pages("counting.py", tab="experiments", theme=other)
+    one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "finished", "done": 2, "total": 2, "failures": 0}
+    one |= {"changed": {}, "model": "", "remaining": None, "columns": [], "work": [], "report": 1}
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"total": 1, "experiments": [one]}))
+    page.route("**/api/experiments/sums", lambda route: route.fulfill(json=one | FACTS))
+    page.route("**/rows?*", lambda route: route.fulfill(json={"columns": [], "first": 0, "total": 0, "rows": []}))
+    text = report_page("Sums", "", {}, [], {})
+    page.route("**/report/index.html*", lambda route: route.fulfill(body=text, content_type="text/html"))
+    page.locator("tr[data-experiment=sums]").click()
+    page.get_by_role("button", name="Report", exact=True).click()
+    body = page.frame_locator("iframe.report").locator("body")
+    expect(body).not_to_have_css("background-color", paper)
+    page.evaluate("async (chosen) => (await part('theme.js')).chosen.value = chosen", chosen)
+    expect(body).to_have_css("background-color", paper)
+    page.get_by_role("button", name="Trials", exact=True).click()
+    page.get_by_role("button", name="Report", exact=True).click()
+    expect(body).to_have_css("background-color", paper)  # of a page that is loaded again
+
+
+TRIALS = """async () => {
+    const { html, render } = await part("vendor/preact.js");
+    const { Trials } = await part("experiments/trials.js");
+    const { session } = await part("store.js");
+    const { openTrial } = await part("experiments/list.js");
+    const place = document.body.appendChild(Object.assign(document.createElement("div"), { id: "drawn", className: "experiments" }));
+    const experiment = { id: "sums", done: 2, failures: 0 };
+    render(html`<${Trials} experiment=${experiment} facts=${{ factors: {}, groups: { all: 2 } }} />`, place);
+    const fetched = window.fetch;
+    // A recording is opened for as long as the test lasts.
+    window.fetch = (what, how) => (String(what).includes("/api/recordings/") ? new Promise(() => {}) : fetched(what, how));
+    window.open_one = () => void openTrial("sums", 1);
+    window.show = (recorded) => (session.value = { ...session.value, recorded });
+}"""
+
+
+TEXT_END = """(element) => {
+    const text = document.createRange();
+    text.selectNode(element.firstChild);
+    return text.getBoundingClientRect().right;
+}"""
+
+
+def test_trials_have_units_heads_above_their_numbers_and_a_mark_at_the_one_that_is_open(blank: Page) -> None:
+    column = {"type": "real", "role": "measure", "unit": None, "meaning": ""}
+    names: list[dict[str, Any]] = [
+        {"name": "trial"},
+        {"name": "participant", "type": "text"},
+        {"name": "rt", "unit": "s"},
+        {"name": "turn_deg"},
+    ]
+    columns = [column | one for one in names]
+    rows = [{"trial": number, "participant": f"all {number}", "rt": 1.5, "turn_deg": 20} for number in (1, 2)]
+    blank.route("**/rows?*", lambda route: route.fulfill(json={"columns": columns, "first": 0, "total": 2, "rows": rows}))
+    blank.route("**/api/experiments", lambda route: route.fulfill(json={"total": 0, "experiments": []}))
+    blank.route("**/trial", lambda route: route.fulfill(json={"recording": "sums_trial_1"}))
+    blank.evaluate(TRIALS)
+    heads, cells = blank.locator("#drawn thead button"), blank.locator("#drawn tbody tr").first.locator("td")
+    expect(heads).to_have_text(["trial▴", "participant", "rt [s]", "turn [°]"])
+    expect(cells).to_have_text(["1", "1", "1.5", "20"])
+    assert abs(heads.nth(2).evaluate(TEXT_END) - cells.nth(2).evaluate(TEXT_END)) < 2
+    marked = blank.locator("#drawn [aria-current=true]")
+    expect(marked).to_have_count(0)
+    blank.evaluate("open_one()")
+    blank.evaluate("show('sums_trial_1')")
+    expect(marked.get_by_role("button")).to_have_text("1")
+    blank.evaluate("show(null)")
+    expect(marked).to_have_count(0)
+
+
 def test_of_trials_that_have_all_failed_there_is_no_figure(blank: Page) -> None:
     blank.evaluate("""async () => {
         const { html, render } = await part("vendor/preact.js");
@@ -323,8 +490,8 @@ TWO_EXPERIMENTS = """async () => {
     const { experiments, shown, where } = await part("experiments/list.js");
     const column = (name, role) => ({ name, role, type: "real", unit: null, meaning: "" });
     const columns = [column("n", "value"), column("rt", "measure"), column("wall_s", "own")];
-    const one = (id, columns) => ({ id, name: id, done: 4, failures: 0, made: 0, total: 4, columns });
-    experiments.value = [one("mine", ["n", "rt"]), one("theirs", ["n", "rt"]), one("others", ["n", "luck"])];
+    const one = (id, columns, changed = {}) => ({ id, name: id, done: 5, failures: 0, made: 0, total: 5, columns, changed });
+    experiments.value = [one("mine", ["n", "rt"]), one("theirs", ["n", "rt"], { "latency_factor": 0.9 }), one("others", ["n", "luck"])];
     const place = document.body.appendChild(Object.assign(document.createElement("div"), { id: "drawn" }));
     place.style.cssText = "display: flex; flex-direction: column; width: 600px; height: 400px";
     render(html`<${Figure} experiment=${experiments.value[0]} facts=${{ factors: { n: [1, 2] } }} columns=${columns} />`, place);
@@ -342,16 +509,51 @@ def test_another_experiment_is_drawn_beside_the_one_that_is_shown(blank: Page) -
     blank.evaluate(TWO_EXPERIMENTS)
     points, legend = blank.locator("#drawn .point"), blank.locator("#drawn .legend")
     expect(points).to_have_count(2)
+    expect(blank.locator("#drawn .pointed")).to_have_text("Means over participants, ± 1 standard error. 4 of 5 trials")
     expect(legend).to_have_text("")
     choice = blank.get_by_label("Compare with")
     expect(choice.locator("option")).to_have_count(2)  # without the experiment that has no such measure
+    expect(choice.locator("option").last).to_have_text(re.compile("^theirs .*, latency_factor 0.9$"))
     choice.select_option("theirs")
     expect(points).to_have_count(4)
     expect(points.nth(0)).to_have_attribute("aria-label", re.compile(r"^Trials of n 1: 0\.1\d* s \(1 participant, 2 trials\)$"))
     expect(points.nth(3)).to_have_attribute("aria-label", re.compile(r"^Trials of n 2 · the other experiment: 0\.4\d* s "))
     expect(legend.locator("canvas")).to_have_count(2)
-    expect(legend).to_contain_text(re.compile("mine .*theirs "))
+    expect(legend).to_contain_text(re.compile("mine .*, as designed.*theirs .*, latency_factor 0.9"))
     points.nth(3).press("Enter")
     assert blank.evaluate("chosen()") == {"shown": "theirs", "where": {"n": 2}}
     choice.select_option("")
     expect(points).to_have_count(2)
+
+
+TEXTS_OF_A_PICTURE = """(svg) => {
+    document.body.innerHTML = svg.replace(/^<[?].*[?]>/, "");
+    const whole = document.querySelector("svg").getBoundingClientRect();
+    const inside = (box) => box.left >= whole.left && box.right <= whole.right && box.top >= whole.top && box.bottom <= whole.bottom;
+    return Array.from(document.querySelectorAll("svg text"), (text) => [text.textContent, inside(text.getBoundingClientRect())]);
+}"""
+
+
+def test_a_saved_figure_says_which_experiments_it_shows_and_what_its_bars_are(blank: Page) -> None:
+    def answer(route: Route) -> None:
+        points = [
+            {"at": [n, f"{level} of the conditions of the second factor"], "mean": n, "error": 0.1, "participants": 2, "trials": 4}
+            for n in (1, 2)
+            for level in ("first", "other", "third")
+        ]
+        route.fulfill(json={"x": "n", "by": ["kind"], "measure": "rt", "unit": "s", "columns": [], "points": points})
+
+    blank.route("**/means?*", answer)
+    blank.evaluate(TWO_EXPERIMENTS)
+    blank.get_by_label("Compare with").select_option("theirs")
+    expect(blank.locator("#drawn .legend canvas")).to_have_count(5)
+    with blank.expect_download() as download:
+        blank.get_by_role("button", name="SVG").click()
+    texts: list[tuple[str, bool]] = blank.evaluate(TEXTS_OF_A_PICTURE, download.value.path().read_text(encoding="utf-8"))
+    assert [text for text, is_inside in texts if not is_inside] == []
+    title, first, other, third, mine, theirs, *rest = (text for text, _ in texts)
+    assert re.fullmatch(r"rt \[s\], mine .* and theirs .*", title)
+    assert [text.partition(" ")[0] for text in (first, other, third)] == ["first", "other", "third"]
+    assert mine.startswith("mine ")
+    assert theirs.startswith("theirs ")
+    assert rest[-1].startswith("Means over participants, ± 1 standard error.")

@@ -379,11 +379,13 @@ def test_few_participants_are_those_with_results(tmp_path: Path) -> None:
 
 def test_a_report_says_if_the_description_of_the_design_is_of_other_numbers(tmp_path: Path) -> None:
     path = str(write_experiment(tmp_path))
-    text = "The description is that of the design as it was written. This experiment has its own: --trials, n."
+    text = "The description is that of the design as it was written. Changed in this experiment: trials, n."
     changed = read_results(store_rows(tmp_path / "changed", path, count, trials=1, values={"n": [1, 2]}))
     assert text in what_was_run(changed).parts
-    written = read_results(store_rows(tmp_path / "written", path, count))
-    assert not [part for part in what_was_run(written).parts if isinstance(part, str) and "has its own" in part]
+    same: dict[str, Any] = {"trials": 4, "participants": 2, "values": {"n": [1, 2, 5]}}
+    for name, given in {"written": dict[str, Any](), "same": same}.items():
+        written = read_results(store_rows(tmp_path / name, path, count, **given))
+        assert not [part for part in what_was_run(written).parts if isinstance(part, str) and "Changed in" in part]
 
 
 @pytest.mark.parametrize(("label", "marker"), [("small", "o"), ("", "D")])

@@ -16,6 +16,7 @@ import time
 from collections.abc import Coroutine, Iterator
 from contextlib import closing
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import httpx
@@ -27,8 +28,8 @@ from tests.helpers.sessions import Desk
 from tests.helpers.workbench_server import Served, served
 from workbench import experiments
 from workbench.design_files import Checking, Starting
-from workbench.experiment_command import ExperimentCommand, ExperimentFacts, ExperimentRunError
-from workbench.experiments import Experiments
+from workbench.experiment_command import ExperimentCommand, ExperimentFacts, ExperimentProgress, ExperimentRunError
+from workbench.experiments import Experiments, RunningExperiment
 from workbench.readers import ReadingError
 
 pytestmark = pytest.mark.long
@@ -86,12 +87,14 @@ def test_designs_of_the_library_and_of_model_files_are_listed_without_running_th
         "id": COUNTING,
         "name": "counting",
         "file": "counting_design.py",
+        "model": "counter.py",
         "description": "Counts to several numbers.",
     }
     assert listed["bad_design.py:bad"]["description"] == "Never runs."
-    assert listed["warren_whang_1987"]["file"] is None
+    assert listed["bad_design.py:bad"]["model"] is None
+    assert (listed["warren_whang_1987"]["file"], listed["warren_whang_1987"]["model"]) == (None, "aperture_passage.py")
+    assert listed["slow/counting_design.py:counting"]["model"] == "slow/counter.py"
     assert workbench.get("/api/designs").json()["most"] == {"participants": 1_000_000, "trials": 1_000_000, "workers": 256}
-    assert "slow/counting_design.py:counting" in listed
     answer = workbench.post("/api/designs/check", {"design": "bad_design.py:bad"})
     assert answer.status_code == 422
     assert "nothing_like_this" in answer.json()["error"]
@@ -199,6 +202,17 @@ def test_failed_trials_are_rows_with_their_errors(workbench: Served) -> None:
     assert all("cannot count to 1" in row["error"] for row in rows)
     assert len(rows) == 2
     assert workbench.post(f"/api/experiments/{name}/trial", {"number": 0}).status_code == 200  # it shows how far the trial came
+
+
+def test_the_rate_of_an_experiment_is_that_of_trials_after_each_process_has_loaded_the_model() -> None:
+    command: Any = SimpleNamespace(interrupted=False)
+    run = RunningExperiment(command, None, 4)
+    for done, workers in ((4, 0), (4, 2), (5, 2), (6, 2)):
+        run.take(ExperimentProgress(done=done, total=24, failures=0, workers=workers))
+        assert (run.summary()["rate"], run.summary()["remaining"]) == (None, None)
+    run.take(ExperimentProgress(done=8, total=24, failures=0, workers=2))
+    assert run.summary()["rate"] > 0
+    assert run.summary()["remaining"] > 0
 
 
 @pytest.mark.slow

@@ -45,15 +45,14 @@ def what_was_run(results: Results) -> Section:
         people = "1 participant" if group.participants == 1 else f"{group.participants} participants"
         rows.append((f"group {name}", f"{people}{': ' + drawn if drawn else ''}"))
     rows += [(f"setting {name}", repr(value)) for name, value in design.settings.items()]
-    rows += [(f"changed {name}", repr(value)) for name, value in specification.values.items()]
+    rows += [(f"changed {name}", repr(value)) for name, value in results.changes.items()]
     rows += [("trials of each cell", f"{design.trials:,} by each participant"), ("order", design.order), ("seed", str(design.seed))]
     rows += [("versions", text) for text in results.versions]
     rows.append(("analysed with", versions()))
     table = Table(name="design", title="Design", frame=pd.DataFrame(rows, columns=["what", "value"]))
     parts: list[str | Table | Plot | Caution] = [*results.description.split("\n\n")[1:]]
-    counts = {"participants": specification.participants, "trials": specification.trials}
-    if changed := [*(f"--{name}" for name, count in counts.items() if count is not None), *specification.values]:
-        parts.append(f"The description is that of the design as it was written. This experiment has its own: {', '.join(changed)}.")
+    if results.changes:
+        parts.append(f"The description is that of the design as it was written. Changed in this experiment: {', '.join(results.changes)}.")
     parts += [*cautions(results), table]
     if len(results.failures):
         parts.append(failures(results))

@@ -17,12 +17,12 @@ MADE_BY = '<meta name="generator" content="actr3d report">'
 FOLDED = 40
 """A table with more rows is folded."""
 CSS = """
-:root { color-scheme: light dark; --paper: #ffffff; --ink: #1b2430; --muted: #5b6675; --line: #dde2e8; --soft: #f4f6f9; --link: #1f5fc4;
-  --caution: #8a4b00; --caution-paper: #fff6e5; --good: #007a5e; --bad: #b3261e;
-  --c0: #0072b2; --c1: #c44e00; --c2: #007a5e; --c3: #a3528f; --c4: #8a6d00; --c5: #3f7fbf; }
-@media (prefers-color-scheme: dark) { :root { --paper: #14181f; --ink: #e6eaf0; --muted: #9aa6b5; --line: #2d3541; --soft: #1b212a;
-  --link: #8fbcff; --caution: #ffc266; --caution-paper: #2c2415; --good: #2fd0a5; --bad: #ff8a80;
-  --c0: #56b4e9; --c1: #ff8c42; --c2: #2fd0a5; --c3: #e29fd6; --c4: #e0c04c; --c5: #9cc7f5; } }
+:root { color-scheme: light dark; --paper: light-dark(#ffffff, #14181f); --ink: light-dark(#1b2430, #e6eaf0);
+  --muted: light-dark(#5b6675, #9aa6b5); --line: light-dark(#dde2e8, #2d3541); --soft: light-dark(#f4f6f9, #1b212a);
+  --link: light-dark(#1f5fc4, #8fbcff); --caution: light-dark(#8a4b00, #ffc266); --caution-paper: light-dark(#fff6e5, #2c2415);
+  --good: light-dark(#007a5e, #2fd0a5); --bad: light-dark(#b3261e, #ff8a80);
+  --c0: light-dark(#0072b2, #56b4e9); --c1: light-dark(#c44e00, #ff8c42); --c2: light-dark(#007a5e, #2fd0a5);
+  --c3: light-dark(#a3528f, #e29fd6); --c4: light-dark(#8a6d00, #e0c04c); --c5: light-dark(#3f7fbf, #9cc7f5); }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--paper); color: var(--ink);
   font: 16px/1.55 system-ui, -apple-system, "Segoe UI", "DejaVu Sans", sans-serif; }
@@ -57,7 +57,7 @@ details.section { border-top: 1px solid var(--line); margin: 0; padding: .35rem 
 details.section > summary { font-weight: 600; color: var(--ink); }
 details.section[open] { padding-bottom: 1.2rem; }
 code { font-size: .9em; } pre { background: var(--soft); padding: .8rem 1rem; overflow-x: auto; border-radius: 6px; font-size: .82rem; }
-@media print { :root { color-scheme: light; } nav { display: none; } }
+@media print { :root { color-scheme: light !important; } nav { display: none; } }
 """
 ROUNDING = 1e-12
 """Smaller numbers are shown as 0."""

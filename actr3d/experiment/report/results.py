@@ -37,6 +37,8 @@ class Results:
     """The docstring of the design."""
     specification: Specification
     design: Design
+    changes: Mapping[str, Any]
+    """The numbers and values that are not those of the design as its file has it; see `Experiment.changes`."""
     columns: Mapping[str, Column]
     """What is known of each column of `rows`."""
     rows: Any
@@ -148,6 +150,7 @@ def read_results(folder: Path | str) -> Results:
         label=Path(folder).resolve().name,
         description=experiment.description,
         specification=specification,
+        changes=experiment.changes,
         design=design,
         columns=columns,
         rows=rows,
