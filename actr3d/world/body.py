@@ -165,12 +165,12 @@ class Body:
 
     @property
     def actuators(self) -> tuple[str, ...]:
-        """The names of its commands. What they do stays the same for this body when a model's text defines one of these names anew."""
+        """The names of its commands. What they do stays the same for this body when a model's text defines one of these names again."""
         return tuple(self._actuators)
 
     @property
     def sensors(self) -> tuple[str, ...]:
-        """The names of its sensors. They stay the same for this body when a model's text defines one of these names anew."""
+        """The names of its sensors. They stay the same for this body when a model's text defines one of these names again."""
         return tuple(self._sensors)
 
     def set(self, word: str, *values: Any, **named: Any) -> None:
