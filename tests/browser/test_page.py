@@ -136,7 +136,7 @@ def test_an_error_of_a_run_leads_to_its_line_and_is_marked_as_past_in_the_next_r
     open_tab(page, "Console")
     rows = page.locator(".console .error")
     expect(rows.first).to_contain_text("error wrong.py:11 walker has no actuator 'walk_to'")
-    expect(rows.last).to_contain_text("wrong.py:11)")
+    expect(rows.last).to_have_text("  requested by 'walker.skin' in production 'go'")  # the file is named once
     assert page.locator(".console .lines").evaluate("box => box.scrollWidth <= box.clientWidth")
     shows(page, ".console .tools", "^1 line")
     file.write_text(WALKER.replace('"walk_to", 3, 1.5', '"walk", 1'), encoding="utf-8")
