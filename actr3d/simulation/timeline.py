@@ -46,7 +46,8 @@ class History:
         self._spacing = SPACING
         self._states: dict[int, WorldState] = {0: start}
         self._events = array("q")
-        """The number of traced events at the end of each tick that ran here; -1 if it is not known."""
+        """The number of traced events at the end of each tick from `_counted_from` on; an untraced run needs no memory for it."""
+        self._counted_from = 1
         self._counted: tuple[str, bool] | None = None
         """The level of the trace in which they were counted, and whether it keeps events; None for no trace."""
 
@@ -64,11 +65,13 @@ class History:
     def add_tick(self, tick: int, answers: tuple[Any, ...], trace: Trace | None) -> None:
         """Adds a tick, with the answers of the bodies at its end, and the trace up to there."""
         self.simulated = tick
-        counted = None if trace is None else (trace.level, trace.keep)
-        if counted != self._counted:
-            self._counted = counted
-            self._events = array("q", [-1]) * len(self._events)
-        self._events.append(-1 if trace is None else len(trace))
+        if trace is None:
+            self._counted = None
+        else:
+            counted = trace.level, trace.keep
+            if counted != self._counted or tick != self._counted_from + len(self._events):
+                self._counted, self._counted_from, self._events = counted, tick, array("q")
+            self._events.append(len(trace))
         self.ticks = max(self.ticks, tick)
         if self.answered == tick - 1 and self._kept + len(answers) <= MAX_ANSWERS:
             self.answered = tick
@@ -82,8 +85,9 @@ class History:
 
     def events(self, tick: int, trace: Trace) -> int | None:
         """Returns the number of events of a trace up to the end of a tick; None if they were not counted in a trace of its level."""
-        known = self._events[tick - 1] if 0 < tick <= self.simulated and (trace.level, trace.keep) == self._counted else -1
-        return None if known < 0 else known
+        place = tick - self._counted_from
+        is_known = (trace.level, trace.keep) == self._counted and 0 <= place < len(self._events) and tick <= self.simulated
+        return self._events[place] if is_known else None
 
     def before(self, tick: int) -> tuple[int, WorldState]:
         """Returns the tick of the last stored state that is at most at `tick` and at `answered`, and the state.
@@ -100,7 +104,7 @@ class History:
         self.simulated = min(self.simulated, tick)
         self.answered = min(self.answered, tick)
         self._states = {known: state for known, state in self._states.items() if known <= tick}
-        del self._events[tick:]
+        del self._events[max(0, tick + 1 - self._counted_from) :]
         for known in [known for known in self._answers if known > tick]:
             self._kept -= len(self._answers.pop(known))
 

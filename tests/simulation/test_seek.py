@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import random
+import tracemalloc
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
@@ -329,3 +330,14 @@ def test_undo_at_the_start_and_of_a_command_that_is_yet_to_be_repeated() -> None
     simulation.seek(0.2)
     simulation.undo()
     assert (simulation.time, simulation.furthest) == (0.2, 0.2)
+
+
+def test_an_untraced_run_needs_no_memory_for_each_tick() -> None:
+    history = timeline.History(cast("Any", None))
+    tracemalloc.start()
+    try:
+        for tick in range(1, 50_001):
+            history.add_tick(tick, (), None)
+        assert tracemalloc.get_traced_memory()[0] < 20_000
+    finally:
+        tracemalloc.stop()
