@@ -342,8 +342,9 @@ def _bench(options: argparse.Namespace) -> int:
 
     known = find_benchmarks()
     if options.name is None:
+        width = max(map(len, known)) + 2
         for name, function in sorted(known.items()):
-            print(f"{name:<{max(map(len, known)) + 2}}{(inspect.getdoc(function) or name).splitlines()[0]}")
+            print(f"{name:<{width}}{(inspect.getdoc(function) or name).splitlines()[0]}")
         return 0
     if options.name not in known:
         print(f"actr3d bench: no benchmark '{options.name}'{alternatives(options.name, sorted(known))}", file=sys.stderr)

@@ -450,9 +450,10 @@ class Design(Configuration):
 
     def differences(self, other: Design) -> list[str]:
         """Returns in words which of the values that `changed` can change differ between this design ("there") and another one ("now")."""
+        this, that = self.changeable(), other.changeable()
         found: list[str] = []
         for name in self.different(other):
-            there, now = (repr(given[name]) if name in given else "not set" for given in (self.changeable(), other.changeable()))
+            there, now = (repr(given[name]) if name in given else "not set" for given in (this, that))
             found.append(f"{name}: {there} there, {now} now")
         return found
 

@@ -113,7 +113,7 @@ function drawBands(surface, bands, y, height, scene) {
   const { column, width, span, end } = scene;
   const scale = secondsPerPixel(scene);
   const left = column + MARGIN - span.from / scale;
-  const isOver = ({ from, to }, time) => (to ?? Math.max(end, from)) >= time;
+  const overAt = ({ from, to }) => to ?? Math.max(end, from); // the time at which a band is over
   const first = firstWhere(bands, (band) => band.to === null || band.to >= span.from);
   let last = column - 10; // the end of the last drawn band: of several in one pixel, one is enough
   let written = column; // the end of the last text of a mark
@@ -126,7 +126,7 @@ function drawBands(surface, bands, y, height, scene) {
   for (let n = first; n < bands.length && bands[n].from <= span.to; ) {
     const band = bands[n];
     const from = Math.max(column - 4, left + band.from / scale);
-    const to = Math.min(width + 4, left + (band.to ?? Math.max(end, band.from)) / scale);
+    const to = Math.min(width + 4, left + overAt(band) / scale);
     last = Math.max(to, from + 1);
     if (!band.mark && to - from <= THIN) {
       const tone = toneOf(band);
@@ -145,7 +145,7 @@ function drawBands(surface, bands, y, height, scene) {
     }
     if (last > width + 3.3) break;
     const seen = (last + 0.7 - left) * scale; // what is over before this time has no pixel of its own
-    n = nextWhere(bands, (other) => isOver(other, seen), n + 1);
+    n = nextWhere(bands, (other) => overAt(other) >= seen, n + 1);
   }
   drawThin();
 }
