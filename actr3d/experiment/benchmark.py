@@ -237,6 +237,6 @@ def measure() -> list[Figure]:
 
 @benchmark("experiment-size")
 def measure_size() -> list[Figure]:
-    """Measures how experiments scale with 100,000 trials and 1,000,000 rows: takes about 20 minutes."""
+    """Measures how experiments scale with 100,000 trials and 1,000,000 rows: takes about 25 minutes."""
     with tempfile.TemporaryDirectory() as name:
         return [*_small(Path(name), MOST_SMALL), *_rows(Path(name), MOST_ROWS)]

@@ -165,12 +165,12 @@ class Body:
 
     @property
     def actuators(self) -> tuple[str, ...]:
-        """The names of its commands. What they do stays the same for this body when a model's text defines one of these names again."""
+        """The names of its commands. What they do stays the same for this body if the text of another model defines one of them later."""
         return tuple(self._actuators)
 
     @property
     def sensors(self) -> tuple[str, ...]:
-        """The names of its sensors. They stay the same for this body when a model's text defines one of these names again."""
+        """The names of its sensors. What they sense stays the same for this body if the text of another model defines one of them later."""
         return tuple(self._sensors)
 
     def set(self, word: str, *values: Any, **named: Any) -> None:
