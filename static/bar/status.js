@@ -23,9 +23,8 @@ function pagesText(watching, control) {
 export function StatusLine() {
   const { seed, watching = [], controlled_by: control, recording } = session.value ?? {};
   const { is, line } = runStatus.value;
-  const [what, kept = ""] = line.split(/(?<=(?:changed|undone) at [\d.]+ s)(?=;)/); // the second part is hidden beside a notice that says it
   return html`<footer class="status-line">
-    <span id="status" role="status" class=${BAD.includes(is) ? "bad" : is} title=${line}>${what}<span class="kept">${kept}</span></span>
+    <span id="status" role="status" class=${BAD.includes(is) ? "bad" : is} title=${line}>${line}</span>
     <span class="if-room hint"><${Hint} /></span>
     ${embedded === null ? html`<${Branch} /><${Former} />` : null}
     <span class="if-room facts">

@@ -224,7 +224,7 @@ def test_a_link_to_a_moment_leads_to_its_branch_once_the_run_was_changed_before_
     page.evaluate("async () => (await part('timeline/seek.js')).travel(0.1)")
     shows(page, "#time", r"0\.10 s")
     page.evaluate("async () => (await part('server.js')).say({ type: 'command', word: 'clear_buffer', named: { buffer: 'goal' } })")
-    shows(page, "#status", "a branch was kept")
+    shows(page, "#status", r"changed at 0\.10 s$")
     page.goto(link)
     shows(page, "#time", r"1\.00 s")
     expect(page).to_have_url(re.compile(r"\?run=counting-[\w-]+-at-0\.100s-"))

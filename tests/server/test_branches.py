@@ -55,7 +55,7 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
     assert talk.say("curves", names=["walker x"]) == before
     talk.say("command", word="aperture", values=[0.3])
     talk.say("command", word="aperture", values=[0.35])  # there is nothing ahead any more
-    assert talk.state["reason"] == "changed at 0.10 s; a branch was kept"
+    assert talk.state["reason"] == "changed at 0.10 s"
     (branch,) = found(talk)
     origin = Path(talk.session.start.record).stem  # type: ignore[union-attr]
     assert branch.stem.startswith(f"{origin}-at-0.100s-")

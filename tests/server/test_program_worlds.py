@@ -287,7 +287,7 @@ def test_the_world_of_a_program_is_changed_by_hand_and_the_change_is_repeated_an
         now = told(talk)
         assert [name for name in now if now[name] != seen[time][name]] == [], f"at {time} s"
     talk.say("undo")
-    assert talk.until("paused", time=0.2, furthest=0.2)["reason"] == "undone at 0.20 s; a branch was kept"
+    assert talk.until("paused", time=0.2, furthest=0.2)["reason"] == "undone at 0.20 s"
     assert [data["command"] for _, _, kind, data in talk.say("events")["events"] if kind == "command"] == ["aperture"]
     talk.say("until", time=0.3)
     talk.until("paused", time=0.3)

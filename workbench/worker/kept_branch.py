@@ -89,6 +89,6 @@ class KeptBranch:
                 self._controller.run.become_branch(self._branch.stem, self._at, self._ancestors)
             self._controller.run.flush()  # pages list recordings again when they hear of the branch
             self._controller.channel.post(Branched(recording=self._branch.stem, at=self._at, until=self._until))
-        is_in_recording = self._repeated is not None and not self._is_gone
-        kept_as = "a branch was kept" if self._branch else "the recording keeps the rest" if is_in_recording else "the rest was lost"
-        self._controller.goes_another_way(events, f"{what} at {self._at:.2f} s; {kept_as}" if self._ahead else None)
+        is_kept = self._branch is not None or (self._repeated is not None and not self._is_gone)  # pages say so in a notice
+        lost = "" if is_kept else "; the rest was lost"
+        self._controller.goes_another_way(events, f"{what} at {self._at:.2f} s{lost}" if self._ahead else None)

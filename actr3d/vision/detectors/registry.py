@@ -9,6 +9,7 @@ from typing import Any, ClassVar, TypeVar, get_origin
 
 from actr3d.camera import View
 from actr3d.errors import VisionError
+from actr3d.registry import Registry
 from actr3d.vision.feature import Feature, checked, slot_names
 from actr3d.vision.units import PLAIN, Unit, bounds_of, types_of, units_of
 
@@ -64,19 +65,19 @@ class Detector:
 RESERVED = ("feature", "pattern", "bottom_up")
 """Words of a request that no slot or parameter can have."""
 
-DETECTORS: dict[str, Detector] = {}
+DETECTORS = Registry[Detector]("detector")
 """By name. A vision module uses those that are registered when it is made."""
 
 
 def detector(finds: type[Feature]) -> Callable[[D], D]:
-    """Returns a decorator that registers a detector for a kind of features; a later one for the same kind replaces that of a model file.
+    """Returns a decorator that registers a detector for a kind of features.
 
     Args:
         finds: The kind of features.
 
     Raises:
-        VisionError: If it is not a kind of features or has a field that requests cannot name, if the library has a detector of that
-            name, or if the function does not take a view and parameters by keyword with defaults.
+        VisionError: If it is not a kind of features or has a field that requests cannot name, if there is another detector of that name,
+            or if the function does not take a view and parameters by keyword with defaults.
     """
     if not (isinstance(finds, type) and issubclass(finds, Feature)):  # pyright: ignore[reportUnnecessaryIsInstance] # a model's file
         raise VisionError(f"detector: must be given the class that it finds, a subclass of Feature (got {finds!r})")
@@ -87,9 +88,6 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
         raise VisionError(f"detector '{name}': '{unknown[0]}' is not a field; write @dataclass(frozen=True, kw_only=True) above the class")
 
     def add(detect: D) -> D:
-        builtin, known = detect.__module__.startswith("actr3d."), DETECTORS.get(name)
-        if known is not None and known.builtin and known.detect.__module__ != detect.__module__:
-            raise VisionError(f"detector: the library already has a detector '{name}'; rename the class {finds.__name__}")
         _, *others = inspect.signature(detect).parameters.values() or (None,)
         wrong = [p.name for p in others if p.kind is not p.KEYWORD_ONLY or p.default is p.empty]
         if wrong or not inspect.signature(detect).parameters:
@@ -98,7 +96,11 @@ def detector(finds: type[Feature]) -> Callable[[D], D]:
         taken += [p.name for p in others if p.name in slots or p.name in finds.aliases]
         if taken:
             raise VisionError(f"detector '{name}': '{taken[0]}' is reserved in requests; use another name")
-        DETECTORS[name] = Detector(finds, detect, tuple(p.name for p in others), builtin)
+        builtin = detect.__module__.startswith("actr3d.")
+        try:
+            DETECTORS.add(name, Detector(finds, detect, tuple(p.name for p in others), builtin), detect.__module__)
+        except ValueError as error:
+            raise VisionError(f"{error}; rename the class {finds.__name__}") from None
         return detect
 
     return add
