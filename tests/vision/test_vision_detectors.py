@@ -274,7 +274,7 @@ def test_what_is_no_detector_is_refused() -> None:
     def by_place(view: Any, most: float = 1) -> tuple[()]:
         return ()
 
-    with pytest.raises(VisionError, match="detector 'opening' is defined twice: .*; rename the class Opening"):
+    with pytest.raises(VisionError, match=r"detector 'opening' is defined twice: .*; rename the class Opening"):
         detector(Opening)(fits)
     fits.__module__ = "actr3d.vision.detectors.second"
     with pytest.raises(VisionError, match="detector 'opening' is defined twice"):
