@@ -11,7 +11,7 @@ import { rangeOf, read, valuesText, written } from "../parameters/values.js";
 import { valueText } from "../parts/chunk.js";
 import { Inline } from "../parts/prose.js";
 import { call, isLeft, order } from "../server.js";
-import { runStatus } from "../run_status.js";
+import { isOver, runStatus } from "../run_status.js";
 import { complain, session, state } from "../store.js";
 
 /** The declarations in the text that the form is for: that of a recording, or else that of the model's file. */
@@ -60,6 +60,11 @@ function inForce({ name, live, default: otherwise }) {
   return value === undefined ? otherwise : value;
 }
 
+/** Whether a new value of a parameter takes effect in the run at once; otherwise it is for the next run. */
+function actsNow({ live }) {
+  return Boolean(live && session.value?.alive) && !isOver.value;
+}
+
 function known() {
   return (listing.value?.parameters ?? []).filter((parameter) => parameter.known);
 }
@@ -87,7 +92,7 @@ function waiting() {
   });
 }
 
-/** Stores an entered value; a live parameter takes effect at once. */
+/** Stores an entered value; that of a live parameter takes effect at once, unless the run is over. */
 async function write(parameter, text, whole) {
   const { name } = parameter;
   const { value, problem } = read(parameter, text);
@@ -95,7 +100,7 @@ async function write(parameter, text, whole) {
   // During typing, «1.» on the way to «1.5» stays unchanged, although it equals 1.
   if (holds && whole) drop(name);
   else drafts.value = { ...drafts.value, [name]: text };
-  if (!parameter.live || problem || !whole || holds || !session.value?.alive) return;
+  if (!actsNow(parameter) || problem || !whole || holds) return;
   const run = of;
   try {
     await change({ type: "set", name, value });
@@ -150,7 +155,7 @@ function Control({ parameter, id, text, problem }) {
     </select>`;
   }
   // Enter sends the form, which restarts the run; the value of a live parameter takes effect without that.
-  const enter = (event) => parameter.live && session.value?.alive && event.key === "Enter" && !event.defaultPrevented && (event.preventDefault(), change(event));
+  const enter = (event) => actsNow(parameter) && event.key === "Enter" && !event.defaultPrevented && (event.preventDefault(), change(event));
   return html`<input ...${shared} onKeyDown=${enter} value=${text} placeholder=${optional ? "as the model says" : ""} inputmode=${takes === "text" ? "text" : "decimal"} spellcheck=${false} autocomplete="off" onInput=${(event) => write(parameter, event.currentTarget.value, false)} onChange=${change} />`;
 }
 
@@ -163,7 +168,7 @@ function Slider({ parameter, text }) {
 }
 
 function Field({ parameter }) {
-  const { name, unit, help, live } = parameter;
+  const { name, unit, help } = parameter;
   const id = `parameter-${name}`;
   const draft = drafts.value[name];
   const text = draft ?? written(inForce(parameter));
@@ -172,7 +177,7 @@ function Field({ parameter }) {
   return html`<div class="parameter ${changed ? "waits" : ""}">
     <label for=${id}>${name}</label>
     <span class="control"><${Control} parameter=${parameter} id=${id} text=${text} problem=${problem} /><${Slider} parameter=${parameter} text=${text} />${unit ? html`<span class="quiet">${unit}</span>` : null}</span>
-    <span class="mark">${live ? html`<span class="badge" title="Acts on the run that goes on, and is recorded">live</span>` : changed ? html`<span class="badge" title="Used from the next run on">next run</span>` : null}</span>
+    <span class="mark">${actsNow(parameter) ? html`<span class="badge" title="Acts on the run that goes on, and is recorded">live</span>` : changed ? html`<span class="badge" title="Used from the next run on">next run</span>` : null}</span>
     <p id="${id}-help" class="help">
       ${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}<${Inline} text=${help} /> <span class="bounds">${valuesText(parameter)}</span>
     </p>
@@ -256,7 +261,7 @@ commandsOf(
     return known().flatMap((parameter) => {
       const about = () => [valueText(inForce(parameter)), parameter.unit].filter(Boolean).join(" ");
       const given = words && match(words, parameter.name) && fits(parameter, text);
-      const setting = { text: `Set ${parameter.name} to ${text}`, about: () => (parameter.live ? "" : "from the next run on"), group: "Parameters", work: () => show(parameter, text) };
+      const setting = { text: `Set ${parameter.name} to ${text}`, about: () => (actsNow(parameter) ? "" : "from the next run on"), group: "Parameters", work: () => show(parameter, text) };
       return [{ text: `Set ${parameter.name}`, about, group: "Parameters", work: () => show(parameter) }, ...(given ? [setting] : [])];
     });
   },

@@ -155,9 +155,15 @@ def test_a_parameter_is_in_force_at_once_or_with_the_next_run(pages: Callable[..
     width.press("Control+Enter")
     shows(page, "#status", "ended")
     shows(page, "#width", "70 cm")
+    width.fill("0.8")
+    width.press("Tab")  # the run is over: the value is for the next one
+    expect(page.locator(".note")).to_have_text(re.compile("One value is not in effect yet"))
+    expect(page.locator(".parameter", has=width).get_by_text("next run")).to_be_visible()
+    expect(page.locator(".toast")).to_have_count(0)
     page.get_by_label("seed", exact=True).fill("8")
     page.get_by_role("button", name="Run with these").click()
     expect(page.get_by_text("seed 8", exact=True)).to_be_visible()
+    shows(page, "#width", "80 cm")
     shows(page, "#status", "ended")
 
 
