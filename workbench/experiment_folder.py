@@ -15,6 +15,7 @@ from actr3d.recording.key import is_sealed, make_key, seal
 from actr3d.replacing import replace_file
 from workbench.experiment_command import ExperimentFacts, ExperimentRunError
 from workbench.files import file_stamp, is_writable
+from workbench.retention import begun
 
 SPECIFICATION, FACTS, TABLE, LOCK, NOTES = "experiment.json", "facts.json", "trials.sqlite", "lock", "workbench.json"
 """The files of an experiment's folder; the workbench writes only the last one."""
@@ -54,6 +55,11 @@ class ExperimentFolder:
     def is_experiment(self) -> bool:
         """Whether there is an experiment."""
         return not self.path.is_symlink() and is_plain(self.path / SPECIFICATION)
+
+    @property
+    def made(self) -> float:
+        """When the experiment was made [s since 1970]."""
+        return begun(self.path, self.path / SPECIFICATION)
 
     @property
     def is_locked(self) -> bool:

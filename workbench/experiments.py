@@ -26,7 +26,7 @@ from workbench.experiment_command import (
     TriedFacts,
 )
 from workbench.experiment_folder import ExperimentFolder, as_values
-from workbench.retention import begun, stamp
+from workbench.retention import stamp
 from workbench.sessions import PermissionNeededError, Sessions
 from workbench.trash import OWN, move_to_trash
 
@@ -181,7 +181,7 @@ class Experiments:
     def _folders(self) -> list[ExperimentFolder]:
         there = self._root.iterdir() if self._root.is_dir() else ()
         found = [folder for path in there if _NAME.fullmatch(path.name) and (folder := ExperimentFolder(path)).is_experiment]
-        return sorted(found, key=lambda folder: (begun(folder.path), folder.path.name), reverse=True)
+        return sorted(found, key=lambda folder: (folder.made, folder.path.name), reverse=True)
 
     async def _summaries(self, folders: Sequence[ExperimentFolder]) -> list[dict[str, Any]]:
         running = self._running.copy()  # one that ends in the meantime is still shown as it was
@@ -198,7 +198,7 @@ class Experiments:
             "id": name,
             "name": _STAMP.sub("", name) if facts is None else facts.name,
             "model": "" if facts is None else facts.model,
-            "made": begun(folder.path),
+            "made": folder.made,
             "total": total,
             "changed": {} if facts is None else facts.changed,
             "report": folder.report_made,

@@ -79,15 +79,20 @@ def written(path: Path) -> float:
         return 0.0
 
 
-def begun(path: Path) -> float:
-    """Returns when a recording began according to its name, or else when it was last written [s since 1970]."""
+def begun(path: Path, file: Path | None = None) -> float:
+    """Returns when a recording or experiment began according to its name, or else when it was written [s since 1970].
+
+    Args:
+        path: The recording, or the folder of the experiment.
+        file: The file that is written when it begins, and not later; None for the recording.
+    """
     named = _BEGUN.search(path.stem)
     if named is not None:
         try:
             return time.mktime(time.strptime(named[1], "%Y%m%d-%H%M%S"))
         except (ValueError, OverflowError):
             pass
-    return written(path)
+    return written(path if file is None else file)
 
 
 def is_unnamed(path: Path) -> bool:

@@ -184,7 +184,7 @@ function Plot({ lines, known, about, children }) {
   }, []);
 
   useEffect(() => {
-    if (width > 0) drawFigure(new CanvasSurface(scaled(canvas.current, width, height)), lines, figure, columnText(about.x));
+    if (width > 0) drawFigure(new CanvasSurface(scaled(canvas.current, width, height)), lines, figure, about.across);
   }, [lines, figure, dark.value]);
 
   function save(kind) {
@@ -192,7 +192,7 @@ function Plot({ lines, known, about, children }) {
     const entries = layoutLegend(legend, wide);
     const draw = (surface) => {
       drawLegend(surface, entries);
-      surface.at(0, entries.height, () => drawFigure(surface, lines, layout(lines, known, wide, high), columnText(about.x)));
+      surface.at(0, entries.height, () => drawFigure(surface, lines, layout(lines, known, wide, high), about.across));
       surface.text(caption, 0, entries.height + high + 8, "quiet");
     };
     const [source] = about.sources;
@@ -276,7 +276,7 @@ export function Figure({ experiment, facts, columns: all }) {
       <${Problem} text=${error} />
       ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
       ${answer && lines.length > 0
-        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, unit: unitText({ name: answer.measure, unit: answer.unit }), sources: drawn.map(experimentText), counts: countsText(answer, chosen, experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, across: headText(columns.find(({ name }) => name === answer.x) ?? { name: answer.x }), unit: unitText({ name: answer.measure, unit: answer.unit }), sources: drawn.map(experimentText), counts: countsText(answer, chosen, experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
         : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
     </div>
   `;

@@ -488,8 +488,8 @@ TWO_EXPERIMENTS = """async () => {
     const { html, render } = await part("vendor/preact.js");
     const { Figure } = await part("experiments/figure.js");
     const { experiments, shown, where } = await part("experiments/list.js");
-    const column = (name, role) => ({ name, role, type: "real", unit: null, meaning: "" });
-    const columns = [column("n", "value"), column("rt", "measure"), column("wall_s", "own")];
+    const column = (name, role, unit = null) => ({ name, role, type: "real", unit, meaning: "" });
+    const columns = [column("n", "value", "m"), column("rt", "measure"), column("wall_s", "own")];
     const one = (id, columns, changed = {}) => ({ id, name: id, done: 5, failures: 0, made: 0, total: 5, columns, changed });
     experiments.value = [one("mine", ["n", "rt"]), one("theirs", ["n", "rt"], { "latency_factor": 0.9 }), one("others", ["n", "luck"])];
     const place = document.body.appendChild(Object.assign(document.createElement("div"), { id: "drawn" }));
@@ -556,4 +556,5 @@ def test_a_saved_figure_says_which_experiments_it_shows_and_what_its_bars_are(bl
     assert [text.partition(" ")[0] for text in (first, other, third)] == ["first", "other", "third"]
     assert mine.startswith("mine ")
     assert theirs.startswith("theirs ")
+    assert "n [m]" in rest, "each axis has its unit"
     assert rest[-1].startswith("Means over participants, ± 1 standard error.")

@@ -253,7 +253,7 @@ def beside(folder: Path, people: Path) -> list[Beside]:
 def rotation(folder: Path, people: Path) -> Rotation:
     results = read_results(folder)
     findings = Findings(passings_of(results))
-    return Rotation(findings, frame_of(results, findings), beside(folder, people))
+    return Rotation(results, findings, frame_of(results, findings), beside(folder, people))
 
 
 def test_people_are_drawn_by_their_own_ratios(walked: Path, tmp_path: Path) -> None:
@@ -364,6 +364,32 @@ def test_cells_with_failed_trials_are_named_and_not_compared(tmp_path: Path) -> 
         beside = beside_experiment([other], [one])
         assert beside is not None
         assert list(fit_to([one], beside)["cells"]) == [2, 2]
+
+
+def test_cells_with_failed_walks_agree_with_nothing(people: Path, tmp_path: Path) -> None:
+    def measures(trial: Any) -> dict[str, Any]:
+        failed = trial.values["aperture"] == 0.5 and trial.participant.name == "small 2"
+        return {"error": "ValueError: no"} if failed else walk_through(trial)
+
+    folder = store_rows(tmp_path / "walks", "warren_whang_1987", measures, trials=1, values={"condition": "normal"})
+    write_report(folder, human=people)
+    agreement = {(row["means_of"], row["compared_with"]): row for row in table(folder, "agreement")}
+    (beside,) = [row for row in table(folder, "fit_to_people") if row["measure"] == "wall_angle_deg"]
+    assert agreement["this model", "people"]["cells"] == beside["cells"] == "5"
+    assert float(agreement["this model", "people"]["rmse"]) == pytest.approx(float(beside["rmse"]))
+    assert agreement["this model", "original ACT-R 3D"]["cells"] == "13"
+    assert agreement["geometry (baseline)", "this model"]["cells"] == "15"
+    assert "Cells in which a trial failed are left out" in page(folder)
+
+
+def test_the_points_of_figures_on_apertures_are_in_tables(walked: Path) -> None:
+    margins = table(walked, "margins_of_participants")
+    assert {row["side"] for row in margins} == {"left", "right", "narrower side"}
+    assert len(margins) == 3 * 2 * 2 * 8
+    assert all(float(row["low"]) <= float(row["mean"]) <= float(row["high"]) for row in margins)
+    for row in table(walked, "rotation"):
+        width = float(row["aperture"]) / float(row["ratio"])
+        assert width == pytest.approx(0.404 if row["group"] == "small" else 0.484, abs=0.03)
 
 
 def test_few_participants_are_those_with_results(tmp_path: Path) -> None:

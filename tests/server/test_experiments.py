@@ -29,6 +29,7 @@ from tests.helpers.workbench_server import Served, served
 from workbench import experiments
 from workbench.design_files import Checking, Starting
 from workbench.experiment_command import ExperimentCommand, ExperimentFacts, ExperimentProgress, ExperimentRunError
+from workbench.experiment_folder import ExperimentFolder
 from workbench.experiments import Experiments, RunningExperiment
 from workbench.readers import ReadingError
 
@@ -176,6 +177,15 @@ def test_means_are_those_of_participants(workbench: Served, finished: str) -> No
         assert point["error"] == pytest.approx(abs(means[0] - means[1]) / 2)
         assert (point["participants"], point["trials"]) == (2, 8)
     assert len(workbench.get(f"/api/experiments/{finished}/means?x=participant&measure=rt").json()["points"]) == 2
+
+
+def test_the_time_of_an_experiment_is_when_it_was_made_also_in_a_folder_of_another_name(tmp_path: Path) -> None:
+    folder = tmp_path / "copied"
+    folder.mkdir()
+    (folder / "experiment.json").touch()
+    os.utime(folder / "experiment.json", (1_000_000_000, 1_000_000_000))
+    (folder / "report").mkdir()
+    assert ExperimentFolder(folder).made == 1_000_000_000
 
 
 def test_a_trial_is_recorded_and_opened(workbench: Served, finished: str) -> None:

@@ -17,7 +17,7 @@ from actr3d.experiment.aperture.critical_ratio import bend, critical_ratio
 from actr3d.experiment.aperture.original import original_bar_means, original_means
 from actr3d.experiment.aperture.passing import TURNED, Passing, baseline_angle
 from actr3d.experiment.report.analyses import analysis
-from actr3d.experiment.report.beside import Beside, matched_means, missing
+from actr3d.experiment.report.beside import Beside, matched_means, missing, without_failures
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
@@ -32,7 +32,8 @@ BASELINE = (
 )
 ANGLE = "shoulder angle at the wall [degrees]"
 OF_RATIO = "aperture / shoulder width (A/S)"
-PEOPLE_TURN = f"people turn below {CRITICAL[0]:g} to {CRITICAL[1]:g}"
+ASKED_TO_TURN = f"asked of a model: {CRITICAL[0]:g} to {CRITICAL[1]:g} (people: 1.28 to 1.31)"
+ASKED_TO_PASS = f"asked of a model: {PASSABLE[0]:g} to {PASSABLE[1]:g} (people: about 1.16)"
 NEEDED = (
     "participant",
     "group",
@@ -115,7 +116,7 @@ def passing_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
     sections = [Section(title="Constraints on a model of people", parts=[_constraints(findings.all())])]
     frame = frame_of(results, findings)
     if len(findings.levels) > 1:
-        rotation = Rotation(findings, frame, others)
+        rotation = Rotation(results, findings, frame, others)
         sections.append(Section(title="Rotation of the shoulders", parts=rotation.parts()))
         sections.append(Section(title="Critical ratio", parts=_critical_ratios(findings)))
         sections.append(Section(title="Margins, contacts and onset", parts=_margins(findings, frame)))
@@ -151,7 +152,7 @@ def judging_apertures(results: Results, others: Sequence[Beside]) -> list[Sectio
         of = means[means["group"] == group]
         curves.append(_model_curve(group, of["ratio"].tolist(), of))
         curves += _curves_beside(others, "passable", {"group": group}, group, "ratio", 1.0)
-    pane = Pane(title="", curves=curves, band=(*PASSABLE, "people judge from about 1.16"))
+    pane = Pane(title="", curves=curves, band=(*PASSABLE, ASKED_TO_PASS))
     figure = curves_figure([pane], OF_RATIO, "judged passable without turning [proportion]")
     parts: Parts = [
         Plot(name="judgements", title="Judged passable", figure=figure, note="Means of participants with 95 % bootstrap intervals."),
@@ -194,12 +195,14 @@ class Rotation:
     """The rotation of the shoulders: figures, means beside those of the original and of the baseline, and how well they agree.
 
     Args:
-        findings: The trials.
+        results: The experiment.
+        findings: Its trials.
         frame: The same as a table; see `frame_of`.
         others: Means of people, or of another experiment.
     """
 
-    def __init__(self, findings: Findings, frame: Any, others: Sequence[Beside]) -> None:
+    def __init__(self, results: Results, findings: Findings, frame: Any, others: Sequence[Beside]) -> None:
+        self._results = results
         self._findings, self._others = findings, [with_greatest_angles(one, findings.by) for one in others]
         self._by_aperture = findings.by == "aperture"
         self._at_ratios = [at_own_ratios(one) for one in others] if self._by_aperture else []
@@ -276,7 +279,7 @@ class Rotation:
         ratios = [x for curve in curves for x in curve.x]
         grid = np.linspace(min(ratios), max(ratios), 200)
         curves.append(Curve(label="", source=GEOMETRY, look="baseline", x=grid.tolist(), y=baseline_angle(grid).tolist()))
-        return Pane(title=condition, curves=curves, band=(*CRITICAL, PEOPLE_TURN))
+        return Pane(title=condition, curves=curves, band=(*CRITICAL, ASKED_TO_TURN))
 
     def _original_curve(self, label: str, group: str, condition: str, scale: float) -> list[Curve]:
         cells = sorted((aperture, angle) for (g, c, aperture), angle in self._original.items() if (g, c) == (group, condition))
@@ -292,12 +295,15 @@ class Rotation:
         frame = self._means.copy()
         frame["original"], frame["baseline"] = self._original_of(frame), self._baseline(frame)
         frame = frame.rename(columns={"level": self._findings.by})
+        if self._by_aperture:
+            frame["ratio"] = frame["aperture"] / frame["group"].map(self._shoulders)
         if not self._original:
             frame = frame.drop(columns="original")
         units: dict[str, str] = dict.fromkeys(("mean", "sd", "low", "high", "original", "baseline"), "degrees")
         units |= {"aperture": "m"} if self._by_aperture else {}
         note = "Angles at the wall; of trials that did not reach it, the greatest angle until then. "
-        note += "sd: between participants; low, high: 95 % interval; n: participants."
+        note += "sd: between participants; low, high: 95 % interval; n: participants; original: the original ACT-R 3D. "
+        note += "ratio: the aperture divided by the group's mean shoulder width." if self._by_aperture else ""
         digits = dict.fromkeys(units, 1) | {"aperture": 2, "ratio": 2}
         return Table(name="rotation", title="Rotation of each cell", frame=frame, units=units, digits=digits, note=note, folded=True)
 
@@ -318,10 +324,17 @@ class Rotation:
         logged = cell_means(self._frame, measure, ["group", "condition", "level"])
         logged["original"], logged["baseline"] = self._original_of(logged), self._baseline(logged)
         angles = self._means.assign(baseline=self._baseline(self._means))
-        note = "RMSE and squared correlation of the means of cells."
+        logged, angles = (self._whole(cells.rename(columns={"level": self._findings.by})) for cells in (logged, angles))
+        note = "RMSE and correlation of the means of cells."
+        if len(logged) < len(self._means):
+            note += " Cells in which a trial failed are left out: what is left of them may be the easier trials."
         if logged["original"].notna().any():
             note += " The original's angle is the one it logged: torso plus clavicle."
         return _agreement("agreement", logged, angles, note, self._beside_people())
+
+    def _whole(self, cells: Any) -> Any:
+        """Returns the cells in which no trial failed."""
+        return without_failures(cells, ["group", "condition", self._findings.by], [self._results])
 
     def _beside_people(self) -> Any:
         """Returns the mean angles of the cells that people have, too: `mean` of the model, `baseline` and `people` [degrees]."""
@@ -334,7 +347,8 @@ class Rotation:
         trials = trials.assign(baseline=baseline_angle(self._frame["ratio"].to_numpy()))
         trials = trials[trials["angle"].notna()]
         of_model, of_baseline = (matched_means(trials, measure, keys, means) for measure in ("angle", "baseline"))
-        return pandas().DataFrame({"mean": of_model["model"], "baseline": of_baseline["model"], "people": of_model["beside"]})
+        cells = of_model.assign(baseline=of_baseline["model"]).rename(columns={"model": "mean", "beside": "people"})
+        return without_failures(cells, keys, [self._results])
 
     def _equivalence(self) -> Parts:
         test, pair = self._findings.ratio_test, self._findings.pair
@@ -552,7 +566,7 @@ def _ratios_pane(rows: Any, condition: str, findings: Findings) -> Pane:
         x = [float(places[one]) for one in of["participant"]]
         low, high = of["low"].tolist(), of["high"].tolist()
         curves.append(Curve(label=group, source="this model", look="points", x=x, y=of["critical_ratio"].tolist(), low=low, high=high))
-    return Pane(title=condition, curves=curves, level=(*CRITICAL, PEOPLE_TURN))
+    return Pane(title=condition, curves=curves, level=(*CRITICAL, ASKED_TO_TURN))
 
 
 # -- margins, contacts, onset
@@ -565,13 +579,14 @@ SIDES = {"left": "left", "right": "right", "narrower": "narrower side"}
 def _margins(findings: Findings, frame: Any) -> Parts:
     pd, by, scale = pandas(), findings.by, 100.0 if findings.by == "aperture" else 1.0
     x_label = "aperture [cm]" if by == "aperture" else OF_RATIO
-    parts, panes = list[str | Table | Plot | Caution](), list[Pane]()
+    parts, panes, of_people = list[str | Table | Plot | Caution](), list[Pane](), list[Any]()
     for group in findings.groups:
         for condition in findings.conditions:
             of = frame[(frame["group"] == group) & (frame["condition"] == condition)]
             curves: list[Curve] = []
             for side, label in SIDES.items():
                 means = cell_means(of, side, ["level"])
+                of_people.append(means.rename(columns={"level": by}).assign(group=group, condition=condition, side=label))
                 curves.append(_model_curve(label, (means["level"] * scale).tolist(), means))
             band = (100 * MARGIN[0], 100 * MARGIN[1], "people keep 6 to 8 cm")
             panes.append(Pane(title=", ".join(filter(None, (group, condition))), curves=curves, level=band))
@@ -579,6 +594,12 @@ def _margins(findings: Findings, frame: Any) -> Parts:
     note = "Means of participants with 95 % bootstrap intervals; the narrower side is that of each trial. "
     note += "At wide apertures, the distances depend on the aperture only."
     parts.append(Plot(name="margins", title="Margins on the left, on the right, and on the narrower side", figure=figure, note=note))
+    people = pd.concat(of_people)[["group", "condition", "side", by, "mean", "sd", "low", "high", "n"]]
+    units: dict[str, str] = dict.fromkeys(("mean", "sd", "low", "high"), "cm") | ({"aperture": "m"} if by == "aperture" else {})
+    digits = dict.fromkeys(units, 2) | {"ratio": 2}
+    note = "The means of the figure. sd: between participants; low, high: 95 % interval; n: participants."
+    title = "Margins of participants"
+    parts.append(Table(name="margins_of_participants", title=title, frame=people, units=units, digits=digits, note=note, folded=True))
     there = frame[frame["left"].notna() & frame["right"].notna()]
     if len(there) and float((there["left"] - there["right"]).abs().max()) < 100 * SIDES_DIFFER:
         parts.append(Caution("Left and right are equal in every trial: this walker neither sways nor steers, which people do."))

@@ -139,18 +139,30 @@ def matched(results: Results, beside: Beside, measure: str) -> Any:
     """Returns a `DataFrame` of the cells that both have: `model`, `beside` and what makes the cell. Means over all groups or levels are
     compared with the model's means over all.
 
-    Cells in which a trial failed are left out, as in a fit: their means would be those of the easier trials.
+    Cells in which a trial failed are left out, see `without_failures`.
     """
     keys = ["group", *results.all_factors]
     found = matched_means(results.rows, measure, keys, beside.of(measure))
+    return without_failures(found, keys, [results, *([] if beside.results is None else [beside.results])])
+
+
+def without_failures(cells: Any, keys: Sequence[str], experiments: Sequence[Results]) -> Any:
+    """Returns those cells of a `DataFrame` in which no trial of some experiments has failed, as in a fit: the means of the others would be
+    those of the easier trials.
+
+    Args:
+        cells: The cells; where a key is missing, a cell is of all levels.
+        keys: The columns that make a cell, named as in the experiments.
+        experiments: The experiments.
+    """
     failed: list[dict[str, Any]] = []
-    for one in (results, *([] if beside.results is None else [beside.results])):
+    for one in experiments:
         failed += one.failures[[key for key in keys if key in one.failures]].drop_duplicates().to_dict("records")
     whole = [
         not any(all(missing(cell[key]) or cell[key] == level for key, level in one.items()) for one in failed)
-        for cell in found.to_dict("records")
+        for cell in cells.to_dict("records")
     ]
-    return found[whole].reset_index(drop=True)
+    return cells[whole].reset_index(drop=True)
 
 
 def matched_means(trials: Any, measure: str, keys: Sequence[str], means: Any) -> Any:

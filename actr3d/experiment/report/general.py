@@ -95,7 +95,7 @@ def _failed_cells(results: Results) -> str:
     """Returns sentences that name the cells in which trials failed, and say what that means for their means."""
     by = [*(["group"] if len(results.groups) > 1 else []), *(name for name in results.factors if name in results.failures)]
     means = " What is left may be the easier ones: read its means and tests with care. "
-    means += "The sections of measures do not compare them with other means."
+    means += "They are not compared with other means."
     if not by:
         return means
     cells = results.failures[by].drop_duplicates().to_dict("records")
