@@ -135,7 +135,7 @@ class Users:
 
         def hear_console(message: ConsoleMessage) -> None:
             if message.type == "error":
-                hear(message.text)
+                hear(f"{message.text} ({message.location['url']})" if message.text.startswith("Failed to load resource") else message.text)
 
         def hear_error(error: Error) -> None:
             hear(str(error))
