@@ -18,7 +18,7 @@ from actr3d.errors import Actr3dError
 from actr3d.output import ModelOutput
 from actr3d.runner.facts import NAMED
 from actr3d.trace import Trace
-from actr3d.values import to_json
+from actr3d.values import plain_to_json, to_json
 from workbench.worker.channel import Channel
 from workbench.worker.controlled_run import ControlledRun
 from workbench.worker.error_report import describe_error
@@ -31,7 +31,7 @@ from workbench.worker.truncation import bounded_json, event_json
 
 SHOWN = 1 / 30
 """Interval at which the state of a running run is sent [s]. Chosen here: pages can easily draw at this rate."""
-HURRIED = 1 / 15
+HURRIED = 1 / 10
 """The same interval for a run without a speed limit, which sending slows down [s]. Chosen here."""
 
 
@@ -335,7 +335,7 @@ class RunController:
             wanted=self.pacer.factor,
             measured=self.pacer.measure(run.clock) if self.status == "running" else None,
             events=count,
-            parts=bounded_json(run.parts()),
+            parts=bounded_json(run.parts(), whole=plain_to_json),
             apertures=apertures,
             parameters=bounded_json(run.changed_parameters()),
             result=bounded_json(run.result() if self.status == "ended" else None),
