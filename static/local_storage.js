@@ -6,8 +6,8 @@ const PREFIX = "actr3d.";
 
 /** Returns a signal whose value is stored in the browser, if possible, once it is set: until then, the next visit has its own default. Its
  * `newest()` returns the value that is stored now: another tab may have set it. What collects entries adds to that, so that no tab loses
- * those of another. */
-export function remembered(name, otherwise) {
+ * those of another. With `everywhere`, what is set in one tab or window counts in all at once. */
+export function remembered(name, otherwise, { everywhere = false } = {}) {
   const kept = signal(read(name, otherwise));
   let stored = kept.peek(); // or the default
   effect(() => {
@@ -19,6 +19,7 @@ export function remembered(name, otherwise) {
       // If the browser stores nothing, the value lasts until the page is closed.
     }
   });
+  if (everywhere) addEventListener("storage", ({ key }) => key === PREFIX + name && (kept.value = read(name, otherwise)));
   return Object.assign(kept, { newest: () => read(name, kept.peek()) });
 }
 

@@ -9,7 +9,7 @@ const systemIsDark = signal(system.matches);
 system.addEventListener("change", () => (systemIsDark.value = system.matches));
 
 /** "system", "light" or "dark". */
-export const chosen = addressed("theme") === null ? remembered("theme", "system") : signal(addressed("theme"));
+export const chosen = addressed("theme") === null ? remembered("theme", "system", { everywhere: true }) : signal(addressed("theme"));
 /** Whether the page is dark now; code that draws on a canvas reads it and draws again. */
 export const dark = computed(() => (chosen.value === "system" ? systemIsDark.value : chosen.value === "dark"));
 

@@ -8,8 +8,6 @@ import { showHelp } from "./assist.js";
 import { keys, withView } from "./code.js";
 import { insertAtCursor, SNIPPETS } from "./snippets.js";
 
-const WIDTH = 290; // [px]
-
 /** The actions: {text, key, work}; the keys are those of code.js, assist.js and CodeMirror. */
 export const ACTIONS = [
   { text: "Complete", key: "Ctrl+Space", work: () => withView(startCompletion) },
@@ -33,7 +31,7 @@ export function Menu({ disabled }) {
   function place(event) {
     if (event.newState !== "open") return;
     const { right, bottom } = button.current.getBoundingClientRect();
-    Object.assign(menu.current.style, { left: `${Math.max(4, right - WIDTH)}px`, top: `${bottom + 2}px` });
+    Object.assign(menu.current.style, { left: "auto", right: `${innerWidth - right}px`, top: `${bottom + 2}px` });
   }
 
   function choose(work) {

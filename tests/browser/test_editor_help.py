@@ -145,6 +145,7 @@ def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[st
     page.keyboard.press("Control+z")
     has_line(page, "print( word )")
     page.get_by_role("button", name="More", exact=True).click()
+    assert page.locator(".editor-menu:popover-open").evaluate("menu => menu.scrollWidth <= menu.clientWidth"), "no text is cut"
     assert page.evaluate(LOOK) == []
     page.get_by_role("button", name="a detector for the agent's vision").click()
     page.keyboard.type("Pole")  # in all places at once

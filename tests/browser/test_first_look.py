@@ -166,7 +166,9 @@ def test_the_console_shows_output_as_it_is_printed_and_goes_back_with_the_run(pa
     assert lines(page).first.evaluate("line => getComputedStyle(line).whiteSpace") == "pre"
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.locator(".console").get_by_role("button", name="Copy").click()
-    expect(page.locator(".console .copy").get_by_role("status")).to_have_text("Copied")
+    said = page.locator(".console .copy").get_by_role("status")
+    expect(said).to_have_text("Copied")
+    assert said.evaluate("said => said.scrollWidth <= said.clientWidth"), "it fits"
     whole = page.evaluate("navigator.clipboard.readText()")
     printed = "  two  spaces\tand a tab  \x1b[31mred\x1b[0m <b>bold</b> \u202eend\n\nat 0\nat 1\nat 2\nat 3\nat 4\n"
     assert whole.startswith(f"{printed}error: prints.py:21: ValueError: too much\n")

@@ -145,6 +145,9 @@ def test_what_is_chosen_in_a_window_of_its_own_is_shown_by_the_page(pages: Pages
     with page.context.expect_page() as opened:
         arrange(page, "Panels", "Open in a window")
     window = opened.value
+    for theme in ("light", "dark"):
+        page.evaluate("async (theme) => { (await part('theme.js')).chosen.value = theme; }", theme)
+        expect(window.locator("html")).to_have_attribute("data-theme", theme)
     file = window.get_by_label("File", exact=True)
     expect(file.locator("option", has_text="doorway.py")).to_have_count(1)
     window.get_by_role("heading", name="Editor").click()
