@@ -9,7 +9,11 @@ from actr3d.world import World
 
 
 class Measure(Protocol):
-    """Reads the world after every physics step of a run, and computes a result. It changes nothing.
+    """Reads the world after every physics step of a run, and computes a result.
+
+    Its methods are called as observers: they can read the sensors of bodies, which changes nothing that agents sense, and change nothing.
+    Sensors have the noise of the body's description unless it is left out: `body.get("pose", noise=0)`. `look` must not draw from
+    `random` or `numpy.random`: these numbers are the agents'.
 
     When a run goes back, times occur again: new values of a time replace former ones, and values after the present
     do not count.

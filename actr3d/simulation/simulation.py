@@ -8,7 +8,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import asdict, is_dataclass
 from functools import partial
 from pathlib import Path
@@ -274,7 +274,7 @@ class Simulation:
             if agents.stopped:
                 return "stop"
             if until is not None:
-                with self._observers.only_looking():
+                with self.only_looking():
                     if until(self._glimpse()):
                         return "until"
         return "seconds"
@@ -441,6 +441,11 @@ class Simulation:
         """
         return show_in_notebook(self, height=height)
 
+    def only_looking(self) -> AbstractContextManager[None]:
+        """Returns a `with` block for code that reads the simulation, such as the sensors of its bodies: it cannot change anything, not even
+        what agents will sense later, nor their random numbers."""
+        return self._observers.only_looking()
+
     def _glimpse(self) -> Glimpse:
         return Glimpse(self.world, self.timeline.ticks)
 
@@ -452,7 +457,7 @@ class Simulation:
         """
 
         def listen_aside(event: TraceEvent) -> None:
-            with self._observers.only_looking():
+            with self.only_looking():
                 listener(event)
 
         self.event_log.listen(listen_aside)
@@ -477,7 +482,8 @@ class Simulation:
         """
         if self.timeline.begun or self._measure is not None:
             raise SimulationError("measure() must be called once, before the run starts")
-        measure.begin(self.world)
+        with self.only_looking():
+            measure.begin(self.world)
         self.world.watchers.append(measure.look)
         self._measure = measure
 
@@ -491,7 +497,8 @@ class Simulation:
         if self._measure is None:
             return None
         lockstep = self.timeline.lockstep
-        found = self._measure.result(over=lockstep.agents.stopped or lockstep.done)
+        with self.only_looking():
+            found = self._measure.result(over=lockstep.agents.stopped or lockstep.done)
         if found is not None and (not is_dataclass(found) or isinstance(found, type)):
             raise SimulationError(f"{type(self._measure).__name__}.result: must return an object of a dataclass (returned {found!r})")
         return found

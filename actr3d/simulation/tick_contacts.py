@@ -23,7 +23,7 @@ class TickContacts:
         self._untouched: tuple[bytes, list[list[int]]] = b"", []
         """The pairs of geoms, and the held objects, of the last physics step with contacts in which bodies touched nothing but floors.
         Equal steps are skipped: a standing body has the same contacts for a long time."""
-        world.watchers.append(self._look)
+        world.watchers.insert(0, self._look)  # before measures, whose reading of a sensor may update the contacts
 
     def _look(self) -> None:
         if not self._data.ncon:

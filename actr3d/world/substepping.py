@@ -91,8 +91,10 @@ class Substepping:
                     if data.ncon:
                         for hold in self._holds:
                             hold.after_part()
-                    for watcher in watchers:
-                        watcher()
+                    if watchers:
+                        self._physics.changed()  # a watcher may read a sensor
+                        for watcher in watchers:
+                            watcher()
             finally:
                 if parts > 1:
                     model.opt.timestep = self._whole

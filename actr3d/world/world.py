@@ -131,7 +131,7 @@ class World:
         feeling = [body for body in self.bodies.values() if body.touched is not None]
         if feeling:
             with feel_steps(feeling) as feel:
-                self._step(count, [*self.watchers, feel])
+                self._step(count, [feel, *self.watchers])
         else:
             self._step(count, self.watchers)
         self.physics.steps += count
@@ -147,7 +147,7 @@ class World:
 
         Args:
             steps: Their number.
-            watchers: Called after every physics step, or part of one.
+            watchers: Called after every physics step, or part of one, as observers.
         """
         commands = [body.motion for body in self.bodies.values() if body.motion]
         for count in self._substepping.stretches(steps):
@@ -157,7 +157,11 @@ class World:
                     self._slide(aperture.name, max(0.0, width - aperture.closing * count * self.scene.timestep))
             for motion in commands:
                 motion.before_step(count * self.scene.timestep)
-            self._substepping.step(count, watchers)
+            self.physics.observed = True
+            try:
+                self._substepping.step(count, watchers)
+            finally:
+                self.physics.observed = False
             for motion in commands:
                 motion.after_step()
                 self.changed()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import msgspec
@@ -17,10 +18,13 @@ from actr3d.world import Car, Floor, Mannequin, Scene, World
 from tests.helpers.sessions import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
 from tests.server.test_reopened import reopened
+from tests.simulation.test_looking_on import sensing
 from workbench.overlays import OVERLAYS, Drawn, Observed, Overlay, ViewSettings
 from workbench.overlays.frustum import Frustum
 from workbench.overlays.overlay import overlay
+from workbench.page_commands import Question
 from workbench.protocol import COMMAND
+from workbench.worker.shown import Shown
 
 LOOKING = """from actr3d.actr import *
 from actr3d.motor import Motor
@@ -75,6 +79,28 @@ def after(desk: Desk, folder: Path, ticks: int) -> Talk:
     talk.say("step", ticks=ticks)
     talk.until("paused", tick=ticks)
     return talk
+
+
+def test_an_overlay_and_a_question_read_noisy_senses_and_the_agent_senses_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Near(Overlay):
+        @staticmethod
+        def data(observed: Observed) -> dict[str, Any]:
+            return {name: body.get("rangefinder", noise=0.05) for name, body in observed.simulation.world.bodies.items()}
+
+    class HowFar(Question):
+        def answer(self, run: Any) -> Any:
+            return run.shown.simulation.world.bodies["walker"].get("rangefinder", noise=0.05)
+
+    monkeypatch.setitem(OVERLAYS, "near", Near)
+    alone, shown = sensing(), Shown(sensing())
+    controller: Any = SimpleNamespace(run=SimpleNamespace(shown=shown))
+    for _ in range(200):
+        alone.advance(1)
+        shown.simulation.advance(1)
+        assert isinstance(shown.drawn(("near",))["near"]["walker"], float)
+        assert isinstance(HowFar().carry_out(controller), float)
+    once, again = ([event.to_json() for event in run.trace or ()] for run in (alone, shown.simulation))
+    assert again == once
 
 
 def test_only_requested_overlays_are_sent(desk: Desk, tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -92,6 +93,53 @@ def test_an_observer_may_read_every_sense_of_a_body_and_the_agent_senses_the_sam
     once, again = ([event.to_json() for event in run.trace or () if event.time < observed.time] for run in (alone, observed))
     assert len(once) > 30
     assert again == once
+
+
+@dataclass(frozen=True)
+class Distances:
+    """The least distance to the wall, as a noisy sensor has it, and whether the skin has felt anything."""
+
+    least: float
+    touched: bool
+
+
+class Reads:
+    """A measure that reads noisy sensors, and the skin, which remembers."""
+
+    def begin(self, world: World) -> None:
+        self.body = world.bodies["walker"]
+        self.least, self.touched = self.body.get("rangefinder", noise=0.05), False
+
+    def look(self) -> None:
+        self.least = min(self.least, self.body.get("rangefinder", noise=0.05))
+        self.touched |= bool(self.body.get("contacts"))
+
+    def result(self, *, over: bool) -> Distances:
+        return Distances(self.body.get("rangefinder", noise=0.05), self.touched)
+
+
+def test_a_measure_reads_noisy_senses_and_the_agent_senses_the_same() -> None:
+    alone, measured = sensing(), sensing()
+    measured.measure(Reads())
+    alone.run(1.7)
+    measured.run(1.7)
+    assert measured.result().touched
+    for simulation in (alone, measured):
+        simulation.run(0.3)
+    once, again = ([event.to_json() for event in run.trace or ()] for run in (alone, measured))
+    assert again == once
+
+
+def test_a_measure_cannot_change_the_world() -> None:
+    class Pushes(Reads):
+        def look(self) -> None:
+            self.body.set("walk", 0.0)
+
+    simulation = sensing()
+    simulation.measure(Pushes())
+    with pytest.raises(WorldError, match="walker: an observer cannot give commands"):
+        simulation.run(0.1)
+    simulation.world.bodies["walker"].set("walk", 0.0)
 
 
 def test_an_observer_cannot_give_a_body_commands() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import nullcontext
 from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
@@ -97,7 +98,9 @@ class Question(PageCommand):
 
     def carry_out(self, controller: RunController) -> Any:
         """Answers the question."""
-        return self.answer(controller.run)
+        shown = controller.run.shown
+        with nullcontext() if shown is None else shown.simulation.only_looking():
+            return self.answer(controller.run)
 
     def answer(self, run: ControlledRun) -> Any:
         """Returns the answer as plain values.

@@ -74,7 +74,7 @@ class Shown:
 
     def drawn(self, kinds: tuple[str, ...]) -> dict[str, Any]:
         """Returns the current data of overlays by kind; empty if it cannot be computed, for example after the physics has diverged."""
-        with suppress(Actr3dError):
+        with self.simulation.only_looking(), suppress(Actr3dError):
             return {kind: OVERLAYS[kind].data(self._observed) for kind in kinds}
         return {}
 
