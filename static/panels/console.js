@@ -3,6 +3,7 @@
 import { computed, html, signal, useEffect, useLayoutEffect, useMemo, useRef } from "../vendor/preact.js";
 import { command } from "../commands.js";
 import { clear, fillGaps, printed, printedVersion } from "../inspector/printed.js";
+import { Button } from "../parts/button.js";
 import { CopyButton, copyText } from "../parts/copy.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
@@ -175,8 +176,8 @@ function Console() {
       <input type="search" aria-label="Search the console" placeholder="Search" value=${words.value} onInput=${(event) => (search.value = { of: shownRun.peek(), words: event.currentTarget.value })} />
       <span class="quiet number">${words.value ? `${listed.count} of ${counted(all, "line")}` : counted(all, "line")}</span>
       <${CopyButton} text="Copy" title="Copy the lines that are shown" disabled=${listed.count === 0} copied=${() => listed.text} />
-      <button disabled=${listed.count === 0} title="Save the lines that are shown as a text file" onClick=${save}><${Icon} name="download" />Save</button>
-      <button disabled=${all === 0} title="Clear the lines up to now; the run and its recording keep them" onClick=${clearAll}>Clear</button>
+      <${Button} disabled=${listed.count === 0} title="Save the lines that are shown as a text file" onClick=${save}><${Icon} name="download" />Save<//>
+      <${Button} disabled=${all === 0} title="Clear the lines up to now; the run and its recording keep them" onClick=${clearAll}>Clear<//>
     </div>
     <${Notes} gaps=${gaps} dropped=${dropped} cleared=${cleared} ahead=${ahead} />
     ${listed.count === 0 ? html`<p class="empty">${none}</p>` : null}

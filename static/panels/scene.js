@@ -6,6 +6,7 @@ import { RetinaInset } from "../eye/inset.js";
 import { command, commandsOf } from "../commands.js";
 import { hearKeys, noteKey, buttonTitle } from "../keys.js";
 import { AreaMenu } from "../parts/area_menu.js";
+import { Button } from "../parts/button.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
@@ -54,10 +55,10 @@ function ViewBar() {
         ${Object.entries(VIEWS).map(([id, title]) => html`<option key=${id} value=${id}>${title}</option>`)}
       </select>
       <button aria-label="Reset view" title=${buttonTitle(reset)} onClick=${resetView}><${Icon} name="restart" /></button>
-      ${canMove() ? html`<button aria-label="Move, push …" disabled=${Boolean(noChange.value)} title=${noChange.value || "Move or push a body or an object of the scene"} onClick=${moveOrPush}><span class="in-words">Move, push …</span><${Icon} name="move" /></button>` : null}
+      ${canMove() ? html`<${Button} aria-label="Move, push …" disabled=${Boolean(noChange.value)} title=${noChange.value || "Move or push a body or an object of the scene"} onClick=${moveOrPush}><span class="in-words">Move, push …</span><${Icon} name="move" /><//>` : null}
       <button aria-expanded=${open.value} aria-label="Overlays" title="Overlays: what is drawn over the scene" onClick=${() => (open.value = !open.value)} onKeyDown=${hideByEscape}><span class="in-words">Overlays</span><${Icon} name="layers" /></button>
       <button aria-label="Save the 3D view as a picture" title=${buttonTitle(keep)} onClick=${keepPicture}><${Icon} name="download" /></button>
-      <button aria-label="Make a video of the 3D view" title=${film.ready() ? buttonTitle(film) : film.why()} disabled=${!film.ready()} onClick=${makeVideo}><${Icon} name="film" /></button>
+      <${Button} aria-label="Make a video of the 3D view" title=${film.ready() ? buttonTitle(film) : film.why()} disabled=${!film.ready()} onClick=${makeVideo}><${Icon} name="film" /><//>
       <${ManualLink} page="scene" title="3D view" />
       <${AreaMenu} area="scene" opening=${openScene} />
     </div>

@@ -4,6 +4,7 @@
 import { commandsOf } from "../commands.js";
 import { compareRuns } from "../compare/compare.js";
 import { remembered } from "../local_storage.js";
+import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { deleteRuns, openRun } from "../runs/actions.js";
 import { labelRun } from "../runs/label.js";
@@ -131,7 +132,7 @@ function Row({ run, depth, width }) {
     if (document.activeElement === document.body) document.querySelector(".branches-head, .timeline-stage")?.focus(); // its button is gone
   };
   return html`<li class=${mine ? "mine" : ""} data-branch=${run.id}>
-    <button class="branch-name" style=${{ width: `${view.column}px`, paddingLeft: `${8 + 10 * depth}px` }} aria-current=${mine} title=${mine ? `${title}\nshown` : `${title}\nShow it`} disabled=${Boolean(run.problem)} onClick=${() => mine || show(run)}>${depth > 0 ? "└ " : ""}${name}${isOrphan(run) ? html` <small>origin gone</small>` : null}</button>
+    <${Button} class="branch-name" style=${{ width: `${view.column}px`, paddingLeft: `${8 + 10 * depth}px` }} aria-current=${mine} title=${mine ? `${title}\nshown` : `${title}\nShow it`} disabled=${Boolean(run.problem)} onClick=${() => mine || show(run)}>${depth > 0 ? "└ " : ""}${name}${isOrphan(run) ? html` <small>origin gone</small>` : null}<//>
     <span class="branch-way" style=${{ left: `${from}px`, width: `${Math.max(2, to - from)}px` }} aria-hidden="true"></span>
     <span class="branch-actions">
       ${mine ? null : html`<button class="bare" title="Compare with the shown run" onClick=${() => compare(run)}>Compare</button>`}
