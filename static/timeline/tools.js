@@ -56,7 +56,14 @@ registered("Make the plots taller", "h", () => grow(1), () => names.value.length
 registered("Make the plots lower", "Shift+h", () => grow(-1), () => names.value.length > 0, noCurves);
 const showAll = registered("Show all of the run", "f", fit);
 const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0 || running.value, noCurves);
-const keep = registered("Save the timeline or a plot as a picture, or its values as CSV", null, savePictures, () => Boolean(session.value));
+const keep = command({
+  text: "Save the timeline or a plot as a picture, or its values as CSV",
+  also: "export download PNG SVG figure",
+  group: "Timeline",
+  work: savePictures,
+  ready: () => Boolean(session.value),
+  why: () => runStatus.value.text,
+});
 const openTimeline = command({ text: "Open the timeline in a window of its own", group: "Page", work: () => openWindow("timeline") });
 commandsOf(() => names.value.map(({ name }) => {
   const shown = plotted.value.includes(name);
