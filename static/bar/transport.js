@@ -113,7 +113,8 @@ bindFaster(() => run(faster));
 
 export function Transport() {
   const goes = running.value && !isRestarting.value;
-  const text = goes ? "Pause" : session.value && isDone() && !session.value.loading && !isRestarting.value ? "Run again" : "Run";
+  const hasRun = session.value && isDone() && runStatus.value.is !== "unloadable" && !session.value.loading && !isRestarting.value;
+  const text = goes ? "Pause" : hasRun ? "Run again" : "Run";
   return html`<div class="transport" role="toolbar" aria-label="Run">
     <${Button} id="run" class="primary" disabled=${isIdle("run")} title=${buttonTitle(toggling, text)} onClick=${() => run(toggling)}>
       <${Icon} name=${goes ? "pause" : "run"} />${text}
