@@ -7,6 +7,7 @@ const sources = [];
  * @typedef Command
  * @property {string} text What it does.
  * @property {() => string} about What it would act on now, for the palette; "" if there is nothing to add.
+ * @property {string} also Other words by which the palette finds it.
  * @property {string} group The part of the page that it belongs to.
  * @property {string | null} key As in KeyboardEvent, preceded by "Shift+" or "Mod+" (Ctrl, or Cmd on a Mac); null for none.
  * @property {() => void} work Runs it.
@@ -15,8 +16,8 @@ const sources = [];
  */
 
 /** Registers a command, and returns it. */
-export function command({ text, about = () => "", group, key = null, work, ready = () => true, why = () => "" }) {
-  const made = { text, about, group, key, work, ready, why };
+export function command({ text, about = () => "", also = "", group, key = null, work, ready = () => true, why = () => "" }) {
+  const made = { text, about, also, group, key, work, ready, why };
   known.push(made);
   return made;
 }

@@ -180,10 +180,8 @@ export function settle(kind, messages) {
   settled.value = { ...Object.fromEntries(Object.entries(others).slice(-MAX_SETTLED)), [key]: { ...known, [kind]: Math.max(most, known[kind] ?? -1) } };
 }
 
-/** Returns a key for the run that is shown. */
-export function whichRun() {
-  return `${session.peek()?.id} ${session.peek()?.run}`;
-}
+/** A key for the run that is shown. */
+export const shownRun = computed(() => `${session.value?.id} ${session.value?.run}`);
 
 /** Removes the data of a session, because another one is shown. */
 export function forget() {

@@ -9,11 +9,13 @@ from collections.abc import Iterator
 from itertools import chain, repeat
 from struct import error as StructError  # noqa: N812 - it is a class
 from struct import unpack_from
+from typing import Any
 
-from actr3d.clock import MICROSECONDS
+from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import RecordingError
 from actr3d.recording import Recorded
 from actr3d.recording.writer import State
+from actr3d.runner.program_changes import USER, of_user
 from actr3d.trace import TraceEvent
 
 
@@ -38,6 +40,21 @@ def events_both_ways(recorded: Recorded) -> Iterator[tuple[TraceEvent, TraceEven
     for thing, time in timed(recorded):
         if isinstance(thing, TraceEvent):
             yield thing, TraceEvent(time, *thing[1:])
+
+
+def user_commands(recorded: Recorded) -> Iterator[tuple[float, dict[str, Any]]]:
+    """Yields the time [s] and the data of each command of a user; those that a program gives its simulations itself are left out.
+
+    Raises:
+        RecordingError: If the recording is damaged.
+    """
+    if recorded.facts["kind"] != "program":
+        period = recorded.facts.get("period_us", 0)
+        yield from ((seconds(tick * period), data) for _, tick, data in recorded.commands())
+    elif of_user(recorded.commands()):
+        yield from (
+            (event.time, event.data) for event in timed_events(recorded) if event.kind == "command" and event.data.get("by") == USER
+        )
 
 
 def timed(recorded: Recorded) -> Iterator[tuple[TraceEvent | State, int]]:

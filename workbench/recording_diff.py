@@ -14,11 +14,10 @@ from actr3d.errors import RecordingError
 from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
 from actr3d.recording.schema import is_of_simulation
-from actr3d.runner.program_changes import USER, of_user
 from actr3d.trace import TraceEvent
 from workbench.live_parameters import parameter_set_by
 from workbench.loader import listing_of
-from workbench.program_time import timed_events
+from workbench.program_time import timed_events, user_commands
 from workbench.recording_index import UNREADABLE
 
 CONTEXT = 8
@@ -88,24 +87,13 @@ def _changed(recorded: Recorded, parameters: Sequence[Parameter]) -> dict[str, l
     from actr3d.simulation import Command  # takes long to import; the server needs only the names in this module
 
     found: dict[str, list[list[Any]]] = {}
-    for time, one in ((time, Command.from_data(0, data)) for time, data in _commands(recorded)):
+    for time, one in ((time, Command.from_data(0, data)) for time, data in user_commands(recorded)):
         set_by = parameter_set_by(parameters, one.word, one.values, one.named, one.body)
         if set_by is not None:
             found.setdefault(set_by[0].name, []).append([time, set_by[1]])
         elif one.word == "aperture" and one.values:
             found.setdefault(str(one.named.get("name", one.word)), []).append([time, one.values[0]])
     return found
-
-
-def _commands(recorded: Recorded) -> Iterator[tuple[float, dict[str, Any]]]:
-    """Yields the time [s] and the data of each command of a user; those that a program gives its simulations itself are left out."""
-    if recorded.facts["kind"] != "program":
-        period = recorded.facts.get("period_us", 0)
-        yield from ((seconds(tick * period), data) for _, tick, data in recorded.commands())
-    elif of_user(recorded.commands()):
-        yield from (
-            (event.time, event.data) for event in timed_events(recorded) if event.kind == "command" and event.data.get("by") == USER
-        )
 
 
 def _source(facts: dict[str, Any]) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 
 import msgspec
 
-from actr3d.clock import seconds
+from actr3d.clock import microseconds, seconds
 from actr3d.errors import RecordingError
 from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
@@ -19,6 +19,7 @@ from actr3d.runner.facts import NAMED, REACHED
 from actr3d.values import to_json
 from workbench.files import ModelFolder
 from workbench.loader import listing_of
+from workbench.program_time import user_commands
 from workbench.retention import begun, copied_from, size_of, written
 
 _WRONG = (ValueError, KeyError, TypeError, AttributeError, IndexError, RecursionError)
@@ -53,6 +54,8 @@ class Summary:
     ancestors: tuple[tuple[str, float], ...] = ()
     """For a branch: the recordings from which its origin branches, the nearest first, each with the time at which the recording before
     it (the origin for the first one) branches from it [s]. Any of them may have been deleted since."""
+    change: dict[str, Any] | None = None
+    """For a branch: the data of the first command of a user from that time on; None if there was none."""
     kept: float | None = None
     """For a copy of what lay ahead of a run when its past was changed: when that was [s since 1970]."""
     copied: tuple[str, float] | None = None
@@ -137,6 +140,7 @@ def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
         branched=facts.get("branched"),
         origin=facts.get("origin"),
         ancestors=tuple((str(name), float(time)) for name, time in facts.get("ancestors", ())),
+        change=_change(recorded, facts.get("branched")),
         kept=None if copied is None else written(path),
         copied=copied,
         ended=None if ended is None else str(ended["by"]),
@@ -148,6 +152,13 @@ def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
         size=size,
         made=begun(path),
     )
+
+
+def _change(recorded: Recorded, branched: float | None) -> dict[str, Any] | None:
+    """Returns the first command of a user from a time on [s]; None for no time."""
+    if branched is None:
+        return None
+    return next((data for time, data in user_commands(recorded) if microseconds(time) >= microseconds(branched)), None)
 
 
 def _duration(recorded: Recorded, last: list[Event]) -> float:

@@ -3,6 +3,7 @@
 import { html } from "../vendor/preact.js";
 import { run } from "../commands.js";
 import { buttonTitle } from "../keys.js";
+import { Button } from "../parts/button.js";
 import { alive, state } from "../store.js";
 import { goToTime } from "../timeline/go_to_time.js";
 
@@ -10,7 +11,7 @@ export function Clock() {
   const { time, measured } = state.value ?? {};
   const text = time === undefined ? "–" : `t = ${time.toFixed(2)} s`;
   return html`<div class="clock">
-    <button id="time" class="bare" disabled=${!alive.value} title=${buttonTitle(goToTime)} aria-label="Time of the run: ${text}. Go to a time" onClick=${() => run(goToTime)}>${text}</button>
+    <${Button} id="time" class="bare" disabled=${!alive.value} title=${buttonTitle(goToTime)} aria-label="Time of the run: ${text}. Go to a time" onClick=${() => run(goToTime)}>${text}<//>
     <output id="measured" aria-label="Measured speed">${measured ? `${measured.toFixed(measured < 1 ? 2 : measured < 100 ? 1 : 0)} x` : ""}</output>
   </div>`;
 }

@@ -118,7 +118,10 @@ async function chooseAddressed(id) {
   if (time !== null) return chooseMoment(id, time);
   const text = addressed("t");
   const isShown = await chooseRecording(id);
-  if (text !== null) complain(`The link's time must be a number of seconds >= 0, such as t=1.5 (got t=${text}).`);
+  if (text !== null && isShown) {
+    complain(`The link's time must be a number of seconds >= 0, such as t=1.5 (got t=${text}).`);
+    leaveMoment();
+  }
   return isShown;
 }
 
@@ -208,6 +211,10 @@ export async function begin() {
   const asked = addressed("model");
   if (asked !== null && !paths.includes(asked)) problem ??= `There is no model «${asked}» in this folder; this is another one.`;
   const wanted = [asked, sessionStorage.getItem("model"), ...FIRST];
+  if (run === null && addressed("t") !== null) {
+    problem ??= "Only the address of a recorded run can have a time t; the model is shown as it is.";
+    leaveMoment();
+  }
   await choose(wanted.find((path) => paths.includes(path)) ?? paths[0]);
   if (problem !== null) complain(problem); // only now, because messages are cleared with the session shown before
 }

@@ -4,6 +4,7 @@ import { html, signal } from "../vendor/preact.js";
 import { addressOf } from "../address.js";
 import { command, run } from "../commands.js";
 import { buttonTitle } from "../keys.js";
+import { Button } from "../parts/button.js";
 import { copyText } from "../parts/copy.js";
 import { Icon } from "../parts/icon.js";
 import { runStatus } from "../run_status.js";
@@ -21,12 +22,12 @@ async function copyLink() {
 }
 
 const noLink = () => (session.value ? "This run is not recorded, so no link leads to it." : runStatus.value.text);
-const sharing = command({ text: "Copy a link to this moment of the run", group: "Run", work: copyLink, ready: () => shownRecording.value !== null, why: noLink });
+const sharing = command({ text: "Copy a link to this moment of the run", also: "share address URL", group: "Run", work: copyLink, ready: () => shownRecording.value !== null, why: noLink });
 
 export function Share() {
   const ready = sharing.ready();
   const why = session.value && !ready ? noLink() : buttonTitle(sharing);
-  return html`<button class="bare ${copied.value ? "good" : ""}" disabled=${!ready} title=${copied.value ? "Copied" : why} aria-label="Copy a link" onClick=${() => run(sharing)}>
+  return html`<${Button} class="bare ${copied.value ? "good" : ""}" disabled=${!ready} title=${copied.value ? "Copied" : why} aria-label="Copy a link" onClick=${() => run(sharing)}>
     <${Icon} name=${copied.value ? "check" : "link"} /><span class="unseen" role="status">${copied.value ? "The link is copied" : ""}</span>
-  </button>`;
+  <//>`;
 }

@@ -3,6 +3,7 @@
 import { html } from "../vendor/preact.js";
 import { command, commandsOf, run } from "../commands.js";
 import { keyText, buttonTitle } from "../keys.js";
+import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { optimistic } from "../parts/optimistic_value.js";
 import { order, say } from "../server.js";
@@ -112,13 +113,14 @@ bindFaster(() => run(faster));
 
 export function Transport() {
   const goes = running.value && !isRestarting.value;
-  const text = goes ? "Pause" : session.value && isDone() && !session.value.loading && !isRestarting.value ? "Run again" : "Run";
+  const hasRun = session.value && isDone() && runStatus.value.is !== "unloadable" && !session.value.loading && !isRestarting.value;
+  const text = goes ? "Pause" : hasRun ? "Run again" : "Run";
   return html`<div class="transport" role="toolbar" aria-label="Run">
-    <button id="run" class="primary" disabled=${isIdle("run")} title=${buttonTitle(toggling, text)} onClick=${() => run(toggling)}>
+    <${Button} id="run" class="primary" disabled=${isIdle("run")} title=${buttonTitle(toggling, text)} onClick=${() => run(toggling)}>
       <${Icon} name=${goes ? "pause" : "run"} />${text}
-    </button>
+    <//>
     ${shownButtons.map(
-      (button) => html`<button
+      (button) => html`<${Button}
         key=${button.id}
         id=${button.id}
         class="bare"
@@ -128,9 +130,9 @@ export function Transport() {
         onClick=${() => run(byButton.get(button.id))}
       >
         <${Icon} name=${button.icon ?? button.id} />
-      </button>${button.id === "new-seed" ? html`<${SeedField} />` : null}`,
+      <//>${button.id === "new-seed" ? html`<${SeedField} />` : null}`,
     )}
-    <button id="until" class="bare" disabled=${isIdle("until")} title=${buttonTitle(until)} aria-label="Run until" onClick=${() => run(until)}><${Icon} name="until" /></button>
+    <${Button} id="until" class="bare" disabled=${isIdle("until")} title=${buttonTitle(until)} aria-label="Run until" onClick=${() => run(until)}><${Icon} name="until" /><//>
     <select aria-label="Speed" title="Maximum speed, as a multiple of real time (${keyText(faster.key)} and ${keyText(slower.key)})" value=${String(speedNumber())} disabled=${!session.value} onChange=${(event) => setSpeed(Number(event.currentTarget.value))}>
       ${SPEEDS.map(([text], n) => html`<option value=${String(n)}>${text}</option>`)}
     </select>

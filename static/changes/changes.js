@@ -4,6 +4,7 @@ import { change } from "../bar/branch.js";
 import { commandsOf } from "../commands.js";
 import { systemsOf } from "../inspector/agents.js";
 import { literal } from "../parameters/values.js";
+import { Button } from "../parts/button.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { Problem } from "../parts/problem.js";
@@ -146,7 +147,7 @@ export function ChangeButtons({ of, given, without = [] }) {
   if (list.length === 0) return null;
   const act = (one) => (needsMore(one, given) ? askAndMake(one, given) : send(one.word, given));
   return html`<span class="change-buttons">
-      ${list.map((one) => html`<button key=${one.word} disabled=${Boolean(noChange.value)} title=${noChange.value || plain(one.help)} onClick=${() => act(one)}>${one.title}</button>`)}
+      ${list.map((one) => html`<${Button} key=${one.word} disabled=${Boolean(noChange.value)} title=${noChange.value || plain(one.help)} onClick=${() => act(one)}>${one.title}<//>`)}
     </span>
     <${Problem} text=${problem} />`;
 }
@@ -169,7 +170,7 @@ export function ChangeMenu({ of, given, label }) {
     box.current?.togglePopover(!done); // a dialog that has asked has closed the menu, which shows the problem
     if (more) askAndMake(one, given);
   };
-  return html`<button class="bare change-more" popovertarget=${id} aria-label="Change ${label}" title=${noChange.value || `Change ${label}`} disabled=${Boolean(noChange.value)} onClick=${place}><${Icon} name="more" /></button>
+  return html`<${Button} class="bare change-more" popovertarget=${id} aria-label="Change ${label}" title=${noChange.value || `Change ${label}`} disabled=${Boolean(noChange.value)} onClick=${place}><${Icon} name="more" /><//>
     <div id=${id} ref=${box} popover="auto" class="change-menu" role="group" aria-label="Change ${label}">
       ${list.map((one) => html`<button key=${one.word} title=${plain(one.help)} onClick=${() => act(one)}>${one.title}</button>`)}
       <${Problem} text=${problem} />

@@ -20,6 +20,7 @@ import { completionsOf, insertPiece } from "./snippets.js";
 
 const PAUSE = 150; // after a change, before the parameters of a call are asked for again [ms]
 const HOVER = 350; // [ms]
+const LONG = 500; // how long one waits for completions before the page shows that they are on their way [ms]
 
 // -- completions
 
@@ -43,7 +44,7 @@ async function complete(context) {
   const { state, pos, explicit } = context;
   const place = around(state, pos);
   if (place === "other" || !(explicit || context.matchBefore(TYPED[place]))) return null;
-  const answer = await helpWith(state, "complete", pos);
+  const answer = await shownAsReading(context, helpWith(state, "complete", pos));
   const word = context.matchBefore(/\w+$/);
   let items = answer?.items ?? [];
   if (place === "head" && !word && !explicit) items = items.filter(({ apply }) => apply); // only the parts of the agent
@@ -51,6 +52,20 @@ async function complete(context) {
   if (options.length > 0) return { from: answer?.start ?? word?.from ?? pos, options, validFor: /^\??\w*$/ };
   // After null, CodeMirror would not ask again for what has been typed meanwhile; after options that are valid no more, it does.
   return context.view.state.doc === state.doc ? null : { from: pos, options, validFor: () => false };
+}
+
+/** Waits for an answer about a position; if it takes long, a box shows there meanwhile that the text is being read. */
+async function shownAsReading({ view, state, pos }, asked) {
+  let reading = null;
+  const timer = setTimeout(() => {
+    if (view.state.doc !== state.doc || view.state.selection.main.head !== pos || view.state.field(box) || !view.dom.isConnected) return;
+    reading = { call: false, waits: true, pos, dom: Object.assign(document.createElement("div"), { className: "reading", role: "status", textContent: "Reading the text …" }) };
+    view.dispatch({ effects: showBox.of(reading) });
+  }, LONG);
+  const answer = await asked;
+  clearTimeout(timer);
+  if (reading && view.state.field(box) === reading) hideBox(view);
+  return answer;
 }
 
 function isLineStart(state, at) {
@@ -159,8 +174,8 @@ async function showCall(view) {
 export async function showHelp(view) {
   const { state } = view;
   const at = state.selection.main.head;
-  const said = await helpWith(state, "document", at);
-  if (view.state !== state) return;
+  const said = await shownAsReading({ view, state, pos: at }, helpWith(state, "document", at));
+  if (view.state.doc !== state.doc || view.state.selection.main.head !== at) return;
   if (said) view.dispatch({ effects: showBox.of({ call: false, pos: said.start, dom: documentation(said) }) });
   else await showCall(view);
 }
@@ -190,17 +205,22 @@ function hideBox(view) {
   return true;
 }
 
-/** Lets the server load what it needs for its answers when the text is first entered, so that the first completion comes at once. */
+/** Hides the box of an answer that is waited for; the key then goes on to what waits. */
+function hideReading(view) {
+  if (view.state.field(box, false)?.waits) hideBox(view);
+  return false;
+}
+
 let warmed = false;
-const warm = EditorView.domEventHandlers({
-  focus(_, { state }) {
-    if (!warmed) helpWith(state, "complete", state.doc.length);
-    warmed = true;
-  },
-});
+
+/** Lets the server load what it needs for its answers when a text is first shown, so that the first completion comes at once. */
+export function warm(state) {
+  if (!warmed) helpWith(state, "complete", state.doc.length);
+  warmed = true;
+}
 
 export const assist = [
-  warm,
+  Prec.highest(keymap.of([{ key: "Escape", run: hideReading }])), // before that of the completions
   autocompletion({ override: [complete], icons: true, maxRenderedOptions: 60 }),
   hover,
   box,

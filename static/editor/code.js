@@ -34,7 +34,7 @@ import {
 import { look } from "./look.js";
 import { isMac } from "../keys.js";
 import { marking } from "./marks.js";
-import { assist } from "./assist.js";
+import { assist, warm } from "./assist.js";
 import { read } from "./language.js";
 
 /** The actions of the editor's own keys; panels/editor.js fills it in. */
@@ -143,6 +143,7 @@ export function showText(place, document) {
     view?.destroy();
     inView = document;
     view = made(document);
+    warm(view.state);
   }
   if (view.dom.parentNode !== place) place.append(view.dom);
   if (isOther && focused) view.focus();

@@ -3,6 +3,7 @@
 import { gotoLine, openSearchPanel, startCompletion } from "../vendor/codemirror.js";
 import { html, useId, useRef } from "../vendor/preact.js";
 import { keyText } from "../keys.js";
+import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { showHelp } from "./assist.js";
 import { keys, withView } from "./code.js";
@@ -39,7 +40,7 @@ export function Menu({ disabled }) {
     work();
   }
 
-  return html`<button ref=${button} class="bare" popovertarget=${id} disabled=${disabled} title="More: definition, rename, format, insert" aria-label="More"><${Icon} name="more" /></button>
+  return html`<${Button} button=${button} class="bare" popovertarget=${id} disabled=${disabled} title="More: definition, rename, format, insert" aria-label="More"><${Icon} name="more" /><//>
     <div ref=${menu} id=${id} popover="auto" class="editor-menu" role="group" aria-label="More" onBeforeToggle=${place}>
       ${ACTIONS.map(({ text, key, work }) => html`<button key=${text} class="bare" onClick=${() => choose(work)}><span>${text}</span><kbd>${keyText(key)}</kbd></button>`)}
       <p>Insert</p>

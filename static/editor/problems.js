@@ -1,6 +1,7 @@
 // The problems of a text as a list; choosing one goes to its line.
 
 import { html } from "../vendor/preact.js";
+import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
 import { Traceback } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
@@ -17,9 +18,9 @@ export function Problems({ document }) {
   const worst = marks.length === 0 ? "quiet" : { error: "bad", warning: "warning", info: "" }[counts.find(([, count]) => count > 0)[0]];
   return html`<section class="problems" aria-label="Problems">
     <div class="head">
-      <button class="bare" aria-expanded=${!folded.value} disabled=${marks.length === 0} onClick=${() => (folded.value = !folded.value)}>
+      <${Button} class="bare" aria-expanded=${!folded.value} disabled=${marks.length === 0} onClick=${() => (folded.value = !folded.value)}>
         <span class=${worst}>${said.join(", ") || "No problems"}</span>
-      </button>
+      <//>
       <span class="stretch"></span>
       <span class="quiet hint">Esc then Tab leaves the text</span>
     </div>
@@ -34,12 +35,12 @@ export function Problems({ document }) {
 function Problem({ mark }) {
   const { level, message, detail, line, origin } = mark;
   return html`<li class=${level}>
-    <button class="bare" disabled=${line === null} onClick=${() => goToLine(line)}>
+    <${Button} class="bare" disabled=${line === null} onClick=${() => goToLine(line)}>
       <span class=${level === "error" ? "bad" : level} role="img" aria-label=${level}>${SIGNS[level]}</span>
       <span class="number">${line === null ? "" : `line ${line}`}</span>
       <span class="text">${message}</span>
       ${origin === "run" ? html`<span class="quiet">the run</span>` : null}
-    </button>
+    <//>
     ${hasMore(mark) ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
   </li>`;
 }

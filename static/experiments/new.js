@@ -2,6 +2,7 @@
 
 import { html, signal, useEffect, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { remembered } from "../local_storage.js";
+import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { plain, Prose } from "../parts/prose.js";
@@ -235,7 +236,7 @@ function Foot({ design, usual }) {
     <div class="foot">
       <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${duration.error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${error && duration.seconds === null ? "" : estimate(duration.seconds, trials, request.workers)}${check.waiting ? " · checking …" : ""}</span>`}</span>
       <span class="stretch"></span>
-      <button class="primary" disabled=${starting.value || problem !== null || trials === null} title="Run all trials in the background" onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}</button>
+      <${Button} class="primary" disabled=${starting.value || problem !== null || trials === null} title="Run all trials in the background" onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}<//>
     </div>
   `;
 }

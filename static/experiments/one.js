@@ -1,6 +1,7 @@
 // One experiment: its state and progress, its figure, trials, facts and report.
 
 import { html, useEffect, useRef } from "../vendor/preact.js";
+import { Button } from "../parts/button.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
@@ -28,10 +29,10 @@ function Actions({ experiment }) {
   const waits = waitOf(id) !== null;
   const inWork = waits || work.length > 0; // perhaps of another page
   return html`
-    ${isRunning(experiment) ? html`<button disabled=${waits || !canStop(experiment)} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop</button>` : null}
-    ${canResume(experiment) ? html`<button class="primary" disabled=${waits} title=${`Run the trials that are left, ${processesText(experiment)}`} onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume</button>` : null}
-    ${canMakeReport(experiment) ? html`<button disabled=${inWork} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report</button>` : null}
-    ${isRunning(experiment) || state === "elsewhere" ? null : html`<button class="danger bare" aria-label="Delete" title="Delete" disabled=${inWork} onClick=${() => deleteExperiment(experiment)}><${Icon} name="trash" /></button>`}
+    ${isRunning(experiment) ? html`<${Button} disabled=${waits || !canStop(experiment)} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop<//>` : null}
+    ${canResume(experiment) ? html`<${Button} class="primary" disabled=${waits} title=${`Run the trials that are left, ${processesText(experiment)}`} onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume<//>` : null}
+    ${canMakeReport(experiment) ? html`<${Button} disabled=${inWork} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report<//>` : null}
+    ${isRunning(experiment) || state === "elsewhere" ? null : html`<${Button} class="danger bare" aria-label="Delete" title="Delete" disabled=${inWork} onClick=${() => deleteExperiment(experiment)}><${Icon} name="trash" /><//>`}
   `;
 }
 

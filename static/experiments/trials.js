@@ -1,6 +1,7 @@
 // The table of trials of an experiment, page by page; a row opens its trial in the 3D view.
 
 import { html, useEffect, useSignal } from "../vendor/preact.js";
+import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { useFresh } from "./answer.js";
@@ -71,8 +72,8 @@ export function Trials({ experiment, facts }) {
         ${answer ? html`<span class="number quiet" role="status">${answer.total === 0 ? "no trials" : `${(answer.first + 1).toLocaleString("en")}–${last.toLocaleString("en")} of ${counted(answer.total, "trial")}`}</span>` : null}
         ${answer && answer.total > PAGE
           ? html`<span class="choices">
-              <button aria-label="Trials before" title="Before" disabled=${answer.first === 0} onClick=${() => (first.value = Math.max(0, answer.first - PAGE))}><span class="back"><${Icon} name="right" /></span></button>
-              <button aria-label="Trials after" title="After" disabled=${last >= answer.total} onClick=${() => (first.value = answer.first + PAGE)}><${Icon} name="right" /></button>
+              <${Button} aria-label="Trials before" title="Before" disabled=${answer.first === 0} onClick=${() => (first.value = Math.max(0, answer.first - PAGE))}><span class="back"><${Icon} name="right" /></span><//>
+              <${Button} aria-label="Trials after" title="After" disabled=${last >= answer.total} onClick=${() => (first.value = answer.first + PAGE)}><${Icon} name="right" /><//>
             </span>`
           : null}
       </span>

@@ -2,6 +2,7 @@
 
 import { html, useMemo, useState } from "../vendor/preact.js";
 import { ChangeButtons } from "../changes/changes.js";
+import { Button } from "../parts/button.js";
 import { Chunk, chunkText, valueText } from "../parts/chunk.js";
 import { chosen, notComputed, plotAll } from "../timeline/curves.js";
 import { hidden } from "../timeline/rows.js";
@@ -46,7 +47,7 @@ function PlotButton({ memory, chunk, plots }) {
     plotAll(curves, !on);
     hidden.value = hidden.value.filter((group) => group !== "curves");
   };
-  return html`<button disabled=${curves.length === 0} aria-pressed=${on} title="Plot its activation and the parts of it over time, in the timeline" onClick=${press}>Plot</button>
+  return html`<${Button} disabled=${curves.length === 0} aria-pressed=${on} title="Plot its activation and the parts of it over time, in the timeline" onClick=${press}>Plot<//>
     ${reasons.map((why) => html`<span key=${why} class="quiet">${why}</span>`)}`;
 }
 

@@ -2,7 +2,7 @@
 
 import { signal } from "../vendor/preact.js";
 import { say } from "../server.js";
-import { alive, listeners, state, whichRun } from "../store.js";
+import { alive, listeners, shownRun, state } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 
 const MAX_LINES = 500_000; // the maximum number of lines; beyond it, the oldest are dropped
@@ -67,7 +67,7 @@ listeners.add(hear);
 /** Returns what is known of the run that is shown: {lines, gaps, dropped, cleared, of}. */
 export function printed() {
   printedVersion.value;
-  return of === whichRun() ? { lines, gaps, dropped, cleared, of } : { lines: [], gaps: [], dropped: 0, cleared: NOTHING, of: "" };
+  return of === shownRun.peek() ? { lines, gaps, dropped, cleared, of } : { lines: [], gaps: [], dropped: 0, cleared: NOTHING, of: "" };
 }
 
 /** Clears the run that is shown: the lines of the first `events` events and the notices up to number `notice` are kept, but shown no
@@ -81,7 +81,7 @@ let asking = false;
 
 /** Requests the output in events that the page never received, up to the current moment. */
 export async function fillGaps() {
-  if (asking || !alive.peek() || of !== whichRun()) return;
+  if (asking || !alive.peek() || of !== shownRun.peek()) return;
   const [from, to] = gaps[0] ?? [];
   const until = Math.min(to ?? 0, state.peek()?.events ?? 0);
   if (gaps.length === 0 || until <= from) return;

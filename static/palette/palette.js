@@ -46,7 +46,7 @@ function found() {
   };
   const hits = all
     .flatMap((of) => {
-      const hit = match(words, `${textOf(of)} ${of.group}`);
+      const hit = match(words, `${textOf(of)} ${of.group} ${of.also ?? ""}`);
       return hit === null ? [] : [{ of, heading: "Commands", places: hit.places, score: hit.score + rank(of) }];
     })
     .sort((one, other) => other.of.ready() - one.of.ready() || other.score - one.score);

@@ -2,6 +2,7 @@
 
 import { h, html } from "../vendor/preact.js";
 import { useDescription } from "../inspector/description.js";
+import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { openAt } from "../parts/place.js";
 import { order } from "../server.js";
@@ -22,9 +23,9 @@ function Node({ node }) {
   const { tag, children, settings, href } = node;
   if (!ELEMENTS.has(tag)) return html`<${Nodes} nodes=${children} />`;
   if (settings) {
-    return html`<button class="try" disabled=${!session.value} title="Run the model from its start with these values" onClick=${() => attempt(settings)}>
+    return html`<${Button} class="try" disabled=${!session.value} title="Run the model from its start with these values" onClick=${() => attempt(settings)}>
       <${Icon} name="run" /><code>${children}</code>
-    </button>`;
+    <//>`;
   }
   const more = tag === "a" ? { href, target: "_blank", rel: "noopener noreferrer" } : null;
   return h(tag, more, ...children.map((child) => h(Node, { node: child })));

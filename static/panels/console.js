@@ -1,24 +1,26 @@
 // The model's output, line by line, with the warnings and errors of the run between its lines; goes back with the run.
 
-import { html, signal, useEffect, useLayoutEffect, useMemo, useRef } from "../vendor/preact.js";
+import { computed, html, signal, useEffect, useLayoutEffect, useMemo, useRef } from "../vendor/preact.js";
 import { command } from "../commands.js";
 import { clear, fillGaps, printed, printedVersion } from "../inspector/printed.js";
+import { Button } from "../parts/button.js";
 import { CopyButton, copyText } from "../parts/copy.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Lines } from "../parts/lines.js";
 import { saveFile } from "../parts/picture.js";
 import { Place } from "../parts/place.js";
-import { remembered } from "../local_storage.js";
 import { openTab } from "../open_tab.js";
 import { nothingYet, runStatus } from "../run_status.js";
-import { alive, isGiven, moment, notices, session, state } from "../store.js";
+import { alive, isGiven, moment, notices, session, shownRun, state } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
 import { inThePast } from "../timeline/seek.js";
 
 const SIDES = 40; // the room for the margins of a row and for a scroll bar [px]
 const LONGEST = 2000; // the number of characters of a line that are drawn
-const words = remembered("console words", "");
+/** What is searched, and in which run: another run is shown as a whole at first. */
+const search = signal({ of: "", words: "" });
+const words = computed(() => (search.value.of === shownRun.value ? search.value.words : ""));
 /** The number of characters that the panel has room for in a row. */
 const columns = signal(80);
 
@@ -171,11 +173,11 @@ function Console() {
   const none = all > 0 ? "No line has that text." : ahead > 0 ? "Nothing was printed before this moment." : nothingYet("Nothing was printed in this run.").replace("Nothing has happened yet", "Nothing has been printed yet");
   return html`<div class="console" ref=${box}>
     <div class="tools" role="toolbar" aria-label="Console">
-      <input type="search" aria-label="Search the console" placeholder="Search" value=${words.value} onInput=${(event) => (words.value = event.currentTarget.value)} />
+      <input type="search" aria-label="Search the console" placeholder="Search" value=${words.value} onInput=${(event) => (search.value = { of: shownRun.peek(), words: event.currentTarget.value })} />
       <span class="quiet number">${words.value ? `${listed.count} of ${counted(all, "line")}` : counted(all, "line")}</span>
       <${CopyButton} text="Copy" title="Copy the lines that are shown" disabled=${listed.count === 0} copied=${() => listed.text} />
-      <button disabled=${listed.count === 0} title="Save the lines that are shown as a text file" onClick=${save}><${Icon} name="download" />Save</button>
-      <button disabled=${all === 0} title="Clear the lines up to now; the run and its recording keep them" onClick=${clearAll}>Clear</button>
+      <${Button} disabled=${listed.count === 0} title="Save the lines that are shown as a text file" onClick=${save}><${Icon} name="download" />Save<//>
+      <${Button} disabled=${all === 0} title="Clear the lines up to now; the run and its recording keep them" onClick=${clearAll}>Clear<//>
     </div>
     <${Notes} gaps=${gaps} dropped=${dropped} cleared=${cleared} ahead=${ahead} />
     ${listed.count === 0 ? html`<p class="empty">${none}</p>` : null}

@@ -15,6 +15,7 @@ import { Strip } from "../editor/banner.js";
 import { command, commandsOf } from "../commands.js";
 import { noteKey } from "../keys.js";
 import { openTab } from "../open_tab.js";
+import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { session } from "../store.js";
 
@@ -100,7 +101,7 @@ function Files({ path, document }) {
   const known = models.value.some((one) => one.path === path);
   const option = (one) => html`<option key=${one} value=${one}>${waiting.includes(one) ? "● " : ""}${one}</option>`;
   const tool = (name, text, work, off = !document) =>
-    html`<button class="bare" title=${text} aria-label=${text} disabled=${off} onClick=${work}><${Icon} name=${name} /></button>`;
+    html`<${Button} class="bare" title=${text} aria-label=${text} disabled=${off} onClick=${work}><${Icon} name=${name} /><//>`;
   return html`<div class="tools" role="toolbar" aria-label="Files">
     <select class="file" aria-label="File" title="${folder.value}/${path ?? ""}" value=${path ?? ""} onChange=${(event) => open(event.currentTarget.value)}>
       ${path ? null : html`<option value="">no file</option>`}
@@ -123,7 +124,7 @@ function Standing({ document }) {
       ${document.saving.value ? html`<span class="quiet">saving …</span>` : dirty ? html`<span class="unsaved">● unsaved</span>` : null}
       ${note && !document.saving.value ? html`<span class="quiet" title=${note}>${note}</span>` : null}
     </span>
-    <button disabled=${!dirty} title="Save (Ctrl S)" onClick=${saveShown}>Save</button>
+    <${Button} disabled=${!dirty} title="Save (Ctrl S)" onClick=${saveShown}>Save<//>
     <button class="primary" title="Save, and run from the start (Ctrl Enter)" onClick=${runShown}>Save and run</button>
   </div>`;
 }

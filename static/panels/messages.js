@@ -3,6 +3,7 @@
 import { computed, html, useEffect } from "../vendor/preact.js";
 import { command } from "../commands.js";
 import { hasMore } from "../editor/marks.js";
+import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
 import { Place, Traceback } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
@@ -52,7 +53,7 @@ function Filter() {
       </label>`,
     )}
     <span class="stretch"></span>
-    <button disabled=${kept.value.length === 0} title="Clear them on this page" onClick=${clear}>Clear</button>
+    <${Button} disabled=${kept.value.length === 0} title="Clear them on this page" onClick=${clear}>Clear<//>
   </div>`;
 }
 

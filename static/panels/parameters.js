@@ -8,6 +8,7 @@ import { isMac, keyText, noteKey } from "../keys.js";
 import { openTab } from "../open_tab.js";
 import { match } from "../palette/fuzzy.js";
 import { rangeOf, read, valuesText, written } from "../parameters/values.js";
+import { Button } from "../parts/button.js";
 import { valueText } from "../parts/chunk.js";
 import { Inline } from "../parts/prose.js";
 import { call, isLeft, order } from "../server.js";
@@ -224,10 +225,10 @@ function Parameters() {
       <p class="help">${problem ? html`<span class="bad" role="alert">${problem} </span>` : null}The seed of all random choices; empty: that of the present run.</p>
     </div>
     <footer>
-      <button class="primary" disabled=${refused}>Restart with these</button>
-      <button value="run" title="Restart with these, and go on at once (${keyText("Mod+Enter")})" disabled=${refused}>Run with these</button>
-      <button type="button" onClick=${reset} disabled=${fields.length === 0}>Defaults</button>
-      <button type="button" onClick=${() => ((drafts.value = {}), (seed.value = ""))} disabled=${Object.keys(drafts.value).length === 0 && !seed.value}>Undo</button>
+      <${Button} class="primary" disabled=${refused}>Restart with these<//>
+      <${Button} value="run" title="Restart with these, and go on at once (${keyText("Mod+Enter")})" disabled=${refused}>Run with these<//>
+      <${Button} type="button" onClick=${reset} disabled=${fields.length === 0}>Defaults<//>
+      <${Button} type="button" onClick=${() => ((drafts.value = {}), (seed.value = ""))} disabled=${Object.keys(drafts.value).length === 0 && !seed.value}>Undo<//>
     </footer>
   </form>`;
 }

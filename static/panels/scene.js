@@ -6,6 +6,7 @@ import { RetinaInset } from "../eye/inset.js";
 import { command, commandsOf } from "../commands.js";
 import { hearKeys, noteKey, buttonTitle } from "../keys.js";
 import { AreaMenu } from "../parts/area_menu.js";
+import { Button } from "../parts/button.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
@@ -54,10 +55,10 @@ function ViewBar() {
         ${Object.entries(VIEWS).map(([id, title]) => html`<option key=${id} value=${id}>${title}</option>`)}
       </select>
       <button aria-label="Reset view" title=${buttonTitle(reset)} onClick=${resetView}><${Icon} name="restart" /></button>
-      ${canMove() ? html`<button aria-label="Move, push …" disabled=${Boolean(noChange.value)} title=${noChange.value || "Move or push a body or an object of the scene"} onClick=${moveOrPush}><span class="in-words">Move, push …</span><${Icon} name="move" /></button>` : null}
+      ${canMove() ? html`<${Button} aria-label="Move, push …" disabled=${Boolean(noChange.value)} title=${noChange.value || "Move or push a body or an object of the scene"} onClick=${moveOrPush}><span class="in-words">Move, push …</span><${Icon} name="move" /><//>` : null}
       <button aria-expanded=${open.value} aria-label="Overlays" title="Overlays: what is drawn over the scene" onClick=${() => (open.value = !open.value)} onKeyDown=${hideByEscape}><span class="in-words">Overlays</span><${Icon} name="layers" /></button>
       <button aria-label="Save the 3D view as a picture" title=${buttonTitle(keep)} onClick=${keepPicture}><${Icon} name="download" /></button>
-      <button aria-label="Make a video of the 3D view" title=${film.ready() ? buttonTitle(film) : film.why()} disabled=${!film.ready()} onClick=${makeVideo}><${Icon} name="film" /></button>
+      <${Button} aria-label="Make a video of the 3D view" title=${film.ready() ? buttonTitle(film) : film.why()} disabled=${!film.ready()} onClick=${makeVideo}><${Icon} name="film" /><//>
       <${ManualLink} page="scene" title="3D view" />
       <${AreaMenu} area="scene" opening=${openScene} />
     </div>
@@ -117,8 +118,8 @@ const isShown = () => hasScene.value;
 const noView = () => "This model has no 3D view.";
 command({ text: "Next view: with the body, free, from the side, from above, through the eye", key: "v", group: "3D view", work: nextView, ready: isShown, why: noView });
 const reset = command({ text: "Reset view", key: "Shift+v", group: "3D view", work: resetView, ready: isShown, why: noView });
-const keep = command({ text: "Save the 3D view as a picture (PNG)", group: "3D view", work: keepPicture, ready: isShown, why: noView });
-const film = command({ text: "Make a video of the 3D view (WebM) …", group: "3D view", work: makeVideo, ready: () => isShown() && alive.value, why: () => (isShown() ? runStatus.value.text : noView()) });
+const keep = command({ text: "Save the 3D view as a picture (PNG)", also: "export download screenshot", group: "3D view", work: keepPicture, ready: isShown, why: noView });
+const film = command({ text: "Make a video of the 3D view (WebM) …", also: "export film movie", group: "3D view", work: makeVideo, ready: () => isShown() && alive.value, why: () => (isShown() ? runStatus.value.text : noView()) });
 commandsOf(() => (isShown() ? Object.entries(VIEWS).map(([id, title]) => ({ text: `View: ${title}`, group: "3D view", work: () => (view.value = id) })) : []));
 commandsOf(() => (session.value?.overlays ?? []).map(({ name, title }) => {
   const shown = overlay(name).value.value;

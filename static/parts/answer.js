@@ -2,7 +2,7 @@
 
 import { useEffect, useRef, useState, effect } from "../vendor/preact.js";
 import { say } from "../server.js";
-import { alive, moment, running, session, state, whichRun } from "../store.js";
+import { alive, moment, running, session, shownRun, state } from "../store.js";
 
 /** The interval between two questions while the run is active [ms]: answering slows the run down. */
 const WHILE_RUNNING = 100;
@@ -33,7 +33,7 @@ export function useAnswer(question, { live = false, once = false } = {}) {
       if (busy || over || !alive.peek() || (running.peek() && !live && !(once && asked === "")) || asked === moment.peek()) return;
       asked = moment.peek();
       busy = true;
-      const run = whichRun();
+      const run = shownRun.peek();
       const about = { of: run, key, time: state.peek()?.time ?? null };
       setResult((before) => ({ ...before, waiting: true }));
       const news = await say(question).then(
@@ -41,7 +41,7 @@ export function useAnswer(question, { live = false, once = false } = {}) {
         (error) => ({ answer: null, error: error.message, ...about }),
       );
       if (over || newest.current !== key) return;
-      setResult((before) => ({ ...before, ...(run === whichRun() ? news : {}), waiting: false })); // an answer of another run is ignored
+      setResult((before) => ({ ...before, ...(run === shownRun.peek() ? news : {}), waiting: false })); // an answer of another run is ignored
       busy = false;
       timer = setTimeout(ask, running.peek() ? WHILE_RUNNING : 0);
     }
@@ -57,7 +57,7 @@ export function useAnswer(question, { live = false, once = false } = {}) {
       if (busy) setResult((before) => ({ ...before, waiting: false }));
     };
   }, [key, live, once]);
-  const shown = `${session.value?.id} ${session.value?.run}`; // as `whichRun`, but followed
+  const shown = shownRun.value;
   const isAsked = question !== null && alive.value && (live || once || !running.value);
   return result.of === null || (result.of === shown && (result.key === key || isAsked)) ? result : NOTHING;
 }

@@ -2,6 +2,7 @@
 
 import { html, useEffect, useState } from "../vendor/preact.js";
 import { complain } from "../store.js";
+import { Button } from "./button.js";
 import { dialog } from "./dialog.js";
 import { Icon } from "./icon.js";
 
@@ -47,7 +48,7 @@ export function CopyButton({ text, copied, disabled = false, title = undefined }
   }
 
   // As wide as the longer text, so that nothing moves.
-  return html`<button class="copy ${done ? "done" : ""}" disabled=${disabled} title=${title} onClick=${copy}>
+  return html`<${Button} class="copy ${done ? "done" : ""}" disabled=${disabled} title=${title} onClick=${copy}>
     <${Icon} name=${done ? "check" : "copy"} /><span>${text}</span><span class="said" role="status">${done ? "Copied" : ""}</span>
-  </button>`;
+  <//>`;
 }

@@ -1,5 +1,6 @@
 // Dialogs, based on the browser's own: they hold the focus, and Escape closes them.
 
+import { Button } from "./button.js";
 import { Problem } from "./problem.js";
 import { html, signal, useEffect, useId, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 
@@ -47,8 +48,8 @@ function Dialog({ shown }) {
   }, []);
   const isChecking = checking.value;
   useEffect(() => {
-    // A button loses the focus when it is disabled.
-    const wrong = isChecking || box.current.contains(document.activeElement) ? null : box.current.querySelector("[aria-invalid=true]");
+    // From the button that was pressed to what is wrong; a field that the user is in by now keeps the focus.
+    const wrong = isChecking || document.activeElement?.matches("input, select, textarea") ? null : box.current.querySelector("[aria-invalid=true]");
     wrong?.focus();
     wrong?.select();
   }, [isChecking]);
@@ -94,7 +95,7 @@ function Dialog({ shown }) {
       ({ value, text }, n) => html`<label class="choice"><input type="radio" name="choice" value=${value} defaultChecked=${n === 0} />${text}</label>`,
     )}
     <footer role="none">
-      ${shown.actions.map(({ text, value, kind, busy = "checking …" }) => html`<button class=${kind ?? ""} disabled=${isChecking && Boolean(value)} onClick=${() => done(value)}>${isChecking && value ? busy : text}</button>`)}
+      ${shown.actions.map(({ text, value, kind, busy = "checking …" }) => html`<${Button} class=${kind ?? ""} disabled=${isChecking && Boolean(value)} onClick=${() => done(value)}>${isChecking && value ? busy : text}<//>`)}
     </footer>
   </dialog>`;
 }

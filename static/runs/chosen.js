@@ -1,6 +1,7 @@
 // The chosen recordings, and the actions on them.
 
 import { html, useEffect, useSignal } from "../vendor/preact.js";
+import { Button } from "../parts/button.js";
 import { valueText } from "../parts/chunk.js";
 import { Icon } from "../parts/icon.js";
 import { remembered } from "../local_storage.js";
@@ -75,12 +76,12 @@ function One({ run }) {
   const noCompare = own ? "It is the present run" : shownRecording.value ? "Beside the present run" : "The present run is not recorded";
   return html`
     <div class="actions" role="toolbar" aria-label="The chosen run">
-      <button class="primary" disabled=${idle} title="Open this run again (double-click)" onClick=${() => openRun(run)}>Open</button>
-      <button disabled=${idle || Boolean(replays.value[run.id]?.since)} title="Run it again in a process of its own, and compare every byte" onClick=${() => replayRun(run)}>Replay</button>
-      <button disabled=${idle || own || !shownRecording.value} title=${noCompare} onClick=${() => compareRuns(run.id, shownRecording.value)}>Compare with the present run</button>
-      <button disabled=${Boolean(run.problem)} title="Give it a name, a note and tags; it is then never deleted automatically" onClick=${() => labelRun(run)}>Name …</button>
+      <${Button} class="primary" disabled=${idle} title="Open this run again (double-click)" onClick=${() => openRun(run)}>Open<//>
+      <${Button} disabled=${idle || Boolean(replays.value[run.id]?.since)} title="Run it again in a process of its own, and compare every byte" onClick=${() => replayRun(run)}>Replay<//>
+      <${Button} disabled=${idle || own || !shownRecording.value} title=${noCompare} onClick=${() => compareRuns(run.id, shownRecording.value)}>Compare with the present run<//>
+      <${Button} disabled=${Boolean(run.problem)} title="Give it a name, a note and tags; it is then never deleted automatically" onClick=${() => labelRun(run)}>Name …<//>
       <span class="stretch"></span>
-      <button class="danger bare" aria-label="Delete" title="Delete (Del)" disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /></button>
+      <${Button} class="danger bare" aria-label="Delete" title="Delete (Del)" disabled=${busy.value !== null} onClick=${() => deleteRuns([run])}><${Icon} name="trash" /><//>
     </div>
     <div class="files">
       <${DownloadLinks} run=${run} />
@@ -97,9 +98,9 @@ function Many({ list }) {
   return html`
     <div class="actions" role="toolbar" aria-label="The chosen runs">
       <b>${list.length} chosen</b>
-      <button class=${two ? "primary" : ""} disabled=${!two} title=${two ? "" : "Choose two that can be read"} onClick=${() => compareRuns(list[0].id, list[1].id)}>Compare</button>
+      <${Button} class=${two ? "primary" : ""} disabled=${!two} title=${two ? "" : "Choose two that can be read"} onClick=${() => compareRuns(list[0].id, list[1].id)}>Compare<//>
       <span class="stretch"></span>
-      <button class="danger" disabled=${busy.value !== null} onClick=${() => deleteRuns(list)}><${Icon} name="trash" />Delete ${list.length}</button>
+      <${Button} class="danger" disabled=${busy.value !== null} onClick=${() => deleteRuns(list)}><${Icon} name="trash" />Delete ${list.length}<//>
     </div>
     <ul class="many">${list.slice(0, 30).map((run) => html`<li key=${run.id}><span class="mono">${run.id}</span> ${outcomeText(run)}</li>`)}
       ${list.length > 30 ? html`<li class="quiet">and ${list.length - 30} more</li>` : null}

@@ -4,6 +4,7 @@
 import { commandsOf } from "../commands.js";
 import { compareRuns } from "../compare/compare.js";
 import { remembered } from "../local_storage.js";
+import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { deleteRuns, openRun } from "../runs/actions.js";
 import { labelRun } from "../runs/label.js";
@@ -13,10 +14,13 @@ import { counted } from "../parts/count.js";
 import { chooseLive } from "../bar/models.js";
 import { complain, session, shownRecording as shown } from "../store.js";
 import { computed, html, useEffect, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
+import { commandText } from "./commands.js";
 import { placeOf } from "./draw.js";
 import { column } from "./rows.js";
 import { furthest } from "./seek.js";
 import { span } from "./view.js";
+
+const MAX_CHARACTERS = 300; // of the change that a tooltip shows
 
 const open = remembered("branches open", true);
 
@@ -60,7 +64,7 @@ export function treeOf(list, id) {
   const below = Map.groupBy(list.filter((run) => rootOf(run) === root), (run) => lineOf(run).slice(1).find((one) => one.run)?.id ?? null);
   const rowsBelow = (id, depth) =>
     (below.get(id) ?? [])
-      .toSorted((one, other) => (one.branched ?? 0) - (other.branched ?? 0) || one.made - other.made)
+      .toSorted((one, other) => (one.branched ?? 0) - (other.branched ?? 0) || (one.kept ?? one.made) - (other.kept ?? other.made))
       .flatMap((run) => [{ run, depth }, ...rowsBelow(run.id, depth + 1)]);
   return rowsBelow(null, 0);
 }
@@ -100,14 +104,28 @@ function compare(run) {
   compareRuns(run.id, shown.value);
 }
 
-function branchName(run) {
-  return run.label?.name || (run.branched === null ? whenText(run.made) : `at ${run.branched.toFixed(2)} s`);
+/** The names of the branches by their ids; those of the same name are numbered: `at 0.12 s`, `at 0.12 s (2)`. */
+const names = computed(() => {
+  const counts = new Map();
+  const numbered = ({ run }) => {
+    const name = run.label?.name || (run.branched === null ? whenText(run.made) : `at ${run.branched.toFixed(2)} s`);
+    counts.set(name, (counts.get(name) ?? 0) + 1);
+    return [run.id, counts.get(name) > 1 ? `${name} (${counts.get(name)})` : name];
+  };
+  return new Map(tree.value.map(numbered));
+});
+
+/** Returns what a user did first where a branch begins. */
+function changeText({ branched, change }) {
+  if (branched === null) return "";
+  const what = change ? commandText([branched * 1e6, "", "command", change]).join(" ").slice(0, MAX_CHARACTERS) : "no change by hand";
+  return `\nfrom ${branched.toFixed(2)} s on: ${what}`;
 }
 
 commandsOf(() =>
   (tree.value.length > 1 ? tree.value : []).flatMap(({ run }) => {
     const mine = run.id === shown.value;
-    const of = (text, work, why = "") => ({ text: `${text}: ${branchName(run)}`, group: `Branch ${run.id}`, work, ready: () => !why, why: () => why });
+    const of = (text, work, why = "") => ({ text: `${text}: ${names.value.get(run.id)}`, group: `Branch ${run.id}`, work, ready: () => !why, why: () => why });
     const isShown = mine ? "It is shown now." : "";
     return [
       of("Show the branch", () => show(run), isShown || run.problem || ""),
@@ -124,17 +142,17 @@ function Row({ run, depth, width }) {
   const inside = (x) => Math.min(Math.max(x, view.column), width);
   const end = endOf(run);
   const [from, to] = [inside(placeOf(run.branched ?? 0, view)), inside(placeOf(end, view))];
-  const name = branchName(run);
-  const title = `${name}: ${outcomeText(run)}, ${end.toFixed(2)} s${isOrphan(run) ? "\nthe recording that it is a branch of was deleted" : ""}${run.label?.note ? `\n${run.label.note}` : ""}`;
+  const name = names.value.get(run.id);
+  const title = `${name}: ${outcomeText(run)}, ${end.toFixed(2)} s${changeText(run)}${isOrphan(run) ? "\nthe recording that it is a branch of was deleted" : ""}${run.label?.note ? `\n${run.label.note}` : ""}`;
   const remove = async () => {
     await deleteRuns([run]);
     if (document.activeElement === document.body) document.querySelector(".branches-head, .timeline-stage")?.focus(); // its button is gone
   };
   return html`<li class=${mine ? "mine" : ""} data-branch=${run.id}>
-    <button class="branch-name" style=${{ width: `${view.column}px`, paddingLeft: `${8 + 10 * depth}px` }} aria-current=${mine} title=${mine ? `${title}\nshown` : `${title}\nShow it`} disabled=${Boolean(run.problem)} onClick=${() => mine || show(run)}>${depth > 0 ? "└ " : ""}${name}${isOrphan(run) ? html` <small>origin gone</small>` : null}</button>
+    <${Button} class="branch-name" style=${{ width: `${view.column}px`, paddingLeft: `${8 + 10 * depth}px` }} aria-current=${mine} title=${mine ? `${title}\nshown` : `${title}\nShow it`} disabled=${Boolean(run.problem)} onClick=${() => mine || show(run)}>${depth > 0 ? "└ " : ""}${name}${isOrphan(run) ? html` <small>origin gone</small>` : null}<//>
     <span class="branch-way" style=${{ left: `${from}px`, width: `${Math.max(2, to - from)}px` }} aria-hidden="true"></span>
     <span class="branch-actions">
-      ${mine ? null : html`<button class="bare" title="Compare with the shown run" onClick=${() => compare(run)}>Compare</button>`}
+      ${mine ? null : html`<button class="bare" aria-label="Compare ${name}" title="Compare with the shown run" onClick=${() => compare(run)}>Compare</button>`}
       <button class="bare" aria-label="Name ${name}" title="Name, note, tags" onClick=${() => labelRun(run)}><${Icon} name="pen" /></button>
       ${run.session || mine ? null : html`<button class="bare" aria-label="Delete ${name}" title="Delete" onClick=${remove}><${Icon} name="trash" /></button>`}
     </span>

@@ -2,7 +2,7 @@
 
 import { computed, signal } from "../vendor/preact.js";
 import { order, say } from "../server.js";
-import { alive, session, state, whichRun } from "../store.js";
+import { alive, session, shownRun, state } from "../store.js";
 
 /** The time to which the user is going [s]; null when the run is there. */
 export const wanted = signal(null);
@@ -37,9 +37,9 @@ export function travel(time, wish = time) {
 
 async function go() {
   going = true;
-  const whose = whichRun();
+  const whose = shownRun.peek();
   said = null;
-  while (wanted.peek() !== null && wanted.peek() !== said && whose === whichRun()) {
+  while (wanted.peek() !== null && wanted.peek() !== said && whose === shownRun.peek()) {
     said = wanted.peek();
     await order({ type: "seek", time: said }); // afterwards, the state shows the run there too
   }

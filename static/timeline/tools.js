@@ -4,6 +4,7 @@ import { html } from "../vendor/preact.js";
 import { command, commandsOf, run } from "../commands.js";
 import { buttonTitle } from "../keys.js";
 import { AreaMenu } from "../parts/area_menu.js";
+import { Button } from "../parts/button.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
@@ -55,7 +56,14 @@ registered("Make the plots taller", "h", () => grow(1), () => names.value.length
 registered("Make the plots lower", "Shift+h", () => grow(-1), () => names.value.length > 0, noCurves);
 const showAll = registered("Show all of the run", "f", fit);
 const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0 || running.value, noCurves);
-const keep = registered("Save the timeline or a plot as a picture, or its values as CSV", null, savePictures, () => Boolean(session.value));
+const keep = command({
+  text: "Save the timeline or a plot as a picture, or its values as CSV",
+  also: "export download PNG SVG figure",
+  group: "Timeline",
+  work: savePictures,
+  ready: () => Boolean(session.value),
+  why: () => runStatus.value.text,
+});
 const openTimeline = command({ text: "Open the timeline in a window of its own", group: "Page", work: () => openWindow("timeline") });
 commandsOf(() => names.value.map(({ name }) => {
   const shown = plotted.value.includes(name);
@@ -70,12 +78,12 @@ function Going() {
   const past = inThePast.value && !running.value;
   const ready = alive.value && past && wanted.value === null;
   return html`<div class="timeline-going">
-    <button disabled=${!ready} title="Run from this moment. It repeats what happened; a change here begins a branch." onClick=${() => order({ type: "run" })}>
+    <${Button} disabled=${!ready} title="Run from this moment. It repeats what happened; a change here begins a branch." onClick=${() => order({ type: "run" })}>
       <${Icon} name="run" /><span>Continue from here</span>
-    </button>
-    <button disabled=${!alive.value || !past} title=${buttonTitle(toNewest, "Go to the newest moment of the run")} onClick=${() => run(toNewest)}>
+    <//>
+    <${Button} disabled=${!alive.value || !past} title=${buttonTitle(toNewest, "Go to the newest moment of the run")} onClick=${() => run(toNewest)}>
       <${Icon} name="until" /><span>Newest moment</span>
-    </button>
+    <//>
   </div>`;
 }
 
@@ -84,7 +92,7 @@ export function Tools() {
     <h2>Timeline</h2>
     <${Groups} />
     <input type="search" aria-label="Filter rows" placeholder="Filter" value=${filter.value} onInput=${(event) => (filter.value = event.currentTarget.value)} />
-    <button disabled=${!curves.ready()} title=${buttonTitle(curves)} onClick=${chooseCurves}>Curves …</button>
+    <${Button} disabled=${!curves.ready()} title=${buttonTitle(curves)} onClick=${chooseCurves}>Curves …<//>
     <span class="stretch"></span>
     <${Going} />
     <div class="timeline-zoom" role="group" aria-label="Zoom">
@@ -92,7 +100,7 @@ export function Tools() {
       <button class="bare" title=${buttonTitle(zoomOut, "Show more; also the wheel")} aria-label="Zoom out" onClick=${zoomOut.work}>−</button>
       <button class="bare" aria-pressed=${mode.value === "fit"} title=${buttonTitle(showAll)} onClick=${fit}>Fit</button>
     </div>
-    <button class="bare" disabled=${!keep.ready()} title=${buttonTitle(keep)} aria-label="Save a picture" onClick=${savePictures}><${Icon} name="download" /></button>
+    <${Button} class="bare" disabled=${!keep.ready()} title=${buttonTitle(keep)} aria-label="Save a picture" onClick=${savePictures}><${Icon} name="download" /><//>
     <${ManualLink} page="timeline" title="Timeline" />
     <${AreaMenu} area="timeline" opening=${openTimeline} />
   </div>`;

@@ -206,3 +206,26 @@ def test_in_the_status_line_facts_are_left_out_before_a_text_is_cut(pages: Calla
     page.get_by_role("button", name="Delete at 0.50 s").click()
     page.get_by_role("dialog").get_by_role("button", name="Delete").click()
     expect(page.locator(".branches")).to_have_count(0)
+
+
+@pytest.mark.slow
+def test_branches_from_one_moment_have_names_of_their_own_and_say_what_was_changed(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    say(page, type="seek", time=0.12)
+    shows(page, "#time", r"0\.12 s")
+    say(page, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "goal:count"})
+    shows(page, "#status", r"changed at 0\.12 s")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    say(page, type="undo")
+    shows(page, "#status", "undone")
+    names = page.locator(".branches .branch-name")
+    expect(names).to_have_text([re.compile(r"\d+:\d+:\d+"), "└ at 0.12 s", "└ at 0.12 s (2)"])
+    expect(names.nth(1)).to_have_attribute("title", re.compile("from 0.12 s on: no change by hand"))
+    expect(names.nth(2)).to_have_attribute("title", re.compile("from 0.12 s on: set buffer goal goal:count"))
+    buttons = page.get_by_role("region", name="Branches").locator(".branch-actions button")
+    said = buttons.evaluate_all("all => all.map((one) => one.ariaLabel)")
+    assert len(said) == len(set(said)) == 7

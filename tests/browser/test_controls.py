@@ -532,3 +532,31 @@ def test_what_was_set_last_is_sent_before_the_next_command(page: Page) -> None:
     shows(page, "#status", "at its start")
     found = page.evaluate(AT_ONCE)
     assert found == {"before": [0.6, 0.8, "step"], "sent": [0.6, 0.8], "shown": 80}
+
+
+@pytest.mark.slow
+def test_a_button_that_its_press_makes_unavailable_keeps_the_focus(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    page.locator("#run").press("Enter")
+    shows(page, "#status", "ended")
+    end = page.locator("#time").inner_text()
+    newest, again, stop = (page.get_by_role("button", name=name) for name in ("Newest moment", "Continue from here", "Stop the model"))
+    for button in (newest, again):
+        page.evaluate("async () => (await part('timeline/seek.js')).travel(0.1)")
+        shows(page, "#time", r"0\.10 s")
+        button.press("Enter")
+        expect(page.locator("#time")).to_have_text(end)
+        expect(button).to_be_disabled()
+        expect(button).to_be_focused()
+        button.evaluate("(button) => button.click()")  # does nothing
+        expect(page.locator("#time")).to_have_text(end)
+    page.evaluate("async () => (await part('timeline/seek.js')).travel(0.1)")
+    expect(again).to_be_enabled()  # again, with the focus
+    expect(again).to_be_focused()
+    stop.press("Enter")
+    shows(page, "#status", "stopped")
+    expect(stop).to_be_disabled()
+    expect(stop).to_be_focused()
+    page.keyboard.press("Shift+Tab")
+    until(page, lambda: stop.evaluate("(button) => [button.disabled, button.ariaDisabled]") == [True, None])  # out of reach

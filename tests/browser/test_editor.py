@@ -495,8 +495,6 @@ def test_completions_that_come_after_another_text_is_shown_are_not_for_that_one(
     pages: Callable[..., Page], written: Callable[[str, str], Path]
 ) -> None:
     page = long_after_short(pages, written)
-    with page.expect_response("**/api/language"):
-        page.locator(CODE).focus()  # the server loads what it needs, once
     with holding(page, "**/api/language", lambda request: '"ask":"complete"' in (request.post_data or "")) as held:
         write(page, "produ")
         page.keyboard.press("Control+Space")

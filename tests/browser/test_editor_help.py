@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, Request, expect
 
-from tests.helpers.page import open_tab, shows, until
+from tests.helpers.page import holding, open_tab, shows, until
 from tests.helpers.workbench_server import Served
 
 CODE = ".code .cm-content"
@@ -188,3 +188,39 @@ def test_pieces_are_inserted_where_they_may_stand(opened: Callable[[str], Page],
     assert len(written) > len(SHORT)
     assert written.count("from actr3d.actr import *") == 1
     assert "from dataclasses" not in written.partition("from actr3d")[2]  # imports are in the order of the templates
+
+
+def is_completion(request: Request) -> bool:
+    return '"ask":"complete"' in (request.post_data or "")
+
+
+@pytest.mark.slow
+def test_the_server_prepares_its_help_when_the_editor_is_opened(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    with page.expect_request("**/api/language", timeout=10_000) as asked:
+        open_tab(page, "Editor")
+    assert is_completion(asked.value)
+    expect(page.locator(CODE)).not_to_be_focused()
+
+
+@pytest.mark.slow
+def test_while_completions_and_documentation_are_waited_for_the_editor_says_so(opened: Callable[[str], Page]) -> None:
+    page = opened(SHORT)
+    reading = page.locator(".reading")
+    at_end_of(page, "memory = Memory(facts)")
+    page.keyboard.press("ArrowLeft")
+    for keys, shown in (("Control+Space", ".cm-tooltip-autocomplete"), ("Control+Shift+Space", ".documentation")):
+        with holding(page, "**/api/language", lambda _: True):
+            page.keyboard.press(keys)
+            expect(reading).to_have_text("Reading the text …")
+            assert page.evaluate(LOOK) == []
+        expect(page.locator(shown)).to_be_visible()
+        expect(reading).to_have_count(0)
+        page.keyboard.press("Escape")
+        expect(page.locator(shown)).to_have_count(0)
+    with holding(page, "**/api/language", lambda _: True):
+        page.keyboard.press("Control+Space")
+        expect(reading).to_be_visible()
+        page.keyboard.press("Escape")
+        expect(reading).to_have_count(0)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.helpers.page import drawn, open_tab, shows, until
+from tests.helpers.page import choose, drawn, open_tab, shows, until
 from tests.helpers.workbench_server import Served
 
 Pages = Callable[..., Page]
@@ -256,3 +256,30 @@ def test_a_run_begins_with_the_seed_that_is_written_and_keeps_it(pages: Pages, w
     until(page, lambda: settings(workbench)["run"] == 5)
     expect(field).to_have_value(str(settings(workbench)["seed"]))
     assert settings(workbench)["seed"] != largest
+
+
+@pytest.mark.slow
+def test_a_search_in_the_console_ends_with_its_run(pages: Pages, workbench: Served) -> None:
+    (workbench.folder / "says.py").write_text("print('one')\nprint('two')\n", encoding="utf-8")
+    page = pages("says.py", tab="console")
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    expect(lines(page)).to_have_count(2)
+    field = page.get_by_label("Search the console")
+    field.fill("two")
+    expect(lines(page)).to_have_text(["two"])
+    open_tab(page, "About")
+    open_tab(page, "Console")
+    expect(field).to_have_value("two")
+    page.click("#restart")
+    shows(page, "#status", "at its start")
+    expect(field).to_have_value("")
+    page.click("#run")
+    expect(lines(page)).to_have_count(2)
+    field.fill("two")
+    choose(page, "counting.py")
+    expect(field).to_have_value("")
+    field.fill("x 1999")
+    page.reload()
+    shows(page, "#status", "at its start")
+    expect(field).to_have_value("")

@@ -138,6 +138,10 @@ def test_the_palette_has_the_experiments_and_what_can_be_done_with_the_present_r
         search(page, words)
         expect(options(page).first).to_contain_text("the present run")
         page.keyboard.press("Escape")
+    for words, text in (("share", "Copy a link"), ("export", "Save the timeline"), ("svg", "Save the timeline")):
+        search(page, words)
+        expect(options(page).filter(has_text=text)).to_have_count(1)
+        page.keyboard.press("Escape")
     search(page, "name note tags present run")
     page.keyboard.press("Enter")
     expect(page.get_by_role("dialog", name="Name of the run")).to_be_visible()

@@ -81,6 +81,7 @@ def test_all_panels_say_the_same_of_the_state_of_the_run_and_what_to_do(pages: C
     page.get_by_label("Model", exact=True).select_option("broken.py")
     unloadable = "This model cannot be loaded: see Messages for the reason and the line. Fix it in the editor, then run it again."
     shows(page, "#status", "^the model cannot be loaded$")
+    expect(page.locator("#run")).to_have_text("Run")  # it has not run yet
     says(page, unloadable, ("Buffers", "Productions", "Memory", "Eye"))
     expect(timeline).to_have_text(unloadable)
     expect(page.locator("#scene")).to_contain_text(unloadable)

@@ -755,7 +755,10 @@ LINES = """async () => {
   surface.fill = (x, y, width, height) => drawn.push([y, y + height]);
   drawCurves(surface, { x: 0, y: 10, width: 100, height: 50 }, { series: [points], span: { from: 0, to: 4 }, range: [1, 9] });
   const whole = drawn.map(([top, bottom]) => top >= clip[0] && bottom <= clip[1]);
-  return { values, near, whole, compared: csvText([long, short]), csv: csvText([long, once, held, busy, gone], 5) };
+  const noisy = { name: "noisy", unit: "s", times: [0.1 + 0.2, 1.05], values: [0.10123499999999996, 0.050000000000000044] };
+  const same = { name: "same", unit: "m", times: [0.3, 1.05], values: [1 / 3, 1e-20] };
+  const rounded = csvText([noisy, same]);
+  return { values, near, whole, rounded, compared: csvText([long, short]), csv: csvText([long, once, held, busy, gone], 5) };
 }"""
 """Values of curves at -0.5, 0, 0.5, 1, 1.5, 2, 3 and 5 s, and those curves as CSV."""
 
@@ -774,6 +777,7 @@ def test_the_value_of_a_curve_is_where_its_line_is_and_nowhere_else(blank: Page)
     }
     assert found["near"] == [7, 7, None]
     assert found["whole"] == [True, True]  # the least and the greatest value
+    assert found["rounded"].splitlines()[1:] == ["0.3,0.101235,0.333333333333", "1.05,0.05,1e-20"]
     assert found["compared"].splitlines() == ['"time [s]","long [m]","short [m]"', "0,0,5", "1,10,6", "2,,", "4,40,"]
     assert found["csv"].splitlines()[1:] == ["0,0,,,0,8", "1,10,,3,1,", "1.5,,7,3,1,", "2,,,4,1,", "4,40,,4,3,", "5,,,4,4,"]
 

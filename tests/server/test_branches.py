@@ -73,6 +73,7 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
     models = talk.sessions.folder
     assert b'"branched":0.1' in summary_json(renamed, models)
     renamed.rename(branch)
+    assert b'"change":null' in summary_json(branch, models)
     assert b'"branched":null' in summary_json(branch.with_name(f"{origin}.sqlite"), models)
     assert retention.is_unnamed(branch)  # so that it goes, one day
     there(talk, 50)
@@ -81,7 +82,9 @@ def test_what_lies_ahead_is_kept_as_a_branch_before_the_run_goes_another_way(des
         assert recorded.ticks == 40
     talk.say("seek", time=0.2)
     talk.say("command", word="aperture", values=[0.4])
-    assert len(found(talk)) == 2
+    first, second = found(talk)
+    changes = [json.loads(summary_json(path, models))["change"] for path in (first, second)]
+    assert [change and (change["command"], change["data"]["values"]) for change in changes] == [None, None]
 
 
 def test_a_branch_is_over_only_where_its_run_was_over(desk: Desk, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from tests.helpers.asgi_client import ask
 from tests.helpers.workbench_server import Served
 from workbench import page_files
 from workbench.page_files import ROUTE, PageFiles
+from workbench.shipped import static
 
 
 def test_a_file_is_kept_until_one_is_edited(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -47,3 +48,10 @@ def test_the_page_names_the_version_of_its_files(server: Served) -> None:
     for address in addresses:
         assert "immutable" in server.get(address).headers["cache-control"]
     assert server.get("/static/0123456789abcdef/main.js").headers["cache-control"] == "no-store"
+
+
+def test_a_button_that_can_be_disabled_is_one_that_keeps_the_focus() -> None:
+    own = [path for path in static().rglob("*.js") if "vendor" not in path.parts and path.name != "button.js"]
+    plain = re.compile(r"<button(?:\$\{(?:[^{}]|\{[^{}]*\})*\}|[^>$])*\sdisabled=")
+    assert [path.name for path in own if plain.search(path.read_text(encoding="utf-8"))] == []
+    assert plain.search("<button class=${a ? `${b}` : c} onClick=${() => go()} disabled=${off}>")

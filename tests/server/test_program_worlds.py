@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from workbench.csv_files import write_states_csv
 from workbench.exports import curves_of
 from workbench.html_replay.make import write_replay
 from workbench.recording_diff import compare
+from workbench.recording_index import summary_json
 from workbench.retention import copied_from
 
 EXAMPLE = """from actr3d.actr import *
@@ -297,6 +299,7 @@ def test_the_world_of_a_program_is_changed_by_hand_and_the_change_is_repeated_an
     (branch,) = [one for one in path.parent.glob("*.sqlite") if copied_from(one.stem) is not None]
     assert recorded_commands(path) == [(1, 0, "aperture", "user")]
     assert recorded_commands(branch) == [(1, 0, "aperture", "user"), (1, 20, "move", "user"), (1, 40, "push", "user")]
+    assert json.loads(summary_json(branch, talk.sessions.folder))["change"]["command"] == "move"  # the first one from 0.2 s on
 
 
 def test_of_several_simulations_the_agents_of_the_present_one_are_changed_by_their_names_in_the_program(desk: Desk, tmp_path: Path) -> None:
