@@ -474,6 +474,62 @@ def test_a_plot_of_very_many_values_has_their_extremes_and_is_no_more_than_the_p
     assert blank.evaluate(SPIKES) == {shape: [5, 95, True] for shape in ("line", "points", "steps")}
 
 
+UNEVEN = """async () => {
+  const { drawCurves, valueAt } = await part("parts/curve.js");
+  const [times, all, width, height] = [[], [], 800, 100];
+  for (let time = 0; time < 86400; time += 40) {
+    const dense = Math.floor(time / 4000) % 3 === 1 && time % 4000 < 1000; // stretches of each tick in an overview
+    for (let n = 0; n < (dense ? 4000 : 1); n += 1) times.push(time + n / 100);
+  }
+  times.push(86411.53);
+  for (const time of times) all.push(3 * Math.exp(-(time % 30000) / 5000) + 0.01 * Math.sin(time));
+  const missing = all.map((value, n) => (Math.floor(times[n] / 2500) % 4 === 2 ? null : value));
+  const found = {};
+  for (const [name, shape, values] of [["line", "line", all], ["gaps", "line", missing], ["steps", "steps", all]]) {
+    for (const [from, to] of [[0, 86411.53], [81200.003, 87000], [4900.003, 5100], [4990.003, 4992]]) {
+      const curve = { name, unit: "", times, values, shape };
+      const lines = [];
+      const line = (points, colour, style) => style?.width === 1.5 && lines.push(points);
+      const surface = { line, fill() {}, text() {}, within: (x, y, w, h, draw) => draw() };
+      drawCurves(surface, { x: 0, y: 0, width, height }, { series: [curve], span: { from, to }, range: [-1, 4] });
+      const yOf = (value) => height - ((value + 1) / 5) * height;
+      const empty = () => Array.from({ length: width }, () => [Infinity, -Infinity]);
+      const [truth, drawn] = [empty(), empty()];
+      const put = (columns, x, y) => {
+        for (const at of new Set([Math.floor(x - 1e-6), Math.floor(x + 1e-6)])) {
+          if (columns[at] && !Number.isNaN(y)) columns[at] = [Math.min(columns[at][0], y), Math.max(columns[at][1], y)];
+        }
+      };
+      const xOf = (time) => ((time - from) / (to - from)) * width;
+      times.forEach((time, n) => values[n] !== null && put(truth, xOf(time), yOf(values[n])));
+      for (let x = 0; x <= width; x += 1) {
+        const value = valueAt(curve, from + (x / width) * (to - from));
+        if (value !== null) put(truth, x, yOf(value));
+      }
+      const [points] = lines;
+      for (let n = 0; n < points.length; n += 2) {
+        const [x, y, before, last] = [points[n], points[n + 1], points[n - 2], points[n - 1]];
+        put(drawn, x, y);
+        if (n > 0 && !Number.isNaN(y + last)) {
+          for (let at = Math.max(0, Math.ceil(before)); at <= Math.min(x, width); at += 1) if (x > before) put(drawn, at, last + ((y - last) * (at - before)) / (x - before));
+        }
+      }
+      const off = truth.map(([least, most], n) => (least > most && drawn[n][0] > drawn[n][1] ? 0 : Math.max(Math.abs(least - drawn[n][0]), Math.abs(most - drawn[n][1]))));
+      found[`${name} ${from}`] = [Math.max(...off) < 0.01, points.at(-2) >= Math.min(width, xOf(times.at(-1))) - 1e-6, points.length < 11 * width];
+    }
+  }
+  return found;
+}"""
+"""Whether a line of many unevenly spaced values is, in each pixel, as low and as high as the values, whether it goes on up to the last value
+or the edge, and whether it has few points."""
+
+
+def test_a_line_of_many_uneven_values_agrees_with_them_in_each_pixel(blank: Page) -> None:
+    found = blank.evaluate(UNEVEN)
+    assert len(found) == 12
+    assert [name for name, told in found.items() if told != [True, True, True]] == []
+
+
 def test_no_text_of_the_axis_is_cut(blank: Page) -> None:
     for end, width in ((1, 400), (12.5, 1100), (3, 1700), (0.02, 900)):
         drawn = blank.evaluate(AXIS, [end, width])
