@@ -53,13 +53,8 @@ export function valueAt({ times, values, shape = "line", slope, until = Infinity
 export function rangeOf(series) {
   let [least, most] = [Infinity, -Infinity];
   for (const { values, range } of series) {
-    if (range) [least, most] = [Math.min(least, range[0]), Math.max(most, range[1])];
-    if (range) continue;
-    for (const value of values) {
-      if (value === null || Number.isNaN(value)) continue;
-      if (value < least) least = value;
-      if (value > most) most = value;
-    }
+    const [low, high] = range ?? leastAndMost(values);
+    [least, most] = [Math.min(least, low), Math.max(most, high)];
   }
   if (Math.max(Math.abs(least), Math.abs(most)) < MIN_RANGE / 2) return [0, 1]; // nothing has moved yet
   const room = Math.max(0, MIN_RANGE - (most - least)) / 2;
@@ -68,18 +63,31 @@ export function rangeOf(series) {
 
 const groups = new WeakMap(); // by values
 
-/** Returns the numbers of the least and the greatest value of each group of values, {count, least, most}; -1 where all are missing. */
+/** Returns the numbers of the least and the greatest value of each group of values, {count, least, most}; -1 where all are missing. Only
+ * those of new values are computed. */
 function groupsOf(values) {
+  if (!groups.has(values)) groups.set(values, { count: 0, least: [], most: [] });
   const known = groups.get(values);
-  if (known?.count === values.length) return known;
-  const size = Math.ceil(values.length / GROUP);
-  const found = { count: values.length, least: new Int32Array(size), most: new Int32Array(size) };
-  for (let group = 0; group < size; group += 1) {
-    const [least, most] = extremesAmong(values, group * GROUP, Math.min((group + 1) * GROUP, values.length));
-    [found.least[group], found.most[group]] = [least, most];
+  if (known.count > values.length) known.count = 0;
+  if (known.count === values.length) return known;
+  for (let group = Math.floor(known.count / GROUP); group * GROUP < values.length; group += 1) {
+    [known.least[group], known.most[group]] = extremesAmong(values, group * GROUP, Math.min((group + 1) * GROUP, values.length));
   }
-  groups.set(values, found);
-  return found;
+  known.count = values.length;
+  return known;
+}
+
+/** Replaces some of a curve's times or values, in place: of many, those before them cost nothing. */
+export function replace(list, first, beyond, news) {
+  list.splice(first, beyond - first, ...news);
+  const known = groups.get(list);
+  if (known) known.count = Math.min(known.count, first);
+}
+
+/** Returns the least and the greatest of a curve's values; [Infinity, -Infinity] if all are missing. */
+export function leastAndMost(values) {
+  const [least, most] = extremesOf(values, 0, values.length);
+  return least < 0 ? [Infinity, -Infinity] : [values[least], values[most]];
 }
 
 /** Returns the numbers of the least and the greatest of some values, [-1, -1] if all are missing. `known` are those of another part. */

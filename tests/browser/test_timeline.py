@@ -530,6 +530,34 @@ def test_a_line_of_many_uneven_values_agrees_with_them_in_each_pixel(blank: Page
     assert [name for name, told in found.items() if told != [True, True, True]] == []
 
 
+REPLACED = """async () => {
+  const { leastAndMost, replace } = await part("parts/curve.js");
+  const values = [];
+  const found = [];
+  const put = (first, beyond, news) => {
+    replace(values, first, beyond, news);
+    const there = values.filter((value) => value !== null);
+    found.push([leastAndMost(values), [Math.min(...there), Math.max(...there)]]);
+  };
+  put(0, 0, Array.from({ length: 1500 }, (_, n) => Math.sin(n)));
+  put(700, 701, Array.from({ length: 1000 }, (_, n) => (n === 500 ? 7 : n / 1000))); // more in place of one
+  put(1200, 1201, [-7]); // the greatest one is gone
+  put(1200, 1300, []);
+  put(0, 1, [null, null, 9]);
+  put(values.length, values.length, [10, 11]);
+  put(0, values.length, [null]);
+  put(0, 1, [1]);
+  return found;
+}"""
+
+
+def test_the_range_of_a_curve_is_that_of_its_values_after_some_were_replaced(blank: Page) -> None:
+    found = blank.evaluate(REPLACED)
+    assert [told for told, _ in found] == [truth for _, truth in found]
+    assert found[1][0][1] == 7
+    assert found[5][0][1] == 11
+
+
 def test_no_text_of_the_axis_is_cut(blank: Page) -> None:
     for end, width in ((1, 400), (12.5, 1100), (3, 1700), (0.02, 900)):
         drawn = blank.evaluate(AXIS, [end, width])
