@@ -241,9 +241,9 @@ export function drawCurves(surface, box, { series, times, span, range, until }) 
   });
 }
 
-/** Draws an axis of time with its lines; returns the step between them [s]. `box` is the position of the drawing it belongs to;
- * labels that would touch the range `taken` of the axis [px] are left out. */
-export function drawTimes(surface, box, span, { y, height = 18, lines = true, taken = null } = {}) {
+/** Draws an axis of time with its lines; returns the step between them [s]. `box` is the position of the drawing it belongs to; its labels
+ * stay within the range `room`, and those that would touch the range `taken` are left out [px]. */
+export function drawTimes(surface, box, span, { y, height = 18, lines = true, room = { from: box.x, to: box.x + box.width }, taken = null } = {}) {
   const step = stepFor(span.to - span.from, Math.max(2, Math.floor(box.width / 80)));
   const scale = box.width / (span.to - span.from);
   for (const time of ticks(span.from, span.to, step)) {
@@ -251,7 +251,7 @@ export function drawTimes(surface, box, span, { y, height = 18, lines = true, ta
     if (lines) surface.line([x, box.y, x, box.y + box.height], "line");
     const text = timeText(time, step);
     const half = widthOf(text, { size: 10 }) / 2;
-    const at = Math.min(Math.max(x, box.x + EDGE + half), box.x + box.width - EDGE - half);
+    const at = Math.min(Math.max(x, room.from + EDGE + half), room.to - EDGE - half);
     if (taken && at + half > taken.from - BETWEEN && at - half < taken.to + BETWEEN) continue;
     surface.text(text, at, y + height / 2, "quiet", { size: 10, anchor: "middle" });
   }

@@ -567,6 +567,23 @@ def test_no_text_of_the_axis_is_cut(blank: Page) -> None:
         assert all(one[1] < other[0] for one, other in pairwise(drawn))
 
 
+def test_the_labels_of_a_saved_plot_stand_under_their_lines(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    page.get_by_role("button", name="Run", exact=True).click()
+    shows(page, "#status", "ended")
+    page.get_by_role("button", name="Save a picture", exact=True).first.click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label("Of what").select_option("0")
+    with page.expect_download() as download:
+        dialog.get_by_role("button", name="SVG").click()
+    drawn = ElementTree.parse(download.value.path())
+    lines = {float(found[1]) for path in drawn.findall(".//{*}path") if (found := re.fullmatch(r"M([\d.]+) [\d.]+L\1 [\d.]+", path.attrib["d"]))}
+    labels = {float(text.attrib["x"]): text.text for text in drawn.findall(".//{*}text") if text.attrib["text-anchor"] == "middle"}
+    assert len(labels) > 4
+    assert labels[min(labels)] == "0 s"
+    assert set(labels) == lines
+
+
 EVERY_TICK = """async () => {
   const { known } = await part("timeline/curves.js");
   const { state } = await part("store.js");
