@@ -511,17 +511,21 @@ UNEVEN = """async () => {
         const [x, y, before, last] = [points[n], points[n + 1], points[n - 2], points[n - 1]];
         put(drawn, x, y);
         if (n > 0 && !Number.isNaN(y + last)) {
-          for (let at = Math.max(0, Math.ceil(before)); at <= Math.min(x, width); at += 1) if (x > before) put(drawn, at, last + ((y - last) * (at - before)) / (x - before));
+          const [first, end] = [Math.max(0, Math.ceil(before)), x > before ? Math.min(x, width) : -1];
+          for (let at = first; at <= end; at += 1) put(drawn, at, last + ((y - last) * (at - before)) / (x - before));
         }
       }
-      const off = truth.map(([least, most], n) => (least > most && drawn[n][0] > drawn[n][1] ? 0 : Math.max(Math.abs(least - drawn[n][0]), Math.abs(most - drawn[n][1]))));
-      found[`${name} ${from}`] = [Math.max(...off) < 0.01, points.at(-2) >= Math.min(width, xOf(times.at(-1))) - 1e-6, points.length < 11 * width];
+      const isNear = ([least, most], [low, high]) => Math.abs(least - low) + Math.abs(most - high) < 0.01;
+      const differs = (one, other) => (one[0] <= one[1] || other[0] <= other[1]) && !isNear(one, other);
+      const isSame = !truth.some((one, n) => differs(one, drawn[n]));
+      const isWhole = points.at(-2) >= Math.min(width, xOf(times.at(-1))) - 1e-6;
+      found[`${name} ${from}`] = [isSame, isWhole, points.length < 11 * width];
     }
   }
   return found;
 }"""
-"""Whether a line of many unevenly spaced values is, in each pixel, as low and as high as the values, whether it goes on up to the last value
-or the edge, and whether it has few points."""
+"""Whether a line of many unevenly spaced values is, in each pixel, as low and as high as the values, whether it goes on up to the last
+value or the edge, and whether it has few points."""
 
 
 def test_a_line_of_many_uneven_values_agrees_with_them_in_each_pixel(blank: Page) -> None:
@@ -577,7 +581,8 @@ def test_the_labels_of_a_saved_plot_stand_under_their_lines(pages: Callable[...,
     with page.expect_download() as download:
         dialog.get_by_role("button", name="SVG").click()
     drawn = ElementTree.parse(download.value.path())
-    lines = {float(found[1]) for path in drawn.findall(".//{*}path") if (found := re.fullmatch(r"M([\d.]+) [\d.]+L\1 [\d.]+", path.attrib["d"]))}
+    upright = [re.fullmatch(r"M([\d.]+) [\d.]+L\1 [\d.]+", path.attrib["d"]) for path in drawn.findall(".//{*}path")]
+    lines = {float(found[1]) for found in upright if found}
     labels = {float(text.attrib["x"]): text.text for text in drawn.findall(".//{*}text") if text.attrib["text-anchor"] == "middle"}
     assert len(labels) > 4
     assert labels[min(labels)] == "0 s"

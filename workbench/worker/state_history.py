@@ -7,7 +7,6 @@ import math
 from array import array
 from collections.abc import Iterator, Sequence
 from itertools import groupby
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -186,7 +185,8 @@ class Walked:
         mujoco.mj_setState(world.mj_model, self._data, numbers, INTEGRATION)
         for compute in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_comVel):
             compute(world.mj_model, self._data)
-        return {name: self._point(name, count, *place_and_speed(world.mj_model, self._data, body.root)) for name, body in world.bodies.items()}
+        now = {name: place_and_speed(world.mj_model, self._data, body.root) for name, body in world.bodies.items()}
+        return {name: self._point(name, count, *values) for name, values in now.items()}
 
     def _point(self, name: str, count: int, x: float, y: float, speed: float) -> list[float]:
         if count == 0:
