@@ -56,7 +56,7 @@ class _Again(EndOfRun):
     """Ends a program so that it can be run again up to an earlier time."""
 
 
-class _RecordedOnce:
+class _PassRecorder:
     """Passes what a program does to its recording, except what an earlier pass through it has recorded; the order is always the same.
 
     Args:
@@ -193,7 +193,7 @@ class ProgramRun(ControlledRun):
         self._commands = [RecordedCommand(*command) for command in start.commands]
         """The changes of users, which each pass through the program repeats."""
         self._changes = ProgramChanges(self._limits, self._commands)
-        self._recorded: _RecordedOnce | None = None
+        self._recorded: _PassRecorder | None = None
         self._recorded_simulations: set[str] = set()
         """The names of the facts of simulations that are recorded."""
         self._waits: tuple[Scheduler, int, int] | None = None
@@ -308,7 +308,7 @@ class ProgramRun(ControlledRun):
         trace.listen(self._note_failure)
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
-            limits.recorder = self._recorded = again = _RecordedOnce(self._recording, self._recorded_simulations, lambda: self._left)
+            limits.recorder = self._recorded = again = _PassRecorder(self._recording, self._recorded_simulations, lambda: self._left)
             trace.listen(again.event)
         self._changes = ProgramChanges(limits, self._commands)
         if not self._listing.simulates:  # otherwise it continues until its simulation is at its start
