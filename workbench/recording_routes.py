@@ -130,7 +130,7 @@ async def import_recording(request: Request, name: Annotated[str, Query(min_leng
         await asyncio.to_thread(erase, path)
         raise RecordingError(f"the file cannot be read: {summary.problem}")
     await asyncio.to_thread(recordings.labels.change, path.stem, {"name": name.removesuffix(".sqlite")})
-    sessions.listings_changed()
+    sessions.announce_recordings()
     return Response(to_json(await _recording(sessions, path.stem)), status_code=201, media_type="application/json")
 
 
@@ -260,7 +260,7 @@ async def label_recording(request: Request, recording: Id, body: LabelRequest) -
     new, known = body.label, None if body.known is None else body.known.label
     changes = {field: getattr(new, field) for field in Label.__struct_fields__ if field in body.model_fields_set}
     label = await asyncio.to_thread(sessions.recordings.labels.change, recording, changes, known)
-    sessions.listings_changed()
+    sessions.announce_recordings()
     return {"label": msgspec.structs.asdict(label)}
 
 
@@ -271,7 +271,7 @@ async def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
     if recording in sessions.writing():
         raise SessionError("an open run still writes this recording; restart its model or close its session, then delete it")
     trash = await asyncio.to_thread(sessions.recordings.delete, recording)
-    sessions.listings_changed()
+    sessions.announce_recordings()
     return {"trash": trash}
 
 

@@ -217,7 +217,7 @@ class Sessions:
             await self.close(ended.name)
         self._count += 1
         name = f"s{self._count}"
-        session = Session(name, path, self.workers, self.recordings, model, self.listings_changed)
+        session = Session(name, path, self.workers, self.recordings, model, self.announce_recordings)
         self._sessions[name] = session
         self._views[name] = SceneView(session)
         if ended is not None:
@@ -246,10 +246,10 @@ class Sessions:
         """Ends all sessions."""
         await asyncio.gather(*(self.close(name) for name in list(self._sessions)))
 
-    def listings_changed(self) -> None:
+    def announce_recordings(self) -> None:
         """Informs all browsers that a recording began, ended, or was labelled or deleted."""
         for session in self.all():
-            session.listings += 1
+            session.recording_changes += 1
             session.changed(facts=True)
 
     def saved(self, path: Path) -> None:

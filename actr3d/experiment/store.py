@@ -24,7 +24,7 @@ from actr3d.values import to_json
 SPECIFICATION, FACTS, TRIALS, LOCK = "experiment.json", "facts.json", "trials.sqlite", "lock"
 """The names of the files in the folder."""
 UNFINISHED = re.compile(rf"{re.escape(SPECIFICATION)}\.[0-9a-f]{{8}}")
-"""The names of files that a command may have left which was ended while it made the folder."""
+"""The names of unfinished files: those of a command that was ended while it created the folder."""
 CHUNK = 5_000
 """Rows that are read at a time."""
 COLUMN_TYPES = ("null", "boolean", "integer", "real", "text")

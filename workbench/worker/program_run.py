@@ -439,7 +439,7 @@ class ProgramRun(ControlledRun):
         self._made_at += [self._clock] * (self._changes.made - len(self._made_at))
 
     def _arrive(self) -> None:
-        """Pauses the program, which has gone to another time; a change that a user undoes is forgotten there."""
+        """Pauses the program, which has reached the time that the user wants; if the user undoes a change, completes that."""
         self._rush = None
         if self._undoing is None:
             self._controller.went_back()
@@ -447,7 +447,7 @@ class ProgramRun(ControlledRun):
             self._finish_undo(self._undoing)
 
     def _finish_undo(self, branch: KeptBranch) -> None:
-        """Forgets what came after the present, where the program was before the change that a user undoes."""
+        """Completes the undoing of a change: the program is where it was before the change, and what came after that is forgotten."""
         self._undoing = None
         if self._recorded is not None:
             self._recorded.cut()
@@ -465,7 +465,7 @@ class ProgramRun(ControlledRun):
         while True:
             self._check_left()
             if self._rush is not None:
-                # The changes of that moment that are not undone come before the one that is.
+                # While a change is undone, the other changes of that moment are repeated before the program pauses.
                 if to < self._rush or (to == self._rush and (not again or self._undoing is not None)):
                     self._clock = to
                     return
