@@ -8,7 +8,7 @@ import pytest
 
 from actr3d.actr import Model
 from actr3d.actr.kernel.model import ensure_converted
-from actr3d.actr.lint.slot_names import is_slip
+from actr3d.actr.lint.slot_names import is_misspelt
 from actr3d.actr.loading import load_text
 from actr3d.errors import ModelWarning
 from tests.helpers.warnings_of_models import HEAD, warned
@@ -74,7 +74,7 @@ def test_slots_that_the_memory_holds_are_let_be() -> None:
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "slip"),
+    ("one", "other", "misspelt"),
     [
         ("cuont", "count", True),
         ("cont", "count", True),
@@ -96,9 +96,9 @@ def test_slots_that_the_memory_holds_are_let_be() -> None:
         ("count", "count", False),
     ],
 )
-def test_slips(one: str, other: str, slip: bool) -> None:
-    assert is_slip(one, other) is slip
-    assert is_slip(other, one) is slip
+def test_which_names_count_as_misspelt(one: str, other: str, misspelt: bool) -> None:
+    assert is_misspelt(one, other) is misspelt
+    assert is_misspelt(other, one) is misspelt
 
 
 @pytest.mark.parametrize(

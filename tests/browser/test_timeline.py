@@ -725,7 +725,7 @@ def test_runs_of_a_program_follow_each_other_as_its_clock_counts_them(pages: Cal
     rows.hover()
     rows.get_by_role("button", name="why").click()
     expect(page.locator("#why-text")).to_contain_text("say: matches, and is about to fire")
-    page.evaluate("async () => (await part('inspector/asked.js')).shownReasons.value = 'conflict'")
+    page.evaluate("async () => (await part('inspector/explanation.js')).shownReasons.value = 'conflict'")
     conflict = page.get_by_role("region", name="Conflict set of top#2")
     expect(conflict).to_contain_text(f"at {ends['printed'][1] - 0.05:.3f} s: 1 matched, say is about to fire")
     expect(conflict).to_contain_text("what=red")

@@ -275,10 +275,10 @@ def test_all_browsers_hear_that_a_recording_was_labelled_or_deleted(desk: Desk, 
         return desk.do(call(app, f"/api/recordings/{path}", HOST, COOKIE, ORIGIN, JSON, OURS, method="POST", body=sent)).status
 
     for path, body in ((f"{name}/label", {"name": "x"}), (f"{name}/delete", {})):
-        before, heard = talk.session.facts_version, talk.facts["listings"]
+        before, heard = talk.session.facts_version, talk.facts["recording_changes"]
         assert post(path, body) == 200
         assert talk.session.facts_version > before
-        assert talk.facts["listings"] == heard + 1
+        assert talk.facts["recording_changes"] == heard + 1
 
 
 def test_browsers_hear_that_a_run_of_another_session_has_begun_and_ended(desk: Desk, tmp_path: Path) -> None:
@@ -294,9 +294,9 @@ def test_browsers_hear_that_a_run_of_another_session_has_begun_and_ended(desk: D
         other[0].wait(lambda: other[0].facts["run"] == 2)
 
     for change in (begins, lambda: other[0].say("run"), is_left, lambda: desk.do(other[0].session.stop())):
-        heard = watching.facts["listings"]
+        heard = watching.facts["recording_changes"]
         change()
-        watching.wait(lambda before=heard: watching.facts["listings"] > before)
+        watching.wait(lambda before=heard: watching.facts["recording_changes"] > before)
         sleep(0.2)  # in which the rest of what this change tells arrives
 
 

@@ -56,7 +56,7 @@ class _Again(EndOfRun):
     """Ends a program so that it can be run again up to an earlier time."""
 
 
-class _RecordedOnce:
+class _PassRecorder:
     """Passes what a program does to its recording, except what an earlier pass through it has recorded; the order is always the same.
 
     Args:
@@ -193,7 +193,7 @@ class ProgramRun(ControlledRun):
         self._commands = [RecordedCommand(*command) for command in start.commands]
         """The changes of users, which each pass through the program repeats."""
         self._changes = ProgramChanges(self._limits, self._commands)
-        self._recorded: _RecordedOnce | None = None
+        self._recorded: _PassRecorder | None = None
         self._recorded_simulations: set[str] = set()
         """The names of the facts of simulations that are recorded."""
         self._waits: tuple[Scheduler, int, int] | None = None
@@ -308,7 +308,7 @@ class ProgramRun(ControlledRun):
         trace.listen(self._note_failure)
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
-            limits.recorder = self._recorded = again = _RecordedOnce(self._recording, self._recorded_simulations, lambda: self._left)
+            limits.recorder = self._recorded = again = _PassRecorder(self._recording, self._recorded_simulations, lambda: self._left)
             trace.listen(again.event)
         self._changes = ProgramChanges(limits, self._commands)
         if not self._listing.simulates:  # otherwise it continues until its simulation is at its start
@@ -439,7 +439,7 @@ class ProgramRun(ControlledRun):
         self._made_at += [self._clock] * (self._changes.made - len(self._made_at))
 
     def _arrive(self) -> None:
-        """Pauses the program, which has gone to another time; a change that a user undoes is forgotten there."""
+        """Pauses the program, which has reached the time that the user wants; if the user undoes a change, completes that."""
         self._rush = None
         if self._undoing is None:
             self._controller.went_back()
@@ -447,7 +447,7 @@ class ProgramRun(ControlledRun):
             self._finish_undo(self._undoing)
 
     def _finish_undo(self, branch: KeptBranch) -> None:
-        """Forgets what came after the present, where the program was before the change that a user undoes."""
+        """Completes the undoing of a change: the program is where it was before the change, and what came after that is forgotten."""
         self._undoing = None
         if self._recorded is not None:
             self._recorded.cut()
@@ -465,7 +465,7 @@ class ProgramRun(ControlledRun):
         while True:
             self._check_left()
             if self._rush is not None:
-                # The changes of that moment that are not undone come before the one that is.
+                # While a change is undone, the other changes of that moment are repeated before the program pauses.
                 if to < self._rush or (to == self._rush and (not again or self._undoing is not None)):
                     self._clock = to
                     return

@@ -18,7 +18,7 @@ from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import MethodWrapper, Model
 from actr3d.actr.kernel.source_code import function_node, names_defined_in, source_of, syntax_tree
 from actr3d.actr.lint.slot_inference import slots_held
-from actr3d.actr.lint.slot_names import GIVERS, READERS, SURE, slip_of, slots_in, text_of, vocabulary
+from actr3d.actr.lint.slot_names import GIVERS, READERS, SURE, misspelling_of, slots_in, text_of, vocabulary
 from actr3d.actr.modules.imaginal import ImaginalModule
 from actr3d.actr.procedural.production import Production
 from actr3d.errors import PatternException, did_you_mean
@@ -140,7 +140,7 @@ def _check_slots(call: ast.Call, owner: object, method: str, func: Callable[...,
         read = words.matched | words.asked
         slots = [slot for slot in slots_in(text) if slot not in read | words.mentioned | words.modified]
         read &= words.giving  # slots that are read but never set are reported where they are read
-        near = [(slot, slip_of(slot, (other for other in read if words.apart(slot, other)))) for slot in slots]
+        near = [(slot, misspelling_of(slot, (other for other in read if words.apart(slot, other)))) for slot in slots]
         found = [
             (slot, f"no production and no request reads a slot '{slot}'", f"; did you mean '{meant}'?") for slot, meant in near if meant
         ]
@@ -171,7 +171,7 @@ def _check_wildcards(call: ast.Call, func: Callable[..., Any], where: str, known
     except PatternException:
         return  # the request itself will raise this
     for name in sorted(names):
-        meant = slip_of(name, known)
+        meant = misspelling_of(name, known)
         if meant and _VARIABLE.findall(source_of(func)).count(name) == 1:
             warn_at(f"{where}'?{name}' in '{text}' matches anything; did you mean '?{meant}'?", func, call.lineno)
 
