@@ -60,8 +60,6 @@ class ModelListing:
     kind: str = "program"
     """`simulation` if the file defines `build`, otherwise `program`."""
     parameters: tuple[Parameter, ...] = ()
-    simulates: bool = False
-    """Whether it creates simulations itself: its text calls `Simulation`."""
     agents: tuple[WrittenAgent, ...] = ()
     problems: tuple[Problem, ...] = field(default=())
 
@@ -93,7 +91,6 @@ def listing_of(source: str, filename: str = "model.py") -> ModelListing:
         text=text,
         kind="simulation" if builds else "program",
         parameters=tuple(parameters_in(tree, build_of(tree)) if builds else _of_first_lines(source)),
-        simulates=any(isinstance(node, ast.Call) and last_name(node.func) == "Simulation" for node in ast.walk(tree)),
         agents=tuple(_agents(tree)),
         problems=problems,
     )

@@ -199,3 +199,24 @@ def test_none_among_what_is_waited_for_is_said(what: str) -> None:
         world.run(1)
     assert [(w.filename, w.lineno) for w in said] == [("loud.py", 5)]
     assert world.seen == 0.2
+
+
+@pytest.mark.parametrize("outer", ["p(goal='count:?x')", "init()"])
+def test_a_production_inside_another_one_is_said(outer: str) -> None:
+    said = warned(f"def {outer}:\n    goal.set('count:1')\n    def inner(goal='count:1', retrieval=None):\n        goal.clear()")
+    name = outer.partition("(")[0]
+    (text,) = [(text, line) for text, line in said if "inner" in text]
+    assert text == (f"production '{name}': 'inner' is inside it, and therefore no production; it needs the indentation of '{name}'", 12)
+
+
+@pytest.mark.parametrize(
+    "inner",
+    [
+        "def inner(goal='count:1'):\n        return goal\n    print(inner())",  # a function that the production calls
+        "def inner(much='count:1'):\n        return much",
+        "def inner(goal):\n        return goal",
+        "def inner():\n        return 1",
+    ],
+)
+def test_other_functions_inside_a_production_are_not(inner: str) -> None:
+    assert [text for text, _ in warned(f"def p(goal='count:?x'):\n    {inner}") if "inside" in text] == []

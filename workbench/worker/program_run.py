@@ -33,6 +33,7 @@ from actr3d.trace import Run, Trace, TraceEvent, run_of, top_path
 from actr3d.values import to_json
 from workbench.curves import joined
 from workbench.loader import ModelListing
+from workbench.made_simulations import makes_simulations
 from workbench.program_time import RunTimes
 from workbench.worker.change_menu import change_menu
 from workbench.worker.controlled_run import ControlledRun, nothing_to_undo
@@ -151,6 +152,7 @@ class ProgramRun(ControlledRun):
         self._controller = controller
         self._listing = listing
         self._source = with_values(start.source, start.settings)
+        self._simulates = makes_simulations(self._source, Path(start.folder), start.helpers)
         self._seed = fresh_seed() if start.seed is None else start.seed
         self._limits = RunLimits(trace=Trace("all"))
         self._output: ProgramOutput | None = None
@@ -213,7 +215,7 @@ class ProgramRun(ControlledRun):
     def play(self) -> None:
         """Runs the program, and again if a user goes back, until the worker must stop."""
         start, controller = self._controller.channel.start, self._controller
-        if not self._listing.simulates:
+        if not self._simulates:
             self._introduce()
         try:
             if start.record is not None:
@@ -262,7 +264,7 @@ class ProgramRun(ControlledRun):
             if self._shown is not None and self._shown.simulation.world.bodies:
                 self._controller.use_real_time()
             self._show_recorded()
-            if self._listing.simulates:
+            if self._simulates:
                 self._controller.show()
                 self._controller.channel.flush()  # before the program does anything that could prevent it
 
@@ -311,7 +313,7 @@ class ProgramRun(ControlledRun):
             limits.recorder = self._recorded = again = _PassRecorder(self._recording, self._recorded_simulations, lambda: self._left)
             trace.listen(again.event)
         self._changes = ProgramChanges(limits, self._commands)
-        if not self._listing.simulates:  # otherwise it continues until its simulation is at its start
+        if not self._simulates:  # otherwise it continues until its simulation is at its start
             self._hold_at_start()
         exited: SystemExit | None = None
         try:

@@ -35,6 +35,7 @@ def check_actions(production: Production, productions: Sequence[Production]) -> 
     func, context = production.original_func, production.context
     where = f"production '{production.name}': "
     _check_brackets(node, func, context)
+    _check_inner(production, node)
     known = {*production.variables, *production.assigned}
     if not production.any_bound:
         _check_names(production, known, where)
@@ -59,6 +60,20 @@ def _check_names(production: Production, known: set[str], where: str) -> None:
         if isinstance(part, ast.Name) and part.id not in inside:
             inside.add(part.id)
             warn_at(f"{where}nothing defines '{part.id}'{did_you_mean(part.id, {*known, *production.context})}", func, part.lineno)
+
+
+def _check_inner(production: Production, node: ast.FunctionDef) -> None:
+    """Finds productions that are defined inside another one, which does not call them."""
+    inside = [part for statement in node.body for part in ast.walk(statement)]
+    read = {part.id for part in inside if isinstance(part, ast.Name)}
+    for part in inside:
+        if not isinstance(part, ast.FunctionDef) or part.name in read:
+            continue
+        names = [one.arg for one in part.args.args]
+        matched = [name for name in names if isinstance(production.context.get(name), Model)]
+        if names and matched == names and len(part.args.defaults) == len(names):
+            what = f"'{part.name}' is inside it, and therefore no production; it needs the indentation of '{production.name}'"
+            warn_at(f"production '{production.name}': {what}", production.original_func, part.lineno)
 
 
 @lru_cache(maxsize=16)
