@@ -1,6 +1,6 @@
 // The curves that are plotted below the lanes, which the worker computes: those of bodies, with a value at each tick, and those of events,
 // each with its own times. While the run is active, the newest stretch is requested, coarsely if it is fast; what was omitted is requested
-// when it pauses: first the visible stretch, then the rest, until every value is known.
+// when it pauses: first the visible stretch, then the rest, until every value or a great many are known.
 
 import { computed, effect, signal } from "../vendor/preact.js";
 import { rememberedByModel } from "../model_storage.js";
@@ -17,6 +17,8 @@ const AT_ONCE = 150; // the number of moments per request while it is active
 const OVERVIEW = 1500; // the number of moments for a whole run of which nothing is known yet
 const PIECE = 1000; // the number of ticks per request when paused: longer stretches would delay commands
 const MAX_VALUES = 5000; // the maximum number of values of a curve per request
+const MAX_KNOWN = 1_000_000; // from so many known values on, only what is missing in a short visible stretch is requested
+const SHORT = 100_000; // the number of ticks of the longest of these
 const NOTHING = { times: [], values: [], slope: null };
 const CHUNKS = "activation over time";
 const OF_CHUNK = /^(.*?): (.*) ((activation|base level|spreading|fixed|inhibition)( \d+)?( without noise)?) over time$/s; // the names of curves of chunks, as `workbench/chunk_curves.py` has them
@@ -256,6 +258,11 @@ function withNews({ times, values } = { times: [], values: [] }, news, first, la
   return { times, values, slope: news.slope, why: news.why };
 }
 
+/** Returns how many values are known. */
+function size() {
+  return [...known.values.values(), ...known.events.values().map(({ values }) => values)].reduce((sum, { length }) => sum + length, 0);
+}
+
 /** Joins stretches that overlap or follow each other. */
 function joined(stretches) {
   const found = [];
@@ -309,7 +316,9 @@ function next(list) {
   const newest = (from, most) => ({ from, to: end, most, whole: !bodies || (end - from) / tick < most - 2 });
   if (known.until === null) return newest(0, OVERVIEW);
   const { from, to } = span.peek();
-  const missing = hurried.peek() ? null : (gap(Math.max(0, from), Math.min(to, end)) ?? gap(0, end));
+  const many = size() >= MAX_KNOWN;
+  const visible = many && (to - from) / tick > SHORT ? null : gap(Math.max(0, from), Math.min(to, end));
+  const missing = hurried.peek() ? null : visible ?? (many ? null : gap(0, end));
   // While the run is active there is always new data: requests alternate between it and what was omitted.
   newer = running.peek() && (!newer || !missing);
   if (newer) return end > known.until + near() ? newest(known.until, AT_ONCE) : null;

@@ -918,6 +918,52 @@ def test_curves_that_are_equal_do_not_hide_each_other(blank: Page) -> None:
     assert moments == {"e": [-1.5, 48.5], "f": [1.5, 51.5], "g": [-1.5, 48.5]}
 
 
+DAY = """
+from actr3d.actr import *
+
+class Sleeper(Model):
+    def start(self):
+        while True:
+            yield 20_000
+
+class Day(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+    base = DMBaseLevel(memory)
+    sleeper = Sleeper()
+    def init():
+        for name in ("cat", "dog", "cow", "hen"):
+            memory.add(name)
+
+day = Day()
+day.run(86_400)
+"""
+SIZE = "async () => [...(await part('timeline/curves.js')).known.events.values()].reduce((sum, { values }) => sum + values.length, 0)"
+
+
+@pytest.mark.slow
+def test_of_a_very_long_run_the_page_keeps_a_bounded_number_of_values_and_all_of_what_one_looks_at(
+    pages: Callable[..., Page], workbench: Served
+) -> None:
+    (workbench.folder / "day.py").write_text(DAY, encoding="utf-8")
+    page = pages("day.py")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    chunks = [f"memory: {name} activation over time" for name in ("cat", "dog", "cow", "hen")]
+    page.evaluate("async (chunks) => (await part('timeline/curves.js')).plotAll(chunks, true)", chunks)
+    until(page, lambda: page.evaluate(SIZE) >= 1_000_000)
+    page.wait_for_timeout(1000)
+    before = page.evaluate(SIZE)
+    assert before < 1_100_000
+    page.wait_for_timeout(1000)
+    assert page.evaluate(SIZE) == before
+    page.evaluate(
+        "async () => { const { span, zoom } = await part('timeline/view.js'); zoom(100 / (span.value.to - span.value.from), 80_000, 0, 86_400); }"
+    )
+    until(page, lambda: page.evaluate(SIZE) > before + 4 * 9_900)
+
+
 def test_parts_of_an_activation_of_one_kind_have_different_dashes(blank: Page) -> None:
     parts = ["activation", "base level", "base level 2", "spreading", "spreading 2"]
     dashes = blank.evaluate(
