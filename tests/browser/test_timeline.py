@@ -943,9 +943,7 @@ SIZE = "async () => [...(await part('timeline/curves.js')).known.events.values()
 
 
 @pytest.mark.slow
-def test_of_a_very_long_run_the_page_keeps_a_bounded_number_of_values_and_all_of_what_one_looks_at(
-    pages: Callable[..., Page], workbench: Served
-) -> None:
+def test_of_a_very_long_run_the_page_keeps_a_bounded_number_of_values(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "day.py").write_text(DAY, encoding="utf-8")
     page = pages("day.py")
     page.click("#run")
