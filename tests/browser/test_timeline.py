@@ -956,9 +956,10 @@ def test_of_a_very_long_run_the_page_keeps_a_bounded_number_of_values(pages: Cal
     assert before < 1_100_000
     page.wait_for_timeout(1000)
     assert page.evaluate(SIZE) == before
-    page.evaluate(
-        "async () => { const { span, zoom } = await part('timeline/view.js'); zoom(100 / (span.value.to - span.value.from), 80_000, 0, 86_400); }"
-    )
+    page.evaluate("""async () => {
+        const { span, zoom } = await part('timeline/view.js');
+        zoom(100 / (span.value.to - span.value.from), 80_000, 0, 86_400);
+    }""")
     until(page, lambda: page.evaluate(SIZE) > before + 4 * 9_900)
 
 
