@@ -55,7 +55,7 @@ def test_published_base_levels(profile: str, limit: int | None) -> None:
 
 
 @pytest.mark.parametrize(("profile", "expected"), [("python-actr", None), ("act-r-7", 0)])
-def test_which_form_is_the_profiles_own(profile: str, expected: int | None) -> None:
+def test_each_profile_has_its_own_form(profile: str, expected: int | None) -> None:
     times = [0, 10, 40, 70, 90.0]
     assert base_level(times, 100, profile) == base_level(times, 100, profile, limit=expected)
 
@@ -108,14 +108,14 @@ def test_youngest_age() -> None:
 @pytest.mark.parametrize("decay", [0.0, 0.5, 1, 1.0, 2.0, None])
 @pytest.mark.parametrize("limit", [None, 0, 1, 3])
 @pytest.mark.parametrize("times", [[0.0, 0.0, 0.0, 0.0, 0.0], [3.0] * 3, [0.0, 3.0, 3.0, 3.0]], ids=str)
-def test_there_is_always_a_number(profile: str, decay: float | None, limit: int | None, times: list[float]) -> None:
+def test_the_base_level_is_always_a_finite_number(profile: str, decay: float | None, limit: int | None, times: list[float]) -> None:
     for read in (3.0, 3.001, 4.0):
         value = base_level(times, read, profile, decay=decay, limit=limit)
         assert math.isfinite(value)
         assert value <= math.log(len(times) * 2 * 0.001 ** -(decay or 0)) + 1e-9
 
 
-def test_simultaneous_references_count_as_often_as_they_are() -> None:
+def test_simultaneous_references_each_count() -> None:
     assert base_level([2.0] * 5, 6.0, limit=2) == near(math.log(5 * 4**-0.5))
 
 
@@ -148,7 +148,7 @@ def test_a_given_base_level_stays_until_it_is_to_be_calculated() -> None:
     assert agent.memory.get_activation("b") == near(math.log(2 * 0.005**-0.5))
 
 
-def test_a_chunk_that_the_module_never_met() -> None:
+def test_a_chunk_that_is_unknown_to_the_module() -> None:
     memory = Memory(Buffer())
     agent = living(memory=memory, base=DMBaseLevel(memory))
     agent.memory.dm.append(Chunk("a"))
@@ -199,7 +199,7 @@ def test_fixed_amounts_add_up() -> None:
     assert [agent.memory.get_activation(text) for text in "abc"] == [0.25, 2.5, 0.25]
 
 
-def test_modules_add_up_in_order_and_may_be_ones_own() -> None:
+def test_modules_add_up_in_order_and_may_be_user_defined() -> None:
     class Own(MemorySubModule):
         def __init__(self, memory: Memory) -> None:
             MemorySubModule.__init__(self, memory)
@@ -245,7 +245,7 @@ def test_the_order_in_which_uses_are_declared_does_not_count_in_act_r_7(limit: i
     assert found == near([found[0]] * 3)
 
 
-def test_times_that_are_not_kept_cannot_come_back() -> None:
+def test_discarded_times_cannot_be_used_again() -> None:
     memory = Memory(Buffer())
     agent = living(memory=memory, base=DMBaseLevel(memory, limit=0))
     agent.memory.add("x")

@@ -29,7 +29,7 @@ def test_a_given_association() -> None:
     assert agent.memory.get_activation("b") == near(2 * 2 * -0.1)
 
 
-def test_retrievals_strengthen_links_whose_time_stands_still_in_python_act_r() -> None:
+def test_retrievals_strengthen_links_which_do_not_decay_in_python_act_r() -> None:
     agent = associating()
     agent.memory.add("b")
     agent.focus.set("a c")

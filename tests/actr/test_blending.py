@@ -85,7 +85,7 @@ def test_the_threshold_is_compared_with_the_best_or_with_all_together() -> None:
         assert agent.memory.error is not arrives
 
 
-def test_a_chunk_without_numbers_takes_act_r_7s_time_all_the_same() -> None:
+def test_a_chunk_without_numbers_also_takes_act_r_7s_time() -> None:
     agent = blending("act-r-7")
     agent.memory.add("a:x", fixed=0.2)
     agent.memory.add("a:y", fixed=0.1)
@@ -125,7 +125,7 @@ def test_activations_of_any_size(profile: str, level: float) -> None:
     assert agent.buffer.chunk["n"] == near(1.75, rel=1e-9)
 
 
-def test_what_is_no_number_or_has_other_slots_stays_out_in_python_actr() -> None:
+def test_non_numbers_and_chunks_with_other_slots_are_left_out_in_python_actr() -> None:
     agent = blending()
     for text, fixed in [("n:2 a:x", 1.0), ("n:4 a:y", 1.0), ("n:many a:x", 0.5), ("n:100", 0.9), ("n:100 a:x b:y", 0.9)]:
         agent.memory.add(text, fixed=fixed)
@@ -236,7 +236,7 @@ def test_the_sum_of_numbers_does_not_make_up_for_missing_ones() -> None:
     assert blend_of(rows, "is:thing")["n"] == near(3.0)
 
 
-def test_what_was_asked_for_stays_as_it_was_asked_for() -> None:
+def test_requested_slots_keep_the_requested_values() -> None:
     rows = [("size:small n:1", 0.0), ("size:small n:2", 0.0)]
     chunk = blend_of(rows, "size:small n:1", ("small", "tiny", 0.0), ("1", "2", 0.0))
     assert chunk == {"size": "small", "n": "1"}

@@ -99,7 +99,7 @@ def test_a_chunk_in_two_stores_keeps_both_up_to_date() -> None:
     assert one.with_value("a", "1") == other.with_value("a", "1") == []
 
 
-def test_copies_stand_alone() -> None:
+def test_copies_are_independent() -> None:
     store = ChunkStore()
     for number in range(2000):  # deeper than Python's stack, were copying to go from chunk to chunk
         store.keep(Chunk({"n": number}))
@@ -112,7 +112,7 @@ def test_copies_stand_alone() -> None:
         assert store.with_value("n", "changed") == []
 
 
-def test_a_copied_chunk_lies_in_no_memory() -> None:
+def test_a_copied_chunk_is_in_no_memory() -> None:
     store = ChunkStore()
     chunk = Chunk("a:1")
     store.keep(chunk)

@@ -89,7 +89,7 @@ def test_the_past_is_explained_as_the_present_was(seed: int) -> None:
         assert agent.explain(then.time) == then
 
 
-def test_asking_changes_nothing() -> None:
+def test_reading_changes_nothing() -> None:
     runs: list[list[str]] = []
     for asks in (False, True):
         agent = agent_of(NOISY)
@@ -253,7 +253,7 @@ class Agent(ACTR):
     assert "ask-answer-1" not in [reason.name for reason in agent.explain(0.05).productions]
 
 
-def test_what_cannot_be_explained_is_an_error() -> None:
+def test_impossible_explanations_are_errors() -> None:
     agent = agent_of(NOISY)
     agent.run(0.1)
     with pytest.raises(ParameterError, match="only a run traced"):
@@ -275,7 +275,7 @@ def test_a_trace_of_a_lower_level_cannot_explain_the_past() -> None:
         agent.explain(0.05)
 
 
-def test_neither_tracing_nor_asking_reads_a_property_or_calls_a_pattern() -> None:
+def test_neither_tracing_nor_explaining_reads_a_property_or_calls_a_pattern() -> None:
     source = """
 from actr3d.actr import *
 calls = []

@@ -96,7 +96,7 @@ class Agent(ACTR):
 """
 
 
-def test_a_modellers_own_utility_is_what_counts_and_is_not_asked_again() -> None:
+def test_a_modellers_own_utility_counts_and_is_not_called_again() -> None:
     agent = agent_of(OWN)
     agent.traced()
     agent.run(0.01)
@@ -113,7 +113,7 @@ def test_a_modellers_own_utility_is_what_counts_and_is_not_asked_again() -> None
     assert asked == before
 
 
-def test_a_modellers_own_module_is_asked_at_choices_only() -> None:
+def test_a_modellers_own_module_is_called_at_choices_only() -> None:
     agent = agent_of("""
 asked = []
 class Mine(ProceduralSubModule):

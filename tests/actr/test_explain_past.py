@@ -52,7 +52,7 @@ def test_results_of_pattern_functions_are_explained_without_calling_them_again()
     assert len(calls) == told
 
 
-def test_a_function_that_was_asked_of_something_else_is_not_known() -> None:
+def test_the_result_of_a_function_for_other_arguments_is_unknown() -> None:
     agent = agent_of("""
 class Agent(ACTR):
     goal, side = Buffer(), Buffer()
@@ -214,7 +214,7 @@ def test_nothing_is_explained_from_before_an_agent_was_added() -> None:
 
 
 @pytest.mark.parametrize("at", [float("nan"), float("inf"), "0.1", object()])
-def test_what_is_no_time_is_an_error(at: Any) -> None:
+def test_an_invalid_time_is_an_error(at: Any) -> None:
     agent = agent_class()()
     agent.traced()
     agent.run(0.1)

@@ -47,7 +47,7 @@ from tests.helpers.warnings_of_models import HEAD, warned
         ("def init(): memory.treshold = 3", "Memory has no parameter 'treshold'; did you mean 'threshold'?", 10),
     ],
 )
-def test_what_is_not_meant_is_said_at_its_line(body: str, message: str, line: int) -> None:
+def test_probable_mistakes_are_warned_of_at_their_line(body: str, message: str, line: int) -> None:
     if body == "def init(): goal.set('?x')":
         with pytest.raises(ChunkError, match=r"'\?x' is not bound"), pytest.warns(ModelWarning, match="nothing binds"):
             load_text(HEAD + "    " + body, "loud.py").Agent().run(0)
@@ -80,7 +80,7 @@ def test_what_is_not_meant_is_said_at_its_line(body: str, message: str, line: in
         "production_time = 0.1\nproduct = 3\nthreshold = 2",
     ],
 )
-def test_what_may_be_meant_is_let_be(body: str) -> None:
+def test_legitimate_code_gives_no_warning(body: str) -> None:
     assert warned(body) == []
 
 

@@ -39,7 +39,7 @@ def said_of_world(body: str, agent: bool) -> list[tuple[str, int]]:
         ("def go(self):\n    self.stop", "'self.stop' without brackets does nothing", 7),
     ],
 )
-def test_methods_of_environments_are_looked_at(body: str, message: str, line: int, agent: bool) -> None:
+def test_methods_of_environments_are_checked(body: str, message: str, line: int, agent: bool) -> None:
     call = "goal.clear" if agent else "clear"
     said = said_of_world(body.replace("{call}", call), agent)
     assert len(said) == 1, said
@@ -59,7 +59,7 @@ def test_methods_of_environments_are_looked_at(body: str, message: str, line: in
         "def go(self):\n    self.stop()\n    self.part.name\n    self.go()",
     ],
 )
-def test_methods_that_may_be_meant_are_let_be(body: str) -> None:
+def test_legitimate_methods_give_no_warning(body: str) -> None:
     assert said_of_world(body, agent=True) == []
 
 
@@ -82,7 +82,7 @@ def test_methods_that_may_be_meant_are_let_be(body: str) -> None:
         ("def p(goal=''):\n    self.profil = 1\n    self.stop()", "Agent has no parameter 'profil'; did you mean 'profile'?", 11),
     ],
 )
-def test_parameters_that_are_set_under_a_misspelt_name_are_said(body: str, message: str, line: int) -> None:
+def test_misspelt_parameters_are_warned_of(body: str, message: str, line: int) -> None:
     said = [one for one in warned(body, 1) if "tresholds" not in one[0]]
     assert len(said) == 1, said
     assert message in said[0][0]
@@ -125,7 +125,7 @@ def memory() -> Memory:
         (lambda: ACTR(), "production_tme"),
     ],
 )
-def test_every_kind_of_module_says_it_and_takes_the_value_all_the_same(make: Callable[[], Any], name: str) -> None:
+def test_every_kind_of_module_warns_and_still_takes_the_value(make: Callable[[], Any], name: str) -> None:
     module = make()
     with pytest.warns(ModelWarning, match=f"{type(module).__name__} has no parameter '{name}'; did you mean") as said:
         setattr(module, name, 0.5)
@@ -133,7 +133,7 @@ def test_every_kind_of_module_says_it_and_takes_the_value_all_the_same(make: Cal
     assert getattr(module, name) == 0.5
 
 
-def test_other_attributes_are_let_be() -> None:
+def test_other_attributes_give_no_warning() -> None:
     for module, name in [(memory(), "note"), (memory(), "threshold"), (memory(), "thresholds"), (DMSpreading(memory()), "strength")]:
         setattr(module, name, 1)
     for name in ("production_times", "production_time_total", "production", "goal", "goal2"):
@@ -147,7 +147,7 @@ def test_other_attributes_are_let_be() -> None:
     module.noize = 2
 
 
-def test_display_says_so_where_it_is_called() -> None:
+def test_display_warns_where_it_is_called() -> None:
     with pytest.warns(ModelWarning, match="display.. opens no window here") as said:
         display(None)
     assert said[0].filename == __file__

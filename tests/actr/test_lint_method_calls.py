@@ -35,7 +35,7 @@ COUNTING = (
         ),
     ],
 )
-def test_a_misspelt_slot_is_said(body: str, message: str) -> None:
+def test_a_misspelt_slot_is_warned_of(body: str, message: str) -> None:
     said = warned(COUNTING + body)
     assert len(said) == 1, said
     assert message in said[0][0]
@@ -59,13 +59,13 @@ def test_a_misspelt_slot_is_said(body: str, message: str) -> None:
         "    self.eye.set('cuont:1')\ndef show(self): pass",
     ],
 )
-def test_other_slots_are_let_be(body: str) -> None:
+def test_other_slots_give_no_warning(body: str) -> None:
     if "eye.set" in body:
         body = body.replace("self.eye.set", "print")
     assert warned(COUNTING + body) == []
 
 
-def test_slots_that_the_memory_holds_are_let_be() -> None:
+def test_slots_that_the_memory_holds_give_no_warning() -> None:
     text = HEAD + "    def init():\n        memory.request('numbr:?x')\n        memory.add('number:1')\n"
     agent: Any = load_text(text, "loud.py").Agent()
     ensure_converted(agent)
@@ -96,7 +96,7 @@ def test_slots_that_the_memory_holds_are_let_be() -> None:
         ("count", "count", False),
     ],
 )
-def test_slips(one: str, other: str, slip: bool) -> None:
+def test_misspellings_are_recognized(one: str, other: str, slip: bool) -> None:
     assert is_slip(one, other) is slip
     assert is_slip(other, one) is slip
 
@@ -120,7 +120,7 @@ def test_slips(one: str, other: str, slip: bool) -> None:
         ("def p(goal='a'):\n    self.stop", "'self.stop' without brackets does nothing; did you mean 'self.stop()'?"),
     ],
 )
-def test_actions_that_are_not_meant_are_said(body: str, message: str) -> None:
+def test_probable_mistakes_in_actions_are_warned_of(body: str, message: str) -> None:
     said = [(text, line) for text, line in warned(body) if "slot" not in text]
     assert len(said) == 1, said
     assert message in said[0][0]
@@ -143,7 +143,7 @@ def test_actions_that_are_not_meant_are_said(body: str, message: str) -> None:
         "def p(goal='a'):\n    self.stop()\n    self.eye.busy\n    memory.threshold",
     ],
 )
-def test_actions_that_may_be_meant_are_let_be(body: str) -> None:
+def test_legitimate_actions_give_no_warning(body: str) -> None:
     assert [text for text, _ in warned(body)] == []
 
 
@@ -161,7 +161,7 @@ def agent_that(body: str) -> Any:
         ("1 / 0", ZeroDivisionError, ""),
     ],
 )
-def test_an_error_in_what_a_production_set_going_names_the_production(action: str, error: type[Exception], note: str) -> None:
+def test_an_error_in_a_method_that_a_production_started_names_the_production(action: str, error: type[Exception], note: str) -> None:
     agent = agent_that(f"    def act(self):\n        yield 0.2\n        {action}\n")
     with pytest.raises(error) as caught:
         agent.run(1)
@@ -191,7 +191,7 @@ def test_a_generator_called_after_a_production_has_failed_is_not_its() -> None:
 
 
 @pytest.mark.parametrize("what", ["(None, 0.2)", "[self.note(), (0.2,)]", "(0.2, (None, 'name'))"])
-def test_none_among_what_is_waited_for_is_said(what: str) -> None:
+def test_none_in_a_tuple_of_waits_is_warned_of(what: str) -> None:
     start = f"    def start(self):\n        yield {what}\n        self.seen = self.now()\n"
     text = f"from actr3d.actr import *\nclass World(Model):\n    seen = 0\n{start}    def note(self): pass\n"
     world: Any = load_text(text, "loud.py").World()

@@ -32,7 +32,7 @@ from tests.helpers.warnings_of_models import warned
         ("def p(memory='error:Ture'): pass", "and never 'Ture'; did you mean 'error:True'?"),
     ],
 )
-def test_what_can_never_match_is_said(body: str, message: str) -> None:
+def test_patterns_that_can_never_match_are_warned_of(body: str, message: str) -> None:
     said = warned(body)
     assert len(said) == 1, said
     assert message in said[0][0]
@@ -55,7 +55,7 @@ def test_what_can_never_match_is_said(body: str, message: str) -> None:
         "def p(eye='busy:tired'): pass",
     ],
 )
-def test_what_can_match_is_let_be(body: str) -> None:
+def test_patterns_that_can_match_give_no_warning(body: str) -> None:
     assert warned(body) == []
 
 
@@ -68,7 +68,7 @@ def test_what_can_match_is_let_be(body: str) -> None:
         ("?s:1", {"s": "1", "?s": "1"}, False),
     ],
 )
-def test_what_is_said_of_a_pattern_is_so(pattern: str, objects: Mapping[Any, str], matches: bool) -> None:
+def test_warnings_about_a_pattern_are_true(pattern: str, objects: Mapping[Any, str], matches: bool) -> None:
     assert (Pattern(pattern).match(dict(objects)) is not None) is matches
 
 
@@ -102,13 +102,13 @@ def said_of(pattern: str, more: str = "") -> list[tuple[str, int]]:
 
 
 @pytest.mark.parametrize("pattern", ["weather:rainy", "count ? ?x ?y", "from:1 weather:!wet"])
-def test_a_slot_that_no_chunk_of_the_program_can_have_is_said(pattern: str) -> None:
+def test_a_slot_that_no_chunk_of_the_program_can_have_is_warned_of(pattern: str) -> None:
     slot = "3" if "?y" in pattern else "weather"
     assert said_of(pattern) == [(f"production 'q' can never match: no chunk is ever given a slot '{slot}'", 14)]
 
 
 @pytest.mark.parametrize("pattern", ["count ?x ?y", "from:!2", "1:2 2:?z"])
-def test_a_slot_that_some_chunk_has_is_let_be(pattern: str) -> None:
+def test_a_slot_that_some_chunk_has_gives_no_warning(pattern: str) -> None:
     assert said_of(pattern) == []
 
 
@@ -129,9 +129,9 @@ def test_a_slot_that_some_chunk_has_is_let_be(pattern: str) -> None:
         "    other = Own(goal)",
     ],
 )
-def test_nothing_is_said_where_chunks_may_have_other_slots(more: str) -> None:
+def test_no_warning_is_given_where_chunks_may_have_other_slots(more: str) -> None:
     assert said_of("weather:rainy", more) == []
 
 
-def test_nothing_is_said_of_a_module_that_others_may_use() -> None:
+def test_no_warning_is_given_about_a_module_that_others_may_use() -> None:
     assert warned("def init(): goal.set('a:1')\ndef p(goal='weather:1'): pass") == []

@@ -137,7 +137,7 @@ seen = (helper.NAME, NAME, helper.PLACE, parts.inner.PLACE, Setting().value)
 """
 
 
-def test_helper_modules_of_two_folders_do_not_meet(folders: list[Path], real: Any) -> None:
+def test_helper_modules_of_two_folders_are_kept_apart(folders: list[Path], real: Any) -> None:
     modules: list[Any] = [load_text(HELPED, "model.py", folder=folder) for folder in folders]
     assert [module.seen for module in modules] == [(n, n, f"inside {n}", f"inside {n}", 3) for n in ("one", "two")]
     assert [in_thread(module.later) for module in reversed(modules)] == ["later two", "later one"]
@@ -162,7 +162,7 @@ def test_a_text_that_fails_leaves_nothing_in_the_modules(folders: list[Path]) ->
         assert dict(sys.modules) == before
 
 
-def test_texts_loaded_by_many_threads_at_once_do_not_disturb_each_other(folders: list[Path], real: Any) -> None:
+def test_texts_loaded_concurrently_by_many_threads_do_not_disturb_each_other(folders: list[Path], real: Any) -> None:
     seen: list[Any] = []
 
     def load(number: int) -> None:
@@ -210,7 +210,7 @@ def test_nothing_is_left_of_unused_texts(folders: list[Path]) -> None:
     assert (len(linecache.cache), len(sys.modules)) == before
 
 
-def test_what_stands_in_the_modules_is_the_loaded_text() -> None:
+def test_the_entry_in_the_modules_is_the_loaded_text() -> None:
     module: Any = load_text("from __future__ import annotations\nimport dataclasses\n@dataclasses.dataclass\nclass A:\n    x: int = 1\n")
     stands: Any = sys.modules[module.__name__]
     assert vars(stands) is vars(module)

@@ -82,7 +82,7 @@ def test_act_r_7_has_no_maximum_time_unless_one_is_set() -> None:
     assert agent.now() == near(math.exp(3) + 2.5, abs=1e-3)
 
 
-def test_an_activation_that_is_no_number_never_wins_and_is_said() -> None:
+def test_an_activation_that_is_no_number_never_wins_and_is_warned_of() -> None:
     agent = remembering(threshold=-5)
     for text, fixed in [("a 1", math.nan), ("a 2", -1.0), ("a 3", math.nan)]:
         agent.memory.add(text, fixed=fixed)
@@ -131,7 +131,7 @@ def test_a_request_retrieves_the_best_of_all_that_match(seed: int) -> None:
             assert time == near(0.05 * math.exp(-best), abs=1.1e-6)
 
 
-def test_a_draw_is_decided_by_lot() -> None:
+def test_a_tie_is_decided_at_random() -> None:
     agent = remembering(finst_size=0)
     for n in range(3):
         agent.memory.add(f"a {n}")
@@ -202,7 +202,7 @@ def test_a_misspelt_keyword_warns_in_the_models_file_and_changes_nothing() -> No
     agent.memory.add("b", baselevel=2, time=4, fixed=1)  # for modules that it does not have
 
 
-def test_own_modules_may_take_keywords_of_their_own() -> None:
+def test_user_defined_modules_may_take_keywords_of_their_own() -> None:
     class Named(MemorySubModule):
         def create(self, chunk: Any, worth: float = 0, **keys: Any) -> None:
             chunk.worth = worth + keys.get("bonus", 0)
@@ -249,7 +249,7 @@ def test_unhashable_values() -> None:
     assert agent.memory.find_matching_chunks({"a": [1]}) == []
 
 
-def test_a_memory_of_ones_own() -> None:
+def test_a_user_defined_memory() -> None:
     class Own(Memory):
         latency = 0.2
         threshold = -1
@@ -277,7 +277,7 @@ def test_matched_may_leave_candidates_out() -> None:
     assert arrival(agent, "a bad")[1] is None
 
 
-def test_get_activation_of_what_is_not_there() -> None:
+def test_get_activation_of_an_unknown_chunk() -> None:
     agent = remembering()
     with pytest.raises(ChunkError, match="memory 'memory' has no chunk 'a b'"):
         agent.memory.get_activation("a b")

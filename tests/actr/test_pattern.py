@@ -172,7 +172,7 @@ def test_attributes_and_paths_of_objects() -> None:
     assert Pattern("ahead_cell.broken:!3").match(Body()) is None
 
 
-def test_values_bound_before_stand_for_themselves() -> None:
+def test_variables_that_are_already_bound_are_compared_by_value() -> None:
     bound = {"x": 3, "y": 0.5, "slot": "a", "place": 1}
     assert Pattern("a:?x b:?y", bound).match(Chunk({"a": 3, "b": "0.5"})) == {}
     assert Pattern("a:!?x", bound).match(Chunk("a:3")) is None
@@ -196,7 +196,7 @@ def test_values_bound_before_stand_for_themselves() -> None:
         ("x ?y?", "cannot read '?' in slot '1'"),
     ],
 )
-def test_what_cannot_be_read_is_named(pattern: str, message: str) -> None:
+def test_unreadable_patterns_are_named(pattern: str, message: str) -> None:
     with pytest.raises(PatternException, match=re.escape(message)):
         Pattern(pattern)
     with pytest.raises(Exception, match=r"[Ss]lot|Unknown text|unnamed"):

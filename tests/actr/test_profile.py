@@ -135,7 +135,7 @@ def test_python_act_r_does_none_of_this() -> None:
 
 
 @pytest.mark.parametrize("level", LEVELS)
-def test_harvesting_does_not_take_back_that_a_request_failed(level: str) -> None:
+def test_harvesting_does_not_clear_a_failed_request(level: str) -> None:
     agent = agent_of(level)
     agent.memory.request("a")
     agent.buffer.set("b")
@@ -149,7 +149,7 @@ def test_harvesting_does_not_take_back_that_a_request_failed(level: str) -> None
     assert not agent.memory.error
 
 
-def test_the_profile_reaches_every_part_however_it_came() -> None:
+def test_the_profile_reaches_every_part_however_it_was_added() -> None:
     class Inner(Model):
         buffer = Buffer()
         memory = Memory(buffer)
@@ -196,7 +196,7 @@ def test_the_profile_reaches_every_part_however_it_came() -> None:
     assert world._profile is None
 
 
-def test_a_memory_that_lived_alone_takes_over_the_profile_of_its_agent() -> None:
+def test_a_memory_that_ran_alone_takes_over_the_profile_of_its_agent() -> None:
     buffer = Buffer()
     memory: Any = Memory(buffer)
     assert memory.now() == 0
@@ -208,7 +208,7 @@ def test_a_memory_that_lived_alone_takes_over_the_profile_of_its_agent() -> None
     assert list(memory.dm) == [Chunk("a")]
 
 
-def test_two_memories_of_one_agent_go_each_by_its_own_numbers() -> None:
+def test_two_memories_of_one_agent_each_use_their_own_profile() -> None:
     first, second = Buffer(), Buffer()
     one, other = Memory(first, profile="act-r-7"), Memory(second)
     agent = living(first=first, second=second, goal=Buffer(), one=one, other=other, b1=DMBaseLevel(one), b2=DMBaseLevel(other))

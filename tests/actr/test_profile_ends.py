@@ -35,7 +35,7 @@ def test_a_run_ends_with_the_retrieval_or_when_its_mark_expires(profile: str, en
         assert agent.now() == end
 
 
-def test_marks_expire_all_the_same() -> None:
+def test_marks_still_expire() -> None:
     agent = remembering("act-r-7", latency=0.05, finst_time=1.0)
     found: list[str] = []
     for pause in (0, 0, 0.99):
@@ -62,7 +62,7 @@ agent.run()
 """
 
 
-def test_a_program_written_for_python_actr_may_go_by_act_r_7s_numbers() -> None:
+def test_a_program_written_for_python_actr_may_use_the_profile_of_act_r_7() -> None:
     agent = load_text(PROGRAM, "program.py").agent
     assert agent.now() == 0.05
     assert agent.memory.finst.obj == [Chunk("b")]

@@ -115,7 +115,7 @@ def world(seed: int) -> str:
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(3, 12))])
-def test_what_happens_at_once_happens_in_the_same_order(seed: int, tmp_path: Path) -> None:
+def test_simultaneous_events_happen_in_the_same_order(seed: int, tmp_path: Path) -> None:
     file = tmp_path / "world.py"
     file.write_text(world(seed), encoding="utf-8")
     ours = run_command("run", str(file), "--seed", str(seed), folder=tmp_path)

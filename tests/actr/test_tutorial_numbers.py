@@ -232,7 +232,7 @@ def test_sgoms_the_longer_the_interruption_the_longer_it_takes_to_find_back(caps
         (1.27, "now", ["boil", "pick_up", "talk", "steep", "pour"]),
     ],
 )
-def test_sgoms_the_tea_goes_on_where_it_was_left(ring: float, when: str, order: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_sgoms_the_tea_continues_where_it_was_left(ring: float, when: str, order: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     run("sgoms", ring_at=ring, when=when)
     said = [line.split(" s: ")[1] for line in capsys.readouterr().out.splitlines()]
     assert [what for what in said if what not in ("the telephone rings", "that is all")] == order

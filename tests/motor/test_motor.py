@@ -105,7 +105,7 @@ def test_a_stopped_movement_stays_where_it_was() -> None:
     assert motor.parent.posture.chunk["torso_yaw"] == round(stood)
 
 
-def test_groups_move_at_once_while_it_walks_and_turns() -> None:
+def test_several_muscle_groups_move_while_it_walks_and_turns() -> None:
     simulation, motor = moving()
     motor.walk(1.2)
     motor.turn(30, speed=60)
@@ -203,7 +203,7 @@ def test_lowering_the_arms_moves_both_to_where_they_hang() -> None:
     assert motor.left_upper_arm_pitch_angle == motor.right_upper_arm_roll_angle == 0
 
 
-def test_several_groups_are_stopped_at_once_and_the_rest_goes_on() -> None:
+def test_stopping_several_groups_leaves_the_others_moving() -> None:
     simulation, motor = moving()
     motor.walk(1.0)
     motor.rotate_torso()
@@ -255,7 +255,7 @@ def test_a_movement_is_prepared_for_as_long_as_a_parameter_says_and_can_be_stopp
     assert angle(simulation, "torso_yaw") == near(12, abs=0.01)
 
 
-def test_a_change_of_speed_is_prepared_too_and_the_former_speed_goes_on_meanwhile() -> None:
+def test_the_former_speed_continues_while_a_change_of_speed_is_prepared() -> None:
     simulation, motor = moving(preparation=0.25, initiation=0.05)
     motor.walk(1.0)
     motor.turn(speed=20)
@@ -318,7 +318,7 @@ def test_a_busy_group_refuses_and_others_do_not() -> None:
         ("rotate_torso", (10,)),
     ],
 )
-def test_any_accepted_command_resets_what_an_earlier_one_was_refused_for(command: str, given: tuple[Any, ...]) -> None:
+def test_an_accepted_command_clears_an_earlier_refusal(command: str, given: tuple[Any, ...]) -> None:
     simulation, motor = moving()
     motor.walk(1)
     motor.turn(speed=20)
@@ -329,7 +329,7 @@ def test_any_accepted_command_resets_what_an_earlier_one_was_refused_for(command
     assert (motor.error, motor.refusal) == (False, None)
 
 
-def test_what_would_move_a_busy_group_too_is_refused_as_a_whole() -> None:
+def test_a_command_that_would_also_move_a_busy_group_is_refused() -> None:
     simulation, motor = moving()
     motor.rotate("left_upper_arm", "pitch", angle=-90)
     simulation.step(2)
@@ -376,7 +376,7 @@ def test_an_angle_beyond_the_limit_is_refused() -> None:
         ("walk", ("fast",), r"walk: speed: must be a number \(got 'fast'\)"),
     ],
 )
-def test_what_there_is_not_is_an_error(command: str, given: tuple[Any, ...], message: str) -> None:
+def test_unknown_names_and_impossible_arguments_are_errors(command: str, given: tuple[Any, ...], message: str) -> None:
     _, motor = moving()
     with pytest.raises(WorldError, match=message):
         getattr(motor, command)(*given)
@@ -409,7 +409,7 @@ def test_an_agent_without_a_body_gets_an_error() -> None:
         _ = agent.motor.body
 
 
-def test_a_body_that_cannot_walk_says_so_with_the_line_that_asked() -> None:
+def test_a_command_that_a_body_cannot_carry_out_is_an_error_at_its_line() -> None:
     simulation, motor = moving(body=Car(name="walker"))
     with pytest.raises(WorldError, match=r"walker cannot walk; its commands are: .*steering"):
         motor.walk(1)
@@ -420,7 +420,7 @@ def test_a_body_that_cannot_walk_says_so_with_the_line_that_asked() -> None:
     assert angle(simulation, "steer") == near(10, abs=0.05)
 
 
-def test_what_is_commanded_before_the_body_is_known_is_done_then_and_its_errors_name_the_line() -> None:
+def test_commands_wait_until_the_body_is_known_and_their_errors_name_the_line() -> None:
     simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": mover()})
     motor = motor_of(simulation)
     motor.rotate_torso(12)
@@ -466,7 +466,7 @@ def test_a_body_at_a_wall_can_walk_away_from_it() -> None:
     assert simulation.world.bodies["walker"].get("pose").x < -0.5
 
 
-def test_with_endless_patience_it_pushes_on() -> None:
+def test_without_a_limit_of_patience_it_keeps_pushing() -> None:
     simulation, motor = moving(Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0)), patience=None)
     motor.walk(1.0)
     simulation.step(300)
@@ -633,7 +633,7 @@ def test_two_agents_move_their_own_bodies() -> None:
     assert (one.torso_yaw_angle, other.torso_yaw_angle) == (30, -60)
 
 
-def test_nothing_is_asked_while_nothing_moves() -> None:
+def test_no_request_is_made_while_nothing_moves() -> None:
     simulation, motor = moving(trace="all")
     simulation.step(50)
     answers = [event for event in simulation.trace or () if event.kind == "answer"]

@@ -64,7 +64,7 @@ def restless(trace: str = "all") -> Simulation:
 
 
 @pytest.mark.slow
-def test_any_past_time_comes_back_exactly() -> None:
+def test_any_past_time_is_restored_exactly() -> None:
     simulation = restless()
     digests = [digest(simulation)]
     for _ in range(150):
@@ -147,7 +147,7 @@ def command(motor: Any, choose: random.Random) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_whatever_is_commanded_limits_hold_and_what_is_known_is_so(seed: int) -> None:
+def test_limits_hold_and_knowledge_of_the_body_is_true_under_any_commands(seed: int) -> None:
     choose = random.Random(seed)
     simulation, motor = moving(seed=seed)
     body = simulation.world.bodies["walker"]
@@ -207,7 +207,7 @@ def test_left_and_right_are_mirrored(seed: int) -> None:
     assert [near(of, abs=2e-3) for of in widths(1)] == widths(-1)
 
 
-def test_a_user_who_moves_the_body_is_felt_when_it_moves_next() -> None:
+def test_a_body_moved_by_a_user_is_felt_at_its_next_movement() -> None:
     simulation, motor = moving()
     simulation.command("posture", {"head_yaw": 0.5}, speed=10.0)
     simulation.step(20)

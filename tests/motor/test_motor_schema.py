@@ -51,7 +51,7 @@ def test_the_parts_are_those_of_the_body_in_its_order() -> None:
         motor.joint("torso")
 
 
-def test_least_and_most_are_those_of_the_true_angles_to_the_last_tick() -> None:
+def test_extremes_are_those_of_the_true_angles_up_to_the_last_tick() -> None:
     simulation, motor = moving()
     body = simulation.world.bodies["walker"]
     seen: dict[str, list[float]] = {name: [joint.position] for name, joint in body.joints.items()}
@@ -120,7 +120,7 @@ def test_a_posture_is_stored_at_the_start_and_where_movements_end() -> None:
     assert (ended["left_shoulder_yaw"], ended["extreme"], ended["torso_yaw"]) == (-20, "minimum", 10)
 
 
-def test_other_joints_are_in_a_posture_where_they_are_not_as_at_the_start() -> None:
+def test_a_posture_includes_other_joints_that_have_left_their_start() -> None:
     simulation, motor = moving()
     motor.rotate("pelvis", "yaw", angle=6)
     until(simulation, lambda: not motor.busy)
@@ -154,7 +154,7 @@ def test_a_joint_that_a_user_moves_meanwhile_does_not_hide_the_extremes_of_anoth
     assert "pelvis_yaw" in passing[0]
 
 
-def test_postures_felt_again_merge_and_are_recalled_the_better() -> None:
+def test_postures_felt_again_merge_and_gain_activation() -> None:
     simulation, motor = moving()
     memory = motor.parent.memory
     memory.base_level = DMBaseLevel(memory)
@@ -207,7 +207,7 @@ def test_a_posture_is_stored_on_request_under_a_name() -> None:
     assert felt["torso_yaw"] == near(13, abs=1)
 
 
-def test_storing_a_posture_does_not_take_back_that_a_request_failed() -> None:
+def test_storing_a_posture_does_not_clear_a_failed_request() -> None:
     simulation, motor = moving()
     memory = motor.parent.memory
     memory.request("posture:unheard")
@@ -282,7 +282,7 @@ class Finder(ACTR):
 """
 
 
-def test_productions_move_by_what_they_bind_and_match_busy_and_postures() -> None:
+def test_productions_command_bound_values_and_match_busy_and_postures() -> None:
     simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": load_text(FINDER, "finder.py").Finder})
     simulation.run()
     motor = motor_of(simulation)

@@ -47,7 +47,7 @@ def test_each_command_needs_the_speed_of_a_slide() -> None:
             getattr(motor, command)(*given)
 
 
-def test_a_part_turns_and_slides_at_once_each_in_its_unit() -> None:
+def test_a_part_turns_and_slides_together_each_in_its_unit() -> None:
     simulation, motor = crane()
     motor.assume("pan:10 lift:0.2", speed=2)
     simulation.step(50)

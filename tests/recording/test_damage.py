@@ -82,7 +82,7 @@ def edit(file: sqlite3.Connection, choose: random.Random) -> None:
             file.execute(f"UPDATE OR REPLACE {table} SET {columns[column]} = ? WHERE {key} = ?", (altered(row[column], choose), row[0]))
 
 
-def test_no_recording_agrees_whose_content_was_changed(original: Path, tmp_path: Path) -> None:
+def test_a_recording_with_changed_content_never_agrees(original: Path, tmp_path: Path) -> None:
     whole, said = original.read_bytes(), content(original)
     found = {"damaged": 0, "foreign": 0, "the same": 0}
     seal = sealed(original)
@@ -114,7 +114,7 @@ def test_no_recording_agrees_whose_content_was_changed(original: Path, tmp_path:
         assert str(replay(recorded, driving)).startswith("every byte agrees: 40 ticks, ")
 
 
-def test_what_has_new_checksums_is_compared_all_the_same(original: Path, tmp_path: Path) -> None:
+def test_a_recording_with_new_checksums_is_still_compared(original: Path, tmp_path: Path) -> None:
     path = tmp_path / "run"
     for forged, message in [
         (["DELETE FROM answers"], "differs: answer 1; recorded: nothing"),
@@ -187,7 +187,7 @@ def program_(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize(("statement", "message"), FACTS)
-def test_what_is_wrong_in_a_recording_is_said(
+def test_errors_in_a_recording_are_reported(
     statement: str, message: str, program: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "run"
@@ -203,7 +203,7 @@ def test_what_is_wrong_in_a_recording_is_said(
     assert len(told.err) < 1_000
 
 
-def test_a_file_that_would_keep_a_reader_busy_for_ever_is_refused_at_once(program: Path, tmp_path: Path) -> None:
+def test_a_file_that_would_keep_a_reader_busy_for_ever_is_refused_immediately(program: Path, tmp_path: Path) -> None:
     path = tmp_path / "run"
     path.write_bytes(program.read_bytes())
     endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT i, i FROM n"

@@ -145,7 +145,7 @@ def test_a_recording_from_elsewhere_is_run_only_where_it_is_trusted(
     assert trap.exists()
 
 
-def test_what_a_caller_makes_needs_no_trust(tmp_path: Path) -> None:
+def test_a_simulation_that_the_caller_builds_needs_no_trust(tmp_path: Path) -> None:
     simulation = driving()
     with simulation.record(tmp_path / "run"):
         simulation.run(0.1)
@@ -176,9 +176,7 @@ def test_a_file_with_an_impossible_name_ends_in_no_traceback(name: str, tmp_path
 
 
 @pytest.mark.parametrize("text", ["import random\nprint(1)\n", BUILT])
-def test_a_module_that_python_has_loaded_itself_is_none_of_a_recording(
-    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_recording_cannot_replace_a_module_that_python_uses(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded(tmp_path / "own", text)
     forge(path, 'INSERT OR REPLACE INTO facts VALUES (\'helpers\', \'{"random": ["random.py", "x = 1"]}\')')
     capsys.readouterr()

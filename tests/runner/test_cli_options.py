@@ -82,7 +82,7 @@ def test_a_field_without_default_must_be_given() -> None:
     assert "must be given" in options_help([field])
 
 
-def test_a_redeclared_field_without_docstring_has_no_help_also_where_it_is_the_last_one() -> None:
+def test_a_redeclared_field_without_docstring_has_no_help_even_as_the_last_one() -> None:
     text = """from dataclasses import dataclass
 
 @dataclass
@@ -147,7 +147,7 @@ def test_wrong_options_are_reported(lamp: Any, words: list[str], message: str) -
         read_options(words, parameters_of(lamp.Parameters), ["--seed"])
 
 
-def test_settings_know_texts(lamp: Any) -> None:
+def test_settings_may_be_texts(lamp: Any) -> None:
     assert read_settings(["name=5", "power=5", "other=5"], parameters_of(lamp.Parameters)) == {"name": "5", "power": 5, "other": 5}
 
 
@@ -168,7 +168,7 @@ def test_settings_of_unknown_parameters_are_python_literals(text: str, value: An
 
 
 @pytest.mark.parametrize("text", ["[cat,dog]", "(cat)", "['cat'"])
-def test_a_list_whose_quotes_the_shell_has_removed_is_refused(text: str) -> None:
+def test_a_list_that_lost_its_quotes_in_the_shell_is_refused(text: str) -> None:
     says = f'--ablate word: must be a list or tuple of Python (got {text!r}); a shell removes quotes, so quote the whole: --ablate "word='
     with pytest.raises(SettingError, match=re.escape(says)):
         read_settings([f"word={text}"], (), "--ablate")

@@ -92,7 +92,7 @@ def test_all_simulations_of_a_program_are_recorded_as_they_went(path: Path, caps
     assert capsys.readouterr().out == f"every byte agrees: 100 ticks, {len(events):,} events\n"
 
 
-def test_what_a_program_records_is_what_its_simulation_records_of_itself(tmp_path: Path) -> None:
+def test_a_program_records_the_same_as_its_simulation(tmp_path: Path) -> None:
     file = tmp_path / "program.py"
     own = tmp_path / "own"
     file.write_text(
@@ -164,7 +164,7 @@ SOURCE = "UPDATE facts SET value = replace(value, '{}', '{}') WHERE name = 'sour
         ("INSERT INTO commands SELECT 2, run, 51, data, checksum FROM commands WHERE first = 1", "the recording holds 1 command more"),
     ],
 )
-def test_a_replay_says_where_a_simulation_of_a_program_differs(alter: Change, message: str, path: Path) -> None:
+def test_a_replay_reports_where_a_simulation_of_a_program_differs(alter: Change, message: str, path: Path) -> None:
     forge(path, alter)
     told = verdict(path)
     assert told.code == 1
@@ -192,7 +192,7 @@ def test_a_program_that_was_killed_agrees_as_far_as_it_goes(tmp_path: Path) -> N
         assert comparison.events + comparison.unfinished == recorded.event_count
 
 
-def test_a_program_that_raises_what_is_no_exception_is_recorded_as_failed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_program_that_raises_a_base_exception_is_recorded_as_failed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, recording = tmp_path / "odd.py", tmp_path / "odd.rec"
     file.write_text("print('begun')\nclass Odd(BaseException): pass\nraise Odd('on purpose')\n", encoding="utf-8")
     assert main(["run", str(file), "--seed", "1", "--record", str(recording)]) == 1

@@ -93,7 +93,7 @@ def recorded_run(file: Path, *words: str) -> Path:
     return path
 
 
-def test_what_a_file_builds_is_run_to_its_end_recorded_and_replayed(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_simulation_that_a_file_builds_is_run_to_its_end_recorded_and_replayed(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file, "--set", "times=4", "--set", "height=0.5")
     assert capsys.readouterr().out.split()[1::2] == ["1", "2", "3", "4"]
     with Recorded(path) as recorded:
@@ -150,7 +150,7 @@ def test_a_walker_that_stops_before_a_wall_is_recorded_and_replayed(tmp_path: Pa
     assert f"every byte agrees: {ticks:,} ticks" in verdict(path).text
 
 
-def test_until_ends_what_is_built_with_a_whole_tick(file: Path) -> None:
+def test_until_ends_a_built_simulation_with_a_whole_tick(file: Path) -> None:
     path = recorded_run(file, "--until", "0.127")
     with Recorded(path) as recorded:
         assert recorded.ticks == 12
@@ -188,7 +188,7 @@ def test_a_program_without_a_world_is_recorded_and_replayed(name: str, tmp_path:
     assert (printed == capsys.readouterr().out) or name == "noisy.py"
 
 
-def test_a_program_without_a_world_does_not_load_what_worlds_need(tmp_path: Path) -> None:
+def test_a_program_without_a_world_does_not_load_the_packages_of_worlds(tmp_path: Path) -> None:
     text = "import sys; from actr3d.cli import main; code = main(sys.argv[1:]); sys.exit(code or ('mujoco' in sys.modules) * 9)"
     for words in (["run", "models/counting.py"], ["run", "models/counting.py", "--record", str(tmp_path / "run")]):
         assert subprocess.run([sys.executable, "-c", text, *words], cwd=ROOT, check=False, capture_output=True, timeout=60).returncode == 0
@@ -214,7 +214,7 @@ CHANGES = [
 
 @pytest.mark.daily(2)
 @pytest.mark.parametrize(("change", "message"), CHANGES)
-def test_a_replay_says_where_it_differs(change: str, message: str, file: Path) -> None:
+def test_a_replay_reports_where_it_differs(change: str, message: str, file: Path) -> None:
     path = recorded_run(file)
     forge(path, change)
     told = verdict(path)
@@ -300,7 +300,7 @@ def test_a_recording_that_was_broken_off_agrees_as_far_as_it_goes(tmp_path: Path
     assert str(comparison) == f"agrees up to the end of the recording: {comparison.events} events; {INTERRUPTED}"
 
 
-def test_what_a_program_of_its_own_has_simulated_is_replayed_by_it(tmp_path: Path) -> None:
+def test_a_recording_made_by_another_program_is_replayed_by_that_program(tmp_path: Path) -> None:
     simulation = driving()
     with simulation.record(tmp_path / "run"):
         simulation.run(0.3)
@@ -463,7 +463,7 @@ def test_a_build_without_parameters() -> None:
     "text",
     ["def build(model):\n    return model\nprint(build(3))", "class A:\n    def build(self) -> Simulation: pass", "not python (", ""],
 )
-def test_other_functions_called_build_are_none(text: str) -> None:
+def test_other_functions_called_build_are_ignored(text: str) -> None:
     assert not has_build(text)
     assert problem_of_build(text) is None
 
@@ -481,7 +481,7 @@ def printed_lines(path: Path) -> list[tuple[float, str]]:
         return [(event.time, event.data["text"]) for event in recorded.events() if event.kind == "output"]
 
 
-def test_lines_that_a_model_prints_are_recorded_where_they_come(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_printed_lines_of_a_model_are_recorded_in_order(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file.write_text(PRINTING.replace("print(side, self.times)", "print(self.times); print('end', end='')"), encoding="utf-8")
     path = recorded_run(file)
     assert capsys.readouterr().out == "loaded and ready\n1\nend2\nend3\nend"
@@ -493,7 +493,7 @@ def test_lines_that_a_model_prints_are_recorded_where_they_come(file: Path, caps
     assert '"text": "end7"' in told.text
 
 
-def test_lines_that_a_program_prints_are_recorded_where_they_come(tmp_path: Path) -> None:
+def test_printed_lines_of_a_program_are_recorded_in_order(tmp_path: Path) -> None:
     file = tmp_path / "talking.py"
     text = NOISY + "import sys\nsys.stdout.buffer.write('größe\\n'.encode())\nsys.stdout.writelines(['a', 'b\\n'])\nprint('c', end='')\n"
     file.write_text("print('first')\n" + text.replace("Noisy().run()", "Noisy().run(0.22)\n    print('run')"), encoding="utf-8")
@@ -548,7 +548,7 @@ def test_a_replay_compares_how_the_run_ended(text: str, name: str, then: str, ot
     assert other in differs.text
 
 
-def test_a_run_that_failed_then_and_does_not_now_differs(tmp_path: Path) -> None:
+def test_a_replay_without_the_recorded_failure_differs(tmp_path: Path) -> None:
     for text in (BUILT, "print(1)\n"):
         file = tmp_path / "model.py"
         file.write_text(text, encoding="utf-8")

@@ -106,7 +106,7 @@ def test_a_program_that_meddles_with_its_process_is_still_found_to_differ(does: 
 
 
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_what_ends_the_command_ends_the_replay(sign: signal.Signals, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_signal_that_ends_the_command_ends_the_replay(sign: signal.Signals, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mark = path.with_name("mark")
     record(path, first=f"Path({str(mark)!r}).write_text(str(os.getpid())); threading.Event().wait()")
     monkeypatch.setenv("AGAIN", "1")
@@ -125,7 +125,7 @@ def test_what_ends_the_command_ends_the_replay(sign: signal.Signals, path: Path,
         os.kill(child, 0)
 
 
-def test_a_replay_goes_through_sets_as_the_run_did(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_replay_iterates_over_sets_in_the_recorded_order(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = path.with_name("sets.py")
     file.write_text("print(list({'one', 'two', 'three', 'four', 'five', 'six', 'seven'}))\n", encoding="utf-8")
     assert run_command("run", str(file), "--record", str(path)).returncode == 0

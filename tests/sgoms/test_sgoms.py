@@ -137,7 +137,7 @@ class Agent(SGOMS):
     }
 
 
-def test_a_method_set_again_begins_again_and_one_that_goes_on_does_not() -> None:
+def test_a_method_that_is_set_again_restarts_and_one_that_continues_does_not() -> None:
     module = cooking(
         """
 class Agent(SGOMS):
@@ -167,7 +167,7 @@ class Agent(SGOMS):
     ]
 
 
-def test_a_trace_that_begins_later_says_what_is_going_on() -> None:
+def test_a_trace_that_begins_later_shows_what_is_in_progress() -> None:
     module = cooking(seconds=0.22)
     later = module.agent.traced("production")
     module.agent.parent.run(0.3)
@@ -196,7 +196,7 @@ def test_the_same_seed_gives_the_same_events_and_tracing_changes_nothing() -> No
     assert first.said == cooking(noisy, traced=False).said != other.said
 
 
-def test_an_agent_may_stand_alone_and_go_on_to_another_planning_unit() -> None:
+def test_an_agent_without_an_environment_may_continue_with_another_planning_unit() -> None:
     module: Any = load_text(
         HEAD
         + """
@@ -214,7 +214,7 @@ class Agent(Base):
     assert agent.now() == near(1.2 + 0.05 + 0.15 + 0.2 + 0.15 + 0.05)
 
 
-def test_a_request_that_takes_the_place_of_the_plans_own_is_made_up_for() -> None:
+def test_a_retrieval_of_the_plan_that_another_request_replaces_is_requested_again() -> None:
     module = cooking(
         """
 class Meddler(ProductionSystem):
@@ -237,7 +237,7 @@ class Agent(Base):
 
 
 @pytest.mark.parametrize("name", ["planning_units", "sgoms_patrol", "sgoms_rows"])
-def test_models_with_buffers_of_their_own_run_without_a_word(name: str, tmp_path: Path) -> None:
+def test_models_with_buffers_of_their_own_run_without_warnings(name: str, tmp_path: Path) -> None:
     copy = shutil.copy(ROOT / "tests" / "models" / f"{name}.py", tmp_path)
     done = run_command("run", str(copy), "--seed", "1", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")

@@ -43,7 +43,7 @@ def test_a_unit_task_ends_before_an_interruption_at_its_end() -> None:
     assert [event.get("by") for event in events] == [None, "phone", None, None, None, None]
 
 
-def test_an_interruption_at_once_cuts_the_unit_task_which_begins_again() -> None:
+def test_an_immediate_interruption_cuts_the_unit_task_which_begins_again() -> None:
     module = cooking(AGENT, 0.22, NOW)
     # At 0.22 s a step of work is under way; it is done at 0.25 s, then the interruption is decided on.
     assert tasks(module) == ["boil", *PHONE, "boil", "steep", "pour"]
@@ -73,7 +73,7 @@ class Agent(Base):
     assert tasks(cooking(body, 0.22, NOW)) == ["boil no", "pick_up no", "talk no", "boil yes", "steep no", "pour no"]
 
 
-def test_a_unit_task_may_go_on_where_it_was_cut() -> None:
+def test_a_unit_task_may_continue_where_it_was_cut() -> None:
     body = "class Agent(Base):\n    resume_at = 'method'\n    steps = 4"
     module = cooking(body, 0.31, NOW)
     assert tasks(module) == ["boil", *PHONE, "steep", "pour"]
@@ -88,7 +88,7 @@ def test_a_unit_task_may_go_on_where_it_was_cut() -> None:
     assert between == near([at + 0.05])
 
 
-def test_a_method_without_slot_names_goes_on_where_it_was_cut() -> None:
+def test_a_method_without_slot_names_continues_where_it_was_cut() -> None:
     body = """
 class Agent(Base):
     resume_at = "method"
@@ -174,7 +174,7 @@ def test_an_interruption_by_the_response_that_is_running_waits_for_its_end() -> 
     assert told(module, "planning_unit")[-2].endswith("resumed tea")
 
 
-def test_a_response_that_comes_while_the_place_is_being_remembered_goes_back_to_it() -> None:
+def test_a_response_during_the_retrieval_of_the_place_returns_to_it() -> None:
     slow = "class Agent(Base):\n    DM = Memory(SGOMS.b_DM, latency=0.2)"
     asked = moments(cooking(slow, 0.4, NOW), "sgoms_resume")[0]
     module = cooking(slow, 0.4, NOW, asked + 0.05, "planning_unit:alarm when:end")

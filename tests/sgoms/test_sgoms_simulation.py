@@ -73,7 +73,7 @@ def walking() -> Simulation:
 
 
 @pytest.mark.slow
-def test_seek_goes_back_into_an_interruption_and_on_from_there_exactly() -> None:
+def test_a_seek_into_an_interruption_is_exact_and_so_is_the_run_from_there() -> None:
     simulation = walking()
     simulation.run(5)
     assert simulation.trace is not None
@@ -118,7 +118,7 @@ def test_a_recording_is_replayed_byte_for_byte(kind: str, tmp_path: Path) -> Non
         assert done.returncode == 0, done.stderr
 
 
-def test_with_the_numbers_of_act_r_7_harvested_chunks_do_not_lead_astray() -> None:
+def test_under_act_r_7_harvested_chunks_do_not_change_the_order() -> None:
     body = 'class Agent(Base):\n    profile = "act-r-7"\n    DM = Memory(SGOMS.b_DM, latency=0.05)'
     module = cooking(body, 0.3, "planning_unit:phone when:now", 1.0, "planning_unit:alarm when:end")
     assert [task for _, task in module.said] == ["boil", "pick_up", "talk", "run", "boil", "steep", "pour"]

@@ -49,7 +49,7 @@ def alone(seed: int) -> list[float]:
     return drawn(simulation)
 
 
-def test_simulations_that_are_stepped_in_turn_do_not_disturb_each_other() -> None:
+def test_simulations_that_are_stepped_alternately_do_not_disturb_each_other() -> None:
     one, two = drawing(1), drawing(2)
     for _ in range(20):
         one.step()
@@ -174,7 +174,7 @@ for _ in range(2):
 
 
 @pytest.mark.parametrize("first", ["", "import numpy.random; numpy.random.seed(3); numpy.random.normal()"])
-def test_what_a_program_draws_with_numpy_comes_from_its_seed_wherever_it_is_imported(first: str, tmp_path: Path) -> None:
+def test_numbers_drawn_with_numpy_come_from_the_seed_of_the_program_wherever_it_is_imported(first: str, tmp_path: Path) -> None:
     file = tmp_path / "noisy.py"
     file.write_text(NUMPY, encoding="utf-8")
     text = f"import sys; from actr3d.cli import main; {first}\n"

@@ -173,7 +173,7 @@ def test_an_observer_cannot_change_the_world() -> None:
     assert refused == ["World.step", "World.move", "World.push", "World.set_aperture_width", "World.restore"]
 
 
-def test_the_events_from_a_number_on() -> None:
+def test_events_are_read_from_a_number_on() -> None:
     model: Any = Knowing()
     trace = model.traced()
     model.run(0)
@@ -209,7 +209,7 @@ def test_noise_and_a_modellers_own_terms_are_not_computed_for_the_table() -> Non
     assert model.random.getstate() == before
 
 
-def test_an_observer_takes_no_warning_away() -> None:
+def test_an_observer_does_not_consume_warnings() -> None:
     model: Any = Knowing()
     model.run(0)
     spreading: Any = DMSpreading(model.memory, model.goal)
@@ -258,7 +258,7 @@ def test_a_program_is_notified_when_its_time_advances() -> None:
     assert passed == [(start * 1000, end * 1000) for start, end in ms]
 
 
-def test_a_program_can_be_ended_there() -> None:
+def test_a_program_can_be_ended_when_it_is_notified() -> None:
     def end(_: Scheduler, to: int) -> None:
         if to > 500_000:
             raise EndOfRun
@@ -280,7 +280,7 @@ def test_a_simulation_can_be_traced_after_it_was_made() -> None:
         driving().traced("some")
 
 
-def test_a_program_s_trace_that_keeps_nothing_does_not_hinder() -> None:
+def test_a_simulation_is_traced_although_the_programs_trace_keeps_nothing() -> None:
     with RunLimits(trace=Trace("all", keep=False)):
         simulation = driving()
         simulation.traced()
@@ -289,7 +289,7 @@ def test_a_program_s_trace_that_keeps_nothing_does_not_hinder() -> None:
     assert len(simulation.trace) > 10
 
 
-def test_planned_commands_are_done_again() -> None:
+def test_planned_commands_are_repeated() -> None:
     first, second = driving("all"), driving("all")
     first.step(5)
     first.command("aperture", 0.9)
@@ -311,7 +311,7 @@ def test_a_simulation_is_done_when_no_agent_has_anything_left_to_do() -> None:
     assert not simulation.done
 
 
-def test_a_complaint_names_the_modeller_s_line() -> None:
+def test_an_error_names_the_modellers_line() -> None:
     with pytest.raises(ZeroDivisionError) as caught:
         run_text(f"{CLOCK}def halve(n):\n    return n / 0\nhalve(1)", "mine.py")
     told = traceback_report(caught.value)
@@ -320,7 +320,7 @@ def test_a_complaint_names_the_modeller_s_line() -> None:
     assert "loading.py" not in told.text
 
 
-def test_a_complaint_names_the_modeller_s_line_where_a_module_of_python_s_raises() -> None:
+def test_an_error_names_the_modellers_line_where_a_module_of_python_raises() -> None:
     with pytest.raises(ValueError, match="Expecting") as caught:
         run_text("import json\njson.loads('no')", "mine.py")
     told = traceback_report(caught.value)
@@ -329,14 +329,14 @@ def test_a_complaint_names_the_modeller_s_line_where_a_module_of_python_s_raises
 
 
 @pytest.mark.parametrize("text", ["1 +", "x = 3\nprint 'so'\n"])
-def test_a_complaint_names_the_line_that_cannot_be_read(text: str) -> None:
+def test_an_error_names_the_line_that_cannot_be_read(text: str) -> None:
     with pytest.raises(Exception, match="bad") as caught:
         run_text(text, "bad.py")
     told = traceback_report(caught.value)
     assert (told.file, told.line) == ("bad.py", 1 if "+" in text else 2)
 
 
-def test_a_live_field_says_so() -> None:
+def test_a_live_field_shows_its_command_in_its_repr() -> None:
     assert repr(Live("parameter", "walker.speed", body="walker")) == "Live('parameter', 'walker.speed', body='walker')"
     hint: Any = Annotated[float, Live("aperture")]
     assert hint.__metadata__[0].before == ()

@@ -122,7 +122,7 @@ def asked_(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     return counts
 
 
-def test_a_tick_thinks_and_a_tock_moves_and_answers() -> None:
+def test_agents_run_in_a_tick_and_bodies_move_and_answer_in_a_tock() -> None:
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker}, seed=1, trace="all")
     simulation.run(1.0)
     mind: Any = simulation.agents["walker"]
@@ -186,7 +186,7 @@ def test_one_seed_gives_the_same_bytes_in_one_run_or_in_steps_with_pauses_and_at
     assert digest(long) == digest(single) == digest(paced) != digest(other)
 
 
-def test_onlookers_see_everything_and_change_nothing() -> None:
+def test_observers_see_everything_and_change_nothing() -> None:
     alone, watched = driving("all"), driving("all")
     seen: list[tuple[int, float, int]] = []
     events: list[Any] = []
@@ -210,7 +210,7 @@ def test_onlookers_see_everything_and_change_nothing() -> None:
     assert events == list(watched.trace)
 
 
-def test_a_listener_that_fails_ends_the_run_after_the_tick_that_can_go_on_then() -> None:
+def test_a_failing_listener_ends_the_run_after_its_tick_and_the_run_can_continue() -> None:
     simulation, other = driving("all"), driving("all")
 
     def listener(event: Any) -> None:
@@ -234,7 +234,7 @@ def test_an_observer_cannot_step_what_it_observes() -> None:
 
 
 @pytest.mark.parametrize("look", ["listen", "until"])
-def test_listeners_and_conditions_only_look_too(look: str) -> None:
+def test_listeners_and_conditions_are_observers_too(look: str) -> None:
     simulation, told = driving("all"), list[str]()
 
     def meddle(_: object) -> bool:
@@ -321,7 +321,7 @@ def test_a_run_without_limits_ends_when_no_agent_has_anything_left_to_do() -> No
     assert Simulation(Scene(), bodiless={"idle": MINDS.Idle}).run(0.05).ticks == 5
 
 
-def test_a_run_without_limits_goes_on_until_bodies_are_where_commands_send_them() -> None:
+def test_a_run_without_limits_continues_until_bodies_have_reached_their_targets() -> None:
     simulation = Simulation(scene_of("walker", "other"))
     walker, other = simulation.world.bodies.values()
     simulation.command("waypoint", 0.2, 0, speed=1.0, body="walker")
@@ -345,7 +345,7 @@ def test_a_movement_that_something_blocks_does_not_keep_a_run_going() -> None:
     assert walker.base.place[:2] == near((0, 0))
 
 
-def test_until_is_asked_after_each_tock() -> None:
+def test_until_is_checked_after_each_tock() -> None:
     simulation = driving()
     report = simulation.run(until=lambda seen: seen.tick == 7)
     assert (report.ended_by, report.ticks, report.simulated) == ("until", 7, 0.07)
@@ -444,7 +444,7 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
 
 
 @pytest.mark.parametrize(("wrong", "message"), WRONG)
-def test_what_is_wrong_is_said(wrong: Callable[[Simulation], object], message: str) -> None:
+def test_errors_say_what_is_wrong(wrong: Callable[[Simulation], object], message: str) -> None:
     with pytest.raises(Actr3dError, match=message):
         wrong(driving())
 
@@ -492,7 +492,7 @@ def test_agents_cannot_use_the_names_of_a_living_environment() -> None:
     assert {name for name in set(dir(environment)) - before if name[0] != "_"} == set(agents._LATER)
 
 
-def test_an_unknown_word_names_the_modellers_line() -> None:
+def test_an_unknown_command_names_the_modellers_line() -> None:
     simulation = Simulation(scene_of("walker"), {"walker": with_port(MINDS.Wrong)})
     with pytest.raises(WorldError, match="has no actuator 'wlk'; did you mean 'walk'") as caught:
         simulation.run(0.1)
@@ -511,7 +511,7 @@ def test_one_object_cannot_be_two_agents() -> None:
         simulation.step()
 
 
-def test_other_threads_submit_commands_and_do_nothing_else() -> None:
+def test_other_threads_can_only_submit_commands() -> None:
     simulation = Simulation(scene_of("walker"))
     said: list[str] = []
 
@@ -576,7 +576,7 @@ class Agent(Model):
     assert numbers[0] == numbers[1] != numbers[2]
 
 
-def test_a_body_without_requests_is_asked_nothing(asked: Counter[str]) -> None:
+def test_no_sensor_is_read_without_a_request(asked: Counter[str]) -> None:
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Idle})
     simulation.run(0.1)
     assert not asked
@@ -616,7 +616,7 @@ def build() -> Simulation:
 """
 
 
-def test_an_agent_that_stops_without_end_in_no_time_says_so() -> None:
+def test_an_endless_loop_of_stops_is_an_error() -> None:
     simulation = load_text(HALT.replace("IMPORT", "actr3d.actr").replace("TIME", "0"), "halt.py").build()
     with pytest.raises(SchedulerError, match="endless loop at 0 s"):
         simulation.run(0.1)

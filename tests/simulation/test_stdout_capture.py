@@ -97,7 +97,7 @@ def test_a_recording_holds_the_same_lines_however_it_is_made(tmp_path: Path, cap
     assert capfd.readouterr().out == ""
 
 
-def test_lines_stand_in_the_trace_at_their_time(capsys: pytest.CaptureFixture[str]) -> None:
+def test_lines_are_in_the_trace_at_their_time(capsys: pytest.CaptureFixture[str]) -> None:
     simulation = talking("production")
     simulation.run(0.05)
     lines = capsys.readouterr().out.splitlines()
@@ -107,7 +107,7 @@ def test_lines_stand_in_the_trace_at_their_time(capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.parametrize("trace", ["none", "all"])
-def test_what_was_printed_once_is_not_printed_again(trace: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_lines_are_not_printed_again_after_a_seek(trace: str, capsys: pytest.CaptureFixture[str]) -> None:
     simulation, other = talking(trace), talking(trace)
     other.run(0.08)
     once = capsys.readouterr().out
@@ -123,7 +123,7 @@ def test_what_was_printed_once_is_not_printed_again(trace: str, capsys: pytest.C
     assert 0 < len(again) < len(once)
 
 
-def test_a_recording_holds_each_line_once_and_those_of_another_way(tmp_path: Path) -> None:
+def test_a_recording_holds_each_line_once_and_those_of_a_new_future(tmp_path: Path) -> None:
     simulation = talking()
     with simulation.record(tmp_path / "run"):
         simulation.run(0.06)
@@ -140,7 +140,7 @@ def test_a_recording_holds_each_line_once_and_those_of_another_way(tmp_path: Pat
     assert recorded(tmp_path / "run") == recorded(tmp_path / "other")
 
 
-def test_what_onlookers_and_other_threads_print_is_no_event(capsys: pytest.CaptureFixture[str]) -> None:
+def test_prints_of_observers_and_of_other_threads_are_no_events(capsys: pytest.CaptureFixture[str]) -> None:
     def listen(event: TraceEvent) -> None:
         sys.stdout.write(f"heard {event.kind}\n")
         thread = threading.Thread(target=print, args=("elsewhere",))
@@ -201,7 +201,7 @@ def test_a_line_printed_to_an_output_that_the_file_has_kept_is_recorded_too(tmp_
     assert main(["replay", str(tmp_path / "run")]) == 0
 
 
-def test_a_run_that_goes_on_after_its_recording_was_closed_keeps_nothing_for_it(tmp_path: Path) -> None:
+def test_a_run_that_continues_after_its_recording_was_closed_keeps_nothing_for_it(tmp_path: Path) -> None:
     simulation = talking("none")
     with simulation.record(tmp_path / "run") as recording:
         simulation.run(0.05)

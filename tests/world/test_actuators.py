@@ -43,7 +43,7 @@ def test_a_joint_goes_to_a_position_at_its_speed_and_ends_exactly_there(target: 
     assert joint.position == near(target, abs=1e-6)
 
 
-def test_joints_that_stand_still_hold_while_others_swing() -> None:
+def test_joints_at_rest_hold_while_others_swing() -> None:
     world, body = living()
     for n in range(8):
         body.set("posture", {"torso_yaw": 0.8 * (-1) ** n, "left_shoulder_yaw": 0.3 * (-1) ** n}, speed=4.0)
@@ -122,7 +122,7 @@ def test_a_new_command_replaces_the_old_one() -> None:
 
 
 @pytest.mark.parametrize("point", [(2.0, 0.0), (1.0, 1.5), (-1.0, 0.3), (0.004, 0.0)])
-def test_a_waypoint_is_reached_exactly_and_it_stands_there(point: tuple[float, float]) -> None:
+def test_a_body_reaches_a_waypoint_exactly_and_stops_there(point: tuple[float, float]) -> None:
     world, body = living(position=(0.0, 0.0))
     body.set("waypoint", *point, speed=1.5, turn=3.0)
     ticks(world, 300)
@@ -142,7 +142,7 @@ def test_a_heading_is_turned_to_the_shorter_way_round() -> None:
     assert not body.motion
 
 
-def test_teleport_keeps_posture_and_goes_on_walking_the_new_way() -> None:
+def test_teleport_keeps_the_posture_and_the_walk_continues_in_the_new_direction() -> None:
     world, body = living()
     body.set("walk", 1.0)
     body.set("position", "torso_yaw", 0.2)
@@ -160,7 +160,7 @@ CUP = SimpleObject(name="cup", size=(0.05, 0.05, 0.2), position=(0.0, -0.24, 0.6
 """Beside the right hand of a mannequin of the usual size."""
 
 
-def test_what_is_grasped_comes_along_until_released() -> None:
+def test_a_grasped_object_moves_with_the_hand_until_released() -> None:
     world, body = living(CUP)
     body.set("grasp", "cup")
     assert body.get("grasp") == {"left": None, "right": "cup"}
@@ -206,7 +206,7 @@ def test_a_hand_carries_the_weight_of_all_parts_of_what_it_holds() -> None:
         assert not world.mj_data.xfrc_applied.any()
 
 
-def test_what_is_held_feels_what_it_touches() -> None:
+def test_contacts_of_a_held_object_are_felt() -> None:
     stick = SimpleObject(name="stick", size=(0.6, 0.05, 0.05), position=(0.1, -0.24, 0.66), mass=0.5)
     world, body = living(Wall(name="wall", start=(0.6, -3.0), end=(0.6, 3.0)), stick)
     body.set("grasp", "stick")
@@ -217,7 +217,7 @@ def test_what_is_held_feels_what_it_touches() -> None:
     assert "stick" not in {touch.part for touch in present(body)}
 
 
-def test_what_both_hands_hold_is_carried_until_both_let_go() -> None:
+def test_an_object_in_both_hands_is_carried_until_both_release_it() -> None:
     world, body = living(SimpleObject(name="tray", size=(0.1, 0.5, 0.05), position=(0.132, 0.0, 0.66), mass=1.0))
     body.set("grasp", "tray", "left")
     body.set("grasp", "tray", "right")

@@ -156,7 +156,7 @@ def test_a_resized_geom_is_seen() -> None:
     assert body.bounding_box().size == near((0.8, 0.8, 0.8))
 
 
-def test_asking_changes_nothing() -> None:
+def test_reading_changes_nothing() -> None:
     (asked, body), (unasked, _) = posed(1, None), posed(1, None)
     for _ in range(20):
         body.bounding_box()

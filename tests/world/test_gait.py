@@ -162,7 +162,7 @@ def test_it_walks_as_far_as_without_gait() -> None:
     assert heading == pytest.approx(0, abs=0.002)
 
 
-def test_a_command_moves_a_joint_that_gait_moves_and_gait_goes_on_about_its_end() -> None:
+def test_a_command_moves_a_joint_of_the_gait_which_continues_around_the_new_position() -> None:
     world = walker()
     body = world.bodies["p"]
     torso = body.joints["torso_yaw"]
@@ -179,7 +179,7 @@ def test_a_command_moves_a_joint_that_gait_moves_and_gait_goes_on_about_its_end(
     assert torso.position == pytest.approx(0.8, abs=1e-3)
 
 
-def test_who_is_turned_sideways_steps_along_the_way() -> None:
+def test_a_body_turned_sideways_steps_along_its_path() -> None:
     world = walker(sideways=True)
     body = world.bodies["p"]
     body.set("position", "stance_yaw", math.pi / 3, 4.0)

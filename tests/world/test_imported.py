@@ -80,7 +80,7 @@ def ray(world: World, start: tuple[float, float, float], way: tuple[float, float
     return distance, world.mj_model.body(world.mj_model.geom_bodyid[geom[0]]).name if distance >= 0 else ""
 
 
-def test_an_mjcf_file_comes_in_as_mujoco_reads_it_alone(tmp_path: Path) -> None:
+def test_an_mjcf_file_is_added_as_mujoco_compiles_it_alone(tmp_path: Path) -> None:
     alone = MjSpec.from_string(ARM).compile()
     inside = model(Floor(), Imported(name="a", path=file(tmp_path, ARM)), SimpleObject(name="box"))
     assert names(inside, "body", inside.nbody) == ["world", "a_base", "a_arm", "box"]
@@ -131,7 +131,7 @@ def test_one_file_several_times_and_a_scene_several_times() -> None:
     assert first.state().mj_state.tobytes() == second.state().mj_state.tobytes()
 
 
-def test_a_urdf_file_comes_in_with_names_limits_and_what_is_seen() -> None:
+def test_a_urdf_file_is_added_with_names_limits_and_visuals() -> None:
     with pytest.warns(ModelWarning, match="links that move without a mass are given 1 g: 'frame'"):
         cart = Imported(name="c", text=CART, position=(0, 0, 2), free=True)
     world = World(Scene(parts=(cart,)))
@@ -147,7 +147,7 @@ def test_a_urdf_file_comes_in_with_names_limits_and_what_is_seen() -> None:
     assert world.mj_data.body("c_base").xpos[2] < 2
 
 
-def test_shapes_of_hidden_groups_are_met_and_not_seen() -> None:
+def test_shapes_of_hidden_groups_collide_and_are_not_seen() -> None:
     text = (
         '<mujoco><asset><material name="m" rgba="1 1 1 1"/></asset><worldbody><body name="b"><geom size="0.2" contype="0" conaffinity="0"/>'
     )
@@ -236,7 +236,7 @@ def test_a_ros_package_is_found_above_the_file_and_with_a_folder_given(tmp_path:
         Imported(name="i", path=relative)
 
 
-def test_gaps_are_filled_and_said(tmp_path: Path) -> None:
+def test_gaps_are_filled_with_a_warning(tmp_path: Path) -> None:
     turned = creation.box()
     turned.invert()
     file(tmp_path, turned.export(file_type="stl"), "meshes/one.stl")
@@ -248,7 +248,7 @@ def test_gaps_are_filled_and_said(tmp_path: Path) -> None:
     assert model(part).body("i_b").mass[0] == near(8000, rel=1e-6)
 
 
-def test_what_mujoco_says_is_said_at_the_modeller_s_line() -> None:
+def test_warnings_of_mujoco_are_given_at_the_modellers_line() -> None:
     text = mjcf('<body name="b"><flexcomp name="f" type="grid" count="3 3 1" spacing="1 1 1" dim="2"/></body>')
     with pytest.warns(
         ModelWarning, match="Imported 'i': flex 'f' is not rigid and has no equality constraints .*; Element name 'f'"
@@ -424,7 +424,7 @@ CLOTH = """<mujoco><worldbody><body name="cloth" pos="0.5 0 1.2"><flexcomp name=
     [(ROOM, 0.0, "i_geom_1"), (ROOM, -math.pi / 2, "i_body_0"), (CLOTH, 0.0, "i_cloth")],
     ids=["fixed", "body", "soft"],
 )
-def test_what_has_no_name_or_is_soft_is_felt_too(text: str, direction: float, feels: str) -> None:
+def test_unnamed_and_soft_parts_are_felt_too(text: str, direction: float, feels: str) -> None:
     world = World(Scene(parts=(Imported(name="i", text=text), Mannequin(name="walker"))))
     body = world.bodies["walker"]
     body.set("walk", 1.0, direction=direction)

@@ -72,7 +72,7 @@ def test_it_weighs_what_it_is_given_with_its_load() -> None:
     assert world.mj_model.body("walker").subtreemass == near(64, abs=0.5)
 
 
-def test_it_turns_hips_and_legs_with_the_trunk_and_goes_on_the_same_way() -> None:
+def test_it_turns_hips_and_legs_with_the_trunk_and_keeps_its_direction() -> None:
     world, body = living(sideways=True)
     before = body.bounding_box("body").width
     body.set("walk", 1.0)
@@ -239,7 +239,7 @@ def test_a_long_bar_does_not_get_through_while_it_stops_and_starts(thickness: fl
         assert body.bounding_box().upper[0] < 3.02, f"at tick {tick}"
 
 
-def test_what_is_in_the_way_stops_it_and_it_pushes_no_harder_than_it_can() -> None:
+def test_an_obstacle_stops_it_and_it_pushes_with_limited_force() -> None:
     world, body = living(Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0)), leg_force=250)
     body.set("walk", 2.0)
     ticks(world, 200)
@@ -249,7 +249,7 @@ def test_what_is_in_the_way_stops_it_and_it_pushes_no_harder_than_it_can() -> No
     assert sum(touch.force for touch in touches) == near(250, rel=0.01)
 
 
-def test_what_is_in_the_way_stops_a_joint() -> None:
+def test_an_obstacle_stops_a_joint() -> None:
     world, body = living(Wall(name="wall", start=(-2.0, 0.5), end=(2.0, 0.5)))
     body.set("joint", "left_upper_arm_roll", 2.0)
     ticks(world, 150)
@@ -285,7 +285,7 @@ def test_two_people_feel_each_other() -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_its_own_parts_and_the_floor_are_not_in_its_way(seed: int) -> None:
+def test_its_own_parts_and_the_floor_are_no_obstacles(seed: int) -> None:
     world, body = living(load=Load(shape="box", size=(0.3, 0.4, 0.3)) if seed % 2 else None)
     random = np.random.default_rng(seed)
     for name, joint in body.joints.items():
@@ -366,7 +366,7 @@ def test_only_a_box_gets_wider_when_it_begins_to_turn() -> None:
     assert widths["box"] == near(0.444 * math.cos(0.3) + 0.25 * math.sin(0.3), abs=1e-3)
 
 
-def test_going_on_from_a_state_gives_the_same_bytes_with_commands_on_their_way() -> None:
+def test_continuing_from_a_state_gives_the_same_bytes_with_commands_in_progress() -> None:
     world, body = living(load=BAR)
     body.set("waypoint", 2.0, 1.0)
     body.set("position", "torso_yaw", 0.8, 0.5)

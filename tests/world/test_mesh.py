@@ -352,13 +352,13 @@ REPAIRED: list[tuple[str, Callable[[], str | bytes], str]] = [
 
 
 @pytest.mark.parametrize(("name", "content", "message"), REPAIRED, ids=[f"{n}-{case[0]}" for n, case in enumerate(REPAIRED)])
-def test_what_can_be_repaired_is_repaired_and_said(name: str, content: Callable[[], str | bytes], message: str, tmp_path: Path) -> None:
+def test_repairs_are_made_with_a_warning(name: str, content: Callable[[], str | bytes], message: str, tmp_path: Path) -> None:
     world = repaired(file(tmp_path, content(), name), message, mass=1)
     assert (world.mj_model.nmeshface, world.mj_model.nmeshvert) == (4, 4)
     assert min(world.mj_model.body("m").inertia) > 0
 
 
-def test_a_mesh_with_a_hole_weighs_and_meets_as_its_hull(tmp_path: Path) -> None:
+def test_a_mesh_with_a_hole_has_the_mass_and_contacts_of_its_hull(tmp_path: Path) -> None:
     box = creation.box((1, 1, 1))
     open_box = trimesh.Trimesh(box.vertices, box.faces[:-1])
     path = written(tmp_path, open_box, "ply")

@@ -44,7 +44,7 @@ def test_a_standing_body_is_not_moved_by_its_own_limbs(load: Load | None, speed:
 
 
 @pytest.mark.parametrize("sideways", [False, True])
-def test_extreme_postures_do_not_move_it_nor_turn_it_from_its_way(sideways: bool) -> None:
+def test_extreme_postures_neither_move_it_nor_turn_it_from_its_path(sideways: bool) -> None:
     world, body = living(sideways=sideways)
     body.set("walk", 1.0)
     low = {name: joint.lower for name, joint in body.joints.items()}
@@ -87,7 +87,7 @@ def test_a_push_moves_a_standing_body_and_it_stays_there() -> None:
     assert there > pushed - 0.02
 
 
-def test_who_is_stronger_is_not_pushed_away() -> None:
+def test_a_stronger_body_is_not_pushed_away() -> None:
     world, body = living(Mannequin(name="other", position=(0.7, 0.0), heading=math.pi), leg_force=150)
     body.set("walk", 0.5)
     world.step(3000)
@@ -119,7 +119,7 @@ def test_a_limb_that_was_pushed_away_comes_back() -> None:
 
 
 @pytest.mark.parametrize("seed", [10, 12, 15])
-def test_how_it_stops_does_not_depend_on_whether_somebody_has_looked(seed: int) -> None:
+def test_how_it_stops_does_not_depend_on_observers(seed: int) -> None:
     def stopped(*, looked: bool) -> list[float]:
         draw = random.Random(seed)
         world = World(Scene(parts=(Floor(), Mannequin(name="m"))))
@@ -158,7 +158,7 @@ def test_after_a_limit_it_is_at_rest() -> None:
         ("walk", (True,), r"walk: speed: must be a number \(got True\)"),
     ],
 )
-def test_what_no_person_can_do_is_refused(word: str, values: tuple[object, ...], message: str) -> None:
+def test_commands_beyond_human_limits_are_refused(word: str, values: tuple[object, ...], message: str) -> None:
     _, body = living()
     with pytest.raises(WorldError, match=message):
         body.set(word, *values)

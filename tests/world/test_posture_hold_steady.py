@@ -43,7 +43,7 @@ def never(_: SteadyState) -> bool:
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.8])
-def test_it_is_taken_and_changes_nothing(heading: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_fast_check_is_used_and_changes_nothing(heading: float, monkeypatch: pytest.MonkeyPatch) -> None:
     quick, looks = course(heading)
     assert sum(looks) > 300  # of 600 of two bodies, one of which never does anything
     monkeypatch.setattr(SteadyState, "is_reached", never)
@@ -60,7 +60,7 @@ def standing() -> tuple[World, Body]:
 
 
 @pytest.mark.parametrize("which", ["place", "speed", "control"])
-def test_what_is_off_is_found(which: str) -> None:
+def test_deviations_are_found(which: str) -> None:
     world, body = standing()
     joint, data = body.joints["torso_yaw"], world.mj_data
     control = body.control("torso_yaw").start
@@ -80,7 +80,7 @@ def test_its_commanded_speed_bounds_all_its_points() -> None:
     assert body.hold.before_step(0.01) > 1.0 + 2.0 * 0.2
 
 
-def test_a_car_whose_wheels_roll_as_they_will_has_no_such_bound() -> None:
+def test_a_car_with_freely_rolling_wheels_has_no_such_bound() -> None:
     world = World(Scene(parts=(Floor(), Car(name="car"))))
     car = world.bodies["car"]
     world.step(50)

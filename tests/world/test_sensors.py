@@ -125,7 +125,7 @@ def test_the_accelerometer_is_of_the_present_and_not_of_the_step_before() -> Non
     assert crate.get("accelerometer") == near((0, 0, 0), abs=1e-9)
 
 
-def test_joints_say_where_they_are() -> None:
+def test_joints_report_their_positions() -> None:
     world, body = walker_in()
     body.set("position", "torso_yaw", 0.5, 2.0)
     body.set("joint", "head_yaw", -10.0)
@@ -379,7 +379,7 @@ def test_noise_comes_from_the_seed_and_from_its_own_sensor() -> None:
     assert one != three
 
 
-def test_noise_goes_on_exactly_from_a_state() -> None:
+def test_noise_continues_exactly_from_a_state() -> None:
     world, body = walker_in(noise=(("pose", 0.1),))
     body.get("pose")
     state = world.state()

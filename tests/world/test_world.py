@@ -41,7 +41,7 @@ def test_the_aperture_is_as_wide_as_it_says_before_and_during_a_run(heading: flo
     assert faces(world) == near(0.45, abs=1e-9)
 
 
-def test_going_on_from_a_state_gives_the_same_bytes() -> None:
+def test_continuing_from_a_state_gives_the_same_bytes() -> None:
     world = doorway()
     world.step(100)
     world.set_aperture_width(0.5)
@@ -136,7 +136,7 @@ def test_wrong_scenes_are_refused_with_a_reason(wrong: Callable[[], object], mes
         wrong()
 
 
-def test_physics_that_diverges_says_so() -> None:
+def test_divergence_of_the_physics_is_reported() -> None:
     world = doorway()
     world.mj_data.qvel[0] = 1e20
     with pytest.raises(Actr3dError, match="the physics diverged near"):
@@ -153,7 +153,7 @@ def test_what_has_diverged_is_named() -> None:
         world.step()
 
 
-def test_a_world_that_diverged_goes_on_from_an_earlier_state() -> None:
+def test_a_world_that_diverged_continues_from_an_earlier_state() -> None:
     world = doorway()
     world.step(10)
     state = world.state()
@@ -167,7 +167,7 @@ def test_a_world_that_diverged_goes_on_from_an_earlier_state() -> None:
     assert world.state().mj_state.tobytes() == expected.mj_state.tobytes()
 
 
-def test_an_aperture_does_not_close_on_what_stands_in_it() -> None:
+def test_an_aperture_does_not_close_on_a_body_inside_it() -> None:
     parts = (Floor(), Aperture(position=(0.0, 0.0)), Mannequin(name="walker"), Wall(name="beside", start=(-1, 2.5), end=(1, 2.5)))
     world = World(Scene(parts=parts))
     before = world.state()
@@ -285,7 +285,7 @@ def test_a_body_that_stands_inside_something_fixed_is_refused_at_the_start() -> 
         World(Scene(parts=(Floor(), Mannequin(name="m", position=(7.0, 0.0)), Aperture(width=0.3))))
 
 
-def test_a_body_may_touch_a_wall_and_stand_in_what_yields_at_the_start() -> None:
+def test_a_body_may_touch_a_wall_and_overlap_a_movable_object_at_the_start() -> None:
     touches, ball = Wall(name="w", start=(0.174, -1), end=(0.174, 1)), SimpleObject(name="ball", position=(-0.2, 0, 0.5))
     World(Scene(parts=(Floor(), Mannequin(name="m"), touches, ball)))
     sunk = ImportedBody(name="r", text='<mujoco><worldbody><body name="b"><geom size="0.1"/></body></worldbody></mujoco>', free=True)
