@@ -1,4 +1,4 @@
-"""Base level, noise, fixed amounts, salience and spreading, against numbers worked out here by other means."""
+"""Base level, noise, fixed amounts, salience and spreading, against numbers computed here by other means."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def test_references_of_the_past() -> None:
         ("python-actr", None, math.log(110**-0.5 + 60**-0.5)),
         ("act-r-7", None, math.log(110**-0.5 + 60**-0.5)),
         ("act-r-7", 0, math.log(2 / 0.5) - 0.5 * math.log(110)),
-        ("python-actr", 0, math.log(2 / 0.5) - 0.5 * math.log(10)),  # life begins with being added
+        ("python-actr", 0, math.log(2 / 0.5) - 0.5 * math.log(10)),  # the chunk exists from when it is added
         ("python-actr", 1, math.log(60**-0.5 + 2 * (10**0.5 - 60**0.5) / (10 - 60))),
     ]:
         memory = Memory(Buffer())

@@ -1,4 +1,4 @@
-"""Blending, against the published numbers and means worked out with high precision."""
+"""Blending, against the published numbers and means computed with high precision."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Buffers: setting, changing, emptying, comparing, and what they say when it cannot be done."""
+"""Buffers: setting, changing, emptying, comparing, and errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The chunk store finds just what looking through all chunks would find, whatever was done to it."""
+"""The chunk store finds exactly the chunks that a search through all of them finds, after any changes."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def perform(store: ChunkStore, what: str, place: int, items: dict[Any, Any]) -> 
             del known[slot]
     elif what == "slice":
         store[place % len(store) :] = [chunk]
-    elif what == "grow":  # a value that changes by itself, unseen
+    elif what == "grow":  # a value that changes by itself, unnoticed
         lists: list[Any] = [value for value in known.values() if isinstance(value, list)]
         for value in lists:
             value.append(place)

@@ -20,7 +20,7 @@ def cases(*programs: Program) -> list[object]:
 @pytest.mark.daily(35)
 @pytest.mark.parametrize(("program", "seed"), cases(*PROGRAMS))
 def test_prints_what_python_actr_prints(program: Program, seed: int, tmp_path: Path) -> None:
-    folder = tmp_path / "ours"  # a model's log goes into a folder beside its file
+    folder = tmp_path / "library"  # a model's log goes into a folder beside its file
     folder.mkdir()
     file = folder / program.file.name
     file.write_text(program.text, encoding="utf-8")

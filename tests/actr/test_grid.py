@@ -109,9 +109,9 @@ def test_an_agent_is_added_once() -> None:
 
 
 def test_an_agent_in_a_wall_is_warned_of() -> None:
-    with pytest.warns(ModelWarning, match=r"put into a wall, at \(0, 0\)") as said:
+    with pytest.warns(ModelWarning, match=r"put into a wall, at \(0, 0\)") as caught:
         World(map=ROOM).add(Agent(), 0, 0)
-    assert said[0].filename == __file__
+    assert caught[0].filename == __file__
 
 
 def test_an_agent_without_a_body_is_given_one() -> None:

@@ -1,4 +1,4 @@
-"""What the library says of a model that most likely does not mean what it says, and that saying so changes nothing."""
+"""Warnings about probable mistakes in a model, which change nothing."""
 
 from __future__ import annotations
 
@@ -52,10 +52,10 @@ def test_probable_mistakes_are_warned_of_at_their_line(body: str, message: str, 
         with pytest.raises(ChunkError, match=r"'\?x' is not bound"), pytest.warns(ModelWarning, match="nothing binds"):
             load_text(HEAD + "    " + body, "loud.py").Agent().run(0)
         return
-    said = warned(body)
-    assert len(said) == 1, said
-    assert message in said[0][0]
-    assert said[0][1] == line
+    caught = warned(body)
+    assert len(caught) == 1, caught
+    assert message in caught[0][0]
+    assert caught[0][1] == line
 
 
 @pytest.mark.parametrize(

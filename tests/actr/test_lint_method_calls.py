@@ -1,4 +1,4 @@
-"""What is said of actions that are most likely not meant."""
+"""Warnings about probable mistakes in the actions of productions."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ COUNTING = (
     ],
 )
 def test_a_misspelt_slot_is_warned_of(body: str, message: str) -> None:
-    said = warned(COUNTING + body)
-    assert len(said) == 1, said
-    assert message in said[0][0]
-    assert said[0][1] == 13 + len(body.splitlines())
+    caught = warned(COUNTING + body)
+    assert len(caught) == 1, caught
+    assert message in caught[0][0]
+    assert caught[0][1] == 13 + len(body.splitlines())
 
 
 @pytest.mark.parametrize(
@@ -121,10 +121,10 @@ def test_misspellings_are_recognized(one: str, other: str, slip: bool) -> None:
     ],
 )
 def test_probable_mistakes_in_actions_are_warned_of(body: str, message: str) -> None:
-    said = [(text, line) for text, line in warned(body) if "slot" not in text]
-    assert len(said) == 1, said
-    assert message in said[0][0]
-    assert said[0][1] == 11
+    caught = [(text, line) for text, line in warned(body) if "slot" not in text]
+    assert len(caught) == 1, caught
+    assert message in caught[0][0]
+    assert caught[0][1] == 11
 
 
 @pytest.mark.parametrize(
@@ -195,7 +195,7 @@ def test_none_in_a_tuple_of_waits_is_warned_of(what: str) -> None:
     start = f"    def start(self):\n        yield {what}\n        self.seen = self.now()\n"
     text = f"from actr3d.actr import *\nclass World(Model):\n    seen = 0\n{start}    def note(self): pass\n"
     world: Any = load_text(text, "loud.py").World()
-    with pytest.warns(ModelWarning, match=r"World\.start yields a tuple with None in it, which ends it for all that wait for it") as said:
+    with pytest.warns(ModelWarning, match=r"World\.start yields a tuple with None in it, which ends it for all that wait for it") as caught:
         world.run(1)
-    assert [(w.filename, w.lineno) for w in said] == [("loud.py", 5)]
+    assert [(w.filename, w.lineno) for w in caught] == [("loud.py", 5)]
     assert world.seen == 0.2

@@ -1,4 +1,4 @@
-"""Loading model files: whatever their encoding, and with everything put back afterwards."""
+"""Loading model files: in any encoding, and with all global state restored afterwards."""
 
 import random
 import sys

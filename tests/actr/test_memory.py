@@ -1,4 +1,4 @@
-"""Requests: times, thresholds, finsts, chances, and whatever modellers may do to a memory."""
+"""Requests: times, thresholds, finsts, probabilities, and what modellers may do with a memory."""
 
 from __future__ import annotations
 

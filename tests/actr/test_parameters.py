@@ -1,4 +1,4 @@
-"""Modules made with parameters that they do not have, or that cannot be."""
+"""Modules created with unknown or invalid parameters."""
 
 # The calls are wrong on purpose.
 # pyright: reportCallIssue=false, reportArgumentType=false

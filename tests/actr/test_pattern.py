@@ -1,4 +1,4 @@
-"""Patterns: every row of the table, read twice: by Pattern.match, and by a production of a real agent."""
+"""Patterns: every row of the table is tested twice: by Pattern.match, and by a production of a real agent."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ class Agent(ACTR):
     module.Agent.act.__defaults__ = (pattern,)
     agent = module.Agent()
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)  # some of these patterns can never match, which is said
+        warnings.simplefilter("ignore", ModelWarning)  # some of these patterns can never match, which gives a warning
         agent.run(0.05)
     assert agent.seen == expected
 
@@ -258,8 +258,8 @@ def test_the_matcher_finds_what_single_patterns_find(rules: list[tuple[str, str]
             else:
                 buffer.set(dict(contents))
         found = {p.name: p.bound for p in matcher.matching()}
-        ours = {p.name: b for p, (own, _) in zip(productions, patterns, strict=True) if (b := own.match(context)) is not None}
+        expected = {p.name: b for p, (own, _) in zip(productions, patterns, strict=True) if (b := own.match(context)) is not None}
         peers = {p.name: b for p, (_, peer) in zip(productions, patterns, strict=True) if (b := peer.match(context)) is not None}
-        assert found == ours == peers
-        assert list(found) == list(ours)
+        assert found == expected == peers
+        assert list(found) == list(expected)
         assert {p.name for p in productions if matcher.matches(p)} == set(found)

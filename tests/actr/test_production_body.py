@@ -12,7 +12,7 @@ from actr3d.actr.loading import load_text
 
 
 def run_body(body: str, start: str = "n:1 word:cat", pattern: str = "n:?n word:?word", before: str = "", members: str = "") -> Any:
-    """Runs one production with this body, and returns the agent; `out` collects what it has to say."""
+    """Runs one production with this body, and returns the agent; `out` collects its output."""
     text = f"""
 from actr3d.actr import *
 out = []

@@ -1,4 +1,4 @@
-"""Each row of the table of deviations, at the level of the agent and of the memory, wherever parts may stand."""
+"""Each row of the table of deviations, at the level of the agent and of the memory, wherever the parts are."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ def test_the_profile_reaches_every_part_however_it_was_added() -> None:
     agent.later = Memory(agent.buffer)
     alone = Memory(Buffer())
     alone.add("a")
-    assert alone.now() == 0  # it has come to life by itself
+    assert alone.now() == 0  # it has been started by itself
     world.late = Agent()
     agents = [agent, world.late]
     for one in agents:

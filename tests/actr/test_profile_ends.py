@@ -1,4 +1,4 @@
-"""When runs end: by ACT-R 7's numbers with the last event that has any effect, by Python ACT-R's as there."""
+"""When runs end: under ACT-R 7 with the last event that has an effect, under Python ACT-R as in python_actr."""
 
 from __future__ import annotations
 

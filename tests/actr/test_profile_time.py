@@ -1,4 +1,4 @@
-"""Whole milliseconds under ACT-R 7's numbers, and only there."""
+"""Times in whole milliseconds under ACT-R 7, and only there."""
 
 from __future__ import annotations
 

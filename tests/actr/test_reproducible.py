@@ -1,4 +1,4 @@
-"""One model, one seed: the same bytes, however often it is run."""
+"""One model, one seed: the same bytes in every run."""
 
 from __future__ import annotations
 

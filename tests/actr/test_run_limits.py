@@ -169,7 +169,7 @@ def test_a_run_that_needs_no_time_is_never_cut() -> None:
         model.run()  # nothing is left to do
         model.run(0)
         model.sch.add(model.stop)
-        model.run(5)  # stopped at once, though it might have lasted longer
+        model.run(5)  # stopped immediately, although the limit was later
         assert not limits.ended
         with pytest.raises(EndOfRun):
             model.run(0.1)

@@ -1,4 +1,4 @@
-"""The scheduler: waiting, waking, order, running on and on, and what it says of what it cannot do."""
+"""The scheduler: waiting, waking, order, and repeated runs."""
 
 from __future__ import annotations
 
@@ -281,7 +281,7 @@ def test_priorities_of_triggers() -> None:
 
 
 STEPS = 6000
-"""So many sixtieths of a second are 100 s; rounded one by one they would be 2 ms more."""
+"""The number of sixtieths of a second in 100 s; rounded one by one they would be 2 ms more."""
 
 
 def chain(sch: Scheduler, left: int) -> None:

@@ -1,4 +1,4 @@
-"""What the scheduler says of what it cannot do, and how it goes on afterwards."""
+"""Errors of the scheduler, and how it continues afterwards."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ def test_yield_none_ends_the_generator_with_a_warning() -> None:
     class World(Part):
         def start(self) -> Iterator[Any]:
             yield 0.1
-            yield self.note("told")
+            yield self.note("noted")
             self.note("never")
 
     world = World()
     with pytest.warns(ModelWarning, match=r"World\.start yields None, which ends it here") as caught:
         world.run(1)
     assert caught[0].filename == __file__
-    assert seen(world) == [("told", 0.1)]
+    assert seen(world) == [("noted", 0.1)]
 
 
 @pytest.mark.parametrize("limit", [-1, float("nan"), float("inf"), "1"])
@@ -84,9 +84,9 @@ def test_run_inside_run_advances_time_and_warns(traced: bool) -> None:
     world = World()
     if traced:
         world.traced()
-    with pytest.warns(ModelWarning, match=r"run was called while the model is running \(at 0\.1 s\).*yield a number of seconds") as said:
+    with pytest.warns(ModelWarning, match=r"run was called while the model is running \(at 0\.1 s\).*yield a number of seconds") as caught:
         world.run(3)
-    assert [w.filename for w in said] == [__file__]
+    assert [w.filename for w in caught] == [__file__]
     assert seen(world) == [("other", 0.6), ("after inner run", 1.1), ("end", 2.1)]
     assert world.now() == 3
 

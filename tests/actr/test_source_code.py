@@ -1,4 +1,4 @@
-"""Where productions come from: forms of definition, inheritance, files, and the errors that name them."""
+"""Sources of productions: forms of definition, inheritance, files, and the errors that name them."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ def test_only_values_that_can_name_a_chunk_share_the_weight() -> None:
     agent = fan_agent()
     agent.goal.set({"a": "lawyer", "n": 3, "m": "4.5", "nothing": None, "yes": True, "no": "False"})
     assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == near(1.6 - math.log(2))
-    agent.goal.chunk = Chunk({"a": "lawyer", "b": "nan"})  # `set` would add what stood there before to memory
+    agent.goal.chunk = Chunk({"a": "lawyer", "b": "nan"})  # `set` would add the former contents to memory
     assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == near(0.5 * (1.6 - math.log(2)))
     agent.goal.set({"n": 3})
     assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == 0
@@ -79,7 +79,7 @@ def test_a_negative_strength_of_association_counts_nothing_and_warns_in_the_mode
     with pytest.warns(ModelWarning, match="the fan of 'in' is large enough to inhibit") as caught:
         assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == 0
     assert [warning.filename for warning in caught] == [__file__]
-    assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == 0  # said once
+    assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == 0  # warns once
 
 
 def test_spreading_of_python_act_r_is_not_clipped() -> None:

@@ -39,7 +39,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def values(folder: Path) -> dict[str, list[str]]:
-    """Returns what each setting's data files say."""
+    """Returns the contents of each setting's data files."""
     found: dict[str, list[str]] = {}
     for file in sorted(folder.rglob("*.data")):
         found.setdefault(file.parent.name, []).append(file.read_text(encoding="utf-8"))

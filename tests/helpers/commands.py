@@ -27,9 +27,9 @@ def run_command(
 
     Args:
         words: The arguments.
-        folder: The working directory; None for the present one.
-        environment: Environment variables that differ from the present ones.
-        timeout: How long it may take [s].
+        folder: The working directory; None for the current one.
+        environment: Environment variables that differ from the current ones.
+        timeout: Maximum duration [s].
 
     Raises:
         TimeoutExpired: If it takes longer; it is killed.

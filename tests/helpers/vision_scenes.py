@@ -16,7 +16,7 @@ PERIOD = 10_000
 
 
 def found(name: str, world: str, eye: str = "", **parameters: Any) -> tuple[Any, ...]:
-    """Returns what a detector finds from the site 'eye', 1.5 m above the origin and looking along x unless told otherwise."""
+    """Returns what a detector finds from the site 'eye', 1.5 m above the origin and looking along x by default."""
     _, view = seen(world, eye=eye, **parameters)
     return DETECTORS[name](view)
 
@@ -72,7 +72,7 @@ class Mindful:
 
 
 def seeing_for(seconds: float) -> Any:
-    """Returns the trace of a mind that looks for an opening and finds it."""
+    """Returns the trace of an agent that searches for an opening and finds it."""
     kind = agent(
         """
 from actr3d.actr import *

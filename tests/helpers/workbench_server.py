@@ -68,4 +68,4 @@ def served(folder: Path, *options: str) -> Generator[Served]:
             rest = process.stdout.read()
             process.wait(30)
             assert not re.search("Traceback|Exception", rest), rest
-            assert running.token not in rest  # it is told once, as the address
+            assert running.token not in rest  # it is printed once, as part of the address

@@ -31,7 +31,7 @@ ARM = """<mujoco><worldbody><body name="base"><geom size="0.1"/>
 
 
 def angle(simulation: Simulation, joint: str, body: str = "walker") -> float:
-    """Returns where a joint truly is [degrees]."""
+    """Returns the true position of a joint [degrees]."""
     return math.degrees(simulation.world.bodies[body].joints[joint].position)
 
 
@@ -289,7 +289,7 @@ def test_a_speed_may_change_while_its_movement_is_prepared() -> None:
     assert (base.speed[0], math.degrees(base.speed[2])) == (near(1.5, abs=0.02), near(-40, abs=0.5))
 
 
-# -- what is refused
+# -- refusals
 
 
 def test_a_busy_group_refuses_and_others_do_not() -> None:
@@ -301,8 +301,9 @@ def test_a_busy_group_refuses_and_others_do_not() -> None:
     assert (motor.error, motor.refusal) == (False, None)
     until(simulation, lambda: not motor.busy)
     assert angle(simulation, "left_shoulder_yaw") == near(-20, abs=0.01)
-    told = [event.data for event in simulation.trace or () if event.kind == "refused"]
-    assert told == [{"movement": "compress_shoulder_left", "why": "busy"}]
+
+    refused = [event.data for event in simulation.trace or () if event.kind == "refused"]
+    assert refused == [{"movement": "compress_shoulder_left", "why": "busy"}]
 
 
 @pytest.mark.parametrize(
@@ -432,7 +433,7 @@ def test_commands_wait_until_the_body_is_known_and_their_errors_name_the_line() 
     assert "test_motor.py" in str(failed.value.__notes__)
 
 
-# -- what is in the way
+# -- obstacles
 
 
 def test_a_walker_at_a_wall_is_blocked() -> None:
@@ -530,7 +531,7 @@ def test_an_imported_arm_is_known_and_moved() -> None:
     assert angle(simulation, "shoulder", "arm") == near(40, abs=0.5)
     assert (motor.shoulder_angle, motor.upper_end, motor.finger_end) == (40, "done", "limit")
     assert motor.grip_position == near(0.05, abs=0.001)
-    assert motor.fore_busy, "a joint without limits turns until it is told to stop"
+    assert motor.fore_busy, "a joint without limits turns until a command stops it"
     motor.stop("fore")
     simulation.step(2)
     assert motor.fore_end == "stopped"
@@ -591,9 +592,9 @@ class Slip(ACTR):
     simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": load_text(text, "slip.py").Slip})
     with pytest.warns(
         ModelWarning, match=r"'go' can never match: 'motor' has no attribute 'torso_bussy'; did you mean 'torso_busy'\?"
-    ) as told:
+    ) as caught:
         simulation.step(3)
-    assert len(told) == 1
+    assert len(caught) == 1
     simulation.seek(0)
     simulation.step(3)
 
@@ -611,9 +612,9 @@ class Turner(ACTR):
 """
     make = load_text(text, "turner.py").Turner
     Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": make}).step(3)
-    with pytest.warns(ModelWarning, match="'motor' has no attribute 'torso_busy'") as told:
+    with pytest.warns(ModelWarning, match="'motor' has no attribute 'torso_busy'") as caught:
         Simulation(Scene(parts=(Floor(), Car(name="car"))), {"car": make}).step(3)
-    assert len(told) == 1
+    assert len(caught) == 1
     Simulation(Scene(parts=(Floor(), Car(name="car"))), {"car": make}).step(3)
 
 
@@ -638,7 +639,7 @@ def test_no_request_is_made_while_nothing_moves() -> None:
     simulation.step(50)
     answers = [event for event in simulation.trace or () if event.kind == "answer"]
     assert [event.data["word"] for event in answers] == ["anatomy", "proprioception"]
-    # Where all joints stand, the recorded physics tells; here it would be most of all that is traced.
+    # The recorded physics has the positions of all joints; here they would be most of the trace.
     assert answers[1].data["value"].keys() == {"moving", "speed", "walking", "turning", "width", "depth", "height", "middle"}
     motor.rotate_torso(12)
     simulation.step(50)

@@ -1,4 +1,4 @@
-"""The motor module is exact: through seek, with observers, in recordings; and keeps its promises whatever is commanded."""
+"""The motor module is exact: with seek, observers and recordings, and under any commands."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ COMMANDS = ("rotate", "free", "stop", "stop all", "walk", "turn", "arms")
 
 
 def command(motor: Any, choose: random.Random) -> None:
-    """Gives some command, possible or not."""
+    """Gives a random command, valid or not."""
     joints = [name for name, joint in motor._limbs.joints.items() if joint.driven]
     joint = choose.choice(joints)
     speed = choose.choice([20, 90, 240])
@@ -163,7 +163,7 @@ def test_limits_hold_and_knowledge_of_the_body_is_true_under_any_commands(seed: 
             assert joint.lower - 2e-3 <= joint.position <= joint.upper + 2e-3
             seen[name] = [min(seen[name][0], joint.position), max(seen[name][1], joint.position)]
             if abs(body.hold.joint_speed(joint)) > 0.01:
-                assert name.rpartition("_")[0] in busy, "who moves is busy"
+                assert name.rpartition("_")[0] in busy, "a moving group is busy"
     motor.stop()
     simulation.step(2)
     for name in body.joints:

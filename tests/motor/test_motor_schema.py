@@ -1,4 +1,4 @@
-"""The body schema: what is felt of the body, and the postures that are remembered of it."""
+"""The body schema: felt positions of the body, and remembered postures."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def postures(motor: Any, pattern: str = "posture:?") -> list[dict[str, Any]]:
 
 
 def swing(simulation: Simulation, motor: Any, to: float) -> None:
-    """Turns torso and both shoulders to one side, until all are there."""
+    """Turns torso and both shoulders to one side, until all have arrived."""
     forward, backward = ("right", "left") if to > 0 else ("left", "right")
     motor.rotate_torso(to)
     motor.extend_shoulder(forward)
@@ -33,7 +33,7 @@ def swing(simulation: Simulation, motor: Any, to: float) -> None:
     until(simulation, lambda: not motor.busy)
 
 
-# -- what is known of the body
+# -- knowledge of the body
 
 
 def test_the_parts_are_those_of_the_body_in_its_order() -> None:
@@ -67,7 +67,7 @@ def test_extremes_are_those_of_the_true_angles_up_to_the_last_tick() -> None:
         until(simulation, watch)
     for name, angles in seen.items():
         joint = motor.joint(name)
-        # What is not moved gives way a little and comes back, also where nothing is felt.
+        # Joints without a command give way a little and return, also while nothing is felt.
         exact = 1e-8 if name in ("torso_yaw", "head_yaw") else 1e-4
         assert (joint.minimum, joint.maximum, joint.angle) == near((min(angles), max(angles), angles[-1]), abs=exact, rel=0)
 

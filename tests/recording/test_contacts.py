@@ -1,4 +1,4 @@
-"""Contacts within ticks: a recording has what the skin feels, of each tick, and a run is the same with it or without."""
+"""Contacts within ticks: a recording has those that the skin feels in each tick, and does not change the run."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def struck() -> Simulation:
 
 
 def felt(simulation: Simulation, ticks: int = TICKS) -> Contacts:
-    """Runs a simulation whose body feels; returns what has touched it, by tick."""
+    """Runs a simulation whose agent reads the skin; returns the felt contacts by tick."""
     skin = simulation.world.bodies["walker"]
     skin.touched = tuple[Touch, ...]()
     found: Contacts = {}

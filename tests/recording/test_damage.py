@@ -36,14 +36,14 @@ def original_(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def content(path: Path) -> list[Any]:
-    """Returns all that a recording says: everything but its checksums."""
+    """Returns the content of a recording without its checksums."""
     with closing(sqlite3.connect(path)) as file:
         tables = [file.execute(f"SELECT * FROM {table} ORDER BY 1").fetchall() for table in COLUMNS]
         return [file.execute("SELECT * FROM facts ORDER BY 1").fetchall(), *([row[:-1] for row in rows] for rows in tables)]
 
 
 def sealed(path: Path) -> list[Any]:
-    """Returns what says that a recording was made by this installation."""
+    """Returns the seal of a recording, which shows that this installation made it."""
     with closing(sqlite3.connect(path)) as file:
         return file.execute("SELECT * FROM seal").fetchall()
 
@@ -60,7 +60,7 @@ def altered(value: Any, choose: random.Random) -> Any:
 
 
 def edit(file: sqlite3.Connection, choose: random.Random) -> None:
-    """Changes something, as with an editor for databases."""
+    """Changes a database, as an editor for databases could."""
     table = choose.choice(["facts", "facts", "seal", *COLUMNS])
     key = "name" if table == "facts" else "first"
     rows = file.execute(f"SELECT * FROM {table}").fetchall()
@@ -83,7 +83,7 @@ def edit(file: sqlite3.Connection, choose: random.Random) -> None:
 
 
 def test_a_recording_with_changed_content_never_agrees(original: Path, tmp_path: Path) -> None:
-    whole, said = original.read_bytes(), content(original)
+    whole, before = original.read_bytes(), content(original)
     found = {"damaged": 0, "foreign": 0, "the same": 0}
     seal = sealed(original)
     path = tmp_path / "run"
@@ -105,7 +105,7 @@ def test_a_recording_with_changed_content_never_agrees(original: Path, tmp_path:
         except RecordingError:
             found["damaged"] += 1
             continue
-        assert content(path) == said, number
+        assert content(path) == before, number
         assert made_here == (sealed(path) == seal), number
         found["the same" if made_here else "foreign"] += 1
     assert found["damaged"] > EDITS / 2
@@ -197,10 +197,10 @@ def test_errors_in_a_recording_are_reported(
     else:
         forge(path, statement)
     assert main(["replay", str(path)]) == 2
-    told = capsys.readouterr()
-    assert told.err.startswith("error: ")
-    assert message in told.err
-    assert len(told.err) < 1_000
+    captured = capsys.readouterr()
+    assert captured.err.startswith("error: ")
+    assert message in captured.err
+    assert len(captured.err) < 1_000
 
 
 def test_a_file_that_would_keep_a_reader_busy_for_ever_is_refused_immediately(program: Path, tmp_path: Path) -> None:

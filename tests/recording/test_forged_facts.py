@@ -1,4 +1,4 @@
-"""Facts that were forged, with checksums and seal that fit, are found wherever running the program again can show it."""
+"""Forged facts with correct checksums and seal are found wherever a replay can show it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which recordings this installation made itself: it seals them with a key of its own."""
+"""Each installation seals its recordings with its own key, and recognizes them by it."""
 
 from __future__ import annotations
 

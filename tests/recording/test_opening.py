@@ -1,4 +1,4 @@
-"""Files of recordings that somebody has made to hurt: nothing in them computes without end, and each is refused with a reason."""
+"""Malicious files of recordings: none makes the reader compute without end, and each is refused with a reason."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recordings: one file a run, whole after a kill, and an error where it cannot be written."""
+"""Recordings: one file per run, complete after a kill, and an error if it cannot be written."""
 
 from __future__ import annotations
 
@@ -75,10 +75,10 @@ def test_a_recording_holds_everything(tmp_path: Path) -> None:
         assert list(recorded.commands()) == [
             (1, 50, {"command": "aperture", "data": {"values": [], "named": {"width": 0.5}, "body": None}})
         ]
-        told = [(event.source, event.data["value"]) for event in simulation.trace.select("answer")]
+        expected = [(event.source, event.data["value"]) for event in simulation.trace.select("answer")]
         answers = list(recorded.answers())
-        assert [(f"{answer.body}.body", answer.value) for answer in answers][: len(told)] == told
-        assert len(answers) >= len(told) > 10
+        assert [(f"{answer.body}.body", answer.value) for answer in answers][: len(expected)] == expected
+        assert len(answers) >= len(expected) > 10
         assert [answer.tick for answer in answers] == sorted(answer.tick for answer in answers)
         facts = recorded.facts
     assert (facts["seed"], facts["period_us"], facts["timestep_us"], facts["subject"], facts["place"]) == (1, 10_000, 2_000, 7, "here")
@@ -158,13 +158,13 @@ def test_a_killed_run_leaves_all_but_the_last_second(wait: float, tmp_path: Path
     path = tmp_path / "run"
     with subprocess.Popen(program(path), stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
-        said: list[tuple[int, float]] = []
-        while not said or time.monotonic() - said[0][1] < wait:
-            said.append((int(process.stdout.readline()), time.monotonic()))
+        printed: list[tuple[int, float]] = []
+        while not printed or time.monotonic() - printed[0][1] < wait:
+            printed.append((int(process.stdout.readline()), time.monotonic()))
         os.kill(process.pid, signal.SIGKILL)
         killed = time.monotonic()
         process.wait()
-    due = max([tick for tick, when in said if when < killed - 1], default=0)
+    due = max([tick for tick, when in printed if when < killed - 1], default=0)
     with Recorded(path) as recorded:
         assert recorded.ticks >= due
         states = list(recorded.states())
@@ -235,7 +235,7 @@ def test_a_reader_does_not_hold_up_the_end(tmp_path: Path) -> None:
         assert recorded.event_count == 1
         recording.event(TraceEvent(1, "agent", "output", {"text": "two"}))
         recording.close()
-        assert recorded.event_count == 1  # it is read as it was
+        assert recorded.event_count == 1  # it is read as it was then
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
 
 
@@ -403,7 +403,7 @@ def test_events_that_a_seek_drops_can_be_copied_before(tmp_path: Path) -> None:
         simulation.run(0.3)
         simulation.seek(0.2)
         recording.copy_to(tmp_path / "before")
-        with Recorded(tmp_path / "before") as before:  # it is closed at once
+        with Recorded(tmp_path / "before") as before:  # it is closed immediately
             assert (before.ticks, before.facts["subject"], before.facts["ended"], before.over) == (60, 7, {"by": "left"}, False)
             assert [command.tick for command in before.commands()] == [30]
             assert [state.tick for state in before.states()] == list(range(61))

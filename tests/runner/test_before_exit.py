@@ -1,4 +1,4 @@
-"""What a model has printed and done before it ends its own process is written, and the command says what is kept."""
+"""Models that end their own process: their output and recording are kept, and the command reports what is kept."""
 
 from __future__ import annotations
 

@@ -184,13 +184,13 @@ def file(tmp_path: Path) -> Path:
 
 def test_help_lists_the_options_of_the_model(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(file), "--help"]) == 0
-    told = capsys.readouterr()
-    assert "--seed N" in told.out
+    captured = capsys.readouterr()
+    assert "--seed N" in captured.out
     assert (
         "  --power             number, > 0, <= 100 [W]; default 60.0\n                      How bright it is at full power [W].\n"
-        in told.out
+        in captured.out
     )
-    assert "Exit codes: 0 the model ran, whatever its result; 1 it failed" in " ".join(told.out.split())
+    assert "Exit codes: 0 the model ran, whatever its result; 1 it failed" in " ".join(captured.out.split())
     assert main(["run", "--help"]) == 0
     assert "--power" not in capsys.readouterr().out
 
@@ -210,10 +210,10 @@ def test_impossible_parameters_are_one_line_and_code_2(
     words: list[str], message: str, file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["run", str(file), *words]) == 2
-    told = capsys.readouterr()
-    assert told.out == ""
-    assert told.err.startswith(f"error: {message}")
-    assert told.err.count("\n") == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith(f"error: {message}")
+    assert captured.err.count("\n") == 1
 
 
 def test_an_error_of_the_model_itself_is_code_1(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -236,6 +236,6 @@ def test_the_result_is_the_last_line(file: Path, tmp_path: Path, capsys: pytest.
 def test_the_result_is_recorded_and_compared(file: Path, tmp_path: Path) -> None:
     assert main(["run", str(file), "--seed", "1", "--record", str(tmp_path / "run")]) == 0
     forge(tmp_path / "run", "UPDATE events SET data = replace(data, '\"declined\"', '\"passed\"') WHERE data LIKE '%\"declined\"%'")
-    told = verdict(tmp_path / "run")
-    assert told.code == 1
-    assert '"passed"' in told.text
+    report = verdict(tmp_path / "run")
+    assert report.code == 1
+    assert '"passed"' in report.text

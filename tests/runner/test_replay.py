@@ -1,4 +1,4 @@
-"""`actr3d run --record` and `actr3d replay`: a recording is run again, and every byte compared."""
+"""`actr3d run --record` and `actr3d replay`: a recording is run again, and every byte is compared."""
 
 from __future__ import annotations
 
@@ -217,9 +217,9 @@ CHANGES = [
 def test_a_replay_reports_where_it_differs(change: str, message: str, file: Path) -> None:
     path = recorded_run(file)
     forge(path, change)
-    told = verdict(path)
-    assert told.code == (2 if "error" in message else 1)
-    assert message in told.text
+    report = verdict(path)
+    assert report.code == (2 if "error" in message else 1)
+    assert message in report.text
 
 
 def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -278,9 +278,9 @@ def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path) -> None:
     path = recorded_run(file)
     for before, after, message in ((2, 1, "differs: the run ended after "), (1, 3, "recorded: nothing; now: ")):
         forge(path, in_fact("sources", f"range({before})", f"range({after})"))
-        told = verdict(path)
-        assert told.code == 1
-        assert message in told.text
+        report = verdict(path)
+        assert report.code == 1
+        assert message in report.text
 
 
 CUT = """UPDATE events SET count = count - 1, data = json_remove(data, '$[#-1]') WHERE first = (SELECT max(first) FROM events)"""
@@ -324,11 +324,11 @@ def test_a_run_that_fails_is_recorded_until_then(tmp_path: Path, capsys: pytest.
     path = tmp_path / "run"
     assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 1
     assert "has no attribute 'halt'" in capsys.readouterr().err
-    told = verdict(path)
-    assert told.code == 0
+    report = verdict(path)
+    assert report.code == 0
     assert re.fullmatch(
         r"agrees up to the end of the recording: 14 ticks, \d+ events; the run failed after 0.14 s \(AttributeError: .*'halt'\)\n",
-        told.text,
+        report.text,
     )
 
 
@@ -343,9 +343,9 @@ def test_a_program_that_exits_is_replayed_to_its_end(code: int, tmp_path: Path, 
     assert main(["replay", str(path)]) == 0
     assert capsys.readouterr().out.startswith("every byte agrees: ")
     forge(path, "UPDATE facts SET value = replace(value, 'over', 'more') WHERE name = 'sources'")
-    told = verdict(path)
-    assert told.code == 1
-    assert '"text": "moreend..."' in told.text
+    report = verdict(path)
+    assert report.code == 1
+    assert '"text": "moreend..."' in report.text
 
 
 @pytest.mark.daily(1)
@@ -361,9 +361,9 @@ def test_a_replay_that_fails_differs(leave: str, tmp_path: Path, monkeypatch: py
     monkeypatch.setenv("FAIL", "run")
     assert verdict(path) == Verdict(code=1, text=f"differs: the run failed after 0.09 s ({what})\n")
     monkeypatch.setenv("FAIL", "build")
-    told = verdict(path)
-    assert told.code == 2
-    assert f"error: what '{path}' holds cannot be built here: {what}\n" in told.text
+    report = verdict(path)
+    assert report.code == 2
+    assert f"error: what '{path}' holds cannot be built here: {what}\n" in report.text
 
 
 @pytest.mark.parametrize(
@@ -488,9 +488,9 @@ def test_printed_lines_of_a_model_are_recorded_in_order(file: Path, capsys: pyte
     assert printed_lines(path) == [(0.0, "loaded and ready"), (0.05, "1"), (0.1, "end2"), (0.15, "end3"), (0.15, "end")]
     assert verdict(path).code == 0
     forge(path, "UPDATE events SET data = replace(data, 'end2', 'end7')")
-    told = verdict(path)
-    assert told.code == 1
-    assert '"text": "end7"' in told.text
+    report = verdict(path)
+    assert report.code == 1
+    assert '"text": "end7"' in report.text
 
 
 def test_printed_lines_of_a_program_are_recorded_in_order(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The verdict of a replay stands, whatever the recorded program does to the process that runs it."""
+"""The verdict of a replay is reliable, whatever the recorded program does to its process."""
 
 from __future__ import annotations
 
@@ -71,10 +71,10 @@ def test_a_program_that_ends_the_process_leaves_no_verdict(
     capfd.readouterr()
     assert main(["replay", str(path)]) == 2
     assert not list(temporary.iterdir())
-    told = capfd.readouterr()
-    assert told.err.startswith("error: no verdict: ")
-    assert how in told.err
-    assert "agrees" not in told.out
+    captured = capfd.readouterr()
+    assert captured.err.startswith("error: no verdict: ")
+    assert how in captured.err
+    assert "agrees" not in captured.out
 
 
 def test_a_program_that_exits_from_its_last_handler_keeps_its_verdict(

@@ -1,4 +1,4 @@
-"""Planning units: how they lead from unit task to unit task, in which time, and what the trace tells of each level."""
+"""Planning units: the order and times of their unit tasks, and the trace of each level."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 
 from actr3d.actr.loading import load_text
 from tests.helpers.commands import run_command
-from tests.helpers.sgoms_agents import HEAD, cooking, fired, told
+from tests.helpers.sgoms_agents import HEAD, cooking, fired, level_events
 from tests.helpers.small_agents import near
 
 ROOT = Path(__file__).parents[2]
@@ -40,7 +40,7 @@ def test_an_ordered_planning_unit_takes_two_productions_and_a_retrieval_from_uni
     # 0.15 s to ask, retrieve and take; each unit task lasts 0.05 (begin) + 2 * 0.05 (steps) + 0.05 s (end).
     assert module.said == [(near(0.2), "boil"), (near(0.2 + 0.3 + 0.05), "steep"), (near(0.2 + 2 * 0.35), "pour")]
     assert [name for _, name in fired(module)][:3] == ["sgoms_begin", "sgoms_take", "begin"]
-    assert told(module, "planning_unit") == ["0 begun tea", "1.2 ended tea"]
+    assert level_events(module, "planning_unit") == ["0 begun tea", "1.2 ended tea"]
     assert module.agent.b_plan_unit["state"] == "finished"
     assert module.agent.b_unit_task.chunk is None
 
@@ -66,7 +66,7 @@ def test_a_situated_planning_unit_follows_the_situation() -> None:
     # Begin and choose take 0.05 s each; likewise to look at the new situation and to choose.
     assert module.said == [(near(0.15), "wash"), (near(0.3), "sweep")]
     assert [name for _, name in fired(module)][-2:] == ["sgoms_look", "sgoms_tidy_finished"]
-    assert told(module, "planning_unit", "unit_task") == [
+    assert level_events(module, "planning_unit", "unit_task") == [
         "0 begun tidy",
         "0.1 begun tidy/wash",
         "0.15 ended tidy/wash",
@@ -114,7 +114,7 @@ class Agent(SGOMS):
         b_unit_task.modify(state="finished")
 """
     )
-    assert told(module, "planning_unit", "unit_task", "method", "operator") == [
+    assert level_events(module, "planning_unit", "unit_task", "method", "operator") == [
         "0 begun tea",
         "0.15 begun tea/boil",
         "0.2 begun tea/boil/heat",
@@ -156,7 +156,7 @@ class Agent(SGOMS):
 """,
         seconds=0.45,
     )
-    assert told(module, "planning_unit", "method") == [
+    assert level_events(module, "planning_unit", "method") == [
         "0 begun tea",
         "0.2 begun tea/boil/heat",
         "0.3 ended tea/boil/heat",

@@ -1,4 +1,4 @@
-"""What is wrong with a planning unit is said at once, with the name that was most likely meant."""
+"""Errors of planning units, which suggest the name that was most likely meant."""
 
 from __future__ import annotations
 
@@ -180,7 +180,7 @@ def test_planning_units_are_inherited_and_each_agent_has_its_own_buffers() -> No
     [("b_plan_unit", "planning_unit:tea"), ("b_method", "method:pour"), ("b_interrupt", "planning_unit:phone when:now")],
 )
 def test_an_agent_that_has_not_started_has_no_buffer_of_its_own(buffer: str, chunk: str) -> None:
-    """What was set there used to be every agent's, of whatever class, and a planning unit set so never began."""
+    """Setting it would change the buffer of all agents of any class, and the planning unit would never begin."""
     agent = load_text(HEAD + body("b_unit_task.modify(state='finished')"), "agent.py").Agent()
     with pytest.raises(PlanError, match=r"before its agent has started; do it in the agent's init\(\), or after its run\(0\)"):
         getattr(agent, buffer).set(chunk)

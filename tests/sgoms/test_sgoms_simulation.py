@@ -77,8 +77,8 @@ def test_a_seek_into_an_interruption_is_exact_and_so_is_the_run_from_there() -> 
     simulation = walking()
     simulation.run(5)
     assert simulation.trace is not None
-    told = [(event.data["what"], event.data["path"]) for event in simulation.trace if event.kind == "planning_unit"]
-    assert told == [
+    events = [(event.data["what"], event.data["path"]) for event in simulation.trace if event.kind == "planning_unit"]
+    assert events == [
         ("begun", "route"),
         ("interrupted", "route"),
         ("begun", "halt"),
@@ -105,7 +105,7 @@ def test_a_seek_into_an_interruption_is_exact_and_so_is_the_run_from_there() -> 
 
 
 @pytest.mark.daily(1)
-@pytest.mark.parametrize("kind", ["mind alone", "with a body"])
+@pytest.mark.parametrize("kind", ["without a body", "with a body"])
 def test_a_recording_is_replayed_byte_for_byte(kind: str, tmp_path: Path) -> None:
     text = f"{HEAD}class Agent(Base):\n    DM = Memory(SGOMS.b_DM)\nworld = World()\nworld.agent = Agent()\n"
     text += "world.bell = later(0.22, 'planning_unit:phone when:now')\nworld.run(5)\nprint(said)\n"

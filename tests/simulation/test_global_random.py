@@ -1,4 +1,4 @@
-"""Minds that draw from Python's module `random`, or from numpy's, do not share it with the rest of the program."""
+"""Agents that draw from Python's `random` or numpy's `random` do not share its state with the rest of the program."""
 
 from __future__ import annotations
 
@@ -181,10 +181,10 @@ def test_numbers_drawn_with_numpy_come_from_the_seed_of_the_program_wherever_it_
     text += "for seed in '112':\n    main(['run', sys.argv[1], '--seed', seed])\n    print('over')\n"
     text += "print(numpy.random.normal())" if first else ""
     command = [sys.executable, "-c", text, str(file)]
-    said = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
-    one, again, other, after = (part.splitlines() for part in said.split("over\n"))
+    printed = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
+    one, again, other, after = (part.splitlines() for part in printed.split("over\n"))
     assert one == again
     assert len(set(one)) == 3
     assert one[0] != other[0]
     if first:
-        assert float(after[0]) == np.random.RandomState(3).normal(size=2)[1]  # what it was before comes back
+        assert float(after[0]) == np.random.RandomState(3).normal(size=2)[1]  # its former state is restored

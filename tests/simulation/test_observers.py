@@ -1,4 +1,4 @@
-"""What observers of a run can do: read the trace from a number on, memories, the eye and the senses. The run does not change."""
+"""Observers of a run read its trace, memories, eye and sensors, and do not change the run."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Knowing(ACTR):
 
 
 class Senses(Model):
-    """Walks to a wall, and reads noisy senses and the skin, the skin first when it has walked for a while."""
+    """Walks to a wall and reads noisy sensors, and after a while also the skin."""
 
     def start(self) -> Any:
         agent: Any = self.parent
@@ -83,7 +83,7 @@ def test_an_observer_may_read_every_sense_of_a_body_and_the_agent_senses_the_sam
     seen: list[Any] = []
 
     def look(_: object) -> None:
-        for word in set(body.sensors) - {"image", "depth"}:  # these have no state, and take long
+        for word in set(body.sensors) - {"image", "depth"}:  # these have no state, and are slow
             with suppress(WorldError):  # some need options
                 seen.append(body.get(word, noise=0.1 if word == "rangefinder" else None))
 
@@ -97,14 +97,14 @@ def test_an_observer_may_read_every_sense_of_a_body_and_the_agent_senses_the_sam
 
 @dataclass(frozen=True)
 class Distances:
-    """The least distance to the wall, as a noisy sensor has it, and whether the skin has felt anything."""
+    """The minimum distance to the wall by a noisy sensor, and whether the skin has felt anything."""
 
     least: float
     touched: bool
 
 
 class Reads:
-    """A measure that reads noisy sensors, and the skin, which remembers."""
+    """A measure that reads noisy sensors, and the skin, which has a state."""
 
     def begin(self, world: World) -> None:
         self.body = world.bodies["walker"]
@@ -314,26 +314,26 @@ def test_a_simulation_is_done_when_no_agent_has_anything_left_to_do() -> None:
 def test_an_error_names_the_modellers_line() -> None:
     with pytest.raises(ZeroDivisionError) as caught:
         run_text(f"{CLOCK}def halve(n):\n    return n / 0\nhalve(1)", "mine.py")
-    told = traceback_report(caught.value)
-    assert (told.file, told.line) == ("mine.py", 7)
-    assert told.message == "ZeroDivisionError: division by zero"
-    assert "loading.py" not in told.text
+    report = traceback_report(caught.value)
+    assert (report.file, report.line) == ("mine.py", 7)
+    assert report.message == "ZeroDivisionError: division by zero"
+    assert "loading.py" not in report.text
 
 
 def test_an_error_names_the_modellers_line_where_a_module_of_python_raises() -> None:
     with pytest.raises(ValueError, match="Expecting") as caught:
         run_text("import json\njson.loads('no')", "mine.py")
-    told = traceback_report(caught.value)
-    assert (told.file, told.line) == ("mine.py", 2)
-    assert "decoder.py" in told.text
+    report = traceback_report(caught.value)
+    assert (report.file, report.line) == ("mine.py", 2)
+    assert "decoder.py" in report.text
 
 
 @pytest.mark.parametrize("text", ["1 +", "x = 3\nprint 'so'\n"])
 def test_an_error_names_the_line_that_cannot_be_read(text: str) -> None:
     with pytest.raises(Exception, match="bad") as caught:
         run_text(text, "bad.py")
-    told = traceback_report(caught.value)
-    assert (told.file, told.line) == ("bad.py", 1 if "+" in text else 2)
+    report = traceback_report(caught.value)
+    assert (report.file, report.line) == ("bad.py", 1 if "+" in text else 2)
 
 
 def test_a_live_field_shows_its_command_in_its_repr() -> None:

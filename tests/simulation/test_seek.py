@@ -1,4 +1,4 @@
-"""Going back: any past time exactly, and on from there as the first time."""
+"""Seek: any past time is restored exactly, and the run continues from there as the first time."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ COMMANDS = {
     110: ("posture", {"torso_yaw": 0.2}, "walker"),
     120: ("aperture", 0.6, None),
 }
-"""After which tick: the word, its value, and the body."""
+"""By tick: the command after it, its value, and the body."""
 
 
 def command(simulation: Simulation, tick: int) -> None:

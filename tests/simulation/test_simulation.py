@@ -1,4 +1,4 @@
-"""Lockstep: agents and bodies go through the same time, exactly, whatever the wall clock and onlookers do."""
+"""Lockstep: agents and bodies share exactly the same time, independent of the wall clock and of observers."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def with_port(kind: Any) -> Any:
 
 @pytest.fixture(name="asked")
 def asked_(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
-    """Counts what bodies are asked, by their names."""
+    """Counts the requests to bodies, by name."""
     counts: Counter[str] = Counter()
     get = Body.get
 
@@ -125,10 +125,10 @@ def asked_(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
 def test_agents_run_in_a_tick_and_bodies_move_and_answer_in_a_tock() -> None:
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker}, seed=1, trace="all")
     simulation.run(1.0)
-    mind: Any = simulation.agents["walker"]
-    asked, busy, answered, arrived, felt, nothing = mind.times
+    agent: Any = simulation.agents["walker"]
+    asked, busy, answered, arrived, felt, nothing = agent.times
     assert (asked, busy) == (("asked", 0.05), ("busy", True))
-    assert answered[:2] == ("answered", 0.05)  # asked at the very end of a tick, answered when the next begins
+    assert answered[:2] == ("answered", 0.05)  # requested at the very end of a tick, answered when the next begins
     assert (answered[2].x, answered[2].y, answered[2].heading) == near((0, 0, 0), abs=1e-6)
     assert answered[3] is False
     assert arrived[1].x == near(0.2, abs=1e-3)
@@ -235,13 +235,13 @@ def test_an_observer_cannot_step_what_it_observes() -> None:
 
 @pytest.mark.parametrize("look", ["listen", "until"])
 def test_listeners_and_conditions_are_observers_too(look: str) -> None:
-    simulation, told = driving("all"), list[str]()
+    simulation, errors = driving("all"), list[str]()
 
     def meddle(_: object) -> bool:
         for change in (simulation.step, simulation.tock, lambda: simulation.seek(0), lambda: simulation.command("aperture", 1.0)):
             with pytest.raises(SimulationError, match="observers, listeners and `until` cannot") as caught:
                 change()
-            told.append(str(caught.value))
+            errors.append(str(caught.value))
         return False
 
     if look == "listen":
@@ -249,7 +249,7 @@ def test_listeners_and_conditions_are_observers_too(look: str) -> None:
         simulation.step(5)
     else:
         simulation.run(0.05, until=meddle)
-    assert len(told) >= 20
+    assert len(errors) >= 20
     plain = driving("all")
     plain.step(5)
     assert digest(simulation) == digest(plain)
@@ -289,9 +289,9 @@ def test_simultaneous_events_of_several_agents_have_one_order() -> None:
 def test_an_agent_that_calls_stop_ends_the_run_with_its_tick() -> None:
     simulation = Simulation(scene_of("walker"), {"walker": MINDS.Stopper})
     report = simulation.run(1)
-    mind: Any = simulation.agents["walker"]
-    assert (report.ended_by, report.ticks, simulation.time, mind.ticks) == ("stop", 3, 0.03, "to the end of its tick")
-    assert mind.now() == simulation.time
+    agent: Any = simulation.agents["walker"]
+    assert (report.ended_by, report.ticks, simulation.time, agent.ticks) == ("stop", 3, 0.03, "to the end of its tick")
+    assert agent.now() == simulation.time
     assert simulation.run(0.02).ended_by == "seconds"
 
 
@@ -354,7 +354,7 @@ def test_until_is_checked_after_each_tock() -> None:
 def test_real_time_is_kept_and_measured_and_lateness_reported() -> None:
     simulation = Simulation(Scene(), bodiless={"idle": MINDS.Idle})
     report = simulation.run(0.2, real_time=2)
-    assert report.wall >= 0.1  # never faster than asked for
+    assert report.wall >= 0.1  # never faster than requested
     assert report.factor == near(report.simulated / report.wall)
     simulation.observe(lambda seen: time.sleep(0.005))
     late = simulation.run(0.05, real_time=100)
@@ -375,12 +375,12 @@ def test_commands_work_between_steps_on_world_bodies_and_agents() -> None:
     simulation.run(0.5)
     assert simulation.agents["walker"].looks > 100
     assert simulation.trace is not None
-    told = simulation.trace.select("command")
-    assert [(event.time, event.data["command"]) for event in told] == [(0.03, c) for c in ("aperture", "posture", "parameter", "parameter")]
+    commands = simulation.trace.select("command")
+    assert [(e.time, e.data["command"]) for e in commands] == [(0.03, c) for c in ("aperture", "posture", "parameter", "parameter")]
 
 
 def odd(value: Any) -> Any:
-    """Returns a value of another type than what takes it asks for."""
+    """Returns a value without its type, to pass it where another type is required."""
     return value
 
 
@@ -513,21 +513,21 @@ def test_one_object_cannot_be_two_agents() -> None:
 
 def test_other_threads_can_only_submit_commands() -> None:
     simulation = Simulation(scene_of("walker"))
-    said: list[str] = []
+    errors: list[str] = []
 
     def other() -> None:
         for call in (simulation.tick, simulation.step, partial(simulation.step, 0), partial(simulation.advance, 0)):
             try:
                 call()
             except SimulationError as error:
-                said.append(str(error))
+                errors.append(str(error))
 
     watched: list[int] = []
     simulation.observe(lambda seen: watched.append(threading.get_ident()), of_calls=True)
     thread = threading.Thread(target=other)
     thread.start()
     thread.join()
-    assert said == ["a simulation belongs to the thread that made it; another one may use submit"] * 4
+    assert errors == ["a simulation belongs to the thread that made it; another one may use submit"] * 4
     assert watched == []
     futures: list[Any] = []
     threads = [threading.Thread(target=lambda: futures.append(simulation.submit("walk", 0.5))) for _ in range(8)]

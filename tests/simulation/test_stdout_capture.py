@@ -1,4 +1,4 @@
-"""What agents print: told as events however the run is recorded, and printed once however often it is lived through."""
+"""Prints of agents become events in every kind of recording, and are printed once although a seek repeats the run."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def talking(trace: str = "all", seed: int = 1) -> Simulation:
     return Simulation(Scene(parts=(Floor(), SimpleObject(name="box"))), bodiless={"talker": Talker}, seed=seed, trace=trace)
 
 
-def said(events: Any) -> list[tuple[float, str]]:
+def lines_in(events: Any) -> list[tuple[float, str]]:
     return [(event.time, event.data["text"]) for event in events if event.kind == "output"]
 
 
@@ -103,7 +103,7 @@ def test_lines_are_in_the_trace_at_their_time(capsys: pytest.CaptureFixture[str]
     lines = capsys.readouterr().out.splitlines()
     assert simulation.trace is not None
     times = [0.0, *(time for number in range(3) for time in [0.015 * (number + 1)] * 2)]
-    assert said(simulation.trace) == list(zip(times, lines, strict=True))
+    assert lines_in(simulation.trace) == list(zip(times, lines, strict=True))
 
 
 @pytest.mark.parametrize("trace", ["none", "all"])
@@ -165,7 +165,7 @@ def test_another_thread_may_print_while_agents_run(capsys: pytest.CaptureFixture
     simulation.run(0.02)
     assert capsys.readouterr().out == "elsewhere\n"
     assert simulation.trace is not None
-    assert said(simulation.trace) == []
+    assert lines_in(simulation.trace) == []
 
 
 def test_an_agent_may_print_elsewhere(capsys: pytest.CaptureFixture[str]) -> None:
@@ -178,7 +178,7 @@ def test_an_agent_may_print_elsewhere(capsys: pytest.CaptureFixture[str]) -> Non
     assert sys.stdout is before
     assert "aside" not in capsys.readouterr().out
     assert simulation.trace is not None
-    assert all("aside" not in text for _, text in said(simulation.trace))
+    assert all("aside" not in text for _, text in lines_in(simulation.trace))
 
 
 def test_output_goes_where_the_program_redirects_it(capsys: pytest.CaptureFixture[str]) -> None:

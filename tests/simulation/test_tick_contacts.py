@@ -19,6 +19,6 @@ def test_contacts_of_a_resting_object_count_while_a_body_holds_it() -> None:
         contacts.take()
         world.step(5)
         found.append(set(contacts.take()))
-    assert world.mj_data.ncon > 0, "it stands there all the time"
+    assert world.mj_data.ncon > 0, "the cup is on the table all the time"
     assert found == [set(), {("walker", "cup", "table")}, set()]
     assert contacts.take() == {}

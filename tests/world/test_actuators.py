@@ -1,4 +1,4 @@
-"""What a body is told, it does: exactly, until told otherwise."""
+"""Bodies carry out commands exactly, until the next command."""
 
 from __future__ import annotations
 
@@ -258,7 +258,7 @@ def test_a_grasp_is_part_of_the_state() -> None:
 
 
 def test_a_start_against_a_wall_is_only_a_push() -> None:
-    """A command sets a speed at once only where nothing touches: else orders given again and again would press it into a wall."""
+    """A command sets a speed immediately only without contact; otherwise repeated commands would press the body into a wall."""
     world, body = living(Wall(name="wall", start=(0.2, -2.0), end=(0.2, 2.0), thickness=0.1))
     body.set("walk", 0.5)
     ticks(world, 50)
@@ -271,7 +271,7 @@ def test_a_start_against_a_wall_is_only_a_push() -> None:
 
 @dataclass(frozen=True)
 class Arm:
-    """A described body that knows nothing of ours: a motor on a hinge."""
+    """A body that is described in MJCF alone: a motor on a hinge."""
 
     name: str = "arm"
 

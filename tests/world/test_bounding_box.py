@@ -172,7 +172,7 @@ def test_unknown_frames_are_refused_with_a_reason() -> None:
 
 
 def test_mujoco_agrees_on_the_sampled_shapes() -> None:
-    """The sampled surfaces are those that rays hit: the oracle is not our own reading of MuJoCo's sizes."""
+    """The sampled surfaces are those that rays hit: the oracle does not depend on an interpretation of MuJoCo's sizes."""
     for kind in (mjtGeom.mjGEOM_CAPSULE, mjtGeom.mjGEOM_CYLINDER, mjtGeom.mjGEOM_HFIELD, mjtGeom.mjGEOM_MESH):
         world = World(Scene(parts=(Shape(kind),)))
         world.refresh()

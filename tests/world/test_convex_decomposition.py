@@ -1,4 +1,4 @@
-"""Convex parts are made once, and kept in the user's cache folder, whatever happens to that."""
+"""Convex parts are computed once and kept in the user's cache folder, also if the cache is damaged or read-only."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def ring() -> Surface:
 
 
 def box() -> Surface:
-    """Returns what is cut at once: it is convex."""
+    """Returns a box, which is convex and therefore decomposed fast."""
     mesh = creation.box((0.3, 0.5, 0.4))
     return surface(np.asarray(mesh.vertices), np.asarray(mesh.faces), "box")
 

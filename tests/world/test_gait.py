@@ -1,4 +1,4 @@
-"""Gait: what people's gait measures, in the frame of the world; its variability, its end, and obstacles."""
+"""Gait: measures of human gait, in the world's frame; its variability, its end, and obstacles."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from actr3d.world import Floor, Gait, Mannequin, Scene, Wall, World
 from actr3d.world.bodies.mannequin import CLEARANCE
 
 REGULAR = Gait(wander=0, timing=0)
-"""A gait whose steps are all alike."""
+"""A gait without variability."""
 FEET = [f"p_{side}_foot" for side in ("left", "right")]
 
 

@@ -1,4 +1,4 @@
-"""MJCF and URDF files come into a scene as they are, and change nothing of it; broken ones say why, and where."""
+"""MJCF and URDF files are added to a scene unchanged, and do not change it; errors name the file and the line."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def names(mj_model: MjModel, kind: str, count: int) -> list[str]:
 
 
 def ray(world: World, start: tuple[float, float, float], way: tuple[float, float, float]) -> tuple[float, str]:
-    """Returns how far a ray goes [m], and the body that it hits."""
+    """Returns the length of a ray [m], and the body that it hits."""
     world.refresh()
     geom = np.zeros(1, dtype=np.int32)
     distance = mujoco.mj_ray(world.mj_model, world.mj_data, np.array(start, float), np.array(way, float), None, 1, -1, geom, None)
@@ -242,9 +242,9 @@ def test_gaps_are_filled_with_a_warning(tmp_path: Path) -> None:
     file(tmp_path, turned.export(file_type="stl"), "meshes/one.stl")
     path = file(tmp_path, MESHES.format("one.stl", "one"))
     message = r"Imported 'i': one\.stl: all its triangles faced inwards and are reversed; "
-    with pytest.warns(ModelWarning, match=message + r"there is no texture 'meshes/t\.png' \(robot\.xml, line 2\): plain grey") as said:
+    with pytest.warns(ModelWarning, match=message + r"there is no texture 'meshes/t\.png' \(robot\.xml, line 2\): plain grey") as caught:
         part = Imported(name="i", path=path)
-    assert [warning.filename for warning in said] == [__file__], "the warning names the modeller's line"
+    assert [warning.filename for warning in caught] == [__file__], "the warning names the modeller's line"
     assert model(part).body("i_b").mass[0] == near(8000, rel=1e-6)
 
 
@@ -252,9 +252,9 @@ def test_warnings_of_mujoco_are_given_at_the_modellers_line() -> None:
     text = mjcf('<body name="b"><flexcomp name="f" type="grid" count="3 3 1" spacing="1 1 1" dim="2"/></body>')
     with pytest.warns(
         ModelWarning, match="Imported 'i': flex 'f' is not rigid and has no equality constraints .*; Element name 'f'"
-    ) as said:
+    ) as caught:
         Imported(name="i", text=text)
-    assert [warning.filename for warning in said] == [__file__]
+    assert [warning.filename for warning in caught] == [__file__]
 
 
 def test_the_eye_is_a_site_of_the_file() -> None:
@@ -480,7 +480,7 @@ def test_names_that_look_like_numbers_are_names() -> None:
 
 
 def test_every_field_of_a_geom_is_moved() -> None:
-    """A later MuJoCo may have more."""
+    """A later version of MuJoCo may have more."""
     geom = MjSpec().worldbody.add_geom()
     apart = {"name", "frame", "set_frame", "plugin", "alt", "id", "parent", "signature", "classname", "compiler"}
     assert {field for field in dir(geom) if not field.startswith("_")} - apart == set(GEOM_FIELDS)
@@ -488,7 +488,7 @@ def test_every_field_of_a_geom_is_moved() -> None:
 
 
 def test_no_text_crashes_the_process(tmp_path: Path) -> None:
-    """Descriptions with a value replaced by an extreme one either compile or are a `WorldError`; in a process of its own."""
+    """Descriptions with a value replaced by an extreme one either compile or are a `WorldError`; in a separate process."""
     rich = ARM.replace(
         "<worldbody>",
         '<asset><texture name="t" type="2d" builtin="checker" width="8" height="8"/><material name="m" texture="t" texrepeat="1 1"/>'

@@ -1,4 +1,4 @@
-"""Bodies from files: a mind can live in them."""
+"""Bodies from files: agents can control them."""
 
 from __future__ import annotations
 

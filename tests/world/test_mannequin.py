@@ -1,4 +1,4 @@
-"""The mannequin: its sizes, its joints, how it walks, and that nothing lets it through a wall."""
+"""The mannequin: its sizes, its joints, its walk, and that it never passes through a wall."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ WALLS = [0.05, 0.1, 0.3]
 
 
 def still(_: Body, __: int) -> None:
-    """Lets arms hang."""
+    """Does not move its arms."""
 
 
 def swinging(body: Body, tick: int) -> None:
@@ -229,7 +229,7 @@ def test_nothing_gets_through_a_wall(
 @pytest.mark.parametrize("mass", [2.0, 30.0])
 @pytest.mark.parametrize("heading", [0.68, 0.85])
 def test_a_long_bar_does_not_get_through_while_it_stops_and_starts(thickness: float, mass: float, heading: float) -> None:
-    """The wall turns bar and trunk back as fast as the legs go on: stopped alone, the legs would fling the bar into the wall."""
+    """The wall turns bar and trunk back as fast as the legs move on; if only it stopped, the legs would push the bar into the wall."""
     wall = Wall(name="wall", start=(3.0, -20.0), end=(3.0, 20.0), thickness=thickness)
     world, body = living(wall, load=Load(size=(5.0, 0.03), mass=mass), heading=heading)
     for tick in range(180):

@@ -1,4 +1,4 @@
-"""What is told to stand still does: its own limbs do not move it, and a load does not make it creep."""
+"""A standing body keeps its place: its own limbs do not move it, and a load does not make it creep."""
 
 from __future__ import annotations
 
@@ -55,8 +55,8 @@ def test_extreme_postures_neither_move_it_nor_turn_it_from_its_path(sideways: bo
         world.step(500)
     pose = body.get("pose")
     assert pose.heading == near(0.0, abs=0.05)
-    assert pose.x == near(6.0, abs=0.15 if sideways else 0.05)  # to who stands sideways, its way is what else is across
-    assert pose.y == near(0.0, abs=0.15)  # who walks keeps speed and heading, and is not led back to a line
+    assert pose.x == near(6.0, abs=0.15 if sideways else 0.05)  # a body that stands sideways moves along its lateral axis
+    assert pose.y == near(0.0, abs=0.15)  # a walking body keeps speed and heading, and is not led back to a line
 
 
 def test_a_joint_without_a_command_bears_a_load() -> None:
@@ -120,7 +120,7 @@ def test_a_limb_that_was_pushed_away_comes_back() -> None:
 
 @pytest.mark.parametrize("seed", [10, 12, 15])
 def test_how_it_stops_does_not_depend_on_observers(seed: int) -> None:
-    def stopped(*, looked: bool) -> list[float]:
+    def stopped(*, observed: bool) -> list[float]:
         draw = random.Random(seed)
         world = World(Scene(parts=(Floor(), Mannequin(name="m"))))
         body = world.bodies["m"]
@@ -128,14 +128,14 @@ def test_how_it_stops_does_not_depend_on_observers(seed: int) -> None:
             with suppress(WorldError):  # some joints are too slow for it
                 body.set("joint", joint, draw.uniform(-6, 6))
         world.step(draw.randrange(20, 90))
-        if looked:
+        if observed:
             body.get("pose")
         for joint in draw.sample(list(body.joints), 4):
             body.set("joint", joint, 0.0)
         world.step(10)
         return world.mj_data.qpos.tolist()
 
-    assert stopped(looked=True) == stopped(looked=False)
+    assert stopped(observed=True) == stopped(observed=False)
 
 
 def test_after_a_limit_it_is_at_rest() -> None:

@@ -1,4 +1,4 @@
-"""The quick look whether all is as told is taken where nothing is off, finds what is, and changes nothing."""
+"""The fast check for a steady state is used where nothing deviates, detects deviations, and changes nothing."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from tests.helpers.small_agents import near
 
 
 def course(heading: float) -> tuple[list[bytes], list[bool]]:
-    """Returns the states of a walk with commands, up to a wall, and whether the steady state was reached at each look."""
+    """Returns the states of a walk with commands, up to a wall, and whether each check found the steady state."""
     wall = Wall(name="wall", start=(1.5, -9), end=(1.5, 9))
     world = World(Scene(parts=(Floor(), Mannequin(name="walker", heading=heading), Mannequin(name="other", position=(-1, 1)), wall)))
     body = world.bodies["walker"]
     states: list[bytes] = []
-    looks: list[bool] = []
+    checks: list[bool] = []
     is_reached = SteadyState.is_reached
 
-    def looked(self: SteadyState) -> bool:
-        looks.append(is_reached(self))
-        return looks[-1]
+    def checked(self: SteadyState) -> bool:
+        checks.append(is_reached(self))
+        return checks[-1]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(SteadyState, "is_reached", looked)
+        patch.setattr(SteadyState, "is_reached", checked)
         for tick in range(300):
             if tick in (10, 120, 200):
                 body.set("walk", 1.0, (0.0, 0.7)[tick == 120], 0.3)
@@ -35,7 +35,7 @@ def course(heading: float) -> tuple[list[bytes], list[bool]]:
                 body.set("posture", {"torso_yaw": 0.3, "left_upper_arm_pitch": -0.5 * (tick == 60)}, 2.0)
             world.step(5)
             states.append(world.state_bytes())
-    return states, looks
+    return states, checks
 
 
 def never(_: SteadyState) -> bool:
@@ -44,8 +44,8 @@ def never(_: SteadyState) -> bool:
 
 @pytest.mark.parametrize("heading", [0.0, 0.8])
 def test_the_fast_check_is_used_and_changes_nothing(heading: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    quick, looks = course(heading)
-    assert sum(looks) > 300  # of 600 of two bodies, one of which never does anything
+    quick, checks = course(heading)
+    assert sum(checks) > 300  # of 600 of two bodies, one of which never does anything
     monkeypatch.setattr(SteadyState, "is_reached", never)
     thorough, _ = course(heading)
     assert quick == thorough

@@ -1,4 +1,4 @@
-"""Sensors say what is so at this moment, and change nothing by being read."""
+"""Sensors report the present state, and reading them changes nothing."""
 
 from __future__ import annotations
 
@@ -224,7 +224,7 @@ def test_proximity_is_the_nearest_surface() -> None:
 
 @cache
 def can_draw() -> bool:
-    """Returns whether this machine has EGL, asked in a process of its own."""
+    """Returns whether this machine has EGL, tested in a separate process."""
     code = "import mujoco.egl; mujoco.egl.GLContext(64, 64).make_current()"
     return subprocess.run([sys.executable, "-c", code], capture_output=True, check=False).returncode == 0
 
@@ -327,7 +327,7 @@ def test_noise_by_field_leaves_the_others_exact() -> None:
 
 
 class Spot(NamedTuple):
-    """A reading of an own sensor."""
+    """A reading of a user-defined sensor."""
 
     x: float
     name: str

@@ -1,4 +1,4 @@
-"""A world is compiled from a scene, keeps exact time, and goes on exactly from a state."""
+"""A world is compiled from a scene, keeps exact time, and continues exactly from a state."""
 
 from __future__ import annotations
 
@@ -174,7 +174,7 @@ def test_an_aperture_does_not_close_on_a_body_inside_it() -> None:
     with pytest.raises(Actr3dError, match=r"aperture 'aperture' cannot be 0\.3 m wide now: walker would be inside its walls"):
         world.set_aperture_width(0.3)
     assert world.state().mj_state.tobytes() == before.mj_state.tobytes()
-    with pytest.raises(Actr3dError, match=r"cannot be 0\.44 m wide now"):  # 2 mm at each side: it may fling the person out
+    with pytest.raises(Actr3dError, match=r"cannot be 0\.44 m wide now"):  # 2 mm at each side: it may push the person out
         world.set_aperture_width(0.44)
     world.set_aperture_width(0.443)
     world.step(100)
@@ -190,7 +190,7 @@ def test_an_aperture_narrowed_bit_by_bit_squeezes_out_or_stops_at_the_body_in_it
         with suppress(Actr3dError):
             world.set_aperture_width(max(0.0, world.aperture_width() - rate))
         world.step(5)
-        assert np.abs(world.mj_data.qvel).max() < 100  # 500 rad/s where walls were closed on it at once
+        assert np.abs(world.mj_data.qvel).max() < 100  # it would be 500 rad/s if the walls closed on it in one step
     pose = world.bodies["walker"].get("pose")
     assert abs(pose.x) < 3
     assert abs(pose.y) < 0.5
