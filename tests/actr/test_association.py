@@ -1,4 +1,4 @@
-"""Learned associations and inhibition, against sums written out."""
+"""Learned associations and inhibition, against explicit sums."""
 
 from __future__ import annotations
 

@@ -165,7 +165,7 @@ def test_a_blend_of_partial_matches() -> None:
 
 
 def blend_of(rows: list[tuple[str, float]], request: str, *similarities: tuple[str, str, float], temperature: float = 1.0) -> Any:
-    """Returns what is retrieved in ACT-R 7 from chunks with these activations."""
+    """Returns the blend in ACT-R 7 of chunks with these activations."""
     buffer = Buffer()
     memory: Any = BlendingMemory(buffer, threshold=None)
     partial = Partial(memory, strength=None)
@@ -210,7 +210,7 @@ def test_the_temperature_weighs_experiences() -> None:
     assert blend_of(rows, "is:thing", temperature=0.5)["size"] == "small"  # 4 and 3
 
 
-def test_of_equally_good_values_the_one_that_came_first_wins() -> None:
+def test_the_first_of_equally_good_values_wins() -> None:
     rows = [("is:thing size:large", 0.3), ("is:thing size:small", 0.3)]
     assert blend_of(rows, "is:thing")["size"] == "large"
     assert blend_of(rows[::-1], "is:thing")["size"] == "small"

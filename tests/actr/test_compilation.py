@@ -1,4 +1,4 @@
-"""Production compilation: what is learned, and what its utility becomes in either profile."""
+"""Production compilation: the learned productions, and their utilities in both profiles."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def compiling(profile: str, until: float) -> Any:
     return agent
 
 
-def test_what_is_compiled() -> None:
+def test_pairs_of_productions_that_are_compiled() -> None:
     agent = compiling("python-actr", 0.4)
     assert [p.name for p in agent._productions] == ["answer", "ask", "stop", "ask-answer-1", "ask-answer-2"]
     first = agent._productions[3]

@@ -1,4 +1,4 @@
-"""Partial matching, against published numbers and sums written out."""
+"""Partial matching, against published numbers and explicit sums."""
 
 from __future__ import annotations
 

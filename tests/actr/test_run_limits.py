@@ -253,7 +253,7 @@ def outcome(file: Path, folder: Path, monkeypatch: pytest.MonkeyPatch, until: fl
 
 
 @pytest.mark.parametrize("file", [pytest.param(f, id=f.stem, marks=[] if f.stem in QUICK else pytest.mark.slow) for f in MODELS])
-def test_what_ends_by_itself_ends_as_without_a_limit(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_ends_by_itself_is_the_same_without_a_limit(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     free = outcome(file, tmp_path / "free", monkeypatch, None)
     limited = outcome(file, tmp_path / "limited", monkeypatch, 10_000_000)
     assert free[0] == limited[0]

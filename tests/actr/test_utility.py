@@ -1,4 +1,4 @@
-"""Utilities and their learning, against published numbers and sums written out."""
+"""Utilities and their learning, against published numbers and explicit sums."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The motor module: commands, muscle groups, limits, and what is refused."""
+"""The motor module: commands, muscle groups, limits, and refusals."""
 
 from __future__ import annotations
 

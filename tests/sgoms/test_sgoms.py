@@ -84,7 +84,7 @@ def test_a_situated_planning_unit_waits_until_something_fits() -> None:
     assert module.said[0] == (near(10.1), "wash")
 
 
-def test_of_several_unit_tasks_that_fit_utility_decides_and_chance_between_equals() -> None:
+def test_utility_decides_between_unit_tasks_that_fit_and_chance_between_equals() -> None:
     both = TIDY.replace("dishes:dirty floor:clean", "dishes:dirty floor:dirty")
     firsts = Counter(cooking(both, seconds=0.2, seed=seed, traced=False).said[0][1] for seed in range(100))
     assert abs(firsts["wash"] - 50) < 20  # four standard errors

@@ -198,7 +198,7 @@ def test_an_agent_that_has_not_started_has_no_buffer_of_its_own(buffer: str, chu
         ("b_interrupt", {"when": "nwo"}, "has no valid 'when'; did you mean 'now'"),
     ],
 )
-def test_what_is_modified_is_checked_like_what_is_set(buffer: str, changes: dict[str, str], message: str) -> None:
+def test_modified_buffers_are_checked_like_buffers_that_are_set(buffer: str, changes: dict[str, str], message: str) -> None:
     agent = load_text(HEAD + body("b_unit_task.modify(state='finished')"), "agent.py").Agent()
     agent.run(0.06)
     agent.b_interrupt.set("planning_unit:phone when:end")

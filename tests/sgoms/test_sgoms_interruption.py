@@ -45,7 +45,7 @@ def test_a_unit_task_ends_before_an_interruption_at_its_end() -> None:
 
 def test_an_immediate_interruption_cuts_the_unit_task_which_begins_again() -> None:
     module = cooking(AGENT, 0.22, NOW)
-    # At 0.22 s a step of work is under way; it is done at 0.25 s, then the interruption is chosen.
+    # At 0.22 s a step of work is in progress; it is done at 0.25 s, then the interruption is chosen.
     assert tasks(module) == ["boil", *PHONE, "boil", "steep", "pour"]
     assert level_events(module, "planning_unit", "unit_task", "method")[:8] == [
         "0 begun tea",

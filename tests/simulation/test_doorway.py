@@ -1,4 +1,4 @@
-"""The model of a doorway: it sees the width of the gap, turns if necessary, and touches nothing."""
+"""The model of a walk through a doorway: it sees the width of the gap, turns if necessary, and touches nothing."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ from actr3d.world.body import SENSORS, sensor
 from tests.helpers.small_agents import near
 from tests.helpers.walkers import Driver, digest, driving, scene_of
 
-MINDS: Any = load_text(
+AGENTS: Any = load_text(
     """
 from actr3d.actr import *
 
@@ -101,7 +101,7 @@ class Early(Model):
 """,
     "agents.py",
 )
-BodyPort = MINDS.BodyPort
+BodyPort = AGENTS.BodyPort
 
 
 def with_port(kind: Any) -> Any:
@@ -123,7 +123,7 @@ def asked_(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
 
 
 def test_agents_run_in_a_tick_and_bodies_move_and_answer_in_a_tock() -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker}, seed=1, trace="all")
+    simulation = Simulation(scene_of("walker"), {"walker": AGENTS.Asker}, seed=1, trace="all")
     simulation.run(1.0)
     agent: Any = simulation.agents["walker"]
     asked, busy, answered, arrived, felt, nothing = agent.times
@@ -148,7 +148,7 @@ REQUESTS = [("get", "pose"), ("set", "waypoint"), ("get", "pose"), ("get", "pose
 
 
 def test_events_at_the_very_end_of_a_tick_belong_to_it() -> None:
-    simulation = Simulation(Scene(), bodiless={"edge": MINDS.Edge})
+    simulation = Simulation(Scene(), bodiless={"edge": AGENTS.Edge})
     edge: Any = simulation.agents["edge"]
     simulation.tick()
     assert edge.done == ("exactly at the end",)
@@ -266,7 +266,7 @@ def test_a_glimpse_shows_positions_of_its_own_moment() -> None:
 
 
 def test_a_body_without_an_agent_and_an_agent_without_a_body(asked: Counter[str]) -> None:
-    simulation = Simulation(scene_of("walker", "empty"), {"walker": Driver}, bodiless={"watcher": MINDS.First}, seed=1)
+    simulation = Simulation(scene_of("walker", "empty"), {"walker": Driver}, bodiless={"watcher": AGENTS.First}, seed=1)
     environment: Any = simulation.agents["watcher"].parent
     said: list[tuple[str, float]] = []
     environment.said = said
@@ -278,7 +278,7 @@ def test_a_body_without_an_agent_and_an_agent_without_a_body(asked: Counter[str]
 
 
 def test_simultaneous_events_of_several_agents_have_one_order() -> None:
-    simulation = Simulation(Scene(), bodiless={"b": MINDS.First, "a": MINDS.First, "c": MINDS.First})
+    simulation = Simulation(Scene(), bodiless={"b": AGENTS.First, "a": AGENTS.First, "c": AGENTS.First})
     environment: Any = simulation.agents["a"].parent
     said: list[tuple[str, float]] = []
     environment.said = said
@@ -287,7 +287,7 @@ def test_simultaneous_events_of_several_agents_have_one_order() -> None:
 
 
 def test_an_agent_that_calls_stop_ends_the_run_with_its_tick() -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Stopper})
+    simulation = Simulation(scene_of("walker"), {"walker": AGENTS.Stopper})
     report = simulation.run(1)
     agent: Any = simulation.agents["walker"]
     assert (report.ended_by, report.ticks, simulation.time, agent.ticks) == ("stop", 3, 0.03, "to the end of its tick")
@@ -296,7 +296,7 @@ def test_an_agent_that_calls_stop_ends_the_run_with_its_tick() -> None:
 
 
 def test_advance_runs_up_to_a_number_of_ticks_and_ends_with_the_run() -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Stopper})
+    simulation = Simulation(scene_of("walker"), {"walker": AGENTS.Stopper})
     assert (simulation.advance(2), simulation.ticks) == (None, 2)
     assert (simulation.advance(5), simulation.ticks) == ("stop", 3)
     assert (simulation.advance(5), simulation.ticks) == ("done", 4)  # nothing prevents one more
@@ -314,11 +314,11 @@ def test_advance_gives_the_same_bytes_as_single_steps() -> None:
 
 
 def test_a_run_without_limits_ends_when_no_agent_has_anything_left_to_do() -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker})
+    simulation = Simulation(scene_of("walker"), {"walker": AGENTS.Asker})
     report = simulation.run()
     assert report.ended_by == "done"
     assert simulation.agents["walker"].times[-1][0] == "nothing"
-    assert Simulation(Scene(), bodiless={"idle": MINDS.Idle}).run(0.05).ticks == 5
+    assert Simulation(Scene(), bodiless={"idle": AGENTS.Idle}).run(0.05).ticks == 5
 
 
 def test_a_run_without_limits_continues_until_bodies_have_reached_their_targets() -> None:
@@ -352,7 +352,7 @@ def test_until_is_checked_after_each_tock() -> None:
 
 
 def test_real_time_is_kept_and_measured_and_lateness_reported() -> None:
-    simulation = Simulation(Scene(), bodiless={"idle": MINDS.Idle})
+    simulation = Simulation(Scene(), bodiless={"idle": AGENTS.Idle})
     report = simulation.run(0.2, real_time=2)
     assert report.wall >= 0.1  # never faster than requested
     assert report.factor == near(report.simulated / report.wall)
@@ -437,9 +437,9 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: Simulation(s.world, trace=cast("Any", [])), r"no level \[\]; use one of none"),
     (lambda s: s.command("stop", body=[]), r"command and body must be text \(got \[\]\)"),
     (lambda s: BodyPort().set("walk", 1), "'walk' is sent to a body before the agent runs; send it while its Simulation runs"),
-    (lambda s: with_port(MINDS.Idle)().body.get("pose"), "'pose' is sent to a body before the agent runs"),
+    (lambda s: with_port(AGENTS.Idle)().body.get("pose"), "'pose' is sent to a body before the agent runs"),
     (lambda s: BodyPort(Buffer()).request("pose"), "'pose' is sent to a body before the agent runs"),
-    (lambda s: Simulation(s.world, {"walker": with_port(MINDS.Early)}).run(0.1), "has not answered 'pose' yet"),
+    (lambda s: Simulation(s.world, {"walker": with_port(AGENTS.Early)}).run(0.1), "has not answered 'pose' yet"),
 ]
 
 
@@ -493,10 +493,10 @@ def test_agents_cannot_use_the_names_of_a_living_environment() -> None:
 
 
 def test_an_unknown_command_names_the_modellers_line() -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": with_port(MINDS.Wrong)})
+    simulation = Simulation(scene_of("walker"), {"walker": with_port(AGENTS.Wrong)})
     with pytest.raises(WorldError, match="has no actuator 'wlk'; did you mean 'walk'") as caught:
         simulation.run(0.1)
-    line = 1 + MINDS.__dict__["__actr3d_source__"].split("\n").index('        self.body.set("wlk", 1)')
+    line = 1 + AGENTS.__dict__["__actr3d_source__"].split("\n").index('        self.body.set("wlk", 1)')
     assert caught.value.__notes__ == [f"  requested by 'walker.body' in agents.py:{line}"]
     with pytest.raises(SimulationError, match=r"the run has failed at 0\.02 s and cannot go on"):
         simulation.step()
@@ -505,7 +505,7 @@ def test_an_unknown_command_names_the_modellers_line() -> None:
 
 
 def test_one_object_cannot_be_two_agents() -> None:
-    agent: Any = MINDS.Idle()
+    agent: Any = AGENTS.Idle()
     simulation = Simulation(Scene(), bodiless={"a": lambda: agent, "b": lambda: agent})
     with pytest.raises(SimulationError, match=r"agents\['b'\]: must make a new agent each time"):
         simulation.step()
@@ -577,7 +577,7 @@ class Agent(Model):
 
 
 def test_no_sensor_is_read_without_a_request(asked: Counter[str]) -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Idle})
+    simulation = Simulation(scene_of("walker"), {"walker": AGENTS.Idle})
     simulation.run(0.1)
     assert not asked
     assert isinstance(simulation.agents["walker"], (ACTR, Model))

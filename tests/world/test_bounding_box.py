@@ -34,7 +34,7 @@ HEIGHTS = np.array([[0, 0.2, 0.1], [0.5, 1.0, 0.3], [0.0, 0.4, 0.9]])
 
 @dataclass(frozen=True)
 class Shape:
-    """A body of one geom that flies freely."""
+    """A free body of one geom."""
 
     kind: Any
     name: str = "shape"
@@ -138,7 +138,7 @@ def test_a_mannequin_and_its_load_are_held_tightly_in_any_posture_and_frame(seed
         tightly_holds(body.bounding_box(name), (points - origin) @ axes)
 
 
-def test_what_a_hand_holds_is_in_the_box() -> None:
+def test_a_held_object_is_in_the_box() -> None:
     cup = SimpleObject(name="cup", size=(0.06, 0.06, 0.3), position=(0.0, -0.26, 0.7), mass=0.2)
     world = World(Scene(parts=(Mannequin(name="walker"), cup)))
     body = world.bodies["walker"]

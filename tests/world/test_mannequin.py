@@ -143,7 +143,7 @@ def test_joints_turn_at_a_constant_speed() -> None:
 
 
 @pytest.mark.parametrize("heading", [0.0, 1.0, -2.5])
-def test_it_walks_at_its_speed_and_stops_dead(heading: float) -> None:
+def test_it_walks_at_its_speed_and_stops_immediately(heading: float) -> None:
     world, body = living(position=(0.5, -0.5), heading=heading)
     body.set("walk", 1.4)
     ticks(world, 100)

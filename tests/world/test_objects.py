@@ -1,4 +1,4 @@
-"""Moving and pushing by hand: bodies, walls, fixed and loose objects; exact after going back."""
+"""Moving and pushing by hand: bodies, walls, fixed and loose objects; exact after a seek."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ def test_a_stronger_body_is_not_pushed_away() -> None:
 
 
 def test_people_who_press_on_each_other_feel_no_blows() -> None:
-    """MuJoCo's own tolerance finds two trunks that hardly touch 1 cm deep in each other now and then: 40 kN."""
+    """With MuJoCo's own tolerance, two trunks that hardly touch are at times found 1 cm deep in each other: 40 kN."""
     world, body = living(Mannequin(name="other", position=(1.0, 0.0), heading=math.pi))
     body.set("walk", 1.0)
     body.get("contacts")

@@ -40,7 +40,7 @@ WALL = Wall(name="wall", start=(3.0, -10.0), end=(3.0, 10.0), thickness=0.2)
 
 @dataclass(frozen=True)
 class Crate:
-    """A box that flies freely and feels what it stands on."""
+    """A free box that feels contacts."""
 
     name: str = "crate"
     height: float = 0.5

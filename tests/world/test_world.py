@@ -143,7 +143,7 @@ def test_divergence_of_the_physics_is_reported() -> None:
         world.step()
 
 
-def test_what_has_diverged_is_named() -> None:
+def test_the_diverged_body_is_named() -> None:
     near_one, far = SimpleObject(name="near"), SimpleObject(name="far", position=(1e12, 0, 0))
     with pytest.raises(Actr3dError, match=r"the physics diverged near 0\.002 s, at 'far'"):
         World(Scene(parts=(Mannequin(), near_one, far))).step()

@@ -111,7 +111,7 @@ def test_a_state_holds_all_that_any_command_and_any_reading_changes() -> None:
         assert differences(picture(state, ()), picture(there.state(), ())) == {}
 
 
-def test_what_a_program_changes_in_the_compiled_scene_is_part_of_the_state() -> None:
+def test_changes_of_the_compiled_scene_by_a_program_are_part_of_the_state() -> None:
     there = world()
     start = there.state()
     model: Any = there.mj_model
