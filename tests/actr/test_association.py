@@ -9,13 +9,13 @@ import pytest
 
 from actr3d.actr import Buffer, Chunk, DMAssociate, DMInhibition, Memory
 from actr3d.errors import ChunkError
-from tests.helpers.small_agents import living, near
+from tests.helpers.small_agents import started_agent, near
 
 
 def associating(profile: str = "python-actr", **options: Any) -> Any:
     buffer, focus = Buffer(), Buffer()
     memory = Memory(buffer, latency=0.05, threshold=None)
-    return living(profile, buffer=buffer, focus=focus, memory=memory, links=DMAssociate(memory, focus, **options))
+    return started_agent(profile, buffer=buffer, focus=focus, memory=memory, links=DMAssociate(memory, focus, **options))
 
 
 def test_a_given_association() -> None:
@@ -74,7 +74,7 @@ def test_links_of_values_that_cannot_be_hashed() -> None:
 
 def test_inhibition() -> None:
     memory = Memory(Buffer())
-    agent = living(memory=memory, inhibition=DMInhibition(memory, decayScale=0.8, timeScale=4))
+    agent = started_agent(memory=memory, inhibition=DMInhibition(memory, decayScale=0.8, timeScale=4))
     agent.memory.add("a")
     agent.run(3)
     agent.memory.add("a")

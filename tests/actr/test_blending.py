@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from actr3d.actr import BlendingMemory, Buffer, Chunk, DMFixed, DMNoise, Memory, Partial
 from actr3d.errors import ParameterError
-from tests.helpers.small_agents import living, near
+from tests.helpers.small_agents import started_agent, near
 
 getcontext().prec = 60
 
@@ -23,7 +23,7 @@ def blending(profile: str = "python-actr", noise: float | None = None, **options
     parts: dict[str, Any] = {"buffer": buffer, "memory": memory, "fixed": DMFixed(memory)}
     if noise is not None:
         parts["noise"] = DMNoise(memory, noise=noise)
-    return living(profile, **parts)
+    return started_agent(profile, **parts)
 
 
 def mean(rows: list[tuple[float, float]], t: float) -> float:
@@ -152,7 +152,7 @@ def test_a_blend_of_partial_matches() -> None:
     memory: Any = BlendingMemory(buffer, threshold=-9)
     partial = Partial(memory, strength=2)
     partial.similarity("red", "pink", -0.3)
-    agent = living(buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
+    agent = started_agent(buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
     agent.memory.add("c:red n:1")
     agent.memory.add("c:pink n:5", fixed=0.1)
     agent.memory.request("c:red")
@@ -171,7 +171,7 @@ def blend_of(rows: list[tuple[str, float]], request: str, *similarities: tuple[s
     partial = Partial(memory, strength=None)
     for a, b, value in similarities:
         partial.similarity(a, b, value)
-    agent = living("act-r-7", buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
+    agent = started_agent("act-r-7", buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
     agent.memory.temperature = temperature
     for text, activation in rows:
         agent.memory.add(text, fixed=activation)
@@ -244,7 +244,7 @@ def test_requested_slots_keep_the_requested_values() -> None:
     memory: Any = BlendingMemory(buffer, threshold=None)
     partial = Partial(memory, strength=0.1)
     partial.similarity("large", "small", -0.5)
-    agent = living("act-r-7", buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
+    agent = started_agent("act-r-7", buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
     agent.memory.add("size:small n:1", fixed=5)
     agent.memory.request("size:large")
     agent.run(10)
@@ -267,7 +267,7 @@ def test_values_of_any_kind_can_be_blended() -> None:
     rows: list[Any] = [{"v": [1, 2]}, {"v": True}, {"v": [1, 2], "k": 1}, {"v": math.inf}]
     buffer = Buffer()
     memory: Any = BlendingMemory(buffer, threshold=None)
-    agent = living("act-r-7", buffer=buffer, memory=memory, fixed=DMFixed(memory))
+    agent = started_agent("act-r-7", buffer=buffer, memory=memory, fixed=DMFixed(memory))
     for row in rows:
         agent.memory.add(row)
     agent.memory.request("v:?")

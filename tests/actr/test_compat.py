@@ -30,7 +30,7 @@ def test_prints_what_python_actr_prints(program: Program, seed: int, tmp_path: P
     assert done.stdout.splitlines() == peers["printed"].splitlines()
     assert done.stdout == peers["printed"]
     assert files_written(folder) == peers["files"]
-    assert len(done.stdout.splitlines()) > 3, f"{program.name} prints next to nothing: it shows nothing"
+    assert len(done.stdout.splitlines()) > 3, f"{program.name} prints too little to compare"
 
 
 @pytest.mark.parametrize(("program", "seed"), cases(*TUTORIAL_PROGRAMS))

@@ -12,13 +12,13 @@ from actr3d.actr import Buffer, Chunk, DMBaseLevel, DMFixed, DMNoise, Memory, Me
 from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.declarative.memory import LONGEST
 from actr3d.errors import ChunkError, ModelWarning
-from tests.helpers.small_agents import living, near
+from tests.helpers.small_agents import started_agent, near
 
 
 def remembering(profile: str = "python-actr", kind: Any = Memory, **options: Any) -> Any:
     buffer = Buffer()
     memory = kind(buffer, **options)
-    return living(profile, buffer=buffer, memory=memory, fixed=DMFixed(memory))
+    return started_agent(profile, buffer=buffer, memory=memory, fixed=DMFixed(memory))
 
 
 def arrival(agent: Any, pattern: Any, **keys: Any) -> tuple[float, Any]:
@@ -97,7 +97,7 @@ def test_an_activation_that_is_no_number_never_wins_and_is_warned_of() -> None:
 def test_recall_has_the_logistic_chance() -> None:
     buffer = Buffer()
     memory = Memory(buffer, threshold=0.3)
-    agent = living(buffer=buffer, memory=memory, fixed=DMFixed(memory), noise=DMNoise(memory, noise=0.5), seed=3)
+    agent = started_agent(buffer=buffer, memory=memory, fixed=DMFixed(memory), noise=DMNoise(memory, noise=0.5), seed=3)
     n = 4000
     for activation in (-0.4, 0.3, 0.9):
         agent.memory.clear()
@@ -176,7 +176,7 @@ def test_equal_chunks_merge_whatever_form_they_come_in() -> None:
 
     buffer = Buffer()
     memory = Memory(buffer)
-    agent = living(buffer=buffer, memory=memory, base=DMBaseLevel(memory))
+    agent = started_agent(buffer=buffer, memory=memory, base=DMBaseLevel(memory))
     agent.buffer.set({"size": 3, "colour": "red"})
     for form in ({"colour": "red", "size": 3}, Thing(), agent.buffer, Chunk({"colour": "red", "size": 3.0})):
         agent.memory.add(form)
@@ -211,7 +211,7 @@ def test_user_defined_modules_may_take_keywords_of_their_own() -> None:
             return chunk.worth
 
     memory = Memory(Buffer())
-    agent = living(memory=memory, named=Named(memory))
+    agent = started_agent(memory=memory, named=Named(memory))
     agent.memory.add("a", worth=2, bonus=3)
     assert agent.memory.get_activation("a") == 5
 
@@ -270,7 +270,7 @@ def test_matched_may_leave_candidates_out() -> None:
 
     buffer = Buffer()
     memory = Memory(buffer)
-    agent = living(buffer=buffer, memory=memory, censor=Censor(memory))
+    agent = started_agent(buffer=buffer, memory=memory, censor=Censor(memory))
     agent.memory.add("a bad")
     agent.memory.add("a good")
     assert arrival(agent, "a ?")[1] == Chunk("a good")

@@ -140,7 +140,7 @@ def test_other_threads_have_no_limits() -> None:
 
 
 class Counter(Model):
-    """Does something for a second, and then nothing any more."""
+    """Counts for a second, and then does nothing."""
 
     def start(self) -> Any:
         for _ in range(4):

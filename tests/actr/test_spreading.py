@@ -10,12 +10,12 @@ import pytest
 
 from actr3d.actr import Buffer, Chunk, DMFixed, DMInhibition, DMSalience, DMSpreading, Memory
 from actr3d.errors import ChunkError, ModelWarning
-from tests.helpers.small_agents import living, near
+from tests.helpers.small_agents import started_agent, near
 
 
 def test_salience_counts_bits() -> None:
     memory = Memory(Buffer())
-    agent = living(memory=memory, salience=DMSalience(memory))
+    agent = started_agent(memory=memory, salience=DMSalience(memory))
     for text in ["colour:red x:1", "colour:red x:2", "colour:red x:3", "colour:green x:4"]:
         agent.memory.add(text)
     agent.salience.weights(colour=2, size=1)
@@ -38,7 +38,7 @@ def fan_agent() -> Any:
     memory, goal = Memory(Buffer()), Buffer()
     spreading = DMSpreading(memory, goal)
     spreading.strength = 1.6
-    agent = living("act-r-7", memory=memory, goal=goal, spreading=spreading)
+    agent = started_agent("act-r-7", memory=memory, goal=goal, spreading=spreading)
     for person, place in FAN:
         agent.memory.add(f"relation:in arg1:{person} arg2:{place}")
     return agent
@@ -86,7 +86,7 @@ def test_spreading_of_python_act_r_is_not_clipped() -> None:
     memory, goal, imaginal = Memory(Buffer()), Buffer(), Buffer()
     spreading = DMSpreading(memory, goal, imaginal)
     spreading.weight[imaginal] = 0.5
-    agent = living(memory=memory, goal=goal, imaginal=imaginal, spreading=spreading)
+    agent = started_agent(memory=memory, goal=goal, imaginal=imaginal, spreading=spreading)
     for n in range(9):
         agent.memory.add(f"in x{n}")
     agent.goal.set("in x1 in")
@@ -98,7 +98,7 @@ def test_spreading_of_python_act_r_is_not_clipped() -> None:
 def test_spreading_takes_any_value_and_knows_what_came_before_it() -> None:
     memory, goal = Memory(Buffer()), Buffer()
     memory.add({"list": [1, 2]})
-    agent = living(memory=memory, goal=goal, spreading=DMSpreading(memory, goal))
+    agent = started_agent(memory=memory, goal=goal, spreading=DMSpreading(memory, goal))
     agent.memory.add({"list": [1, 2], "b": "x"})
     agent.goal.set({"list": [1, 2]})
     assert agent.memory.get_activation({"list": [1, 2]}) == near(1 - math.log(3))
@@ -133,7 +133,7 @@ def test_equal_chunks_that_are_created_by_hand_count_each() -> None:
 @pytest.mark.parametrize("kind", [DMFixed, DMInhibition])
 def test_other_memory_modules_accept_the_same_chunk_twice_too(kind: Any) -> None:
     memory = Memory(Buffer())
-    agent = living(memory=memory, module=kind(memory))
+    agent = started_agent(memory=memory, module=kind(memory))
     agent.memory.add("a")
     agent.run(1)
     (module,) = agent.memory.adaptors
@@ -146,7 +146,7 @@ def test_chunks_that_have_left_the_memory_or_changed_do_not_count_in_act_r_7() -
     memory, goal = Memory(Buffer()), Buffer()
     spreading = DMSpreading(memory, goal)
     spreading.strength = 2
-    agent = living("act-r-7", memory=memory, goal=goal, spreading=spreading)
+    agent = started_agent("act-r-7", memory=memory, goal=goal, spreading=spreading)
     agent.goal.set("x")
     chunks: Any = agent.memory.dm
 
@@ -170,7 +170,7 @@ def test_chunks_that_have_left_the_memory_or_changed_do_not_count_in_act_r_7() -
 
 def test_inhibition_counts_from_the_latest_use_in_act_r_7() -> None:
     memory = Memory(Buffer())
-    agent = living("act-r-7", memory=memory, inhibition=DMInhibition(memory))
+    agent = started_agent("act-r-7", memory=memory, inhibition=DMInhibition(memory))
     agent.run(10)
     agent.memory.add("a", time=3)
     agent.memory.add("b", time=20)

@@ -27,7 +27,7 @@ ARM = """<mujoco><worldbody><body name="base"><geom size="0.1"/>
     </body></body></body></worldbody>
   <actuator><velocity name="a" joint="shoulder" kv="200"/><velocity name="b" joint="elbow" kv="200"/>
     <velocity name="c" joint="grip" kv="200"/></actuator></mujoco>"""
-"""An arm on a pedestal, as a robot's description may have it; nothing moves its wrist."""
+"""An arm on a pedestal, as in a robot's description; no actuator moves its wrist."""
 
 
 def angle(simulation: Simulation, joint: str, body: str = "walker") -> float:
@@ -75,7 +75,7 @@ def test_a_movement_without_an_angle_ends_at_the_limit_and_says_so(command: str,
     assert angle(simulation, joint) == near(ends, abs=0.01)
     assert ended(motor, joint.rpartition("_")[0]) == "limit"
     getattr(motor, command)(*given)
-    assert until(simulation, lambda: not motor.busy) == 2, "at the limit it ends at once"
+    assert until(simulation, lambda: not motor.busy) == 2, "at the limit it ends immediately"
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
@@ -271,7 +271,7 @@ def test_the_former_speed_continues_while_a_change_of_speed_is_prepared() -> Non
     motor.walk(0)
     motor.walk(0.8)
     simulation.step(60)
-    assert base.speed[0] == near(0.8, abs=0.02), "a change that is still prepared is gone with the walk that it changes"
+    assert base.speed[0] == near(0.8, abs=0.02), "a change in preparation ends with the walk that it would change"
 
 
 def test_a_speed_may_change_while_its_movement_is_prepared() -> None:

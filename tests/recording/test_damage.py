@@ -1,4 +1,4 @@
-"""A recording that was changed in any way is damaged: it never agrees, and never ends in a traceback."""
+"""A recording with any change is damaged: it never agrees, and never causes a traceback."""
 
 from __future__ import annotations
 

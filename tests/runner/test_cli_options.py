@@ -172,7 +172,7 @@ def test_a_list_that_lost_its_quotes_in_the_shell_is_refused(text: str) -> None:
     says = f'--ablate word: must be a list or tuple of Python (got {text!r}); a shell removes quotes, so quote the whole: --ablate "word='
     with pytest.raises(SettingError, match=re.escape(says)):
         read_settings([f"word={text}"], (), "--ablate")
-    assert read_settings([f"word={text!r}"], ()) == {"word": text}, "a text in quotes of its own"
+    assert read_settings([f"word={text!r}"], ()) == {"word": text}, "the text keeps its own quotes"
 
 
 @pytest.fixture

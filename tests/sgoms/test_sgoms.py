@@ -171,13 +171,13 @@ def test_a_trace_that_begins_later_shows_what_is_in_progress() -> None:
     module = cooking(seconds=0.22)
     later = module.agent.traced("production")
     module.agent.parent.run(0.3)
-    tells = [(event.kind, event.data["what"], event.data["path"]) for event in later if "path" in event.data]
-    assert sorted(tells[:3]) == [
+    progress = [(event.kind, event.data["what"], event.data["path"]) for event in later if "path" in event.data]
+    assert sorted(progress[:3]) == [
         ("method", "going on", "tea/boil/work"),
         ("planning_unit", "going on", "tea"),
         ("unit_task", "going on", "tea/boil"),
     ]
-    assert tells[3:] == [("method", "ended", "tea/boil/work"), ("unit_task", "ended", "tea/boil"), ("unit_task", "begun", "tea/steep")]
+    assert progress[3:] == [("method", "ended", "tea/boil/work"), ("unit_task", "ended", "tea/boil"), ("unit_task", "begun", "tea/steep")]
 
 
 def test_explain_includes_the_productions_of_plans() -> None:

@@ -37,7 +37,7 @@ def doorway(**settings: Any) -> Simulation:
 
 class Own(MemorySubModule):
     def activation(self, chunk: Any) -> float:
-        raise AssertionError("a modeller's code is not run for who looks on")
+        raise AssertionError("a modeller's code is not run for observers")
 
 
 class Knowing(ACTR):

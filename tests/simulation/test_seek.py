@@ -34,7 +34,7 @@ def command(simulation: Simulation, tick: int) -> None:
 
 
 def first_run(ticks: int = 200, simulation: Simulation | None = None) -> tuple[Simulation, list[str]]:
-    """Returns a simulation that has been run with commands, and the digest at the end of each tick, before its commands."""
+    """Returns a simulation that was run with commands, and the digest at the end of each tick, before its commands."""
     simulation = simulation or driving("all")
     digests = [digest(simulation)]
     for tick in range(ticks):

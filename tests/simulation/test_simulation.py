@@ -450,7 +450,7 @@ def test_errors_say_what_is_wrong(wrong: Callable[[Simulation], object], message
 
 
 class Returned:
-    """A measure with the result that it is given."""
+    """A measure that returns a given result."""
 
     def __init__(self, returned: Any) -> None:
         self.returned = returned

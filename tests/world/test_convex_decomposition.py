@@ -102,7 +102,7 @@ sys.stdin.readline()
 for _ in range(120):
     convex_decomposition.write_cached("name", mine)
     found = convex_decomposition.read_cached("name")
-    assert found is not None, "a file that is not whole"
+    assert found is not None, "an incomplete file was read"
     assert len(found) == 1 and found[0].tobytes() in (mine[0].tobytes(), other[0].tobytes())
 """
 

@@ -451,7 +451,7 @@ def test_the_feet_of_a_walker_touch_what_lies_directly_in_the_world_of_a_file(na
 
     before_file = walked(Imported(name="i", text=STEP.format(named, "")))
     before_wall = walked(Wall(name="w", start=(1, -2), end=(1, 2), thickness=0.2, height=0.3))
-    assert before_file.get("pose").x == near(before_wall.get("pose").x, abs=0.01), "1.5 where only its thighs were stopped"
+    assert before_file.get("pose").x == near(before_wall.get("pose").x, abs=0.01), "it was 1.5 when only the thighs were stopped"
     assert {touch.other for touch in before_file.get("contacts")} == {"i_step" if named else "i_geom_1"}
 
 

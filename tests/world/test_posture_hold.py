@@ -14,7 +14,7 @@ from actr3d.world import Body, Floor, Load, Mannequin, Scene, SimpleObject, Wall
 from tests.helpers.small_agents import near
 
 
-def living(*parts: object, **of: object) -> tuple[World, Body]:
+def world_with_walker(*parts: object, **of: object) -> tuple[World, Body]:
     """Returns a world with a mannequin called `walker` and more, and its body."""
     world = World(Scene(parts=(Floor(), Mannequin(name="walker", **of), *parts)))  # type: ignore[arg-type]
     return world, world.bodies["walker"]
@@ -29,7 +29,7 @@ def flailing(body: Body, tick: int, names: list[str], speed: float) -> None:
 @pytest.mark.parametrize("speed", [4.2, 16.0])
 @pytest.mark.parametrize("load", [None, Load(size=(2.0, 0.03), mass=5), Load(shape="box", size=(0.3, 0.3, 0.1), mass=2)])
 def test_a_standing_body_is_not_moved_by_its_own_limbs(load: Load | None, speed: float) -> None:
-    world, body = living(load=load, position=(1.0, 2.0), heading=0.5)
+    world, body = world_with_walker(load=load, position=(1.0, 2.0), heading=0.5)
     names = ["pelvis_pitch", "torso_yaw", "torso_roll", "left_upper_arm_pitch", "right_upper_arm_roll", "head_pitch"]
     for tick in range(300):
         flailing(body, tick, names, speed)
@@ -45,7 +45,7 @@ def test_a_standing_body_is_not_moved_by_its_own_limbs(load: Load | None, speed:
 
 @pytest.mark.parametrize("sideways", [False, True])
 def test_extreme_postures_neither_move_it_nor_turn_it_from_its_path(sideways: bool) -> None:
-    world, body = living(sideways=sideways)
+    world, body = world_with_walker(sideways=sideways)
     body.set("walk", 1.0)
     low = {name: joint.lower for name, joint in body.joints.items()}
     for _ in range(3):
@@ -60,9 +60,9 @@ def test_extreme_postures_neither_move_it_nor_turn_it_from_its_path(sideways: bo
 
 
 def test_a_joint_without_a_command_bears_a_load() -> None:
-    """Six kilograms lie on the box that it holds; the bound of the servos, 60 N m, is more."""
+    """Six kilograms lie on the box in its hands, which need less than the limit of the servos, 60 N m."""
     lies = SimpleObject(name="weight", shape="box", size=(0.2, 0.2, 0.1), mass=6, position=(0.36, 0.0, 1.2))
-    world, body = living(lies, load=Load(shape="box", size=(0.4, 0.5, 0.1), mass=2))
+    world, body = world_with_walker(lies, load=Load(shape="box", size=(0.4, 0.5, 0.1), mass=2))
     world.step(1000)
     start = {name: joint.position for name, joint in body.joints.items()}
     assert {touch.other for touch in body.get("contacts")} == {"weight"}
@@ -74,7 +74,7 @@ def test_a_joint_without_a_command_bears_a_load() -> None:
 
 def test_a_push_moves_a_standing_body_and_it_stays_there() -> None:
     other = Mannequin(name="other", position=(0.7, 0.0), leg_force=200)
-    world, body = living(other, leg_force=400)
+    world, body = world_with_walker(other, leg_force=400)
     body.set("walk", 0.5)
     world.step(1000)
     pushed = world.bodies["other"].get("pose").x
@@ -88,7 +88,7 @@ def test_a_push_moves_a_standing_body_and_it_stays_there() -> None:
 
 
 def test_a_stronger_body_is_not_pushed_away() -> None:
-    world, body = living(Mannequin(name="other", position=(0.7, 0.0), heading=math.pi), leg_force=150)
+    world, body = world_with_walker(Mannequin(name="other", position=(0.7, 0.0), heading=math.pi), leg_force=150)
     body.set("walk", 0.5)
     world.step(3000)
     assert world.bodies["other"].get("pose").x == near(0.7, abs=0.02)
@@ -96,7 +96,7 @@ def test_a_stronger_body_is_not_pushed_away() -> None:
 
 def test_people_who_press_on_each_other_feel_no_blows() -> None:
     """With MuJoCo's own tolerance, two trunks that hardly touch are at times found 1 cm deep in each other: 40 kN."""
-    world, body = living(Mannequin(name="other", position=(1.0, 0.0), heading=math.pi))
+    world, body = world_with_walker(Mannequin(name="other", position=(1.0, 0.0), heading=math.pi))
     body.set("walk", 1.0)
     body.get("contacts")
     world.step(450)
@@ -106,7 +106,7 @@ def test_people_who_press_on_each_other_feel_no_blows() -> None:
 
 
 def test_a_limb_that_was_pushed_away_comes_back() -> None:
-    world, body = living(Wall(name="wall", start=(0.0, 0.45), end=(3.0, 0.45)), position=(-0.6, 0.2))
+    world, body = world_with_walker(Wall(name="wall", start=(0.0, 0.45), end=(3.0, 0.45)), position=(-0.6, 0.2))
     body.set("walk", 0.5)
     bent = 0.0
     for _ in range(200):
@@ -139,7 +139,7 @@ def test_how_it_stops_does_not_depend_on_observers(seed: int) -> None:
 
 
 def test_after_a_limit_it_is_at_rest() -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("joint", "pelvis_pitch", 16.0)
     world.step(250)
     assert body.joints["pelvis_pitch"].position == near(body.joints["pelvis_pitch"].upper, abs=1e-3)
@@ -159,13 +159,13 @@ def test_after_a_limit_it_is_at_rest() -> None:
     ],
 )
 def test_commands_beyond_human_limits_are_refused(word: str, values: tuple[object, ...], message: str) -> None:
-    _, body = living()
+    _, body = world_with_walker()
     with pytest.raises(WorldError, match=message):
         body.set(word, *values)
 
 
 def test_numbers_may_come_as_text() -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("walk", "1.2")
     world.step(500)
     assert body.get("pose").x == near(1.2)

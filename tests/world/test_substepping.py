@@ -1,4 +1,4 @@
-"""However fast limbs and loads move, nothing gets through a wall, and the physics does not diverge."""
+"""Fast limbs and loads do not pass through walls, and the physics does not diverge."""
 
 from __future__ import annotations
 

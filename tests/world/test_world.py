@@ -228,7 +228,7 @@ def test_a_closing_aperture_stops_at_a_person_in_it(person: dict[str, Any], clos
     world = World(Scene(parts=(Floor(), Aperture(width=0.47, position=(0.0, 0.0), closing=closing), Mannequin(name="m", **person))))
     for _ in range(150):
         world.step(5)
-        assert np.hypot(*world.bodies["m"].base.speed[:2]) < 0.1 + closing / 2, "17 m/s where it was squeezed"
+        assert np.hypot(*world.bodies["m"].base.speed[:2]) < 0.1 + closing / 2, "it was 17 m/s when the body was squeezed"
     assert world.aperture_width() > 0.2
     assert world.bodies["m"].get("pose").x == near(0, abs=0.05)
 

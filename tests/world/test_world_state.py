@@ -35,7 +35,7 @@ DERIVED = {
     ("_Shapes", "_sizes"),
     ("_Shapes", "_formula"),  # computed again where sizes have changed
 }
-"""Attributes without information of their own: they follow from the state, or are never read again. A new attribute that changes must
+"""Attributes that need not be saved: they follow from the state, or are never read again. A new attribute that changes must
 be added to `state()` and `restore()`, or here with a reason."""
 
 COMMANDS: dict[str, list[tuple[str, tuple[Any, ...]]]] = {
