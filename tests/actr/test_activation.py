@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from actr3d.actr import Buffer, Chunk, DMBaseLevel, DMFixed, DMNoise, Memory, MemorySubModule
 from actr3d.errors import ChunkError, ParameterError
-from tests.helpers.small_agents import started_agent, near
+from tests.helpers.small_agents import near, started_agent
 
 getcontext().prec = 40
 PROFILES = ["python-actr", "act-r-7"]

@@ -9,7 +9,7 @@ import pytest
 
 from actr3d.actr import Buffer, Chunk, DMAssociate, DMInhibition, Memory
 from actr3d.errors import ChunkError
-from tests.helpers.small_agents import started_agent, near
+from tests.helpers.small_agents import near, started_agent
 
 
 def associating(profile: str = "python-actr", **options: Any) -> Any:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from actr3d.actr import BlendingMemory, Buffer, Chunk, DMFixed, DMNoise, Memory, Partial
 from actr3d.errors import ParameterError
-from tests.helpers.small_agents import started_agent, near
+from tests.helpers.small_agents import near, started_agent
 
 getcontext().prec = 60
 

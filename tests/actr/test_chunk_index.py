@@ -101,7 +101,7 @@ def test_a_chunk_in_two_stores_keeps_both_up_to_date() -> None:
 
 def test_copies_are_independent() -> None:
     store = ChunkStore()
-    for number in range(2000):  # deeper than Python's stack, were copying to go from chunk to chunk
+    for number in range(2000):  # deeper than Python's stack, if copying went from chunk to chunk
         store.keep(Chunk({"n": number}))
     assert store.equal_to(Chunk({"n": 7})) is store[7]
     for twin in (copy.deepcopy(store), pickle.loads(pickle.dumps(store))):

@@ -39,7 +39,7 @@ def test_tutorial_models_print_what_they_print_under_python_actr(program: Progra
     done = run_command("run", str(program.file), "--seed", str(seed), folder=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout
-    # python_actr prints a last line of its own when a program that imports it ends.
+    # python_actr prints a last line when a program that imports it ends.
     assert done.stdout + "end...\n" == program.recorded(seed)["printed"]
 
 

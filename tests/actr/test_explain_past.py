@@ -127,7 +127,7 @@ class Agent(ACTR):
     assert not agent.explain(0.01).production("q").matches
     agent.goal.modify(n="2", step="y")
     events = [event.data["chunk"] for event in agent.sch.trace.select("buffer")]
-    assert events[-2:] == [{"step": "z", "n": "2"}, {"step": "y", "n": "2"}]  # one event for each change, as ever
+    assert events[-2:] == [{"step": "z", "n": "2"}, {"step": "y", "n": "2"}]  # one event for each change, as before
 
 
 ODD = """

@@ -287,7 +287,7 @@ def test_a_text_that_is_loaded_again_shares_nothing_that_changes_with_the_first_
     with pytest.raises(ZeroDivisionError) as raised:
         third.Agent().run(1)
     lines = [frame.line for frame in traceback.extract_tb(raised.value.__traceback__) if frame.filename == "counting.py"]
-    assert lines[-2:] == ["later()", "later = lambda: 1 / fails"]  # the lines of the first module do not exist any more
+    assert lines[-2:] == ["later()", "later = lambda: 1 / fails"]  # the lines of the first module no longer exist
 
 
 def test_the_compiler_warns_about_a_text_each_time_it_is_loaded() -> None:

@@ -204,7 +204,7 @@ if __name__ == '__main__':
 
 
 def test_a_model_is_the_program_and_leaves_nothing_behind(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    run_text("from ccm.lib import grid", folder=folder)  # the library's own parts stay loaded once they were asked for
+    run_text("from ccm.lib import grid", folder=folder)  # parts of the library stay loaded after their first import
     capsys.readouterr()
     (folder / "program.py").write_text(PROGRAM, encoding="utf-8")
     real = ModuleType("python_actr")

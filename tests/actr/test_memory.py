@@ -12,7 +12,7 @@ from actr3d.actr import Buffer, Chunk, DMBaseLevel, DMFixed, DMNoise, Memory, Me
 from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.declarative.memory import LONGEST
 from actr3d.errors import ChunkError, ModelWarning
-from tests.helpers.small_agents import started_agent, near
+from tests.helpers.small_agents import near, started_agent
 
 
 def remembering(profile: str = "python-actr", kind: Any = Memory, **options: Any) -> Any:
@@ -160,7 +160,7 @@ def test_finsts() -> None:
         agent.memory.add(f"a {n}", fixed=-0.1 * n + 1)
     found = [str(arrival(agent, "a ?", require_new=True)[1]) for _ in range(3)]
     assert found == ["a 0", "a 1", "a 2"]
-    assert str(arrival(agent, "a ?", require_new=True)[1]) == "a 0"  # the oldest mark had gone
+    assert str(arrival(agent, "a ?", require_new=True)[1]) == "a 0"  # the oldest mark was dropped
     assert [str(chunk) for chunk in agent.memory._last.excluded] == ["a 1", "a 2"]
     agent.run(0.9)
     assert [str(chunk) for chunk in agent.memory.finst.obj] == ["a 2", "a 0"]

@@ -11,7 +11,7 @@ from actr3d.actr import ACTR, BlendingMemory, Buffer, Chunk, DMBaseLevel, DMNois
 from actr3d.actr.kernel.profile import ACT_R_7
 from actr3d.actr.loading import load_text
 from actr3d.errors import ModelWarning, ParameterError
-from tests.helpers.small_agents import started_agent, near
+from tests.helpers.small_agents import near, started_agent
 
 LEVELS = ["agent", "memory", "instance"]
 

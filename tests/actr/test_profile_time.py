@@ -9,7 +9,7 @@ import pytest
 import actr3d.actr as library
 from actr3d.actr import ACTR, Buffer, Chunk, ImaginalModule, Memory, Model, Motor
 from tests.helpers.python_actr_reference import model_file
-from tests.helpers.small_agents import started_agent, near
+from tests.helpers.small_agents import near, started_agent
 
 
 def test_only_the_events_of_such_agents_lie_at_whole_milliseconds() -> None:

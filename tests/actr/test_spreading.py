@@ -10,7 +10,7 @@ import pytest
 
 from actr3d.actr import Buffer, Chunk, DMFixed, DMInhibition, DMSalience, DMSpreading, Memory
 from actr3d.errors import ChunkError, ModelWarning
-from tests.helpers.small_agents import started_agent, near
+from tests.helpers.small_agents import near, started_agent
 
 
 def test_salience_counts_bits() -> None:

@@ -31,7 +31,7 @@ def picture(thing: Any, left_out: Collection[tuple[str, str]]) -> dict[str, Any]
 
 def _walk(thing: Any, path: str, found: dict[str, Any], seen: dict[int, tuple[Any, str]], left_out: Collection[tuple[str, str]]) -> None:
     if isinstance(thing, PLAIN):
-        found[path] = repr(cast("object", thing))  # of a number all its digits; NaN is equal to itself
+        found[path] = repr(cast("object", thing))  # numbers with all their digits; NaN is equal to itself
     elif isinstance(thing, CODE):
         found[path] = getattr(cast("object", thing), "__qualname__", type(cast("object", thing)).__name__)
     elif id(thing) in seen:
@@ -48,7 +48,7 @@ def _parts(thing: Any) -> list[tuple[str, Any]]:
         array = cast("NDArray[Any]", thing)
         base: Any = array.base
         if base is not None and not isinstance(base, np.ndarray):
-            return []  # it is MuJoCo's
+            return []  # an object of MuJoCo
         return [("array", (array.shape, array.dtype.str, array.tobytes()))]
     if isinstance(thing, mujoco.MjModel):
         return [("arrays", {name: array.tobytes() for name in dir(thing) if isinstance(array := getattr(thing, name), np.ndarray)})]

@@ -66,7 +66,7 @@ def edit(file: sqlite3.Connection, choose: random.Random) -> None:
     rows = file.execute(f"SELECT * FROM {table}").fetchall()
     columns = [column[1] for column in file.execute(f"PRAGMA table_info({table})")]
     row, other = choose.sample(rows, 2) if len(rows) > 1 else rows * 2
-    column = choose.randrange(len(columns) - (table in COLUMNS))  # of the seal, its checksum, too
+    column = choose.randrange(len(columns) - (table in COLUMNS))  # also the checksum of the seal
     match choose.randrange(5):
         case 0:
             file.execute(f"DELETE FROM {table} WHERE {key} = ?", (row[0],))

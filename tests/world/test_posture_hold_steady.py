@@ -45,7 +45,7 @@ def never(_: SteadyState) -> bool:
 @pytest.mark.parametrize("heading", [0.0, 0.8])
 def test_the_fast_check_is_used_and_changes_nothing(heading: float, monkeypatch: pytest.MonkeyPatch) -> None:
     quick, checks = course(heading)
-    assert sum(checks) > 300  # of 600 of two bodies, one of which never does anything
+    assert sum(checks) > 300  # of 600 checks of two bodies, one of which never moves
     monkeypatch.setattr(SteadyState, "is_reached", never)
     thorough, _ = course(heading)
     assert quick == thorough

@@ -28,10 +28,10 @@ DERIVED = {
     ("Physics", "_numbers"),  # scratch memory
     ("Physics", "renderer"),  # draws pictures of the state
     ("ModelChanges", "_image"),
-    ("ModelChanges", "_original"),  # made when it is first needed, and always the same
+    ("ModelChanges", "_original"),  # created when first needed, and always the same
     ("PostureHold", "_steady"),
     ("PostureHold", "_new"),  # a short cut that never changes the result
-    ("Body", "_senses"),  # all senses that were ever made; those in use are in the state
+    ("Body", "_senses"),  # all sensors that were ever created; those in use are in the state
     ("_Shapes", "_sizes"),
     ("_Shapes", "_formula"),  # computed again where sizes have changed
 }
