@@ -43,6 +43,21 @@ class Change(Configuration):
         raise NotImplementedError
 
     @classmethod
+    def present(cls, on: Any, named: Mapping[str, Any]) -> dict[str, Any]:  # noqa: ARG003 - for those that have some
+        """Returns the present values of fields of what is to be changed, by name, with which forms begin; by default none.
+
+        A form does not send an optional field that the user has not changed: its default must keep the present value.
+
+        Args:
+            on: As for `carry_out`.
+            named: The fields that say what is to be changed, such as the name of an object.
+
+        Raises:
+            Actr3dError: If there is no such thing.
+        """
+        return {}
+
+    @classmethod
     def of_arguments(cls, values: Sequence[Any], named: Mapping[str, Any]) -> Self:
         """Returns the change with the arguments of a command.
 

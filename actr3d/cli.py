@@ -20,6 +20,7 @@ from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import DesignError, SettingError, alternatives
 from actr3d.output import ModelOutput, all_written, printing_to, standard_output
 from actr3d.parameter_schema import Parameter
+from actr3d.recording.schema import versions
 from actr3d.runner.before_exit import before_the_end
 from actr3d.runner.build_check import check_build, has_build
 from actr3d.runner.cli_options import options_help, read_options, read_settings
@@ -195,8 +196,17 @@ def _count(text: str) -> int:
     return int(text)
 
 
+class _Version(argparse.Action):
+    """Prints the version, and ends the command."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        print(f"actr3d {versions()['actr3d']}")
+        parser.exit()
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="actr3d", description="Runs cognitive models in bodies, in exact lockstep.")
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version of this program")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for add in (_add_run, _add_replay, _add_bench, _add_experiment, _add_fit, _add_report):
         add(commands)
@@ -244,8 +254,14 @@ def _add_replay(commands: Any) -> None:
 
 
 def _add_bench(commands: Any) -> None:
-    bench = commands.add_parser("bench", help="measure speed", description="Measures speed, mostly as ratios of two costs in one run.")
-    bench.add_argument("name", metavar="NAME", nargs="?", help="what to measure (unless given, list all benchmarks)")
+    bench = commands.add_parser(
+        "bench",
+        help="measure speed",
+        description="Measures speed, mostly as ratios of two costs in one run. Without a name, lists all benchmarks.",
+        epilog="Exit codes: 0 all limits are met; 1 one is missed; 2 there is no such benchmark, or a package is missing; "
+        "130 it was interrupted.",
+    )
+    bench.add_argument("name", metavar="NAME", nargs="?", help="what to measure")
     bench.add_argument("--json", action="store_true", help="print one JSON object")
     bench.set_defaults(function=_bench)
 
@@ -287,6 +303,8 @@ def _add_fit(commands: Any) -> None:
         help="fit parameters of a model to data",
         description="Fits parameters of a model to means of human data, with intervals. The candidates stay in the folder: a fit that was "
         "stopped continues there.",
+        epilog="Exit codes: 0 the parameters are fitted; 1 they cannot be fitted; 2 wrong options, an invalid design, or a package is "
+        "missing; 130 it was stopped.",
     )
     fit.add_argument("name", metavar="NAME|FILE", help="a design, or a file with one")
     fit.add_argument("--parameter", action="append", default=[], metavar="NAME=LOW..HIGH", help="a parameter, and the range to search")

@@ -1,4 +1,4 @@
-"""Runs the walks that docs/results.md tells of under «Other scenes»: `uv run python docs/scenes.py [words of a line]`.
+"""Runs the walks that docs/results.md describes under «Other scenes»: `uv run python docs/scenes.py [words of a line]`.
 
 Each line is one scene. It takes about half an hour on two processors; words choose the lines that contain them.
 """

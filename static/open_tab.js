@@ -7,3 +7,14 @@ import { embedded } from "./windows.js";
 
 /** The id of the open tab; in a window of its own, of the panel that it shows. */
 export const openTab = addressed("panel") === null ? remembered("tab", embedded === null ? "about" : "buffers") : signal(addressed("panel"));
+
+/** Opens a tab by a command. The focus moves to its panel, unless the command moves it to something else. */
+export function goToTab(id) {
+  const before = document.activeElement;
+  openTab.value = id;
+  requestAnimationFrame(() => {
+    const { activeElement, body } = document;
+    const panel = document.getElementById(`panel-${id}`);
+    if ([before, body].includes(activeElement) && !panel?.contains(activeElement)) panel?.focus({ preventScroll: true });
+  });
+}

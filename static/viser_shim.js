@@ -19,8 +19,8 @@
       this.facts[name] = value;
       if (name === "now") this.heard = [...this.heard, { ...value, stage: this.facts.stage }].slice(-MAX_HEARD);
     },
-    /** Moves the camera to the start of a view, also if it is that view already; a free one to where the user has left it, `kept`, if
-     * anywhere: as the camera reports it (`scene/camera.js`). */
+    /** Moves the camera to the start of a view, also if the view is shown already. A free view starts at `kept`, the position in which the
+     * user left the camera, if there is one: as the camera reports it (`scene/camera.js`). */
     choose(view, kept = null) {
       Object.assign(this, { view, kept });
       this.onview?.();

@@ -12,7 +12,7 @@ import { command, run } from "./commands.js";
 import { Comparison } from "./compare/compare.js";
 import { noteKey } from "./keys.js";
 import { AREAS, hasWorld, isCollapsed, layoutCommands, maximised, panelsWidth, swapped, timelineHeight } from "./layout.js";
-import { openTab } from "./open_tab.js";
+import { goToTab, openTab } from "./open_tab.js";
 import { CommandPalette } from "./palette/palette.js";
 import { PANELS } from "./panels.js"; // made by the server: all files of panels/ that export a panel
 import { AreaMenu } from "./parts/area_menu.js";
@@ -35,7 +35,7 @@ const VIEWS = { ...Object.fromEntries(PANELS.map(({ id, title, View }) => [id, {
 const TABS = PANELS.filter(({ id }) => embedded === null || !["about", "parameters", "editor", "experiments", "runs"].includes(id));
 
 const onePanel = () => "This window shows one panel.";
-TABS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => (openTab.value = id), ready: () => alone === null, why: onePanel }));
+TABS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => goToTab(id), ready: () => alone === null, why: onePanel }));
 const openPanel = command({ text: "Open the panel in a window of its own", group: "Page", work: () => openWindow(openTab.value), ready: () => alone === null, why: onePanel });
 noteKey("1 … 9, 0", "Open a tab", "Panels");
 noteKey("w", "Why, of a line of the firing trace", "Panels");

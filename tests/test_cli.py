@@ -6,6 +6,8 @@ import re
 import shutil
 import subprocess
 import sys
+from contextlib import suppress
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -334,6 +336,27 @@ def test_a_helper_of_python_2_is_one_line(tmp_path: Path) -> None:
     done = run(tmp_path, "import old")
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == f"error: {tmp_path}/old.py:2: this file is written for Python 2 (a print statement); convert it to Python 3\n"
+
+
+def test_the_command_prints_its_version(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == f"actr3d {version('actr3d')}\n"
+
+
+@pytest.mark.parametrize("name", ["run", "replay", "bench", "experiment", "fit", "report"])
+def test_the_help_of_each_command_lists_its_exit_codes(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with suppress(SystemExit):
+        main([name, "--help"])
+    assert "Exit codes: 0 " in capsys.readouterr().out
+
+
+def test_a_replay_of_what_is_no_recording_says_so_in_plain_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "model.py"
+    file.write_text("x = 1\n", encoding="utf-8")
+    assert main(["replay", str(file)]) == 2
+    assert capsys.readouterr().err == f"error: '{file}' is not a recording: it is a file of another kind, or damaged\n"
 
 
 def test_the_package_is_the_command(tmp_path: Path) -> None:

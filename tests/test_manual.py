@@ -13,21 +13,24 @@ import pytest
 
 from actr3d.experiment.specification import library_designs
 from actr3d.vision import DETECTORS
+from actr3d.world.body import ACTUATORS, SENSORS
 from tests.helpers.manual import FENCE, PAGES, ROOT, check, compare, has_code
 from tests.helpers.motor_bodies import moving, until
 from workbench.overlays import OVERLAYS
 
 
 @pytest.fixture
-def own_detectors() -> Iterator[None]:
-    """Forgets the detectors that a page defines."""
-    before = dict(DETECTORS)
+def own_definitions() -> Iterator[None]:
+    """Forgets the detectors, sensors and commands that a page defines."""
+    registries: list[dict[str, Any]] = [DETECTORS, SENSORS, ACTUATORS]
+    before = [dict(registry) for registry in registries]
     yield
-    DETECTORS.clear()
-    DETECTORS.update(before)
+    for registry, known in zip(registries, before, strict=True):
+        registry.clear()
+        registry.update(known)
 
 
-@pytest.mark.usefixtures("own_detectors")
+@pytest.mark.usefixtures("own_definitions")
 @pytest.mark.filterwarnings("default::actr3d.errors.ModelWarning")
 @pytest.mark.parametrize("page", [page for page in PAGES if has_code(page)], ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_the_code_of_a_page_prints_what_the_page_shows(page: Path, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Sensors, actuators and bodies are registered where they are defined, in one file each; each registered one keeps the common rules."""
+"""Each kind of thing that is registered where it is defined, in one file each, such as sensors: each keeps the common rules."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from mujoco import MjSpec
 import actr3d.actr
 import actr3d.camera  # pyright: ignore[reportUnusedImport] # it registers `view`
 import actr3d.world
+from actr3d.actr.declarative.activation import ACTIVATION_PARTS
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.loading import load_text
 from actr3d.actr.modules import MODULES
@@ -296,6 +297,11 @@ def test_each_module_can_be_put_into_an_agent(name: str) -> None:
     assert issubclass(kind, Model)
     assert inspect.getdoc(kind)
     assert getattr(actr3d.actr, name, kind) is kind  # what models import by this name
+
+
+@pytest.mark.parametrize("name", [name for name in dir(actr3d.actr) if name.startswith("DM")])
+def test_each_activation_module_has_a_name_for_users(name: str) -> None:
+    assert ACTIVATION_PARTS[name]
 
 
 @pytest.mark.parametrize("name", find_measures())

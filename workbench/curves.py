@@ -102,13 +102,10 @@ class Motion(Source):
     def __init__(self, model: MjModel, data: MjData, name: str, root: int) -> None:
         self.curves = (Curve(f"{name} x", "m", "place"), Curve(f"{name} y", "m", "place"), Curve(f"{name} speed", "m/s", "speed"))
         self._model, self._data, self._root = model, data, root
-        self._speeds = np.zeros(6)
 
     def read(self, numbers: NDArray[np.float64], contacts: Contacts) -> Values:
         """Returns x and y of the body's root [m] and the horizontal speed of that point [m/s]."""
-        mujoco.mj_objectVelocity(self._model, self._data, mujoco.mjtObj.mjOBJ_XBODY, self._root, self._speeds, 0)
-        x, y, _ = self._data.xpos[self._root].tolist()
-        return x, y, math.hypot(*self._speeds[3:5].tolist())
+        return place_and_speed(self._model, self._data, self._root)
 
 
 class ClearanceCurves(Source):
@@ -255,6 +252,14 @@ def stretch(first: float, last: float | None, period: int, zero: int = 0) -> tup
 def stride(count: int, most: int) -> int:
     """Returns the step n, so that every n-th of `count` moments gives at most `most` moments."""
     return max(1, -(-count // most))
+
+
+def place_and_speed(model: MjModel, data: MjData, body: int) -> tuple[float, float, float]:
+    """Returns x and y of a MuJoCo body [m], and its horizontal speed [m/s], from data with positions and velocities."""
+    speeds = np.zeros(6)
+    mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, body, speeds, 0)
+    x, y, _ = data.xpos[body].tolist()
+    return x, y, math.hypot(*speeds[3:5].tolist())
 
 
 def harder(one: Contacts, other: Contacts) -> Contacts:

@@ -17,7 +17,7 @@ from actr3d.actr.kernel.source_code import last_name, syntax_tree
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError, ModelFileError, did_you_mean
 from actr3d.values import escape_surrogates
-from workbench.files import LARGEST, ModelFolder, file_stamp
+from workbench.files import MAX_FILE_SIZE, ModelFolder, file_stamp
 from workbench.page_commands import PageMessage
 
 LIBRARY = Path(actr3d.__file__).parent / "experiment" / "designs"
@@ -95,7 +95,7 @@ def stamp_of(folder: ModelFolder) -> Any:
 def _in_file(path: Path, file: str | None) -> list[DesignOutline]:
     stamp = file_stamp(path)
     try:
-        return list(_read(path, file, stamp)) if stamp and stamp[-1] <= LARGEST else []
+        return list(_read(path, file, stamp)) if stamp and stamp[-1] <= MAX_FILE_SIZE else []
     except (OSError, ModelFileError):
         return []
 
@@ -154,14 +154,14 @@ class WantedDesign(PageMessage):
         return [f"--{name}={count}" for name, count in counts if count is not None] + sets
 
 
-class Checking(WantedDesign):
+class CheckRequest(WantedDesign):
     """A design to check."""
 
     trial: bool = False
     """Whether a trial is run as well, which finds out how long it takes."""
 
 
-class Starting(WantedDesign):
+class StartRequest(WantedDesign):
     """A design to run."""
 
     workers: Workers | None = None

@@ -11,7 +11,7 @@ from fastapi.responses import Response
 from pydantic import Field, TypeAdapter, ValidationError
 
 from actr3d.values import escape_surrogates, to_json
-from workbench.design_files import MOST, Checking, Level, Starting, Workers, designs_of
+from workbench.design_files import MOST, CheckRequest, Level, StartRequest, Workers, designs_of
 from workbench.disconnects import while_connected
 from workbench.experiment_command import ExperimentRunError
 from workbench.experiment_folder import PAGE, REPORT_FILES
@@ -36,14 +36,14 @@ Column = Annotated[str, Query(min_length=1, max_length=200)]
 WHERE: TypeAdapter[dict[str, Level]] = TypeAdapter(Annotated[dict[str, Level], Field(max_length=10)])
 
 
-class Continuing(Trusting):
+class ResumeRequest(Trusting):
     """How an experiment is continued."""
 
     workers: Workers | None = None
     """The number of processes that run trials; null for that of its last run, or one on each processor if that is not known."""
 
 
-class TrialWanted(Trusting):
+class TrialRequest(Trusting):
     """A trial to record."""
 
     number: Annotated[int, Field(ge=0, lt=2**53)]
@@ -68,7 +68,7 @@ def designs(request: Request) -> dict[str, Any]:
 
 
 @router.post("/designs/check")
-async def check_design(request: Request, body: Checking) -> Response:
+async def check_design(request: Request, body: CheckRequest) -> Response:
     """Checks a design and returns its facts; with `trial`, also `seconds_a_trial`, which takes longer. 422 if it is not valid."""
     work = experiments_of(request).check(body)
     return _json(await while_connected(work, request.receive))
@@ -85,7 +85,7 @@ async def experiments(request: Request) -> Response:
 
 
 @router.post("/experiments", status_code=201)
-async def start_experiment(request: Request, body: Starting) -> Response:
+async def start_experiment(request: Request, body: StartRequest) -> Response:
     """Starts an experiment, and returns its `id` once its design has been checked; 422 if it is not valid."""
     name = await experiments_of(request).start(body)
     return _json(await experiments_of(request).one(name), 201)
@@ -105,9 +105,9 @@ async def stop_experiment(request: Request, experiment: Id) -> dict[str, Any]:
 
 
 @router.post("/experiments/{experiment}/resume")
-async def resume_experiment(request: Request, experiment: Id, body: Continuing | None = None) -> Response:
+async def resume_experiment(request: Request, experiment: Id, body: ResumeRequest | None = None) -> Response:
     """Continues an experiment; 409 if it is already running, 403 if this installation did not make it, unless `trust` is true."""
-    said = body or Continuing()
+    said = body or ResumeRequest()
     await experiments_of(request).resume(experiment, said.workers, trust=said.trust)
     return _json(await experiments_of(request).one(experiment))
 
@@ -167,7 +167,7 @@ async def means(
 
 
 @router.post("/experiments/{experiment}/trial")
-async def record_trial(request: Request, experiment: Id, body: TrialWanted) -> dict[str, Any]:
+async def record_trial(request: Request, experiment: Id, body: TrialRequest) -> dict[str, Any]:
     """Runs a trial again, records it, and returns the name of the recording; 403 as for `resume`."""
     work = experiments_of(request).record(experiment, body.number, trust=body.trust)
     return {"recording": await while_connected(work, request.receive)}

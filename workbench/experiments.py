@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from actr3d.errors import Actr3dError
-from workbench.design_files import Checking, Starting, design_argument, stamp_of
+from workbench.design_files import CheckRequest, StartRequest, design_argument, stamp_of
 from workbench.experiment_command import (
     AnyExperimentEvent,
     ExperimentCommand,
@@ -249,7 +249,7 @@ class Experiments:
 
     # -- checking
 
-    async def check(self, wanted: Checking) -> dict[str, Any]:
+    async def check(self, wanted: CheckRequest) -> dict[str, Any]:
         """Checks a design, and returns its facts.
 
         Raises:
@@ -290,7 +290,7 @@ class Experiments:
 
     # -- running
 
-    async def start(self, wanted: Starting) -> str:
+    async def start(self, wanted: StartRequest) -> str:
         """Starts a new experiment; returns its name once its design has been checked and its folder made.
 
         Raises:

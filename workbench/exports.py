@@ -24,7 +24,7 @@ from workbench.experiment_table import Table, counts
 from workbench.html_replay.make import write_replay
 from workbench.program_time import timed_events
 from workbench.recorded_simulations import RecordedSimulation, simulations_of
-from workbench.recorded_start import beginning_of, written
+from workbench.recorded_start import RecordedStart, recorded_start_of
 from workbench.recording_diff import compare
 
 
@@ -96,7 +96,7 @@ EXPORTS: dict[str, Callable[..., None]] = {
     "replay.html": write_replay,
     "curves": _write(curves_of),
     "comparison": _write(compare),
-    "beginning": _write(beginning_of, written),
+    "recorded start": _write(recorded_start_of, RecordedStart.to_json),
     "trial counts": _write(lambda *tables: counts(*tables)),
     "trial rows": _write(_from_table(Table.rows)),
     "trial means": _write(_from_table(Table.means)),

@@ -19,7 +19,7 @@ from actr3d.errors import Actr3dError
 from actr3d.replacing import replace_file
 from workbench.trash import move_to_trash
 
-LARGEST = 1_000_000
+MAX_FILE_SIZE = 1_000_000
 """Maximum size of a model file [bytes]."""
 MAX_FILES = 2_000
 """Maximum number of files that are listed."""
@@ -130,8 +130,8 @@ class ModelFolder:
         """
         where = self._existing(path)
         try:
-            if where.stat().st_size > LARGEST:
-                raise FileError(f"'{path}' is larger than {LARGEST:,} bytes")
+            if where.stat().st_size > MAX_FILE_SIZE:
+                raise FileError(f"'{path}' is larger than {MAX_FILE_SIZE:,} bytes")
             text, version = self.text_and_version(where)
             return ModelFile(path=path, text=text, version=version)
         except OSError as error:
@@ -166,8 +166,8 @@ class ModelFolder:
         """
         where = self.locate(path)
         data = _encoded(text, *self._line_end_and_mark(where))
-        if len(data) > LARGEST:
-            raise FileError(f"the size of a model file: must be <= {LARGEST:,} bytes (got {len(data):,})")
+        if len(data) > MAX_FILE_SIZE:
+            raise FileError(f"the size of a model file: must be <= {MAX_FILE_SIZE:,} bytes (got {len(data):,})")
         with self._saving:  # of two who have read the same version, only one replaces it
             now = self.version(where) if where.is_file() else None
             if now != version:
@@ -186,7 +186,7 @@ class ModelFolder:
     def _line_end_and_mark(self, where: Path) -> tuple[str, bytes]:
         """Returns the line ending of a file and the byte order mark at its start, if any, so that a file keeps its own."""
         with contextlib.suppress(OSError), where.open("rb") as file:
-            first = file.readline(LARGEST)
+            first = file.readline(MAX_FILE_SIZE)
             return "\r\n" if first.endswith(b"\r\n") else "\n", codecs.BOM_UTF8 if first.startswith(codecs.BOM_UTF8) else b""
         return "\n", b""
 

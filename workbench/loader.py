@@ -17,7 +17,7 @@ from actr3d.errors import ConfigurationError, ModelFileError, alternatives
 from actr3d.parameter_schema import Parameter, default_of, parameters_in
 from actr3d.runner.build_check import build_of, has_build, problem_of_build
 from actr3d.values import escape_surrogates
-from workbench.files import LARGEST, MAX_FILES, file_stamp
+from workbench.files import MAX_FILE_SIZE, MAX_FILES, file_stamp
 from workbench.undefined_names import undefined_names
 
 
@@ -60,8 +60,6 @@ class ModelListing:
     kind: str = "program"
     """`simulation` if the file defines `build`, otherwise `program`."""
     parameters: tuple[Parameter, ...] = ()
-    simulates: bool = False
-    """Whether it creates simulations itself: its text calls `Simulation`."""
     agents: tuple[WrittenAgent, ...] = ()
     problems: tuple[Problem, ...] = field(default=())
 
@@ -93,7 +91,6 @@ def listing_of(source: str, filename: str = "model.py") -> ModelListing:
         text=text,
         kind="simulation" if builds else "program",
         parameters=tuple(parameters_in(tree, build_of(tree)) if builds else _of_first_lines(source)),
-        simulates=any(isinstance(node, ast.Call) and last_name(node.func) == "Simulation" for node in ast.walk(tree)),
         agents=tuple(_agents(tree)),
         problems=problems,
     )
@@ -111,7 +108,7 @@ def outline_of(path: Path) -> Outline:
     """Returns the outline of a file, which is read again only when it has changed; an empty one if the file cannot be read."""
     stamp = file_stamp(path)
     try:
-        return _outline(path, stamp) if stamp and stamp[-1] <= LARGEST else Outline()
+        return _outline(path, stamp) if stamp and stamp[-1] <= MAX_FILE_SIZE else Outline()
     except (OSError, ModelFileError):
         return Outline()
 

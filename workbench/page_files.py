@@ -11,8 +11,8 @@ from starlette.responses import Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
+from actr3d.actr.declarative.activation import ACTIVATION_PARTS
 from actr3d.trace_kinds import GROUPS, KINDS
-from workbench.part_names import NAMES
 from workbench.shipped import static
 
 ROUTE = "/static/{version}"
@@ -47,7 +47,7 @@ def trace_kinds() -> str:
 
 def part_names() -> str:
     """Returns a module with the names that users see for what adds to an activation."""
-    return f"export const NAMES = {json.dumps(dict(NAMES))};\n"
+    return f"export const NAMES = {json.dumps(ACTIVATION_PARTS)};\n"
 
 
 GENERATED: Mapping[str, tuple[Callable[[], str], str]] = MappingProxyType(

@@ -3,22 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from types import MappingProxyType
 
-NAMES: Mapping[str, str] = MappingProxyType(
-    {
-        "DMBaseLevel": "base level",
-        "DMFixed": "fixed",
-        "DMSpreading": "spreading",
-        "DMSalience": "salience",
-        "DMAssociate": "association",
-        "DMInhibition": "inhibition",
-        "DMNoise": "noise",
-        "partial": "partial match",
-    }
-)
-"""The names of the components that library modules add, by the class of the module."""
+from actr3d.actr.declarative.activation import ACTIVATION_PARTS
+
 _NUMBERED = re.compile(r"(.*?)( \d+)?", re.DOTALL)
 
 
@@ -26,4 +13,4 @@ def part_name(part: str) -> str:
     """Returns the name of a component of an activation; of several modules of one class, each has a number."""
     found = _NUMBERED.fullmatch(part)
     name, number = found.groups("") if found else (part, "")
-    return NAMES.get(name, name) + number
+    return ACTIVATION_PARTS.get(name, name) + number

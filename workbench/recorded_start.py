@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import msgspec
 
@@ -13,7 +13,7 @@ from actr3d.recording import Recorded
 from actr3d.runner.program_changes import of_user
 
 
-class Beginning(msgspec.Struct, frozen=True, kw_only=True):
+class RecordedStart(msgspec.Struct, frozen=True, kw_only=True):
     """Holds what a recorded run began with."""
 
     recording: str
@@ -31,8 +31,30 @@ class Beginning(msgspec.Struct, frozen=True, kw_only=True):
     """The commands of users: the run, the tick after which each was given (for an agent without a simulation: the time [us]), and the
     command."""
 
+    def to_json(self) -> str:
+        """Returns it as JSON, including numbers and texts that strict JSON does not allow."""
+        return json.dumps(msgspec.structs.asdict(self))
 
-def beginning_of(path: Path) -> Beginning:
+    @classmethod
+    def from_json(cls, text: bytes) -> Self:
+        """Parses the JSON that `to_json` returned.
+
+        Raises:
+            RecordingError: If a worker cannot receive its values.
+        """
+        try:
+            start = msgspec.convert(json.loads(text), cls)
+            msgspec.msgpack.encode(start)
+        except RecursionError:
+            raise RecordingError("the recording cannot be read: its values are nested too deeply") from None
+        except UnicodeEncodeError as error:
+            raise RecordingError(f"the recording cannot be opened: a text in it cannot be encoded ({error.reason})") from None
+        except OverflowError:
+            raise RecordingError("the recording cannot be opened: a whole number in it has more than 64 bits") from None
+        return start
+
+
+def recorded_start_of(path: Path) -> RecordedStart:
     """Returns what the run of a recording began with.
 
     Raises:
@@ -55,27 +77,4 @@ def beginning_of(path: Path) -> Beginning:
             "helpers": facts.get("helpers", {}),
             "commands": recorded_commands if facts["kind"] == "simulation" else of_user(recorded_commands),
         }
-    return msgspec.convert(facts, Beginning)
-
-
-def written(began: Beginning) -> str:
-    """Returns a beginning as JSON, including numbers and texts that strict JSON does not allow."""
-    return json.dumps(msgspec.structs.asdict(began))
-
-
-def parsed(text: bytes) -> Beginning:
-    """Parses the JSON that `written` returned.
-
-    Raises:
-        RecordingError: If a worker cannot receive its values.
-    """
-    try:
-        began = msgspec.convert(json.loads(text), Beginning)
-        msgspec.msgpack.encode(began)
-    except RecursionError:
-        raise RecordingError("the recording cannot be read: its values are nested too deeply") from None
-    except UnicodeEncodeError as error:
-        raise RecordingError(f"the recording cannot be opened: a text in it cannot be encoded ({error.reason})") from None
-    except OverflowError:
-        raise RecordingError("the recording cannot be opened: a whole number in it has more than 64 bits") from None
-    return began
+    return msgspec.convert(facts, RecordedStart)

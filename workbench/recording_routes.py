@@ -60,7 +60,7 @@ class KnownLabel(PageMessage):
         return Label(name=self.name.strip(), note=self.note.strip(), tags=tags)
 
 
-class Labelling(KnownLabel):
+class LabelRequest(KnownLabel):
     """What a user writes about a recording; what is left out is not changed."""
 
     known: KnownLabel | None = None
@@ -74,7 +74,7 @@ class Trusting(PageMessage):
     """Whether the code in the recording may be run although this installation did not make it."""
 
 
-class Opening(Trusting):
+class OpenRequest(Trusting):
     """Options for opening a recording."""
 
     real_time: bool = False
@@ -130,7 +130,7 @@ async def import_recording(request: Request, name: Annotated[str, Query(min_leng
         await asyncio.to_thread(erase, path)
         raise RecordingError(f"the file cannot be read: {summary.problem}")
     await asyncio.to_thread(recordings.labels.change, path.stem, {"name": name.removesuffix(".sqlite")})
-    sessions.listings_changed()
+    sessions.announce_recordings()
     return Response(to_json(await _recording(sessions, path.stem)), status_code=201, media_type="application/json")
 
 
@@ -204,14 +204,14 @@ async def recorded_curves(
 
 
 @router.post("/recordings/{recording}/open", status_code=201)
-async def open_recording(request: Request, recording: Id, body: Opening | None = None) -> dict[str, Any]:
+async def open_recording(request: Request, recording: Id, body: OpenRequest | None = None) -> dict[str, Any]:
     """Starts a session that repeats a recorded run, or returns the open session whose `recorded` is this recording.
 
     The whole recorded run is available at once: the session can go to any time of it. Once a user changes the run, the session is known by
     the branch that it writes then, and the recording can be opened again, unchanged. Opening runs the code in the recording: 403 if
     this installation did not make it, unless `trust` is true.
     """
-    said = body or Opening()
+    said = body or OpenRequest()
     return (await sessions_of(request).reopen(recording, trust=said.trust, real_time=said.real_time)).summary()
 
 
@@ -221,12 +221,12 @@ async def recorded_code(request: Request, recording: Id) -> dict[str, Any]:
 
     `made_here` says whether this installation made the recording and nobody has changed it since.
     """
-    began = await sessions_of(request).beginning(recording)
-    helpers = {escape_surrogates(name): escape_surrogates(text) for name, (_, text) in began.helpers.items()}
+    start = await sessions_of(request).recorded_start(recording)
+    helpers = {escape_surrogates(name): escape_surrogates(text) for name, (_, text) in start.helpers.items()}
     return {
-        "made_here": began.made_here,
-        "file": escape_surrogates(began.file),
-        "source": escape_surrogates(began.source),
+        "made_here": start.made_here,
+        "file": escape_surrogates(start.file),
+        "source": escape_surrogates(start.source),
         "helpers": helpers,
     }
 
@@ -250,7 +250,7 @@ async def replaying(request: Request, recording: Id) -> dict[str, Any]:
 
 
 @router.post("/recordings/{recording}/label")
-async def label_recording(request: Request, recording: Id, body: Labelling) -> dict[str, Any]:
+async def label_recording(request: Request, recording: Id, body: LabelRequest) -> dict[str, Any]:
     """Sets the name, the note or the tags of a recording, even of one that is being written; it is then never deleted automatically.
 
     409 if somebody else has changed the same field since it was as `known` says.
@@ -260,7 +260,7 @@ async def label_recording(request: Request, recording: Id, body: Labelling) -> d
     new, known = body.label, None if body.known is None else body.known.label
     changes = {field: getattr(new, field) for field in Label.__struct_fields__ if field in body.model_fields_set}
     label = await asyncio.to_thread(sessions.recordings.labels.change, recording, changes, known)
-    sessions.listings_changed()
+    sessions.announce_recordings()
     return {"label": msgspec.structs.asdict(label)}
 
 
@@ -271,7 +271,7 @@ async def delete_recording(request: Request, recording: Id) -> dict[str, Any]:
     if recording in sessions.writing():
         raise SessionError("an open run still writes this recording; restart its model or close its session, then delete it")
     trash = await asyncio.to_thread(sessions.recordings.delete, recording)
-    sessions.listings_changed()
+    sessions.announce_recordings()
     return {"trash": trash}
 
 

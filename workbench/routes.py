@@ -166,7 +166,7 @@ async def restore(request: Request, body: Restore) -> dict[str, Any]:
     if deleted.label:
         await asyncio.to_thread(sessions.recordings.labels.change, path.stem, msgspec.structs.asdict(deleted.label))
     sessions.saved(path)
-    sessions.listings_changed()
+    sessions.announce_recordings()
     return {"restored": deleted.path}
 
 

@@ -12,7 +12,7 @@ from actr3d.actr.kernel.run_limits import fresh_seed
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError
 from workbench.files import ModelFolder, file_stamp
-from workbench.recorded_start import Beginning
+from workbench.recorded_start import RecordedStart
 from workbench.worker.messages import Loaded, Start, text_digest
 from workbench.worker.workers import Worker
 
@@ -31,7 +31,7 @@ class RunOptions:
     record: bool = True
     run: bool = False
     """Whether the run starts going at once, instead of paused."""
-    repeated: Beginning | None = None
+    repeated: RecordedStart | None = None
     """The earlier run to repeat; None for a new run of the current file."""
 
 

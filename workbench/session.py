@@ -61,7 +61,7 @@ class Session(Broadcast, Receiver):
         """When the session began [s since 1970]: distinguishes it from a session of the same name of an earlier server."""
         self.branched: Branched | None = None
         """What was kept when a user last changed something in the past of the current run."""
-        self.listings: int = 0
+        self.recording_changes: int = 0
         """Counts how often a recording began, ended, or was labelled or deleted: then pages list recordings again."""
         self._shown: LaunchedRun | None = None
         """The run on screen, even after its worker has ended."""
@@ -510,7 +510,7 @@ class Session(Broadcast, Receiver):
             **self.summary(),
             "stuck": None if self._newest is None else self._newest.stuck,
             "branched": self._branched_json(),
-            "listings": self.listings,
+            "recording_changes": self.recording_changes,
             **self.look.as_dict(),
             "breakpoints": self.breakpoints,
             "speed": self.speed,

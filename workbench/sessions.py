@@ -11,7 +11,7 @@ from workbench.files import ModelFolder
 from workbench.jobs import doing
 from workbench.listing import Listing
 from workbench.readers import Readers
-from workbench.recorded_start import Beginning, parsed
+from workbench.recorded_start import RecordedStart
 from workbench.recordings import Recordings
 from workbench.replays import Replays
 from workbench.run_request import RunOptions
@@ -120,17 +120,17 @@ class Sessions:
             self.folder.read(model)  # raises the error of a file that does not exist, if it was renamed or deleted in the meantime
             raise
 
-    async def beginning(self, recording: str) -> Beginning:
+    async def recorded_start(self, recording: str) -> RecordedStart:
         """Returns what a recorded run began with; its code is not executed.
 
         Raises:
             Actr3dError: If there is no such recording, or it cannot be read.
             OSError: If no worker can be started.
         """
-        with await self.readers.make("beginning", self.recordings.path(recording)) as made:
-            return parsed(made.read())
+        with await self.readers.make("recorded start", self.recordings.path(recording)) as made:
+            return RecordedStart.from_json(made.read())
 
-    async def trusted(self, recording: str, trust: bool) -> Beginning:
+    async def trusted(self, recording: str, trust: bool) -> RecordedStart:
         """Returns what a recorded run began with, if its code may be run.
 
         Args:
@@ -142,13 +142,13 @@ class Sessions:
             Actr3dError: If there is no such recording, or it cannot be read.
             OSError: If no worker can be started.
         """
-        began = await self.beginning(recording)
-        if not (began.made_here or trust):
+        start = await self.recorded_start(recording)
+        if not (start.made_here or trust):
             raise PermissionNeededError(
                 "this installation did not make the recording (or it was changed since), and the code in it would be run: "
                 'send "trust": true if you know where it comes from'
             )
-        return began
+        return start
 
     async def reopen(self, recording: str, *, trust: bool = False, real_time: bool = False) -> Session:
         """Starts a session that repeats a recorded run with all commands of users; or returns the session that is known by it.
@@ -168,10 +168,10 @@ class Sessions:
             open_already = [one for one in self.all() if one.recorded is not None and one.recorded.stem == recording and not one.is_over]
             if open_already:
                 return open_already[-1]
-            began = await self.trusted(recording, trust)
-            shown = self.folder.shown(began.file)
+            start = await self.trusted(recording, trust)
+            shown = self.folder.shown(start.file)
             path = self.folder.root / shown  # a new run uses the user's own model of that name, if there is one
-            options = RunOptions(settings=began.parameters, seed=began.seed, repeated=began)
+            options = RunOptions(settings=start.parameters, seed=start.seed, repeated=start)
             return await self._begun(path, shown, options, real_time=real_time)
 
     async def adopt(self, worker: Worker, name: str) -> Session:
@@ -217,7 +217,7 @@ class Sessions:
             await self.close(ended.name)
         self._count += 1
         name = f"s{self._count}"
-        session = Session(name, path, self.workers, self.recordings, model, self.listings_changed)
+        session = Session(name, path, self.workers, self.recordings, model, self.announce_recordings)
         self._sessions[name] = session
         self._views[name] = SceneView(session)
         if ended is not None:
@@ -246,10 +246,10 @@ class Sessions:
         """Ends all sessions."""
         await asyncio.gather(*(self.close(name) for name in list(self._sessions)))
 
-    def listings_changed(self) -> None:
+    def announce_recordings(self) -> None:
         """Informs all browsers that a recording began, ended, or was labelled or deleted."""
         for session in self.all():
-            session.listings += 1
+            session.recording_changes += 1
             session.changed(facts=True)
 
     def saved(self, path: Path) -> None:

@@ -1,6 +1,7 @@
 """What an explanation says: why productions match or not, why chunks are retrieved, why searches find something.
 
-Plain data and its text; `actr3d.actr.explain` makes it.
+Plain data and its text; `actr3d.actr.explain` makes it. It is not in that package because the core returns it (`ProductionSystem.explain`)
+and must not import what stands above it.
 """
 
 from __future__ import annotations

@@ -171,7 +171,7 @@ class _Simulated:
     failed: int
     trials: int
     failure: str
-    """The first failure, in words that follow a sentence; "" for none."""
+    """The first failure, as text to append to an error message; "" for none."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -353,7 +353,7 @@ class Fit:
                 columns[one.name] = round(one.low + (order[number] + 0.5) / STARTING * (one.high - one.low), DIGITS)
             return columns
         if number % 2 == 0:
-            # In steps: a candidate that is hardly another one says little new.
+            # Rounded to steps: a candidate close to an earlier one adds little.
             minimum = self._values_at(np.round(self._surface(self.target).minimum() * STEPS) / STEPS)
             if minimum not in self._points:
                 return minimum
@@ -590,7 +590,7 @@ class QuadraticSurface:
             if inner:
                 try:
                     points[:, inner] = -np.linalg.solve(curve[np.ix_(inner, inner)], slope[inner][:, None] + curve[inner] @ points.T).T
-                except np.linalg.LinAlgError:  # it does not bend in some direction: then the same value is at an end, too
+                except np.linalg.LinAlgError:  # flat in some direction: then the minimum is also at an end of a range, which is tried, too
                     continue
             points = points[np.all((points >= 0) & (points <= 1), axis=1)]
             values = constant + points @ slope + np.einsum("ij,jk,ik->i", points, curve, points) / 2
@@ -698,7 +698,7 @@ def _in_cell(level: Any) -> Any:
 
 
 def _absent_factor(cell: Cell, of: Design) -> str | None:
-    """Returns the first factor of whose levels a design lacks that of a cell; None if it has them all."""
+    """Returns the first factor whose level in a cell does not occur in a design; None if the design has all levels of the cell."""
     levels = ((name, level, of.factors.get(name)) for name, level in cell)
     return next((name for name, level, known in levels if known is not None and level not in map(_in_cell, known)), None)
 

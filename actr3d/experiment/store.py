@@ -24,10 +24,10 @@ from actr3d.values import to_json
 SPECIFICATION, FACTS, TRIALS, LOCK = "experiment.json", "facts.json", "trials.sqlite", "lock"
 """The names of the files in the folder."""
 UNFINISHED = re.compile(rf"{re.escape(SPECIFICATION)}\.[0-9a-f]{{8}}")
-"""The names of files that a command may have left which was ended while it made the folder."""
+"""The names of unfinished files: those of a command that was ended while it created the folder."""
 CHUNK = 5_000
 """Rows that are read at a time."""
-LATTICE = ("null", "boolean", "integer", "real", "text")
+COLUMN_TYPES = ("null", "boolean", "integer", "real", "text")
 """The types of columns. A column with values of several types has the last of their types in this list, but `text` if some of the values
 are True or False and others are not."""
 _SCHEMA = """
@@ -388,7 +388,7 @@ def _joined(one: str, other: str) -> str:
     """Returns the type of a column that holds values of two types."""
     if "boolean" in (one, other) and not {one, other} <= {"null", "boolean"}:
         return "text"
-    return max(one, other, key=LATTICE.index)
+    return max(one, other, key=COLUMN_TYPES.index)
 
 
 def _why(error: Exception) -> str:

@@ -353,4 +353,6 @@ def _short(value: Any) -> str:
 
 
 def _words(error: Exception) -> str:
+    if getattr(error, "sqlite_errorcode", None) == sqlite3.SQLITE_NOTADB:
+        return "it is a file of another kind, or damaged"
     return " ".join(str(error).split()) or type(error).__name__

@@ -6,7 +6,7 @@ from typing import Any
 
 from actr3d.actr import Buffer, Chunk
 from actr3d.actr.chunks.chunk import Slot, as_text
-from actr3d.actr.lint.slot_names import is_slip
+from actr3d.actr.lint.slot_names import is_misspelt
 from actr3d.errors import PlanError, alternatives, did_you_mean, followed
 from actr3d.sgoms.checks import matches_state
 from actr3d.sgoms.units import BEFORE, END, START, plans_of
@@ -252,7 +252,7 @@ class UnitTaskLevel(Level):
         name = as_text(state)
         word = name.casefold()
         form = name != END and (word.startswith(STEM) or (len(word) >= SHORTEST and STEM.startswith(word)))
-        if (form or is_slip(name, END)) and not matches_state(_agent_of(self), name):
+        if (form or is_misspelt(name, END)) and not matches_state(_agent_of(self), name):
             raise PlanError(
                 f"b_unit_task: state '{name}' does not end the unit task; did you mean '{END}'? No production matches the state '{name}'"
             )

@@ -35,7 +35,7 @@ class StateKeeper(Protocol):
         ...
 
     def cut(self, tick: int) -> None:
-        """Forgets what came after a tick: the run gets another future."""
+        """Forgets what came after a tick, because the run continues differently from there."""
         ...
 
 
@@ -243,8 +243,8 @@ class EventLog:
         if self._program is not None and not self.silent:
             self._program.state(tick, self._world, contacts)
 
-    def known(self, tick: int) -> int:
-        """Returns the last tick up to a given one whose state nobody needs again."""
+    def kept(self, tick: int) -> int:
+        """Returns the last tick, at most the given one, whose state the observers have already; without observers, the given one."""
         return tick if self._keeper is None else min(tick, self._keeper.furthest)
 
     def command(self, command: Command) -> None:
@@ -255,7 +255,7 @@ class EventLog:
             self._program.command(command)
 
     def cut(self, tick: int, commands: int) -> None:
-        """Ends the known run after a tick, because from here it gets another future."""
+        """Forgets what came after a tick, because the run continues differently from there."""
         self.stdout.cut()
         if self._keeper is not None:
             self._keeper.cut(tick)

@@ -275,7 +275,7 @@ class Timeline:
 
     def _repeat(self, to: int) -> None:
         history, lockstep = self._history, self.lockstep
-        kept, state = history.before(self._log.known(to))
+        kept, state = history.before(self._log.kept(to))
         if kept > lockstep.ticks:
             while lockstep.ticks < kept:
                 lockstep.repeat_commands(history.commands, only_agents=True)

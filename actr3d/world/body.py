@@ -18,7 +18,7 @@ from actr3d.world.actuated_dofs import ActuatedDofs
 from actr3d.world.anatomy import Anatomy, Embodied
 from actr3d.world.base import Base
 from actr3d.world.bounding_box import BoundingBox, Bounds
-from actr3d.world.command_registry import CommandRegistry, checked_name, number
+from actr3d.world.command_registry import CommandRegistry, checked_function, checked_name, number
 from actr3d.world.contacts import BodyContacts, Touch
 from actr3d.world.frames import WORLD_FRAME, Frame, upright_frame
 from actr3d.world.gait import OWN, GaitCycle
@@ -188,7 +188,7 @@ class Body:
             raise WorldError(f"{self.name}: an observer cannot give commands (given '{word}'); call simulation.command after the run")
         if isinstance(word, str) and word in ACTUATORS and word not in self._actuators:  # pyright: ignore[reportUnnecessaryIsInstance]
             self._actuators = ACTUATORS.of(self) | self._actuators  # the module that registers it may have been imported since
-        self._actuators[checked_name(word, self._actuators, self.name, "actuator")](self, *values, **named)
+        checked_function(word, self._actuators, self.name, "actuator")(self, *values, **named)
 
     def get(self, word: str, *values: Any, noise: StandardDeviation = None, **options: Any) -> Any:
         """Returns a reading of a sensor: plain numbers, tuples, dictionaries and frozen dataclasses.
@@ -215,7 +215,7 @@ class Body:
 
     def _read(self, word: str, values: tuple[Any, ...], noise: StandardDeviation, options: dict[str, Any]) -> Any:
         """Returns what `get` does; the reading may change what the agent senses later."""
-        reading = self._sensors[checked_name(word, self._sensors, self.name, "sensor")](self, *values, **options)
+        reading = checked_function(word, self._sensors, self.name, "sensor")(self, *values, **options)
         sd = self._noise.get(word) if noise is None else noise
         return reading if sd is None else self.noise.added(word, reading, sd)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 import re
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from typing import Any, Generic, TypeVar, get_type_hints
 
 from actr3d.errors import WorldError, did_you_mean, followed
@@ -113,6 +113,20 @@ def checked_name(name: Any, names: Collection[str], whose: str, kind: str) -> st
     has = f"it has {', '.join(names)}" if names else f"it has no {kind}s"
     near = did_you_mean(name, names) if isinstance(name, str) else ""
     raise WorldError(f"{whose} has no {kind} {_quoted(name)}{followed(near, has)}")
+
+
+def checked_function(name: Any, functions: Mapping[str, BodyFunction[B]], whose: str, kind: str) -> BodyFunction[B]:
+    """Returns the actuator or sensor of a name; the arguments are those of `checked_name`.
+
+    Raises:
+        WorldError: If there is none of this name.
+    """
+    first = name.partition(" ")[0] if isinstance(name, str) else ""
+    if first != name and first in functions:
+        takes = functions[first].takes
+        how = f"Give its values as arguments of Python after the name: ({takes})" if takes else "It takes no values"
+        raise WorldError(f"{whose} has no {kind} '{name}'; did you mean '{first}'? {how}")
+    return functions[checked_name(name, functions, whose, kind)]
 
 
 def _quoted(name: Any) -> str:

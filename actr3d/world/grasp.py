@@ -89,7 +89,7 @@ class Hand:
             self._physics.grasped[self._weld] = held.object
 
     def carry(self) -> None:
-        """Puts the held object back in the hand, at rest, after the body was moved at once; positions must be up to date."""
+        """Puts the held object back in the hand, at rest, after the body was moved without physics; positions must be up to date."""
         if self.held is None:
             return
         model, data = self._physics.mj_model, self._physics.mj_data

@@ -79,7 +79,7 @@ class Joint:
         return self.servo is not None
 
     def put(self, position: float) -> None:
-        """Sets its position [rad] or [m] at once."""
+        """Sets its position [rad] or [m] immediately, without physics."""
         self._qpos[self.q] = position
 
 

@@ -10,6 +10,7 @@ import { Icon } from "../parts/icon.js";
 import { Problem } from "../parts/problem.js";
 import { Inline, plain } from "../parts/prose.js";
 import { isOver, runStatus } from "../run_status.js";
+import { say } from "../server.js";
 import { alive, complain, session, state } from "../store.js";
 import { computed, html, signal, useId, useRef, useState } from "../vendor/preact.js";
 
@@ -89,10 +90,18 @@ const choicesOf = ({ name }, of) => CHOICES[name === "name" ? of : name]?.() ?? 
 /** Returns the text with which the form of a field begins. */
 function firstOf(field, choices) {
   if (choices.length > 0) return choices.includes(field.default) ? field.default : choices[0];
-  return typeof field.default === "number" ? field.default * unitOf(field)[1] : (field.default ?? "");
+  return textOf(field, field.default);
 }
 
-function Fields({ fields, values, choices }) {
+/** Returns the text of a value in a form, rounded for people. */
+function textOf(field, value) {
+  if (typeof value !== "number") return value ?? "";
+  const [unit, factor] = unitOf(field);
+  return String(Number((value * factor).toFixed(unit === "°" ? 1 : 3)));
+}
+
+/** Draws the fields of a form; `choose` is called when a thing is chosen. */
+function drawn(fields, values, choices, choose) {
   return fields.map((field) => {
     const { name, required } = field;
     const [unit] = unitOf(field);
@@ -101,7 +110,7 @@ function Fields({ fields, values, choices }) {
     return html`<div key=${name} class="change-field"><label class="field">
       <span>${name}${unit ? html` <span class="quiet">[${unit}]</span>` : null}</span>
       ${choices[name].length
-        ? html`<select aria-describedby="help-${name}" onChange=${put}>${choices[name].map((one) => html`<option key=${one} value=${one} selected=${one === values[name]}>${one}</option>`)}</select>`
+        ? html`<select aria-describedby="help-${name}" onChange=${(event) => (put(event), choose())}>${choices[name].map((one) => html`<option key=${one} value=${one} selected=${one === values[name]}>${one}</option>`)}</select>`
         : html`<input aria-describedby="help-${name}" inputmode=${field.takes.includes("number") ? "decimal" : "text"} required=${required} value=${values[name] ?? ""} onInput=${put} />`}
       </label>
       <small class="quiet" id="help-${name}"><${Inline} text=${help} /></small>
@@ -114,14 +123,27 @@ function Fields({ fields, values, choices }) {
 export async function askAndMake(one, given = {}) {
   const fields = one.fields.filter(({ name }) => !(name in given));
   const choices = Object.fromEntries(fields.map((field) => [field.name, choicesOf(field, one.of)]));
-  const values = Object.fromEntries(fields.map((field) => [field.name, firstOf(field, choices[field.name])]));
+  const first = Object.fromEntries(fields.map((field) => [field.name, firstOf(field, choices[field.name])]));
+  const values = { ...first };
   const problem = signal(null);
+  const known = signal({}); // the present values of what is chosen, by field: exact, and as they are shown
   let closed = false;
-  const Body = () => html`<p class="quiet"><${Inline} text=${one.help} /></p><${Fields} fields=${fields} values=${values} choices=${choices} /><${Problem} text=${problem.value} />`;
+  async function choose() {
+    const named = { ...given, ...Object.fromEntries(fields.flatMap(({ name }) => (choices[name].length ? [[name, values[name]]] : []))) };
+    const found = await say({ type: "present", word: one.word, named }).catch(() => ({})); // the form can do without
+    const before = known.value;
+    known.value = Object.fromEntries(fields.flatMap((field) => (field.name in found ? [[field.name, { value: found[field.name], text: textOf(field, found[field.name]) }]] : [])));
+    for (const [name, { text }] of Object.entries(known.value)) {
+      if (values[name] === (before[name]?.text ?? first[name])) values[name] = text; // what the user has written stays
+    }
+  }
+  // Reading `known` lets the fields be drawn again.
+  const Body = () => known.value && html`<p class="quiet"><${Inline} text=${one.help} /></p>${drawn(fields, values, choices, choose)}<${Problem} text=${problem.value} />`;
   const check = async () => {
     const named = { ...given };
     for (const field of fields) {
-      const { value, problem: wrong = null } = read(field, String(values[field.name]));
+      const [text, kept] = [String(values[field.name]), known.value[field.name]];
+      const { value, problem: wrong = null } = text === kept?.text ? { value: field.required ? kept.value : null } : read(field, text);
       problem.value = wrong;
       if (wrong) return false;
       if (value !== null || field.required) named[field.name] = value;
@@ -131,6 +153,7 @@ export async function askAndMake(one, given = {}) {
     if (closed && found) complain(`${one.title}: ${found}`);
     return made;
   };
+  choose();
   await dialog({ title: one.title, body: html`<${Body} />`, actions: [{ text: "Cancel", value: null }, { text: one.title, value: true, kind: "primary" }], check });
   closed = true;
 }

@@ -31,7 +31,7 @@ import {
   search,
   searchKeymap,
 } from "../vendor/codemirror.js";
-import { look } from "./look.js";
+import { codeTheme } from "./code_theme.js";
 import { isMac } from "../keys.js";
 import { marking } from "./marks.js";
 import { assist, warm } from "./assist.js";
@@ -92,7 +92,7 @@ const EXTENSIONS = [
   search({ top: true }),
   EditorState.phrases.of(PHRASES),
   EditorView.lineWrapping,
-  look,
+  codeTheme,
   EditorView.contentAttributes.of({ tabindex: "0" }), // what can be scrolled can be reached
   EditorView.clickAddsSelectionRange.of((event) => event.altKey), // Ctrl and click goes to a definition
   EditorView.domEventHandlers({

@@ -2,7 +2,7 @@
 
 import { html, useEffect, useRef } from "../vendor/preact.js";
 import { EditorState, EditorView, lineNumbers, unifiedMergeView } from "../vendor/codemirror.js";
-import { look as colours } from "./look.js";
+import { codeTheme } from "./code_theme.js";
 
 const FOLD = { margin: 3, minSize: 6 };
 
@@ -18,7 +18,7 @@ export function Conflict({ document, choose }) {
       extensions: [
         lineNumbers(),
         EditorView.lineWrapping, // differences may be far to the right
-        colours, // without the colours of the language, which are not readable on every background
+        codeTheme, // without the colours of the language, which are not readable on every background
         EditorState.readOnly.of(true),
         EditorView.contentAttributes.of({ "aria-label": "Both texts", tabindex: "0" }),
         unifiedMergeView({ original: theirs.text, mergeControls: false, collapseUnchanged: FOLD }),

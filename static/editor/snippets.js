@@ -1,6 +1,6 @@
 // Pieces of models to insert: offered among the completions at the start of a line, and in the menu of the editor.
 
-import { snippet } from "../vendor/codemirror.js";
+import { snippet, syntaxTree } from "../vendor/codemirror.js";
 import { read } from "./language.js";
 import { AGENT, BODY, groupOf, importGroups, importLines } from "./templates.js";
 
@@ -123,19 +123,53 @@ function importing(doc, lines) {
   return { from: docstring.length, insert: `${docstring ? "\n" : ""}${importLines(lines)}\n\n\n` };
 }
 
-/** Inserts a piece at the cursor: in its line if that is empty, otherwise below; what stands outside of classes, below the class or
- * function that the cursor is in. */
-export function insertAtCursor(view, piece) {
-  const { doc, selection } = view.state;
+const isEmpty = ({ text }) => text.trim() === "";
+const indentationOf = ({ text }) => /^\s*/.exec(text)[0];
+const PRODUCTION = /^def /;
+
+/** Returns a line, or the first one above it that is not empty. */
+function writtenAbove(doc, line) {
+  let above = line;
+  while (above.number > 1 && isEmpty(above)) above = doc.line(above.number - 1);
+  return above;
+}
+
+/** Returns the production or other method that the text of a line is in; null if it is in none. */
+function methodAt(state, line) {
+  let method = null;
+  for (let node = syntaxTree(state).resolveInner(line.from + line.text.trimEnd().length, -1); node; node = node.parent) {
+    if (node.name === "ClassDefinition") return method;
+    if (node.name === "FunctionDefinition") method = node;
+  }
+  return null;
+}
+
+/** Returns where a piece is inserted, {from, to, gap}: `gap` comes before it. */
+function placeOf(state, { whole, source }) {
+  const { doc, selection } = state;
   let line = doc.lineAt(selection.main.head);
-  if (piece.whole) {
+  if (whole) {
     line = doc.line(Math.max(line.number, imports(doc).at(-1)?.end ?? 1)); // what it imports must come before it
     while (line.number < doc.lines && !/^\S/.test(doc.line(line.number + 1).text)) line = doc.line(line.number + 1);
-    while (line.number > 1 && line.text.trim() === "") line = doc.line(line.number - 1);
+    line = writtenAbove(doc, line);
+    return { from: line.to, to: line.to, gap: isEmpty(line) ? "" : "\n\n\n" };
   }
-  const isEmpty = line.text.trim() === "";
-  const gap = isEmpty ? "" : piece.whole ? "\n\n\n" : `\n${/^\s*/.exec(line.text)[0]}`;
-  view.dispatch({ changes: { from: line.to, insert: gap }, userEvent: "input" });
-  insertPiece(view, piece, line.to + gap.length, line.to + gap.length);
+  const method = methodAt(state, writtenAbove(doc, line));
+  const indentation = indentationOf(method ? doc.lineAt(method.from) : line);
+  if (isEmpty(line) && line.text === indentation) return { from: line.to, to: line.to, gap: "" };
+  if (!method) return { from: line.to, to: line.to, gap: `${PRODUCTION.test(source) ? "\n\n" : "\n"}${indentation}` };
+  const end = writtenAbove(doc, doc.lineAt(method.to));
+  return { from: end.to, to: Math.max(end.to, isEmpty(line) ? line.to : 0), gap: `\n\n${indentation}` };
+}
+
+/** Inserts a piece at the cursor: in its line if that is empty, otherwise below; what stands outside of classes, below the class or
+ * function that the cursor is in; what belongs to a class, below the production that the cursor is in. */
+export function insertAtCursor(view, piece) {
+  const { from, to, gap } = placeOf(view.state, piece);
+  const { doc } = view.state;
+  const next = doc.lineAt(to).number + 1;
+  const needsRoom = piece.whole || gap === "" || (PRODUCTION.test(piece.source) && next <= doc.lines && !isEmpty(doc.line(next)));
+  view.dispatch({ changes: { from, to, insert: gap }, userEvent: "input" });
+  insertPiece(view, needsRoom ? piece : { ...piece, source: piece.source.trimEnd() }, from + gap.length, from + gap.length);
   view.focus();
 }

@@ -17,7 +17,7 @@ const ROW = 20; // the height of a row of the legend [px]
 const SHAPES = [12, 4, 3, 5, 6, 7]; // corners: a circle, a square, a triangle …
 
 /** Returns a value as a key that differs between 1, "1" and true. */
-export const keyOf = (value) => JSON.stringify(value);
+const keyOf = (value) => JSON.stringify(value);
 
 /** Returns values in order: numbers by size, others as `known` lists them, and then by name. */
 function inOrder(values, known = []) {

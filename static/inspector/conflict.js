@@ -5,7 +5,7 @@ import { useAnswer } from "../parts/answer.js";
 import { chosenText, isGone, nothingYet } from "../run_status.js";
 import { running, state } from "../store.js";
 import { agentOf, agentsOf } from "./agents.js";
-import { at, production, shownReasons } from "./asked.js";
+import { at, production, shownReasons } from "./explanation.js";
 import { eventTimeText, pairs } from "./event_text.js";
 import { fixed } from "./part_names.js";
 import { eventAt, useEventFilter } from "./event_filter.js";

@@ -6,8 +6,8 @@ import { agentsOf, isBelow, nameIn, systemsOf } from "./agents.js";
 import { eventText, eventTimeText, GROUPS, isInGroups } from "./event_text.js";
 import { Rows } from "./rows.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
-import { askWhy } from "./asked.js";
-import { Mixed, touchEvents } from "./touches.js";
+import { askWhy } from "./explanation.js";
+import { Mixed, contactEvents } from "./contacts.js";
 import { seek, travel } from "../timeline/seek.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { fetching } from "../earlier_events.js";
@@ -97,14 +97,14 @@ export function FiringTrace() {
   const isShown = useMemo(() => isInGroups(groups.value), [groups.value]);
   const test = testOf(isShown, wantedWords.value, wanted);
   const filtered = useEventFilter(test, key);
-  const mixed = new Mixed(filtered.numbers, touchEvents().filter(test));
+  const mixed = new Mixed(filtered.numbers, contactEvents().filter(test));
   const { first, list } = events.value;
   const now = state.value?.events ?? 0;
   const time = (state.value?.time ?? 0) * 1e6 + 1;
-  const present = filtered.below(now) + mixed.touches.filter(([begins]) => begins <= time).length;
+  const present = filtered.below(now) + mixed.contacts.filter(([begins]) => begins <= time).length;
   const several = systems.length > 1;
   const at = chosen === null ? -1 : filtered.below(chosen);
-  const chosenRow = chosen < 0 ? (mixed.rowOfTouch(chosen) ?? null) : filtered.numbers[at] === chosen && chosen !== null ? mixed.rowOf(at) : null;
+  const chosenRow = chosen < 0 ? (mixed.rowOfContact(chosen) ?? null) : filtered.numbers[at] === chosen && chosen !== null ? mixed.rowOf(at) : null;
 
   const row = (n) => {
     const number = mixed.numberAt(n);

@@ -4,7 +4,7 @@ import { html } from "../vendor/preact.js";
 import { ChangeButtons } from "../changes/changes.js";
 import { valueText } from "../parts/chunk.js";
 import { runStatus } from "../run_status.js";
-import { statusOf } from "./list.js";
+import { statusOf } from "./production_list.js";
 import { Part } from "./part_names.js";
 
 const SIGNS = { true: ["✓", "holds"], false: ["✗", "does not hold"], null: ["?", "unknown here"] };

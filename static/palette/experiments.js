@@ -3,11 +3,11 @@
 import { command, commandsOf } from "../commands.js";
 import { canMakeReport, canResume, canStop, experiments, listExperiments, makeReport, resumeExperiment, showExperiment, stopExperiment } from "../experiments/list.js";
 import { experimentText } from "../experiments/wording.js";
-import { openTab } from "../open_tab.js";
+import { goToTab } from "../open_tab.js";
 
 /** Shows an experiment; "new" for the form of a new one. */
 function show(id) {
-  openTab.value = "experiments";
+  goToTab("experiments");
   showExperiment(id);
 }
 

@@ -103,7 +103,11 @@ function Palette({ opening }) {
   const box = useRef(null);
   const entries = offered();
   const at = Math.min(chosen.value, entries.length - 1);
-  useLayoutEffect(() => void box.current.showModal(), []);
+  useLayoutEffect(() => {
+    const own = box.current;
+    own.showModal();
+    return () => own.close(); // which returns the focus
+  }, []);
   useEffect(() => {
     readManual();
     readPresent();

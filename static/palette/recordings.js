@@ -2,7 +2,7 @@
 
 import { commandsOf } from "../commands.js";
 import { compareRuns } from "../compare/compare.js";
-import { openTab } from "../open_tab.js";
+import { goToTab } from "../open_tab.js";
 import { deleteRuns, openRun, replayRun } from "../runs/actions.js";
 import { download, formatsOf } from "../runs/downloads.js";
 import { labelRun } from "../runs/label.js";
@@ -28,7 +28,7 @@ commandsOf(
 
 /** Shows a run in the list, where the progress of its action is shown, too. */
 function show({ id }) {
-  openTab.value = "runs";
+  goToTab("runs");
   chosen.value = new Set([id]);
 }
 

@@ -10,7 +10,7 @@ import { Icon } from "../parts/icon.js";
 import { Lines } from "../parts/lines.js";
 import { saveFile } from "../parts/picture.js";
 import { Place } from "../parts/place.js";
-import { openTab } from "../open_tab.js";
+import { goToTab } from "../open_tab.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { alive, isGiven, moment, notices, session, shownRun, state } from "../store.js";
 import { firstWhere } from "../timeline/search.js";
@@ -104,13 +104,14 @@ function listing(memo = (make) => make()) {
   const present = firstWhere(lines, ({ number }) => number >= now);
   const first = Math.min(present, firstWhere(lines, ({ number }) => number >= cleared.events));
   const messages = noticesAfter(cleared.notice);
+  const gone = first > 0 || noticesAfter(-1).length > messages.length;
   const shown = memo(() => {
     const past = first === 0 && present === lines.length ? lines : lines.slice(first, present);
     return wanted ? past.filter(({ text }) => has(text)) : past;
   }, [version, first, present, wanted]);
   const listed = new Listed(shown, wanted ? messages.filter((notice) => has(textOf(notice))) : messages);
   // Lines can arrive before the state of their moment; they are only ahead if the user has gone back.
-  return { listed, ahead: inThePast.value ? lines.length - present : 0, all: present - first + messages.length, gaps, dropped, cleared, of };
+  return { listed, ahead: inThePast.value ? lines.length - present : 0, all: present - first + messages.length, gaps, dropped, gone, of };
 }
 
 function Line({ entry: [line, row] }) {
@@ -120,12 +121,12 @@ function Line({ entry: [line, row] }) {
   return html`<div class=${level}>${row.head ? head : null}<${Written} text=${row.text} /></div>`;
 }
 
-function Notes({ gaps, dropped, cleared, ahead }) {
+function Notes({ gaps, dropped, gone, all, ahead }) {
   const now = state.value?.events ?? 0;
   const missing = gaps.reduce((sum, [from, to]) => sum + Math.max(0, Math.min(to, now) - from), 0);
   return html`
     ${dropped > 0 ? html`<p class="note">The first ${counted(dropped, "line is", "lines are")} left out: there are too many.</p>` : null}
-    ${cleared.events > 0 || cleared.notice >= 0 ? html`<p class="note" role="status">Earlier lines are cleared. <button class="link" onClick=${() => clear()}>Show all</button></p>` : null}
+    ${gone ? html`<p class="note" role="status">${all > 0 ? "Earlier lines" : "The lines up to this moment"} are cleared. <button class="link" onClick=${() => clear()}>Show all</button></p>` : null}
     ${missing > 0 ? html`<p class="note" role="status">${alive.value ? "Lines from earlier in the run are being fetched …" : `What was printed in ${counted(missing, "earlier event")} is not known here any more; the recording has it.`}</p>` : null}
     ${ahead > 0 ? html`<p class="note" role="status">${counted(ahead, "line")} printed after this moment ${ahead === 1 ? "is" : "are"} not shown.</p>` : null}
   `;
@@ -145,7 +146,7 @@ const registered = (text, work) =>
     text,
     group: "Console",
     work: () => {
-      openTab.value = "console"; // so that what is copied, saved or cleared is seen
+      goToTab("console"); // so that what is copied, saved or cleared is seen
       work();
     },
     ready: () => Boolean(session.value) && listing().listed.count > 0,
@@ -165,7 +166,7 @@ function Console() {
     watcher.observe(box.current);
     return () => watcher.disconnect();
   }, []);
-  const { listed, ahead, all, gaps, dropped, cleared, of } = listing(useMemo);
+  const { listed, ahead, all, gaps, dropped, gone, of } = listing(useMemo);
   useEffect(() => {
     const timer = setTimeout(fillGaps, 0);
     return () => clearTimeout(timer);
@@ -179,8 +180,8 @@ function Console() {
       <${Button} disabled=${listed.count === 0} title="Save the lines that are shown as a text file" onClick=${save}><${Icon} name="download" />Save<//>
       <${Button} disabled=${all === 0} title="Clear the lines up to now; the run and its recording keep them" onClick=${clearAll}>Clear<//>
     </div>
-    <${Notes} gaps=${gaps} dropped=${dropped} cleared=${cleared} ahead=${ahead} />
-    ${listed.count === 0 ? html`<p class="empty">${none}</p>` : null}
+    <${Notes} gaps=${gaps} dropped=${dropped} gone=${gone} all=${all} ahead=${ahead} />
+    ${listed.count === 0 && (all > 0 || !gone) ? html`<p class="empty">${none}</p>` : null}
     <${Lines} label="What the model prints" count=${listed.length} of=${`${of} ${words.value}`} line=${(n) => html`<${Line} key=${n} entry=${listed.at(n)} />`} />
   </div>`;
 }

@@ -14,7 +14,7 @@ import { saveAndRun } from "../editor/stale_run.js";
 import { Strip } from "../editor/banner.js";
 import { command, commandsOf } from "../commands.js";
 import { noteKey } from "../keys.js";
-import { openTab } from "../open_tab.js";
+import { goToTab } from "../open_tab.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { session } from "../store.js";
@@ -59,7 +59,7 @@ commandsOf(() =>
     { text: "Delete the file …", work: () => remove(shown.value.path, shownDocument().dirty.value) },
   ].map(({ key = null, text, work, ready = hasText }) => {
     const inText = () => {
-      openTab.value = "editor";
+      goToTab("editor");
       requestAnimationFrame(work); // once the text is visible
     };
     return { text, key, group: "Editor", work: inText, ready, why: noText };

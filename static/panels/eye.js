@@ -4,7 +4,7 @@ import { html, useSignal } from "../vendor/preact.js";
 import { shadeOf } from "../eye/drawing.js";
 import { bodiesWithEye } from "../eye/inset.js";
 import { Retina } from "../eye/retina.js";
-import { Waiting } from "../inspector/waiting.js";
+import { Placeholder } from "../inspector/placeholder.js";
 import { useAnswer } from "../parts/answer.js";
 import { CopyButton } from "../parts/copy.js";
 import { isGone, nothing } from "../run_status.js";
@@ -98,7 +98,7 @@ function Eye() {
       ${KINDS.map(([id, text]) => html`<button key=${id} aria-pressed=${kind.value === id} onClick=${() => (kind.value = id)}>${text}</button>`)}
       <${CopyButton} text="Copy as JSON" disabled=${!answer} copied=${() => JSON.stringify(answer)} />
     </div>
-    <${Waiting} answer=${result} />
+    <${Placeholder} answer=${result} />
     ${isGone.value && !answer ? null : html`<${Retina} view=${answer} pointed=${pointed.value} />`}
     <div class="eye-table" tabindex="0" role="region" aria-label="What is seen, as a table">${answer?.extents.length ? html`<${Table} view=${answer} pointed=${pointed} />` : null}</div>
   </div>`;

@@ -2,7 +2,7 @@
 
 import { html, signal, useEffect, useRef, useState } from "../vendor/preact.js";
 import { agentsOf, isBelow, nameIn } from "../inspector/agents.js";
-import { at, production as explainedProduction, shownReasons } from "../inspector/asked.js";
+import { at, production as explainedProduction, shownReasons } from "../inspector/explanation.js";
 import { flows, justNow, keyOf } from "../graph/flows.js";
 import { edgePath, placed } from "../graph/layout.js";
 import { pictureOfGraph } from "../graph/picture.js";

@@ -7,7 +7,7 @@ import { AtStart } from "../inspector/at_start.js";
 import { MemoryTable } from "../inspector/memory_table.js";
 import { Search } from "../inspector/retrievals.js";
 import { postures, SchemaTable } from "../inspector/schema_table.js";
-import { Waiting } from "../inspector/waiting.js";
+import { Placeholder } from "../inspector/placeholder.js";
 import { useAnswer } from "../parts/answer.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
@@ -26,7 +26,7 @@ function Seen() {
   const result = useAnswer({ type: "explain" });
   const searches = (result.answer ?? []).flatMap((one) => one.searches);
   return html`<div class="reasons-text">
-    <${Waiting} answer=${result} />
+    <${Placeholder} answer=${result} />
     ${result.answer && searches.length === 0 ? html`<p class="empty">There has been no visual search yet.</p>` : null}
     ${searches.map((reason) => html`<${Search} key="${reason.module} ${reason.bottom_up}" reason=${reason} />`)}
   </div>`;
@@ -74,7 +74,7 @@ function Chunks({ memory, schema }) {
       ${schema ? null : html`<${AddChunk} memory=${memory} />`}
       ${running.value && !live && mine ? html`<span class="quiet" role="status">as at ${valueText(result.time)} s</span>` : null}
     </div>
-    <${Waiting} answer=${mine ? { ...result, waiting: false } : result} />
+    <${Placeholder} answer=${mine ? { ...result, waiting: false } : result} />
     ${mine && !schema ? html`<${MemoryTable} answer=${mine} words=${words} />` : null}
     ${found?.length ? html`<${SchemaTable} rows=${found} />` : null}
     ${found && found.length === 0 ? html`<p class="empty">${words ? "No posture has all of these words." : "No posture has been felt yet: the body schema grows as the body moves."}</p>` : null}`;

@@ -7,7 +7,7 @@ import { Button } from "../parts/button.js";
 import { counted } from "../parts/count.js";
 import { Place, Traceback } from "../parts/place.js";
 import { remembered } from "../local_storage.js";
-import { openTab } from "../open_tab.js";
+import { goToTab } from "../open_tab.js";
 import { isAhead, isPresent, isSettled, notices, settle, takeAction } from "../store.js";
 
 const LEVELS = { error: "Errors", warning: "Warnings", info: "Other" };
@@ -32,7 +32,7 @@ command({
   text: "Clear the messages",
   group: "Messages",
   work: () => {
-    openTab.value = "messages"; // so that it is seen
+    goToTab("messages"); // so that it is seen
     clear();
   },
   ready: () => kept.value.length > 0,

@@ -2,14 +2,14 @@
 
 import { html, useLayoutEffect, useState } from "../vendor/preact.js";
 import { AtStart } from "../inspector/at_start.js";
-import { at, question, shownReasons } from "../inspector/asked.js";
+import { at, question, shownReasons } from "../inspector/explanation.js";
 import { HeldNote, held } from "../inspector/breakpoints.js";
 import { ConflictSets } from "../inspector/conflict.js";
 import { useWrittenAgents } from "../inspector/description.js";
-import { explained, ProductionList, productionsOf } from "../inspector/list.js";
+import { explained, ProductionList, productionsOf } from "../inspector/production_list.js";
 import { Retrievals } from "../inspector/retrievals.js";
 import { FiringTrace } from "../inspector/trace.js";
-import { Waiting } from "../inspector/waiting.js";
+import { Placeholder } from "../inspector/placeholder.js";
 import { Why } from "../inspector/why.js";
 import { useAnswer } from "../parts/answer.js";
 import { valueText } from "../parts/chunk.js";
@@ -87,7 +87,7 @@ function Reasons() {
       ${shown === "why" ? html`<${ProductionList} all=${all} chosen=${chosen} />` : null}
       <div class="reasons-text" tabindex="0" role="region" aria-label="Explanation">
         <${AtStart} />
-        <${Waiting} answer=${result} />
+        <${Placeholder} answer=${result} />
         ${result.error && at.value !== null ? html`<${Elsewhere} />` : null}
         ${shown === "why" ? html`<div id="why-text">${result.error ? null : html`<${Why} item=${chosen} />`}</div>` : null}
         ${shown === "conflict" ? html`<${ConflictSets} />` : null}

@@ -5,13 +5,13 @@ import { command } from "../commands.js";
 import { counted } from "../parts/count.js";
 import { Icon } from "../parts/icon.js";
 import { Chosen } from "../runs/chosen.js";
-import { openTab } from "../open_tab.js";
+import { goToTab } from "../open_tab.js";
 import { addFiles, chooseFiles, deleteRuns, openRun } from "../runs/actions.js";
 import { followRuns, listRuns, loading, problem, runs as list, total, warning } from "../runs/list.js";
 import { chosen, sorted, Table } from "../runs/table.js";
 import { textOf } from "../runs/wording.js";
 
-command({ text: "Compare, name or delete recordings: open their list", group: "Panels", work: () => (openTab.value = "runs") });
+command({ text: "Compare, name or delete recordings: open their list", group: "Panels", work: () => goToTab("runs") });
 
 command({ text: "Open a recording file …", group: "Run", work: chooseFiles });
 

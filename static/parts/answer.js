@@ -2,7 +2,7 @@
 
 import { useEffect, useRef, useState, effect } from "../vendor/preact.js";
 import { say } from "../server.js";
-import { alive, moment, running, session, shownRun, state } from "../store.js";
+import { alive, moment, running, shownRun, state } from "../store.js";
 
 /** The interval between two questions while the run is active [ms]: answering slows the run down. */
 const WHILE_RUNNING = 100;

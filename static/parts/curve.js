@@ -7,7 +7,8 @@ export const COLOUR_COUNT = 6;
 const MIN_RANGE = 0.01; // smaller differences are drawn as a straight line, not as amplified numerical noise
 const BETWEEN = 4; // the minimum distance between two labels of an axis [px]
 const SAME = 1e-6; // times that are no farther apart are the same [s]
-const GROUP = 16; // the number of values that are read as one where a pixel has more than two such groups
+const FEW = 4; // so many values of a pixel are all drawn; of more, the first, the least, the greatest and the last one
+const GROUP = 16; // the number of values whose least and greatest ones are kept
 const HIDDEN = 0.5; // up to this distance, a curve hides another one [px]
 const GAP = 6; // the length of the gaps and dashes of a line that lies on another one [px]
 const EDGES = 2; // how far what is at the least or greatest value is drawn beyond the box [px]
@@ -18,9 +19,9 @@ export function seriesColour(n) {
   return `series-${(n % COLOUR_COUNT) + 1}`;
 }
 
-/** Returns the index of the first of ascending times that is not before a given time. */
-export function firstFrom(times, time) {
-  let [low, high] = [0, times.length];
+/** Returns the index of the first of ascending times that is not before a given time; those before the index `from` are not looked at. */
+export function firstFrom(times, time, from = 0) {
+  let [low, high] = [from, times.length];
   while (low < high) {
     const middle = (low + high) >> 1;
     if (times[middle] < time) low = middle + 1;
@@ -52,13 +53,8 @@ export function valueAt({ times, values, shape = "line", slope, until = Infinity
 export function rangeOf(series) {
   let [least, most] = [Infinity, -Infinity];
   for (const { values, range } of series) {
-    if (range) [least, most] = [Math.min(least, range[0]), Math.max(most, range[1])];
-    if (range) continue;
-    for (const value of values) {
-      if (value === null || Number.isNaN(value)) continue;
-      if (value < least) least = value;
-      if (value > most) most = value;
-    }
+    const [low, high] = range ?? leastAndMost(values);
+    [least, most] = [Math.min(least, low), Math.max(most, high)];
   }
   if (Math.max(Math.abs(least), Math.abs(most)) < MIN_RANGE / 2) return [0, 1]; // nothing has moved yet
   const room = Math.max(0, MIN_RANGE - (most - least)) / 2;
@@ -67,67 +63,99 @@ export function rangeOf(series) {
 
 const groups = new WeakMap(); // by values
 
-/** Returns groups of values: their first times, and their least, greatest and last values; null where all are missing. */
-function groupsOf(times, values) {
+/** Returns the numbers of the least and the greatest value of each group of values, {count, least, most}; -1 where all are missing. Only
+ * those of new values are computed. */
+function groupsOf(values) {
+  if (!groups.has(values)) groups.set(values, { count: 0, least: [], most: [] });
   const known = groups.get(values);
-  if (known?.count === values.length) return known;
-  const found = { count: values.length, times: [], least: [], most: [], last: [] };
-  for (let first = 0; first < values.length; first += GROUP) {
-    let [least, most, last] = [Infinity, -Infinity, null];
-    for (let n = first; n < Math.min(first + GROUP, values.length); n += 1) {
-      const value = values[n];
-      if (value === null || value === undefined) continue;
-      if (value < least) least = value;
-      if (value > most) most = value;
-      last = value;
-    }
-    found.times.push(times[first]);
-    found.least.push(last === null ? null : least);
-    found.most.push(last === null ? null : most);
-    found.last.push(last);
+  if (known.count > values.length) known.count = 0;
+  if (known.count === values.length) return known;
+  for (let group = Math.floor(known.count / GROUP); group * GROUP < values.length; group += 1) {
+    [known.least[group], known.most[group]] = extremesAmong(values, group * GROUP, Math.min((group + 1) * GROUP, values.length));
   }
-  groups.set(values, found);
-  return found;
+  known.count = values.length;
+  return known;
 }
 
-/** Returns the visible part of a curve with one value more at each end, {times, least, most, last, begin, beyond}: its values, or groups of
- * them if they are very dense. */
-function visible({ times, values }, span, box) {
-  const within = (all) => ({ begin: Math.max(0, firstFrom(all, span.from) - 1), beyond: Math.min(all.length, firstFrom(all, span.to) + 1) });
-  const { begin, beyond } = within(times);
-  if (beyond - begin <= 2 * GROUP * box.width) return { times, least: values, most: values, last: values, begin, beyond };
-  const found = groupsOf(times, values);
-  return { ...found, ...within(found.times) };
+/** Replaces some of a curve's times or values, in place: of many, those before them cost nothing. */
+export function replace(list, first, beyond, news) {
+  list.splice(first, beyond - first, ...news);
+  const known = groups.get(list);
+  if (known) known.count = Math.min(known.count, first);
 }
 
-/** Returns a curve as points in a box; if several values share a pixel, its minimum and maximum. */
+/** Returns the least and the greatest of a curve's values; [Infinity, -Infinity] if all are missing. */
+export function leastAndMost(values) {
+  const [least, most] = extremesOf(values, 0, values.length);
+  return least < 0 ? [Infinity, -Infinity] : [values[least], values[most]];
+}
+
+/** Returns the numbers of the least and the greatest of some values, [-1, -1] if all are missing. `known` are those of another part. */
+function extremesAmong(values, first, beyond, known = [-1, -1]) {
+  let [least, most] = known;
+  for (let n = first; n < beyond; n += 1) {
+    const value = values[n];
+    if (value === null || value === undefined || Number.isNaN(value)) continue;
+    if (least < 0 || value < values[least]) least = n;
+    if (most < 0 || value > values[most]) most = n;
+  }
+  return [least, most];
+}
+
+/** The same for any number of values. */
+function extremesOf(values, first, beyond) {
+  const [begin, end] = [Math.ceil(first / GROUP), Math.floor(beyond / GROUP)];
+  if (end <= begin) return extremesAmong(values, first, beyond);
+  const known = groupsOf(values);
+  let [least, most] = extremesAmong(values, first, begin * GROUP);
+  for (let group = begin; group < end; group += 1) {
+    const [low, high] = [known.least[group], known.most[group]];
+    if (low < 0) continue;
+    if (least < 0 || values[low] < values[least]) least = low;
+    if (most < 0 || values[high] > values[most]) most = high;
+  }
+  return extremesAmong(values, end * GROUP, beyond, [least, most]);
+}
+
+/** Calls `draw(first, beyond)` with the numbers of the values of each pixel that has any, and of one value more at each end. */
+function byPixel({ times }, span, box, draw) {
+  const [begin, end] = [firstFrom(times, span.from), firstFrom(times, span.to)];
+  const pixel = (span.to - span.from) / box.width;
+  if (begin > 0) draw(begin - 1, begin);
+  for (let first = begin; first < end; ) {
+    const over = span.from + (Math.floor((times[first] - span.from) / pixel) + 1) * pixel;
+    let beyond = first + 1;
+    if (beyond < end && times[beyond] < over) beyond = Math.min(end, firstFrom(times, over, beyond));
+    draw(first, beyond);
+    first = beyond;
+  }
+  if (end < times.length) draw(end, end + 1);
+}
+
+/** Returns a curve as points in a box; of many values that share a pixel, only those that make a difference. */
 function pointsOf(curve, span, box, yOf) {
   const { times, values, shape, slope, until } = curve;
   const scale = box.width / (span.to - span.from);
-  const seen = visible(curve, span, box);
   const points = [];
-  const dense = seen.beyond - seen.begin > 3 * box.width;
-  let [pixel, least, most, last] = [null, 0, 0, null];
-  const flush = () => last !== null && points.push(pixel, yOf(least), pixel, yOf(most), pixel, yOf(last));
-  for (let n = seen.begin; n < seen.beyond; n += 1) {
-    const x = box.x + (seen.times[n] - span.from) * scale;
-    const value = seen.last[n];
-    if (shape === "steps" && !dense && n > seen.begin && seen.last[n - 1] !== null) points.push(x, yOf(seen.last[n - 1]));
-    if (value === null || value === undefined) {
-      flush();
-      [pixel, last] = [null, null];
-      points.push(x, NaN);
-    } else if (!dense) points.push(x, yOf(value));
-    else if (pixel !== null && x - pixel < 1) {
-      if (seen.least[n] < least) least = seen.least[n];
-      if (seen.most[n] > most) most = seen.most[n];
-      last = value;
-    } else {
-      flush();
-      [pixel, least, most, last] = [x, seen.least[n], seen.most[n], value];
+  const xOf = (n) => box.x + (times[n] - span.from) * scale;
+  const add = (n) => points.push(xOf(n), (values[n] ?? null) === null ? NaN : yOf(values[n]));
+  byPixel(curve, span, box, (first, beyond) => {
+    if (shape === "steps" && points.length > 0) points.push(xOf(first), points.at(-1));
+    if (beyond - first <= FEW) {
+      for (let n = first; n < beyond; n += 1) {
+        if (shape === "steps" && n > first) points.push(xOf(n), points.at(-1));
+        add(n);
+      }
+      return;
     }
-  }
-  flush();
+    const [least, most] = extremesOf(values, first, beyond);
+    add(first);
+    if (least >= 0) {
+      add(Math.min(least, most));
+      add(Math.max(least, most));
+    }
+    add(beyond - 1);
+  });
   const end = times.length - 1;
   if (slope !== undefined && end >= 0 && values[end] !== null && until > times[end]) {
     points.push(box.x + (until - span.from) * scale, yOf(values[end] + slope * (until - times[end])));
@@ -137,23 +165,13 @@ function pointsOf(curve, span, box, yOf) {
 
 /** Returns the values of single moments as strokes in a box, [x, top, bottom, …]; those that share a pixel are one stroke. */
 function strokesOf(curve, span, box, yOf) {
+  const { times, values } = curve;
   const scale = box.width / (span.to - span.from);
-  const seen = visible(curve, span, box);
   const strokes = [];
-  let [pixel, least, most] = [null, 0, 0];
-  const flush = () => pixel !== null && strokes.push(pixel, yOf(most), yOf(least));
-  for (let n = seen.begin; n < seen.beyond; n += 1) {
-    if ((seen.last[n] ?? null) === null) continue;
-    const x = box.x + (seen.times[n] - span.from) * scale;
-    if (pixel !== null && x - pixel < 1) {
-      if (seen.least[n] < least) least = seen.least[n];
-      if (seen.most[n] > most) most = seen.most[n];
-    } else {
-      flush();
-      [pixel, least, most] = [x, seen.least[n], seen.most[n]];
-    }
-  }
-  flush();
+  byPixel(curve, span, box, (first, beyond) => {
+    const [least, most] = extremesOf(values, first, beyond);
+    if (least >= 0) strokes.push(box.x + (times[Math.min(least, most)] - span.from) * scale, yOf(values[most]), yOf(values[least]));
+  });
   return strokes;
 }
 
@@ -223,9 +241,9 @@ export function drawCurves(surface, box, { series, times, span, range, until }) 
   });
 }
 
-/** Draws an axis of time with its lines; returns the step between them [s]. `box` is the position of the drawing it belongs to;
- * labels that would touch the range `taken` of the axis [px] are left out. */
-export function drawTimes(surface, box, span, { y, height = 18, lines = true, taken = null } = {}) {
+/** Draws an axis of time with its lines; returns the step between them [s]. `box` is the position of the drawing it belongs to; its labels
+ * stay within the range `room`, and those that would touch the range `taken` are left out [px]. */
+export function drawTimes(surface, box, span, { y, height = 18, lines = true, room = { from: box.x, to: box.x + box.width }, taken = null } = {}) {
   const step = stepFor(span.to - span.from, Math.max(2, Math.floor(box.width / 80)));
   const scale = box.width / (span.to - span.from);
   for (const time of ticks(span.from, span.to, step)) {
@@ -233,7 +251,7 @@ export function drawTimes(surface, box, span, { y, height = 18, lines = true, ta
     if (lines) surface.line([x, box.y, x, box.y + box.height], "line");
     const text = timeText(time, step);
     const half = widthOf(text, { size: 10 }) / 2;
-    const at = Math.min(Math.max(x, box.x + EDGE + half), box.x + box.width - EDGE - half);
+    const at = Math.min(Math.max(x, room.from + EDGE + half), room.to - EDGE - half);
     if (taken && at + half > taken.from - BETWEEN && at - half < taken.to + BETWEEN) continue;
     surface.text(text, at, y + height / 2, "quiet", { size: 10, anchor: "middle" });
   }

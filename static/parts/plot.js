@@ -10,7 +10,7 @@ import { CanvasSurface, scaled } from "./surface.js";
 import { numberText, timeText } from "./ticks.js";
 
 const LEFT = 46; // the width of the scale [px]
-const RIGHT = 8;
+const RIGHT = 32; // half of the last label of the axis is there [px]
 const AXIS = 18; // [px]
 
 function boxOf(width, height) {
@@ -26,7 +26,7 @@ function spanOf(series, times) {
 
 function drawPlot(surface, width, height, { series, times, span, range, at }) {
   const box = boxOf(width, height);
-  drawTimes(surface, box, span, { y: box.y + box.height, height: AXIS });
+  drawTimes(surface, box, span, { y: box.y + box.height, height: AXIS, room: { from: 0, to: width } });
   drawCurves(surface, box, { series, times, span, range });
   if (at === null || at < span.from || at > span.to) return;
   const x = Math.round(box.x + ((at - span.from) / (span.to - span.from)) * box.width) + 0.5;
@@ -81,7 +81,7 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
     const draw = (surface) => {
       drawLegend(surface, LEFT, 8, wide - LEFT, series);
       const below = { ...boxOf(wide, height), y: 24 };
-      drawTimes(surface, below, shown, { y: below.y + below.height, height: AXIS });
+      drawTimes(surface, below, shown, { y: below.y + below.height, height: AXIS, room: { from: 0, to: wide } });
       drawCurves(surface, below, { series, times, span: shown, range });
     };
     return savePicture({ name, title: `${title}${unit ? ` [${unit}]` : ""}${source ? `, ${source}` : ""}`, width: wide, height: height + 24, draw }, kind);

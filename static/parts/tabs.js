@@ -40,7 +40,7 @@ export function Tabs({ label, tabs, shown, more = null }) {
         </button>`;
       })}
     </div><${ManualLink} page=${open.id} title=${open.title} />${more}</div>
-    <div class="tab-panel" role="tabpanel" id="panel-${open.id}" aria-labelledby="tab-${open.id}" key=${open.id}>
+    <div class="tab-panel" role="tabpanel" tabindex="-1" id="panel-${open.id}" aria-labelledby="tab-${open.id}" key=${open.id}>
       <${open.View} />
     </div>
   `;

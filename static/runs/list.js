@@ -94,7 +94,7 @@ export function forgetRun(id) {
 /** Keeps the list up to date while it is shown: the server reports whenever a recording of any session began, ended or was changed. Returns the
  * function that stops this. */
 export function followRuns() {
-  const key = computed(() => `${session.value?.id} ${session.value?.listings} ${way.value}`);
+  const key = computed(() => `${session.value?.id} ${session.value?.recording_changes} ${way.value}`);
   return effect(() => {
     key.value;
     untracked(() => void listRuns());

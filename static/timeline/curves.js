@@ -1,12 +1,12 @@
 // The curves that are plotted below the lanes, which the worker computes: those of bodies, with a value at each tick, and those of events,
 // each with its own times. While the run is active, the newest stretch is requested, coarsely if it is fast; what was omitted is requested
-// when it pauses: first the visible stretch, then the rest, until every value is known.
+// when it pauses: first the visible stretch, then the rest, until every value or a great many are known.
 
 import { computed, effect, signal } from "../vendor/preact.js";
 import { rememberedByModel } from "../model_storage.js";
 import { isLeft, say } from "../server.js";
 import { alive, complain, hurried, running, session, state, way } from "../store.js";
-import { firstFrom, rangeOf } from "../parts/curve.js";
+import { firstFrom, leastAndMost, rangeOf, replace } from "../parts/curve.js";
 import { subjectOf, subjectsOf, withColours } from "./colours.js";
 import { lanes } from "./record.js";
 import { furthest } from "./seek.js";
@@ -17,7 +17,9 @@ const AT_ONCE = 150; // the number of moments per request while it is active
 const OVERVIEW = 1500; // the number of moments for a whole run of which nothing is known yet
 const PIECE = 1000; // the number of ticks per request when paused: longer stretches would delay commands
 const MAX_VALUES = 5000; // the maximum number of values of a curve per request
-const NOTHING = { times: [], values: [], slope: null, range: [Infinity, -Infinity] };
+const MAX_KNOWN = 1_000_000; // from so many known values on, only what is missing in a short visible stretch is requested
+const SHORT = 100_000; // the number of ticks of the longest of these
+const NOTHING = { times: [], values: [], slope: null };
 const CHUNKS = "activation over time";
 const OF_CHUNK = /^(.*?): (.*) ((activation|base level|spreading|fixed|inhibition)( \d+)?( without noise)?) over time$/s; // the names of curves of chunks, as `workbench/chunk_curves.py` has them
 const DASHES = { "base level": [6, 3], spreading: [2, 2], fixed: [8, 2, 2, 2], inhibition: [10, 4] }; // of the parts of activation: each is drawn in the colour of its chunk
@@ -82,7 +84,7 @@ export function colourOf(subject) {
 export const offered = signal(false);
 /** Counts the changes of what is known. */
 export const curvesVersion = signal(0);
-/** The known data: of bodies, moments [s], ascending, and values by name; of events, by name `{times, values, slope, range}`; `until` when
+/** The known data: of bodies, moments [s], ascending, and values by name; of events, by name `{times, values, slope, why}`; `until` when
  * [s] they are known, at least coarsely (null for not at all), and the stretches [from, to] of which every value is known. */
 export const known = { times: [], values: new Map(), events: new Map(), until: null, whole: [] };
 
@@ -144,9 +146,10 @@ const plotsOfEvents = computed(() => {
   curvesVersion.value;
   const until = furthest.value;
   return plotsOf([...ofEvents.value, ...ofChunks.value], ({ name, unit, shape }) => {
-    const { times, values, slope, range } = known.events.get(name) ?? NOTHING;
+    const { times, values, slope } = known.events.get(name) ?? NOTHING;
+    const [least, most] = leastAndMost(values);
     const grown = slope && values.length ? values.at(-1) + slope * (until - times.at(-1)) : -Infinity;
-    return { name, unit, times, values, shape, slope: slope ?? undefined, range: [range[0], Math.max(range[1], grown)] };
+    return { name, unit, times, values, shape, slope: slope ?? undefined, range: [least, Math.max(most, grown)] };
   });
 });
 
@@ -234,25 +237,30 @@ function begin(list) {
 /** Replaces the known data of a stretch by new data. */
 function put(list, { from, to, first, last, whole }, { times, curves, events }) {
   const [low, high] = [firstFrom(known.times, from - near()), firstFrom(known.times, to + near())];
-  const placed = (list, news, low, high) => [...list.slice(0, low), ...news, ...list.slice(high)];
   for (const name of list) {
-    if (events[name]) known.events.set(name, withNews(known.events.get(name) ?? NOTHING, events[name], first, last));
-    else if (isOfBody(name)) known.values.set(name, placed(known.values.get(name) ?? [], curves[name] ?? times.map(() => null), low, high));
+    if (events[name]) known.events.set(name, withNews(known.events.get(name), events[name], first, last));
+    else if (isOfBody(name)) {
+      if (!known.values.has(name)) known.values.set(name, []);
+      replace(known.values.get(name), low, high, curves[name] ?? times.map(() => null));
+    }
   }
-  known.times = placed(known.times, times, low, high);
+  replace(known.times, low, high, times);
   known.until = Math.max(known.until ?? 0, to);
   if (whole) known.whole = joined([...known.whole, [from, to]]);
   changed();
 }
 
 /** Returns a curve of events with the new data of a stretch. */
-function withNews({ times, values }, news, first, last) {
+function withNews({ times, values } = { times: [], values: [] }, news, first, last) {
   const [low, high] = [firstFrom(times, first), firstFrom(times, last + 5e-7)];
-  const placed = (list, more) => list.slice(0, low).concat(more, list.slice(high));
-  const curve = { times: placed(times, news.times), values: placed(values, news.values), slope: news.slope, why: news.why };
-  let [least, most] = NOTHING.range;
-  for (const value of curve.values) if (value !== null) [least, most] = [Math.min(least, value), Math.max(most, value)];
-  return { ...curve, range: [least, most] };
+  replace(times, low, high, news.times);
+  replace(values, low, high, news.values);
+  return { times, values, slope: news.slope, why: news.why };
+}
+
+/** Returns how many values are known. */
+function size() {
+  return [...known.values.values(), ...known.events.values().map(({ values }) => values)].reduce((sum, { length }) => sum + length, 0);
 }
 
 /** Joins stretches that overlap or follow each other. */
@@ -308,7 +316,9 @@ function next(list) {
   const newest = (from, most) => ({ from, to: end, most, whole: !bodies || (end - from) / tick < most - 2 });
   if (known.until === null) return newest(0, OVERVIEW);
   const { from, to } = span.peek();
-  const missing = hurried.peek() ? null : (gap(Math.max(0, from), Math.min(to, end)) ?? gap(0, end));
+  const many = size() >= MAX_KNOWN;
+  const visible = many && (to - from) / tick > SHORT ? null : gap(Math.max(0, from), Math.min(to, end));
+  const missing = hurried.peek() ? null : visible ?? (many ? null : gap(0, end));
   // While the run is active there is always new data: requests alternate between it and what was omitted.
   newer = running.peek() && (!newer || !missing);
   if (newer) return end > known.until + near() ? newest(known.until, AT_ONCE) : null;

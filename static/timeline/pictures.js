@@ -11,7 +11,7 @@ import { drawTimeline } from "./draw.js";
 import { scene } from "./canvas.js";
 import { furthest } from "./seek.js";
 
-const [WIDE, HIGH, LEFT] = [900, 260, 46]; // of a plot [px]
+const [WIDE, HIGH, LEFT, RIGHT] = [900, 260, 46, 32]; // of a plot [px]
 const which = signal("");
 
 function ofTimeline() {
@@ -21,10 +21,10 @@ function ofTimeline() {
 
 function ofPlot(plot) {
   const { span, end } = scene();
-  const box = { x: LEFT, y: 22, width: WIDE - LEFT - 8, height: HIGH - 42 };
+  const box = { x: LEFT, y: 22, width: WIDE - LEFT - RIGHT, height: HIGH - 42 };
   const draw = (surface) => {
     drawLegend(surface, LEFT, 8, WIDE - LEFT, plot.series);
-    drawTimes(surface, box, span, { y: box.y + box.height });
+    drawTimes(surface, box, span, { y: box.y + box.height, room: { from: 0, to: WIDE } });
     drawCurves(surface, box, { ...plot, span, until: end });
   };
   return { width: WIDE, height: HIGH, title: `${headingOf(plot)}: ${runName(session.peek())}`, draw };

@@ -8,7 +8,7 @@ import pytest
 
 from actr3d.actr import Model
 from actr3d.actr.kernel.model import ensure_converted
-from actr3d.actr.lint.slot_names import is_slip
+from actr3d.actr.lint.slot_names import is_misspelt
 from actr3d.actr.loading import load_text
 from actr3d.errors import ModelWarning
 from tests.helpers.warnings_of_models import HEAD, warned
@@ -74,7 +74,7 @@ def test_slots_that_the_memory_holds_give_no_warning() -> None:
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "slip"),
+    ("one", "other", "misspelt"),
     [
         ("cuont", "count", True),
         ("cont", "count", True),
@@ -96,9 +96,9 @@ def test_slots_that_the_memory_holds_give_no_warning() -> None:
         ("count", "count", False),
     ],
 )
-def test_misspellings_are_recognized(one: str, other: str, slip: bool) -> None:
-    assert is_slip(one, other) is slip
-    assert is_slip(other, one) is slip
+def test_misspellings_are_recognized(one: str, other: str, misspelt: bool) -> None:
+    assert is_misspelt(one, other) is misspelt
+    assert is_misspelt(other, one) is misspelt
 
 
 @pytest.mark.parametrize(
@@ -199,3 +199,24 @@ def test_none_in_a_tuple_of_waits_is_warned_of(what: str) -> None:
         world.run(1)
     assert [(w.filename, w.lineno) for w in caught] == [("loud.py", 5)]
     assert world.seen == 0.2
+
+
+@pytest.mark.parametrize("outer", ["p(goal='count:?x')", "init()"])
+def test_a_production_inside_another_one_is_warned_of(outer: str) -> None:
+    caught = warned(f"def {outer}:\n    goal.set('count:1')\n    def inner(goal='count:1', retrieval=None):\n        goal.clear()")
+    name = outer.partition("(")[0]
+    (text,) = [(text, line) for text, line in caught if "inner" in text]
+    assert text == (f"production '{name}': 'inner' is inside it, and therefore no production; it needs the indentation of '{name}'", 12)
+
+
+@pytest.mark.parametrize(
+    "inner",
+    [
+        "def inner(goal='count:1'):\n        return goal\n    print(inner())",  # a function that the production calls
+        "def inner(much='count:1'):\n        return much",
+        "def inner(goal):\n        return goal",
+        "def inner():\n        return 1",
+    ],
+)
+def test_other_functions_inside_a_production_give_no_warning(inner: str) -> None:
+    assert [text for text, _ in warned(f"def p(goal='count:?x'):\n    {inner}") if "inside" in text] == []

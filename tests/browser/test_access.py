@@ -25,7 +25,7 @@ RUN_AXE = """async (parts) => {
 }"""
 
 
-IN_THEME = """(theme) => document.documentElement.dataset.theme === theme
+IN_THEME = """(theme) => (document.documentElement.dataset.theme ?? theme) === theme
   && !document.getAnimations().some((one) => one instanceof CSSTransition)"""
 
 

@@ -231,12 +231,40 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
     assert commands(page) == ["set buffer goal task:count number:2 last:5 -> task:count number:2 last:3"]
 
 
+def test_the_form_for_moving_has_the_place_of_the_chosen_thing(pages: Callable[..., Page], workbench: Served) -> None:
+    source = "from actr3d.simulation import Simulation\nfrom actr3d.world import Floor, Mannequin, Scene, Wall\n"
+    parts = "Floor(), Mannequin(name='walker'), Wall(name='screen', start=(4, 1), end=(4, 3))"
+    source += f"def build() -> Simulation:\n    return Simulation(Scene(parts=({parts})))\n"
+    (workbench.folder / "moved.py").write_text(source, encoding="utf-8")
+    page = pages("moved.py")
+    shows(page, "#status", "at its start")
+    say(page, type="command", word="move", values=["walker", 1.25, -0.5, 0.5])
+    page.get_by_role("button", name="Move, push …").click()
+    page.get_by_role("button", name="Move …", exact=True).click()
+    dialog = page.get_by_role("dialog")
+    fields = dialog.locator("input")
+    for field, text in zip((fields.nth(0), fields.nth(1), fields.nth(2)), ("1.25", "-0.5", "28.6"), strict=True):
+        expect(field).to_have_value(text)
+    fields.nth(0).fill("9")
+    dialog.get_by_label("object").select_option("screen")
+    expect(fields.nth(1)).to_have_value("2")
+    expect(fields.nth(0)).to_have_value("9")  # what the user has written stays
+    dialog.get_by_label("object").select_option("walker")
+    expect(fields.nth(1)).to_have_value("-0.5")
+    fields.nth(0).fill("1.5")
+    dialog.get_by_role("button", name="Move").click()
+    expect(dialog).to_have_count(0)
+    place = page.evaluate("async () => await (await part('server.js')).say({ type: 'present', word: 'move', named: { object: 'walker' } })")
+    assert place == {"x": 1.5, "y": -0.5, "heading": pytest.approx(0.5, abs=1e-12)}  # what was not changed is as exact as it was
+
+
 def test_things_in_the_scene_are_moved_and_pushed_by_numbers(pages: Callable[..., Page]) -> None:
     page = pages(refusals=True)
     shows(page, "#status", "at its start")
     page.get_by_role("button", name="Move, push …").click()
     page.get_by_role("button", name="Move …", exact=True).click()
     dialog = page.get_by_role("dialog")
+    expect(dialog.locator("input").nth(0)).not_to_have_value("")  # the present place is there
     for text in ("", "1e400", "abc"):
         dialog.get_by_label("x", exact=False).first.fill(text)
         dialog.get_by_role("button", name="Move").click()

@@ -453,6 +453,7 @@ def test_files_are_copied_renamed_and_deleted_while_one_runs(
     assert trash.read_text(encoding="utf-8") == MIND.read_text(encoding="utf-8")
     assert not (workbench.folder / "sub" / "second.py").exists()
     page.locator(".toast").get_by_role("button", name="Restore").click()
+    expect(page.get_by_label("Model", exact=True)).not_to_have_text(re.compile("not in the folder"))
     expect(page.get_by_label("Model", exact=True)).to_have_value("sub/second.py")
     assert (workbench.folder / "sub" / "second.py").read_text(encoding="utf-8") == MIND.read_text(encoding="utf-8")
 

@@ -224,3 +224,35 @@ def test_while_completions_and_documentation_are_waited_for_the_editor_says_so(o
         expect(reading).to_be_visible()
         page.keyboard.press("Escape")
         expect(reading).to_have_count(0)
+
+
+ANSWER = '    def answer(facts="meaning:?meaning"):\n        print(meaning)\n'
+NEW = '        print(word)\n\n    def name(goal="task:start"):\n        goal.set("task:done")\n'
+PARTS = "        print(word)\n\n    retrieval = Buffer()\n    memory = Memory(retrieval)\n"
+MOTOR = "    facts = Buffer()\n    motor = Motor()\n    memory = Memory(facts)\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "keys", "piece", "expected"),
+    [
+        (SHORT, "print(word)", "", "a production", NEW),
+        (SHORT, "print(word)", "\n", "a production", NEW),
+        (SHORT, "def ask", "", "a production", NEW),
+        (f"{SHORT}\n{ANSWER}", "print(word)", "", "a production", f"{NEW}\n{ANSWER}"),
+        (SHORT, "print(word)", "", "a declarative memory", PARTS),
+        (SHORT, "facts = Buffer()", "", "motor control", MOTOR),
+    ],
+    ids=["end", "below", "head", "between", "parts", "attribute"],
+)
+def test_a_piece_of_a_class_leaves_the_production_that_the_cursor_is_in(
+    opened: Callable[[str], Page], workbench: Served, text: str, line: str, keys: str, piece: str, expected: str
+) -> None:
+    page = opened(text)
+    at_end_of(page, line)
+    page.keyboard.type(keys)
+    page.get_by_role("button", name="More", exact=True).click()
+    page.get_by_role("button", name=re.compile(f"^{piece}")).click()
+    page.keyboard.press("Escape")
+    page.keyboard.press("Control+s")
+    shows(page, ".file-status", "saved")
+    assert expected in (workbench.folder / "written.py").read_text(encoding="utf-8")

@@ -182,7 +182,7 @@ def test_the_console_shows_output_as_it_is_printed_and_goes_back_with_the_run(pa
     page.get_by_label("Search the console").fill("")
     page.locator(".console").get_by_role("button", name="Clear").click()
     expect(lines(page)).to_have_count(0)
-    shows(page, ".console", "Earlier lines are cleared")
+    shows(page, ".console", "The lines up to this moment are cleared")
     page.locator(".console").get_by_role("button", name="Show all").click()
     expect(lines(page)).to_have_count(9)
     # Lines that arrive before the state of their moment are not ahead of it.
@@ -283,3 +283,21 @@ def test_a_search_in_the_console_ends_with_its_run(pages: Pages, workbench: Serv
     page.reload()
     shows(page, "#status", "at its start")
     expect(field).to_have_value("")
+
+
+def test_the_console_says_that_lines_are_cleared_and_not_that_nothing_was_printed(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("counting.py", tab="console")
+    shows(page, "#status", "at its start")
+    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'until', time: 0.3 }))")
+    shows(page, "#time", r"0\.30 s")
+    expect(lines(page)).not_to_have_count(0)
+    page.locator(".console").get_by_role("button", name="Clear").click()
+    expect(lines(page)).to_have_count(0)
+    cleared = "The lines up to this moment are cleared. Show all"
+    expect(page.locator(".console p")).to_have_text([cleared])
+    page.evaluate("async () => void (await (await part('timeline/seek.js')).seek(0.2))")
+    shows(page, "#time", r"0\.20 s")
+    expect(page.locator(".console p")).to_have_text([cleared, re.compile("printed after this moment")])
+    page.evaluate("async () => void (await (await part('timeline/seek.js')).seek(0))")
+    shows(page, "#time", r"0\.00 s")
+    expect(page.locator(".console p")).to_have_text([re.compile("printed after this moment"), "Nothing was printed before this moment."])

@@ -250,3 +250,46 @@ def test_the_palette_sets_parameters_clears_messages_and_switches_to_other_open_
     expect(options(page).first).to_have_text("Switch to the open run of counting.py: pausedOpen runs")
     page.keyboard.press("Enter")
     expect(page.get_by_label("Model", exact=True)).to_have_value("counting.py")
+
+
+def test_the_focus_returns_to_where_it_was_when_what_a_command_has_opened_is_closed(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="buffers")
+    shows(page, "#status", "at its start")
+    page.get_by_role("tab", name="Buffers").focus()
+    for words, title in (("run until", "Run until"), ("help keys", "Help"), ("set buffer", "Set")):
+        search(page, words)
+        page.keyboard.press("Enter")
+        expect(page.get_by_role("dialog", name=title)).to_be_visible()
+        page.keyboard.press("Escape")
+        expect(page.get_by_role("dialog")).to_have_count(0)
+        expect(page.get_by_role("tab", name="Buffers")).to_be_focused()
+    search(page, "step by one tick")
+    page.keyboard.press("Enter")
+    shows(page, "#time", "0.01 s")
+    expect(page.get_by_role("tab", name="Buffers")).to_be_focused()
+
+
+def test_a_command_that_opens_a_tab_moves_the_focus_to_its_panel(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="buffers")
+    shows(page, "#status", "at its start")
+    page.get_by_role("tab", name="Buffers").focus()
+    for words, title in (
+        ("open memory", "Memory"),
+        ("open memory", "Memory"),
+        ("open their list", "Runs"),
+        ("open experiments", "Experiments"),
+    ):
+        search(page, words)
+        page.keyboard.press("Enter")
+        expect(page.get_by_role("tabpanel", name=title)).to_be_focused()
+    page.keyboard.press("3")
+    expect(page.get_by_role("tabpanel", name="Productions")).to_be_focused()
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.closest('[role=tabpanel]') !== null")
+    page.get_by_role("tab", name="Editor").click()
+    expect(page.locator(".cm-content")).to_contain_text("class")
+    page.get_by_role("tab", name="Buffers").click()
+    expect(page.get_by_role("tab", name="Buffers")).to_be_focused()
+    search(page, "go to a line")
+    page.keyboard.press("Enter")
+    expect(page.locator(".cm-panel input")).to_be_focused()

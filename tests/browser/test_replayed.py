@@ -20,6 +20,7 @@ from actr3d.runner.facts import program_facts
 from actr3d.simulation import Simulation
 from actr3d.trace import Trace
 from actr3d.world import Floor, Mannequin, Scene, Wall
+from tests.browser.test_access import problems_of
 from tests.helpers.page import PATIENCE, drawn, until
 from tests.helpers.workbench_server import served
 from tests.server.test_html_replay import ZOO, Waiting
@@ -74,6 +75,19 @@ def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_w
         shapes = "[0.4, 0.9, 0.5].map((time) => { goTo(time); return [drawing.shapes.length, drawing.camera.following]; })"
         (one, _), (other, _), again = page.evaluate(shapes)
         assert (other, again) == (one + 1, [one, False])  # the second simulation has a wall more; the view is as it was chosen
+
+
+def test_all_of_it_can_be_read_named_and_reached_in_both_themes(browser: Browser, replay: Path) -> None:
+    with browser.new_context(viewport={"width": 1200, "height": 800}) as context:
+        page = context.new_page()
+        page.set_default_timeout(PATIENCE)
+        page.goto(replay.as_uri())
+        drawn(page)
+        problems = problems_of(page)  # all events are ahead
+        page.get_by_text("Parameters and result").click()
+        page.evaluate("goTo(2)")
+        expect(page.locator(".event.now").first).to_be_visible()
+        assert problems + problems_of(page) == []
 
 
 @pytest.mark.slow

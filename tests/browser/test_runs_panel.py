@@ -69,7 +69,7 @@ def test_runs_are_listed_sorted_searched_and_listed_again_when_one_ends(page: Pa
     expect(page.locator("tr.present")).to_have_count(1)
     expect(row(page, "old-20250102-101010-aaaa")).to_contain_text("unreadable")
     row(page, "torn-20250101-101010-aaaa").click()
-    expect(page.get_by_text("This recording cannot be opened: not a recording: file is not a database")).to_be_visible()
+    expect(page.get_by_text("This recording cannot be opened: not a recording: it is a file of another kind, or damaged")).to_be_visible()
     expect(page.get_by_role("button", name="Open")).to_be_disabled()
 
     page.get_by_role("button", name="Sort by time").click()

@@ -474,6 +474,94 @@ def test_a_plot_of_very_many_values_has_their_extremes_and_is_no_more_than_the_p
     assert blank.evaluate(SPIKES) == {shape: [5, 95, True] for shape in ("line", "points", "steps")}
 
 
+UNEVEN = """async () => {
+  const { drawCurves, valueAt } = await part("parts/curve.js");
+  const [times, all, width, height] = [[], [], 800, 100];
+  for (let time = 0; time < 86400; time += 40) {
+    const dense = Math.floor(time / 4000) % 3 === 1 && time % 4000 < 1000; // stretches of each tick in an overview
+    for (let n = 0; n < (dense ? 4000 : 1); n += 1) times.push(time + n / 100);
+  }
+  times.push(86411.53);
+  for (const time of times) all.push(3 * Math.exp(-(time % 30000) / 5000) + 0.01 * Math.sin(time));
+  const missing = all.map((value, n) => (Math.floor(times[n] / 2500) % 4 === 2 ? null : value));
+  const found = {};
+  for (const [name, shape, values] of [["line", "line", all], ["gaps", "line", missing], ["steps", "steps", all]]) {
+    for (const [from, to] of [[0, 86411.53], [81200.003, 87000], [4900.003, 5100], [4990.003, 4992]]) {
+      const curve = { name, unit: "", times, values, shape };
+      const lines = [];
+      const line = (points, colour, style) => style?.width === 1.5 && lines.push(points);
+      const surface = { line, fill() {}, text() {}, within: (x, y, w, h, draw) => draw() };
+      drawCurves(surface, { x: 0, y: 0, width, height }, { series: [curve], span: { from, to }, range: [-1, 4] });
+      const yOf = (value) => height - ((value + 1) / 5) * height;
+      const empty = () => Array.from({ length: width }, () => [Infinity, -Infinity]);
+      const [truth, drawn] = [empty(), empty()];
+      const put = (columns, x, y) => {
+        for (const at of new Set([Math.floor(x - 1e-6), Math.floor(x + 1e-6)])) {
+          if (columns[at] && !Number.isNaN(y)) columns[at] = [Math.min(columns[at][0], y), Math.max(columns[at][1], y)];
+        }
+      };
+      const xOf = (time) => ((time - from) / (to - from)) * width;
+      times.forEach((time, n) => values[n] !== null && put(truth, xOf(time), yOf(values[n])));
+      for (let x = 0; x <= width; x += 1) {
+        const value = valueAt(curve, from + (x / width) * (to - from));
+        if (value !== null) put(truth, x, yOf(value));
+      }
+      const [points] = lines;
+      for (let n = 0; n < points.length; n += 2) {
+        const [x, y, before, last] = [points[n], points[n + 1], points[n - 2], points[n - 1]];
+        put(drawn, x, y);
+        if (n > 0 && !Number.isNaN(y + last)) {
+          const [first, end] = [Math.max(0, Math.ceil(before)), x > before ? Math.min(x, width) : -1];
+          for (let at = first; at <= end; at += 1) put(drawn, at, last + ((y - last) * (at - before)) / (x - before));
+        }
+      }
+      const isNear = ([least, most], [low, high]) => Math.abs(least - low) + Math.abs(most - high) < 0.01;
+      const differs = (one, other) => (one[0] <= one[1] || other[0] <= other[1]) && !isNear(one, other);
+      const isSame = !truth.some((one, n) => differs(one, drawn[n]));
+      const isWhole = points.at(-2) >= Math.min(width, xOf(times.at(-1))) - 1e-6;
+      found[`${name} ${from}`] = [isSame, isWhole, points.length < 11 * width];
+    }
+  }
+  return found;
+}"""
+"""Whether a line of many unevenly spaced values is, in each pixel, as low and as high as the values, whether it goes on up to the last
+value or the edge, and whether it has few points."""
+
+
+def test_a_line_of_many_uneven_values_agrees_with_them_in_each_pixel(blank: Page) -> None:
+    found = blank.evaluate(UNEVEN)
+    assert len(found) == 12
+    assert [name for name, told in found.items() if told != [True, True, True]] == []
+
+
+REPLACED = """async () => {
+  const { leastAndMost, replace } = await part("parts/curve.js");
+  const values = [];
+  const found = [];
+  const put = (first, beyond, news) => {
+    replace(values, first, beyond, news);
+    const there = values.filter((value) => value !== null);
+    found.push([leastAndMost(values), [Math.min(...there), Math.max(...there)]]);
+  };
+  put(0, 0, Array.from({ length: 1500 }, (_, n) => Math.sin(n)));
+  put(700, 701, Array.from({ length: 1000 }, (_, n) => (n === 500 ? 7 : n / 1000))); // more in place of one
+  put(1200, 1201, [-7]); // the greatest one is gone
+  put(1200, 1300, []);
+  put(0, 1, [null, null, 9]);
+  put(values.length, values.length, [10, 11]);
+  put(0, values.length, [null]);
+  put(0, 1, [1]);
+  return found;
+}"""
+
+
+def test_the_range_of_a_curve_is_that_of_its_values_after_some_were_replaced(blank: Page) -> None:
+    found = blank.evaluate(REPLACED)
+    assert [told for told, _ in found] == [truth for _, truth in found]
+    assert found[1][0][1] == 7
+    assert found[5][0][1] == 11
+
+
 def test_no_text_of_the_axis_is_cut(blank: Page) -> None:
     for end, width in ((1, 400), (12.5, 1100), (3, 1700), (0.02, 900)):
         drawn = blank.evaluate(AXIS, [end, width])
@@ -481,6 +569,24 @@ def test_no_text_of_the_axis_is_cut(blank: Page) -> None:
         assert drawn[0][0] >= 4
         assert drawn[-1][1] <= width - 4
         assert all(one[1] < other[0] for one, other in pairwise(drawn))
+
+
+def test_the_labels_of_a_saved_plot_stand_under_their_lines(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py")
+    page.get_by_role("button", name="Run", exact=True).click()
+    shows(page, "#status", "ended")
+    page.get_by_role("button", name="Save a picture", exact=True).first.click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label("Of what").select_option("0")
+    with page.expect_download() as download:
+        dialog.get_by_role("button", name="SVG").click()
+    drawn = ElementTree.parse(download.value.path())
+    upright = [re.fullmatch(r"M([\d.]+) [\d.]+L\1 [\d.]+", path.attrib["d"]) for path in drawn.findall(".//{*}path")]
+    lines = {float(found[1]) for found in upright if found}
+    labels = {float(text.attrib["x"]): text.text for text in drawn.findall(".//{*}text") if text.attrib["text-anchor"] == "middle"}
+    assert len(labels) > 4
+    assert labels[min(labels)] == "0 s"
+    assert set(labels) == lines
 
 
 EVERY_TICK = """async () => {
@@ -619,7 +725,7 @@ def test_runs_of_a_program_follow_each_other_as_its_clock_counts_them(pages: Cal
     rows.hover()
     rows.get_by_role("button", name="why").click()
     expect(page.locator("#why-text")).to_contain_text("say: matches, and is about to fire")
-    page.evaluate("async () => (await part('inspector/asked.js')).shownReasons.value = 'conflict'")
+    page.evaluate("async () => (await part('inspector/explanation.js')).shownReasons.value = 'conflict'")
     conflict = page.get_by_role("region", name="Conflict set of top#2")
     expect(conflict).to_contain_text(f"at {ends['printed'][1] - 0.05:.3f} s: 1 matched, say is about to fire")
     expect(conflict).to_contain_text("what=red")
@@ -810,6 +916,50 @@ def test_curves_that_are_equal_do_not_hide_each_other(blank: Page) -> None:
         "i": [3, [6, 12]],  # every second dash
     }
     assert moments == {"e": [-1.5, 48.5], "f": [1.5, 51.5], "g": [-1.5, 48.5]}
+
+
+DAY = """
+from actr3d.actr import *
+
+class Sleeper(Model):
+    def start(self):
+        while True:
+            yield 20_000
+
+class Day(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+    base = DMBaseLevel(memory)
+    sleeper = Sleeper()
+    def init():
+        for name in ("cat", "dog", "cow", "hen"):
+            memory.add(name)
+
+day = Day()
+day.run(86_400)
+"""
+SIZE = "async () => [...(await part('timeline/curves.js')).known.events.values()].reduce((sum, { values }) => sum + values.length, 0)"
+
+
+@pytest.mark.slow
+def test_of_a_very_long_run_the_page_keeps_a_bounded_number_of_values(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "day.py").write_text(DAY, encoding="utf-8")
+    page = pages("day.py")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    chunks = [f"memory: {name} activation over time" for name in ("cat", "dog", "cow", "hen")]
+    page.evaluate("async (chunks) => (await part('timeline/curves.js')).plotAll(chunks, true)", chunks)
+    until(page, lambda: page.evaluate(SIZE) >= 1_000_000)
+    page.wait_for_timeout(1000)
+    before = page.evaluate(SIZE)
+    assert before < 1_100_000
+    page.wait_for_timeout(1000)
+    assert page.evaluate(SIZE) == before
+    page.evaluate(
+        "async () => { const { span, zoom } = await part('timeline/view.js'); zoom(100 / (span.value.to - span.value.from), 80_000, 0, 86_400); }"
+    )
+    until(page, lambda: page.evaluate(SIZE) > before + 4 * 9_900)
 
 
 def test_parts_of_an_activation_of_one_kind_have_different_dashes(blank: Page) -> None:

@@ -307,7 +307,7 @@ def test_a_recording_begins_with_its_run(tmp_path: Path) -> None:
     ("content", "message"),
     [
         (None, "no recording"),
-        (b"no database at all", "is not a recording: file is not a database"),
+        (b"no database at all", "is not a recording: it is a file of another kind, or damaged"),
         (b"", "is not a recording: it has other tables"),
     ],
 )

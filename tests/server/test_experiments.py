@@ -27,7 +27,7 @@ from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.sessions import Desk
 from tests.helpers.workbench_server import Served, served
 from workbench import experiments
-from workbench.design_files import Checking, Starting
+from workbench.design_files import CheckRequest, StartRequest
 from workbench.experiment_command import ExperimentCommand, ExperimentFacts, ExperimentProgress, ExperimentRunError
 from workbench.experiment_folder import ExperimentFolder
 from workbench.experiments import Experiments, RunningExperiment
@@ -137,7 +137,7 @@ def test_a_design_is_checked_again_after_a_change_of_whatever_file_it_may_use(
         for expected in (1, 1, 2):
             if expected == 2:
                 (tmp_path / changed).write_text("A = 23\n", "utf-8")
-            await experiments.check(Checking(design="fan_effect"))
+            await experiments.check(CheckRequest(design="fan_effect"))
             assert len(checked) == expected
 
     desk.do(twice())
@@ -285,7 +285,7 @@ def test_none_starts_while_the_workbench_closes(tmp_path: Path, desk: Desk) -> N
     experiments = Experiments(desk.sessions(tmp_path))
     desk.do(experiments.close())
     with pytest.raises(ExperimentRunError, match="the workbench is closing"):
-        desk.do(experiments.start(Starting(design="fan_effect")))
+        desk.do(experiments.start(StartRequest(design="fan_effect")))
 
 
 def test_of_two_who_continue_an_experiment_at_once_one_is_refused(tmp_path: Path, desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:

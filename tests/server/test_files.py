@@ -13,7 +13,7 @@ import pytest
 
 from actr3d.actr.loading.source_text import read_source
 from workbench import files, loader, run_request
-from workbench.files import LARGEST, ConflictError, FileError, ModelFolder, NoSuchFileError
+from workbench.files import MAX_FILE_SIZE, ConflictError, FileError, ModelFolder, NoSuchFileError
 from workbench.loader import Outline, outline_of
 from workbench.run_request import RunOptions, digest_of_file, start_of
 from workbench.shipped import models_folder, shipped
@@ -185,10 +185,10 @@ def test_what_is_no_text_or_too_large_is_refused(folder: ModelFolder) -> None:
     with pytest.raises(Exception, match="line 1 is not UTF-8"):
         folder.read("bytes.py")
     with pytest.raises(FileError, match="must be <= 1,000,000 bytes"):
-        folder.save("large.py", "x" * (LARGEST + 1), None)
+        folder.save("large.py", "x" * (MAX_FILE_SIZE + 1), None)
     with pytest.raises(FileError, match="unpaired surrogate character"):
         folder.save("half.py", "\ud800", None)
-    (folder.root / "large.py").write_bytes(b"#" * (LARGEST + 1))
+    (folder.root / "large.py").write_bytes(b"#" * (MAX_FILE_SIZE + 1))
     with pytest.raises(FileError, match="larger"):
         folder.read("large.py")
 
@@ -304,7 +304,7 @@ def test_the_description_of_a_file_in_a_list_is_read_again_only_after_a_change(t
     os.utime(other, ns=(written, written))
     other.replace(file)
     assert outline_of(file).title == "Reads."
-    for data in (b"\xff", b"x" * (LARGEST + 1), b"# coding: none\n", b"\0"):
+    for data in (b"\xff", b"x" * (MAX_FILE_SIZE + 1), b"# coding: none\n", b"\0"):
         file.write_bytes(data)
         assert outline_of(file) == Outline()
     file.unlink()

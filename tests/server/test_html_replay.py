@@ -240,5 +240,5 @@ def test_it_is_made_in_another_process_and_errors_are_reported(desk: Desk, walke
         assert inside(made.read().decode())["title"] == f"{tmp_path.name}/model.py · seed 1"
     broken = tmp_path / "broken.sqlite"
     broken.write_bytes(b"nothing")
-    with pytest.raises(ReadingError, match=r"^'broken' is not a recording: file is not a database$"):
+    with pytest.raises(ReadingError, match=r"^'broken' is not a recording: it is a file of another kind, or damaged$"):
         desk.do(Readers(desk.workers).make("replay.html", broken))

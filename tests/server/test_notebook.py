@@ -177,7 +177,9 @@ def test_a_page_changes_and_undoes_and_no_cell_is_said_to_have_done_it() -> None
         simulation.run(0.3)
         server.say(Seek(time=0.1))
         change = SimulationCommand(word="aperture", values=(0.9,), drop=True)
-        for speed, (command, reason) in enumerate(((change, "changed at 0.10 s; the rest was lost"), (Undo(), "undone")), start=2):
+        for speed, (command, reason) in enumerate(
+            ((change, "changed at 0.10 s; the rest was lost"), (Undo(), "undone at 0.10 s")), start=2
+        ):
             server.say(command)
             await asyncio.sleep(0.05)
             server.say(Speed(factor=speed))  # shows the state once more

@@ -14,7 +14,7 @@ import pytest
 
 from actr3d.camera import CameraParameters
 from actr3d.simulation import Simulation
-from actr3d.world import Car, Floor, Mannequin, Scene, World
+from actr3d.world import Car, Floor, Mannequin, Scene, Wall, World
 from tests.helpers.sessions import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
 from tests.server.test_reopened import reopened
@@ -25,6 +25,7 @@ from workbench.overlays.overlay import overlay
 from workbench.page_commands import Question
 from workbench.protocol import COMMAND
 from workbench.worker.shown import Shown
+from workbench.worker.state_history import NEAR, Walked
 
 LOOKING = """from actr3d.actr import *
 from actr3d.motor import Motor
@@ -154,20 +155,20 @@ def test_openings_are_shown_where_they_are_with_their_width(desk: Desk, tmp_path
 
 def test_the_path_is_sent_to_late_clients_and_after_going_back(desk: Desk, tmp_path: Path) -> None:
     talk = after(desk, tmp_path, 200)
-    way = np.array(drawn(talk, 200, ("path",))["path"]["walker"])
+    (way,) = map(np.array, drawn(talk, 200, ("path",))["path"]["walker"])
     assert way[0] == pytest.approx((0, 0))
     assert way[-1, 0] == pytest.approx(0.5 * 1.95, abs=0.03)
     assert (np.diff(way[:, 0]) >= 0).all()
     assert len(way) > 30
     talk.say("seek", time=1.0)
     talk.until("paused", tick=100)
-    back = np.array(drawn(talk, 100, ("path",))["path"]["walker"])
+    (back,) = map(np.array, drawn(talk, 100, ("path",))["path"]["walker"])
     assert len(back) < len(way)
     assert back[-1, 0] == pytest.approx(0.5 * 0.95, abs=0.03)
     talk.say("command", word="walk", values=[-0.5], drop=True)
     talk.say("step", ticks=100)
     talk.until("paused", tick=200)
-    other = np.array(drawn(talk, 200, ("path",))["path"]["walker"])
+    (other,) = map(np.array, drawn(talk, 200, ("path",))["path"]["walker"])
     assert other[:, 0].max() == pytest.approx(back[-1, 0], abs=0.02)
     assert other[-1, 0] < back[-1, 0] - 0.03
 
@@ -182,6 +183,63 @@ def test_the_path_of_an_opened_recording_is_known_at_its_end_at_once(desk: Desk,
     again.say("seek", time=1.0)
     again.until("paused", tick=100)
     assert drawn(again, 100, ("path",))["path"] == way
+
+
+def test_a_path_has_a_gap_where_a_body_was_moved_by_hand(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, LOOKING, record=True)
+    talk.say("step", ticks=102)
+    talk.until("paused", tick=102)
+    (before,) = drawn(talk, 102, ("path",))["path"]["walker"]
+    talk.say("command", word="move", values=["walker", 0.5, -1.0, 0.0])
+    talk.say("step", ticks=58)
+    talk.until("paused", tick=160)
+    way = drawn(talk, 160, ("path",))["path"]["walker"]
+    assert way[0] == before[:-1]  # that at 1.02 s has no point of its own later
+    assert way[1][0] == pytest.approx((0.5, -1.0), abs=0.05)
+    assert way[1][-1] == pytest.approx((0.5 + 0.5 * 0.58, -1.0), abs=0.05)
+    assert len(way) == 2
+    talk.say("seek", time=1.0)
+    talk.until("paused", tick=100)
+    assert drawn(talk, 100, ("path",))["path"]["walker"] == way[:1]
+    talk.say("seek", time=1.03)
+    talk.until("paused", tick=103)
+    first, here = drawn(talk, 103, ("path",))["path"]["walker"]
+    assert (first, here) == (way[0], [pytest.approx((0.5, -1.0), abs=0.05)])
+    talk.say("seek", time=1.6)
+    talk.until("paused", tick=160)
+    again = reopened(talk)
+    drawn(again, 0, ("path",))
+    again.say("seek", time=1.6)
+    again.until("paused", tick=160)
+    assert drawn(again, 160, ("path",))["path"]["walker"] == way
+    again.say("undo")
+    again.until("paused", tick=102)
+    again.say("step", ticks=58)
+    again.until("paused", tick=160)
+    (whole,) = drawn(again, 160, ("path",))["path"]["walker"]
+    assert whole[: len(way[0])] == way[0]
+
+
+def test_the_path_of_a_fast_body_has_no_gap_even_where_it_is_stopped() -> None:
+    parts = (Floor(), Car(name="car"), Wall(name="wall", start=(40, -5), end=(40, 5)))
+    world = World(Scene(parts=parts))
+    car, walked, steps = world.bodies["car"], Walked(10_000), round(0.01 / world.scene.timestep)
+    walked.keep(0, world)
+    car.set("throttle", 1.0)
+    for tick in range(1, 1001):
+        world.step(steps)
+        walked.keep(tick, world)
+    ((*way,),) = walked.up_to(1000, world)["car"]
+    lengths = np.hypot(*np.diff(way, axis=0).T)
+    assert lengths.max() > 4 * NEAR
+    assert way[-1][0] < 40
+    world.move("car", 10.0, 1.0)
+    for tick in range(1001, 1011):
+        world.step(steps)
+        walked.keep(tick, world)
+    first, second = walked.up_to(1010, world)["car"]
+    assert first == way
+    assert second[0] == pytest.approx((10.0, 1.0), abs=1)
 
 
 def test_the_commanded_posture_is_what_is_commanded_until_it_is_there(desk: Desk, tmp_path: Path) -> None:

@@ -451,3 +451,54 @@ def test_a_wrong_build_is_reported_with_its_line(desk: Desk, tmp_path: Path) -> 
     notice = talk.wait_for_notice("build must")
     assert (notice["level"], notice["file"], notice["line"]) == ("error", "model.py", 3)
     assert notice["text"].startswith("build must be declared to return a Simulation (got `def build()`, without a return type); write")
+
+
+HELPER = (
+    EXAMPLE
+    + """
+def build() -> Simulation:
+    return Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": Walker}, seed=1)
+
+def stand():
+    return build()
+"""
+)
+USES = (
+    "from walking import build\nbuild().run(0.1)",
+    "from walking import stand as begin\nbegin().run(0.1)",
+    "import walking\nsimulation = walking.build()\nsimulation.run(0.1)",
+    "from again import *\nbuild().run(0.1)",
+    "from made import simulation\nsimulation.run(0.1)",
+    "from package.inner import stand\nstand().run(0.1)",
+)
+
+
+@pytest.mark.parametrize("source", USES)
+def test_a_program_whose_simulation_is_made_in_another_file_stands_at_its_start_with_its_scene(
+    desk: Desk, tmp_path: Path, source: str
+) -> None:
+    (tmp_path / "walking.py").write_text(HELPER, encoding="utf-8")
+    (tmp_path / "again.py").write_text("from walking import *\n", encoding="utf-8")
+    (tmp_path / "made.py").write_text("from walking import build\nsimulation = build()\n", encoding="utf-8")
+    (tmp_path / "package").mkdir()
+    (tmp_path / "package" / "__init__.py").write_text("", encoding="utf-8")
+    (tmp_path / "package" / "inner.py").write_text(HELPER, encoding="utf-8")
+    talk = desk.begin(tmp_path, source, record=True)
+    assert list(talk.facts["world"]["bodies"]) == ["walker"]
+    assert talk.state["time"] == 0
+    talk.say("run")
+    talk.until("ended")
+    for file in tmp_path.rglob("*.py"):
+        file.unlink()
+    opened = Talk(desk, desk.do(talk.sessions.reopen(talk.session.recording or "")), talk.sessions)
+    opened.until("paused", time=0)
+    assert list(opened.facts["world"]["bodies"]) == ["walker"]
+
+
+def test_a_program_that_uses_only_other_things_of_such_a_file_runs_nothing_before_it_is_told_to(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / "walking.py").write_text("print('loaded')\n" + HELPER + "\nWIDTH = 3\n", encoding="utf-8")
+    (tmp_path / "round.py").write_text("from model import nothing\nimport round\n", encoding="utf-8")
+    source = "import random, round\nfrom walking import WIDTH, Silent\n" + "print('begins')\nSilent().run(0.1)\n"
+    talk = desk.begin(tmp_path, source)
+    assert talk.facts["world"] is None
+    assert talk.events == []

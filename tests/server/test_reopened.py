@@ -314,7 +314,7 @@ def test_a_recording_that_is_deleted_while_it_is_open_is_open_still_and_a_change
     name = again.facts["recorded"]
     assert again.facts["made"] > 0
     talk.sessions.recordings.delete(name)
-    talk.sessions.listings_changed()
+    talk.sessions.announce_recordings()
     again.wait(lambda: again.facts["made"] is None)
     assert desk.do(talk.sessions.reopen(name)) is again.session
     again.say("seek", time=0.2 if ahead else 0.3)

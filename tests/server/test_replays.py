@@ -106,7 +106,7 @@ def test_what_is_no_recording_cannot_be_run_again(desk: Desk, tmp_path: Path) ->
     path = tmp_path / "x.sqlite"
     path.write_bytes(b"nothing" * 1000)
     told = desk.do(Replays(desk.workers).run(path, waits))
-    assert told == {"agrees": None, "text": "it is not a recording: file is not a database"}
+    assert told == {"agrees": None, "text": "it is not a recording: it is a file of another kind, or damaged"}
 
 
 def test_it_ends_when_no_client_waits_and_when_it_makes_no_progress(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -179,7 +179,7 @@ def test_a_change_can_be_undone_where_it_was_made_and_in_an_opened_recording(kin
     first = talk.state["parts"][f"{below}goal"]["chunk"]
     change(talk, "set_buffer", buffer=f"{below}goal", chunk="rest 5")
     talk.say("undo")
-    state = talk.wait(lambda: talk.state["reason"] == "undone")
+    state = talk.wait(lambda: talk.state["reason"] == "undone at 0.10 s")
     assert state["parts"][f"{below}goal"]["chunk"] == first
     change(talk, "set_buffer", buffer=f"{below}goal", chunk="rest 5")
     there(talk, 0.3)
@@ -275,10 +275,10 @@ def test_all_browsers_hear_that_a_recording_was_labelled_or_deleted(desk: Desk, 
         return desk.do(call(app, f"/api/recordings/{path}", HOST, COOKIE, ORIGIN, JSON, OURS, method="POST", body=sent)).status
 
     for path, body in ((f"{name}/label", {"name": "x"}), (f"{name}/delete", {})):
-        before, heard = talk.session.facts_version, talk.facts["listings"]
+        before, heard = talk.session.facts_version, talk.facts["recording_changes"]
         assert post(path, body) == 200
         assert talk.session.facts_version > before
-        assert talk.facts["listings"] == heard + 1
+        assert talk.facts["recording_changes"] == heard + 1
 
 
 def test_browsers_hear_that_a_run_of_another_session_has_begun_and_ended(desk: Desk, tmp_path: Path) -> None:
@@ -294,9 +294,9 @@ def test_browsers_hear_that_a_run_of_another_session_has_begun_and_ended(desk: D
         other[0].wait(lambda: other[0].facts["run"] == 2)
 
     for change in (begins, lambda: other[0].say("run"), is_left, lambda: desk.do(other[0].session.stop())):
-        heard = watching.facts["listings"]
+        heard = watching.facts["recording_changes"]
         change()
-        watching.wait(lambda before=heard: watching.facts["listings"] > before)
+        watching.wait(lambda before=heard: watching.facts["recording_changes"] > before)
         sleep(0.2)  # in which the rest of what this change tells arrives
 
 
@@ -457,3 +457,15 @@ def test_a_program_says_what_cannot_be_changed(desk: Desk, tmp_path: Path) -> No
     talk.until("ended")
     with pytest.raises(RefusedError, match="the run is over: go back to an earlier time"):
         change(talk, "clear_buffer", buffer="top#2.goal")
+
+
+@pytest.mark.parametrize("kind", MODELS)
+def test_a_paused_run_that_is_changed_says_when_also_after_an_undo(kind: str, desk: Desk, tmp_path: Path) -> None:
+    source, _, below = MODELS[kind]
+    talk = desk.begin(tmp_path, source)
+    there(talk, 0.1)
+    for chunk in ("rest 5", "rest 6"):
+        change(talk, "set_buffer", buffer=f"{below}goal", chunk=chunk)
+        talk.wait(lambda: talk.state["reason"] == "changed at 0.10 s")
+        talk.say("undo")
+        talk.wait(lambda: talk.state["reason"] == "undone at 0.10 s")

@@ -104,7 +104,7 @@ def test_a_list_has_the_newest_first_and_names_what_cannot_be_read(desk: Desk, t
     assert (total, [summary.id[2:10] for summary in found]) == (4, ["20260103", "20260102", "20260101", "20251231"])
     assert [summary.events for summary in found] == [2, 3, 0, 0]
     assert "it says 'actr3d recording 1'" in str(found[2].problem)
-    assert "not a database" in str(found[3].problem)
+    assert "a file of another kind" in str(found[3].problem)
     assert [summary.id for summary in desk.listed(tmp_path, 1, 2)[1]] == [summary.id for summary in found[1:3]]
 
 

@@ -392,6 +392,12 @@ def test_noise_continues_exactly_from_a_state() -> None:
     ("word", "options", "message"),
     [
         ("poze", {}, "walker has no sensor 'poze'; did you mean 'pose'? It has anatomy, pose, velocity"),
+        (
+            "rangefinder angle:1.5",
+            {},
+            r"did you mean 'rangefinder'? Give its values as arguments of Python .*: \(angle=0\.0, ",
+        ),
+        ("anatomy all", {}, "walker has no sensor 'anatomy all'; did you mean 'anatomy'? It takes no values"),
         ("pose", {"part": "arm"}, "walker has no part 'arm'"),
         ("pose", {"prt": "arm"}, r"walker: pose takes \(part=None\): got an unexpected keyword argument 'prt'"),
         ("velocity", {"frame": "wrld"}, "velocity: frame must be 'part' or 'world'"),

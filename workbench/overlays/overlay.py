@@ -42,8 +42,8 @@ class Observed(NamedTuple):
     simulation: Simulation
     eyesight: Callable[[str], CameraParameters]
     """Returns the camera parameters with which a body's agent sees."""
-    paths: Callable[[], dict[str, list[list[float]]]]
-    """Returns the paths that bodies have walked up to now, by body: positions (x, y) [m]."""
+    paths: Callable[[], dict[str, list[list[list[float]]]]]
+    """Returns the paths that bodies have walked up to now, by body: pieces of positions (x, y) [m], without what they did not walk."""
 
 
 class Overlay(ABC):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,8 @@ HEIGHT = 0.012
 
 @overlay("path", "path walked", shown=True)
 class Path(Overlay):
-    """Shows the path of each body from the start of the run to the present, whether or not anyone watched."""
+    """Shows the path of each body from the start of the run to the present, whether or not anyone watched, with a gap where it was moved by
+    hand."""
 
     def __init__(self, drawn: Drawn) -> None:
         self._lines = Lines(drawn.server, "/overlays/path", (230, 120, 30), 3.0)
@@ -23,7 +25,7 @@ class Path(Overlay):
 
     @staticmethod
     def data(observed: Observed) -> dict[str, Any]:
-        """Returns the positions of each body's root on the floor [m]."""
+        """Returns the pieces of each body's path: positions of its root on the floor [m]."""
         return observed.paths()
 
     def draw(self, data: MjData, drawn: dict[str, Any] | None) -> None:
@@ -31,11 +33,10 @@ class Path(Overlay):
         if drawn is None:
             return
         pieces = [np.zeros((0, 2, 3), dtype=np.float32)]
-        for way in drawn.values():
-            if len(way) > 1:
-                places = np.full((len(way), 3), HEIGHT, dtype=np.float32)
-                places[:, :2] = way
-                pieces.append(np.stack((places[:-1], places[1:]), axis=1))
+        for piece in chain.from_iterable(drawn.values()):
+            places = np.full((len(piece), 3), HEIGHT, dtype=np.float32)
+            places[:, :2] = piece
+            pieces.append(np.stack((places[:-1], places[1:]), axis=1))
         self._lines.set(np.concatenate(pieces))
 
     def switch(self) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field
 
 from actr3d.errors import Actr3dError
-from workbench.page_commands.command import LONGEST_TEXT, Name, Question, Seconds, page_command, unknown
+from workbench.page_commands.command import LONGEST_TEXT, Name, PlainValue, Question, Seconds, page_command, unknown
 
 if TYPE_CHECKING:
     from actr3d.world.body import Body
@@ -77,6 +77,28 @@ class BodyState(Question):
             "contacts": [plain_answer(touch) for touch in present(body)],
             "box": {"lower": box.lower, "upper": box.upper, "size": box.size},
         }
+
+
+@page_command
+class Present(Question):
+    """Returns the present values of what a change by hand would replace, by field: for `move`, the place of an object."""
+
+    type: Literal["present"] = "present"
+    word: Name
+    """The command of the change."""
+    named: dict[Name, PlainValue] = Field(default_factory=dict, max_length=100)
+    """The fields that say what is to be changed: `{"object": "walker"}`."""
+
+    def answer(self, run: ControlledRun) -> dict[str, Any]:
+        from actr3d.actr.changes import AgentChange
+        from actr3d.change import CHANGES
+
+        if self.word not in CHANGES:
+            raise unknown("change", self.word, CHANGES)
+        kind = CHANGES[self.word]
+        if run.shown is None or issubclass(kind, AgentChange):
+            return {}
+        return kind.present(run.shown.simulation.world, self.named)
 
 
 @page_command

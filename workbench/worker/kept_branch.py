@@ -69,7 +69,7 @@ class KeptBranch:
     def announce_undone(self) -> None:
         """Informs the server that the run is now where a user has undone a change, and pauses there."""
         controller = self._controller
-        controller.status, controller.reason = "paused", "undone"
+        controller.status = "paused"
         self.announce(len(controller.run.trace), "undone")
         controller.went_back(controller.reason)
 
@@ -91,4 +91,4 @@ class KeptBranch:
             self._controller.channel.post(Branched(recording=self._branch.stem, at=self._at, until=self._until))
         is_kept = self._branch is not None or (self._repeated is not None and not self._is_gone)  # pages say so in a notice
         lost = "" if is_kept else "; the rest was lost"
-        self._controller.goes_another_way(events, f"{what} at {self._at:.2f} s{lost}" if self._ahead else None)
+        self._controller.goes_another_way(events, f"{what} at {self._at:.2f} s{lost if self._ahead else ''}", ahead=self._ahead)

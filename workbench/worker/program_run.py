@@ -33,6 +33,7 @@ from actr3d.trace import Run, Trace, TraceEvent, run_of, top_path
 from actr3d.values import to_json
 from workbench.curves import joined
 from workbench.loader import ModelListing
+from workbench.made_simulations import makes_simulations
 from workbench.program_time import RunTimes
 from workbench.worker.change_menu import change_menu
 from workbench.worker.controlled_run import ControlledRun, nothing_to_undo
@@ -56,7 +57,7 @@ class _Again(EndOfRun):
     """Ends a program so that it can be run again up to an earlier time."""
 
 
-class _RecordedOnce:
+class _PassRecorder:
     """Passes what a program does to its recording, except what an earlier pass through it has recorded; the order is always the same.
 
     Args:
@@ -151,6 +152,7 @@ class ProgramRun(ControlledRun):
         self._controller = controller
         self._listing = listing
         self._source = with_values(start.source, start.settings)
+        self._simulates = makes_simulations(self._source, Path(start.folder), start.helpers)
         self._seed = fresh_seed() if start.seed is None else start.seed
         self._limits = RunLimits(trace=Trace("all"))
         self._output: ProgramOutput | None = None
@@ -193,7 +195,7 @@ class ProgramRun(ControlledRun):
         self._commands = [RecordedCommand(*command) for command in start.commands]
         """The changes of users, which each pass through the program repeats."""
         self._changes = ProgramChanges(self._limits, self._commands)
-        self._recorded: _RecordedOnce | None = None
+        self._recorded: _PassRecorder | None = None
         self._recorded_simulations: set[str] = set()
         """The names of the facts of simulations that are recorded."""
         self._waits: tuple[Scheduler, int, int] | None = None
@@ -213,7 +215,7 @@ class ProgramRun(ControlledRun):
     def play(self) -> None:
         """Runs the program, and again if a user goes back, until the worker must stop."""
         start, controller = self._controller.channel.start, self._controller
-        if not self._listing.simulates:
+        if not self._simulates:
             self._introduce()
         try:
             if start.record is not None:
@@ -262,7 +264,7 @@ class ProgramRun(ControlledRun):
             if self._shown is not None and self._shown.simulation.world.bodies:
                 self._controller.use_real_time()
             self._show_recorded()
-            if self._listing.simulates:
+            if self._simulates:
                 self._controller.show()
                 self._controller.channel.flush()  # before the program does anything that could prevent it
 
@@ -308,10 +310,10 @@ class ProgramRun(ControlledRun):
         trace.listen(self._note_failure)
         self._limits = limits = RunLimits(seed=self._seed, trace=trace, passing=self._pass, ticked=self._tick)
         if self._recording is not None:
-            limits.recorder = self._recorded = again = _RecordedOnce(self._recording, self._recorded_simulations, lambda: self._left)
+            limits.recorder = self._recorded = again = _PassRecorder(self._recording, self._recorded_simulations, lambda: self._left)
             trace.listen(again.event)
         self._changes = ProgramChanges(limits, self._commands)
-        if not self._listing.simulates:  # otherwise it continues until its simulation is at its start
+        if not self._simulates:  # otherwise it continues until its simulation is at its start
             self._hold_at_start()
         exited: SystemExit | None = None
         try:
@@ -439,7 +441,7 @@ class ProgramRun(ControlledRun):
         self._made_at += [self._clock] * (self._changes.made - len(self._made_at))
 
     def _arrive(self) -> None:
-        """Pauses the program, which has gone to another time; a change that a user undoes is forgotten there."""
+        """Pauses the program, which has reached the time that the user wants; if the user undoes a change, completes that."""
         self._rush = None
         if self._undoing is None:
             self._controller.went_back()
@@ -447,7 +449,7 @@ class ProgramRun(ControlledRun):
             self._finish_undo(self._undoing)
 
     def _finish_undo(self, branch: KeptBranch) -> None:
-        """Forgets what came after the present, where the program was before the change that a user undoes."""
+        """Completes the undoing of a change: the program is where it was before the change, and what came after that is forgotten."""
         self._undoing = None
         if self._recorded is not None:
             self._recorded.cut()
@@ -465,7 +467,7 @@ class ProgramRun(ControlledRun):
         while True:
             self._check_left()
             if self._rush is not None:
-                # The changes of that moment that are not undone come before the one that is.
+                # While a change is undone, the other changes of that moment are repeated before the program pauses.
                 if to < self._rush or (to == self._rush and (not again or self._undoing is not None)):
                     self._clock = to
                     return

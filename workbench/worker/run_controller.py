@@ -190,19 +190,20 @@ class RunController:
         self.status, self.reason = "paused", reason
         self._halt()
 
-    def goes_another_way(self, events: int, changed: str | None) -> None:
+    def goes_another_way(self, events: int, changed: str, *, ahead: bool) -> None:
         """Informs the server that the known future after the present moment is no longer valid.
 
         Args:
             events: Number of events up to this moment.
-            changed: What happened to the later part of the run; None if there was none.
+            changed: What was done, and what happened to the later part of the run.
+            ahead: Whether there was a later part.
         """
         with self._sending:
-            if changed is not None:
+            if self.status == "paused":
+                self.reason = changed
+            if ahead:
                 self._reached = 0
-                if self.status == "paused":
-                    self.reason = changed
-            if changed is not None or events < self._sent:
+            if ahead or events < self._sent:
                 self._sent = min(self._sent, events)
                 self._cut(events)
 

@@ -3,18 +3,20 @@ within ticks, and their paths."""
 
 from __future__ import annotations
 
+import math
 from array import array
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Sequence
+from itertools import groupby
 
 import mujoco
 import numpy as np
 from mujoco import MjData
 
 from actr3d.actr.kernel.run_limits import Contacts
+from actr3d.clock import seconds
 from actr3d.recording.writer import State as RecordedState
 from actr3d.world import World
-from workbench.curves import INTEGRATION, Moment, harder
+from workbench.curves import INTEGRATION, Moment, harder, place_and_speed
 
 MAX_BYTES = 48_000_000
 """Above this size every second state is dropped, so that memory use stays bounded for long runs; a walker's state takes 1.8 kB."""
@@ -24,6 +26,10 @@ STEP = 50_000
 """Interval between two points of a path [us]."""
 CONTACTS = 500
 """The memory that the contacts of a tick take, approximately [bytes]."""
+NEAR = 0.05
+"""How much farther than its speed allows a body may have moved between two points that are joined [m]."""
+NUMBERS = 4
+"""So many numbers are stored of a point."""
 MAX_POINTS = 1_000
 """Maximum number of points that are drawn; if there are more, every second one is left out, repeatedly."""
 
@@ -131,6 +137,8 @@ class Past:
 class Walked:
     """Stores the positions of bodies on the floor, including those ahead of the present after the run has gone back.
 
+    Where a body was put somewhere else at once, its path has a gap: it moved farther than its speed allows.
+
     Args:
         period: Length of a tick [us].
     """
@@ -138,8 +146,10 @@ class Walked:
     def __init__(self, period: int) -> None:
         self._every = max(1, STEP // period)
         """Only every n-th tick has a point."""
+        self._interval = seconds(self._every * period)
+        """The time between two points [s]."""
         self._points: dict[str, array[float]] = {}
-        """By body: x and y of each point [m]."""
+        """By body: x and y of each point [m], its speed [m/s], and the number of the piece of the path."""
         self._count = 0
         self._data: MjData | None = None
 
@@ -147,35 +157,48 @@ class Walked:
         """Stores the positions at the end of a tick, or at the start of the run (tick 0); known ticks are skipped."""
         if tick != self._count * self._every:
             return
-        for name, place in self._places(world).items():
-            self._points.setdefault(name, array("d")).extend(place)
+        for name, point in self._present(world, self._count).items():
+            self._points.setdefault(name, array("d")).extend(point)
         self._count += 1
 
     def cut(self, tick: int) -> None:
         """Removes what came after a tick, because the run continues differently."""
         self._count = min(self._count, tick // self._every + 1)
         for points in self._points.values():
-            del points[2 * self._count :]
+            del points[NUMBERS * self._count :]
 
-    def up_to(self, tick: int, world: World) -> dict[str, list[list[float]]]:
-        """Returns the paths up to the current tick, by body: positions (x, y) [m]."""
+    def up_to(self, tick: int, world: World) -> dict[str, list[list[list[float]]]]:
+        """Returns the paths up to the current tick, by body: pieces of positions (x, y) [m]."""
         count = tick // self._every + 1
         stride = 1
         while count > MAX_POINTS * stride:
             stride *= 2
-        here = {} if tick % (self._every * stride) == 0 else self._places(world)
-        return {name: [*_pairs(points, count, stride), *([here[name]] if here else [])] for name, points in self._points.items()}
+        here = {} if tick % (self._every * stride) == 0 else self._present(world, count)
+        return {name: _pieces([*_points(points, count, stride), *([here[name]] if here else [])]) for name, points in self._points.items()}
 
-    def _places(self, world: World) -> dict[str, list[float]]:
-        """Returns the positions of the bodies. They are computed here, as those in the world's data are from before its last step."""
+    def _present(self, world: World, count: int) -> dict[str, list[float]]:
+        """Returns the points of the bodies now, after `count` points. They are computed here, as the positions in the world's data are
+        from before its last step."""
         if self._data is None:
             self._data = MjData(world.mj_model)
         numbers = np.frombuffer(world.state_bytes())
         mujoco.mj_setState(world.mj_model, self._data, numbers, INTEGRATION)
-        mujoco.mj_kinematics(world.mj_model, self._data)
-        places: Any = self._data.xpos
-        return {name: places[body.root, :2].tolist() for name, body in world.bodies.items()}
+        for compute in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_comVel):
+            compute(world.mj_model, self._data)
+        now = {name: place_and_speed(world.mj_model, self._data, body.root) for name, body in world.bodies.items()}
+        return {name: self._point(name, count, *values) for name, values in now.items()}
+
+    def _point(self, name: str, count: int, x: float, y: float, speed: float) -> list[float]:
+        if count == 0:
+            return [x, y, speed, 0]
+        x_before, y_before, speed_before, piece = self._points[name][NUMBERS * (count - 1) : NUMBERS * count]
+        is_joined = math.hypot(x - x_before, y - y_before) <= max(speed, speed_before) * self._interval + NEAR
+        return [x, y, speed, piece if is_joined else piece + 1]
 
 
-def _pairs(points: array[float], count: int, stride: int) -> list[list[float]]:
-    return [[points[2 * number], points[2 * number + 1]] for number in range(0, count, stride)]
+def _points(points: array[float], count: int, stride: int) -> Iterator[Sequence[float]]:
+    return (points[NUMBERS * number : NUMBERS * (number + 1)] for number in range(0, count, stride))
+
+
+def _pieces(points: Sequence[Sequence[float]]) -> list[list[list[float]]]:
+    return [[[x, y] for x, y, *_ in piece] for _, piece in groupby(points, lambda point: point[-1])]

@@ -6,8 +6,9 @@ Each is made with its memory: `dm_n = DMNoise(memory, noise=0.3)`. A chunk's act
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from random import Random
-from typing import Any, Final, Protocol, cast
+from typing import Any, Final, Protocol, TypeVar, cast
 
 from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.kernel.model import Model, ensure_converted, is_converted
@@ -15,6 +16,30 @@ from actr3d.actr.kernel.noise import logistic_noise
 from actr3d.actr.kernel.parameters import Count, NotNegative, WithParameters, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
 from actr3d.errors import ChunkError, ParameterError
+from actr3d.registry import Registry
+
+T = TypeVar("T", bound=type[Any])
+
+ACTIVATION_PARTS: Registry[str] = Registry("part of an activation")
+"""The names that users see for the parts of an activation, by their name in explanations and traces."""
+
+
+def activation_part(title: str, name: str | None = None) -> Callable[[T], T]:
+    """Returns a decorator that registers the name that users see for what a class adds to activations.
+
+    Args:
+        title: The name that users see.
+        name: The name in explanations and traces; None for that of the class.
+
+    Raises:
+        ValueError: If there is a part of this name already.
+    """
+
+    def register(kind: T) -> T:
+        ACTIVATION_PARTS.add(name or kind.__name__, title, kind.__module__)
+        return kind
+
+    return register
 
 
 class ActivatedMemory(Protocol):
@@ -89,6 +114,7 @@ class MemorySubModule(WithParameters):
         return PYTHON_ACTR if self.parent is None else self.parent.effective_profile
 
 
+@activation_part("noise")
 class DMNoise(MemorySubModule):
     """Adds logistic noise to activations.
 
@@ -140,6 +166,7 @@ class ByProfile:
 BY_PROFILE: Final = ByProfile()
 
 
+@activation_part("base level")
 class DMBaseLevel(MemorySubModule):
     """Base-level activation: the more often and the more recently a chunk was added, the more active it is.
 
@@ -252,6 +279,7 @@ def _sum_of_dropped(count: int, oldest: float, latest: float | None, d: float, y
     return count / (1 - d) * (math.pow(oldest, 1 - d) - math.pow(latest, 1 - d)) / (oldest - latest)
 
 
+@activation_part("fixed")
 class DMFixed(MemorySubModule):
     """Adds a fixed amount: `memory.add(chunk, fixed=2)`; adding an equal chunk again adds its amount.
 

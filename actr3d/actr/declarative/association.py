@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from actr3d.actr.chunks.chunk import Chunk
-from actr3d.actr.declarative.activation import BY_PROFILE, ActivatedMemory, ByProfile, DMBaseLevel, MemorySubModule
+from actr3d.actr.declarative.activation import BY_PROFILE, ActivatedMemory, ByProfile, DMBaseLevel, MemorySubModule, activation_part
 from actr3d.actr.declarative.spreading import countable
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.parameters import Count, NotNegative, named_parameters
@@ -18,6 +18,7 @@ class _Link:
     """An association between two slot values; it has a base level as chunks have."""
 
 
+@activation_part("association")
 class DMAssociate(MemorySubModule):
     """Learns which values are retrieved after which: each retrieval strengthens the links from the buffer's values.
 
@@ -88,6 +89,7 @@ class DMAssociate(MemorySubModule):
         return total * self.weight
 
 
+@activation_part("inhibition")
 class DMInhibition(MemorySubModule):
     """Inhibits recently used chunks: -ln(1 + t^-decayScale / timeScale), t since the latest use [s].
 

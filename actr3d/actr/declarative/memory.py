@@ -20,7 +20,7 @@ from actr3d.actr.kernel.buffer import Buffer, Harvester
 from actr3d.actr.kernel.log import dummy
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.noise import pick, total
-from actr3d.actr.kernel.parameters import Count, Extended, NotNegative, WithParameters, named_parameters, warn_of_slip
+from actr3d.actr.kernel.parameters import Count, Extended, NotNegative, WithParameters, named_parameters, warn_of_misspelling
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile, find_profile
 from actr3d.actr.kernel.tracing import chunk_text, traceable
 from actr3d.actr.kernel.tree import path_of
@@ -111,7 +111,7 @@ class Memory(WithParameters, Model):
         elif key in ("latency", "maximum_time"):
             self.__dict__[f"_{key}_given"] = True
         elif key not in self.__dict__:
-            warn_of_slip(self, key)
+            warn_of_misspelling(self, key)
         Model.__setattr__(self, key, value)
 
     # -- chunks

@@ -9,7 +9,7 @@ from typing import Any
 
 from actr3d.actr.chunks.chunk import Chunk, as_text
 from actr3d.actr.chunks.pattern import Pattern
-from actr3d.actr.declarative.activation import ActivatedMemory, MemorySubModule
+from actr3d.actr.declarative.activation import ActivatedMemory, MemorySubModule, activation_part
 from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.parameters import named_parameters
@@ -17,6 +17,7 @@ from actr3d.errors import ChunkError
 from actr3d.warnings import warn_modeller
 
 
+@activation_part("spreading")
 class DMSpreading(MemorySubModule):
     """Spreading activation: the chunks in buffers make related chunks more active.
 
@@ -177,6 +178,7 @@ def names_a_chunk(value: Any) -> bool:
     return text.lower().lstrip("+-") in ("nan", "inf", "infinity") and isinstance(value, str)
 
 
+@activation_part("salience")
 class DMSalience(MemorySubModule):
     """Makes chunks with rare values active: a value adds its weight times its information in bits, among the chunks of a context."""
 

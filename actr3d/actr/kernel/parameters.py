@@ -69,7 +69,7 @@ class WithParameters:
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name not in self.__dict__:
-            warn_of_slip(self, name)
+            warn_of_misspelling(self, name)
         super().__setattr__(name, value)
 
     def _settable(self) -> set[str]:
@@ -97,13 +97,13 @@ def settable_of(part: WithParameters) -> set[str]:
     return part._settable()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
 
 
-def warn_of_slip(part: WithParameters, name: str) -> None:
+def warn_of_misspelling(part: WithParameters, name: str) -> None:
     """Warns about a new attribute whose name is similar to that of a parameter; it has no effect."""
     if name[0] == "_":
         return
     hints = _HINTS.setdefault(type(part), {})
     if name not in hints:
-        hints[name] = "" if hasattr(type(part), name) else slip_hint(name, settable_of(part))
+        hints[name] = "" if hasattr(type(part), name) else misspelling_hint(name, settable_of(part))
     if hints[name]:
         warn_modeller(f"{type(part).__name__} has no parameter '{name}'{hints[name]}")
 
@@ -111,7 +111,7 @@ def warn_of_slip(part: WithParameters, name: str) -> None:
 _HINTS: WeakKeyDictionary[type, dict[str, str]] = WeakKeyDictionary()
 
 
-def slip_hint(name: str, known: set[str]) -> str:
+def misspelling_hint(name: str, known: set[str]) -> str:
     """Returns a hint for a name that looks like a misspelt parameter; otherwise an empty text.
 
     A name that extends a known one (`times`, where there is `time`), or is the first words of one, does not count as misspelt.

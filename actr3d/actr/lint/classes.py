@@ -13,7 +13,7 @@ from typing import Any
 
 from actr3d.actr.kernel.class_members import is_modellers
 from actr3d.actr.kernel.model import Model
-from actr3d.actr.kernel.parameters import WithParameters, settable_of, slip_hint
+from actr3d.actr.kernel.parameters import WithParameters, misspelling_hint, settable_of
 from actr3d.actr.kernel.source_code import SOURCE, source_of, syntax_tree
 from actr3d.actr.procedural.rebinding import stored_names
 from actr3d.actr.procedural.utility import utility_modules
@@ -84,7 +84,7 @@ def check_parameters(system: WithParameters) -> None:
         if not is_modellers(klass):
             continue
         for name, value in vars(klass).items():
-            hint = "" if inspect.isfunction(value) or isinstance(value, Model) else slip_hint(name, settable_of(system))
+            hint = "" if inspect.isfunction(value) or isinstance(value, Model) else misspelling_hint(name, settable_of(system))
             if hint:
                 filename, line = _place_of_attribute(klass, name)
                 message = f"class {klass.__name__} has an attribute '{name}', which is not a parameter{hint}"

@@ -18,7 +18,7 @@ from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import MethodWrapper, Model
 from actr3d.actr.kernel.source_code import function_node, names_defined_in, source_of, syntax_tree
 from actr3d.actr.lint.slot_inference import slots_held
-from actr3d.actr.lint.slot_names import GIVERS, READERS, SURE, slip_of, slots_in, text_of, vocabulary
+from actr3d.actr.lint.slot_names import GIVERS, READERS, SURE, misspelling_of, slots_in, text_of, vocabulary
 from actr3d.actr.modules.imaginal import ImaginalModule
 from actr3d.actr.procedural.production import Production
 from actr3d.errors import PatternException, did_you_mean
@@ -35,6 +35,7 @@ def check_actions(production: Production, productions: Sequence[Production]) -> 
     func, context = production.original_func, production.context
     where = f"production '{production.name}': "
     _check_brackets(node, func, context)
+    _check_inner(production, node)
     known = {*production.variables, *production.assigned}
     if not production.any_bound:
         _check_names(production, known, where)
@@ -59,6 +60,20 @@ def _check_names(production: Production, known: set[str], where: str) -> None:
         if isinstance(part, ast.Name) and part.id not in inside:
             inside.add(part.id)
             warn_at(f"{where}nothing defines '{part.id}'{did_you_mean(part.id, {*known, *production.context})}", func, part.lineno)
+
+
+def _check_inner(production: Production, node: ast.FunctionDef) -> None:
+    """Finds productions that are defined inside another one, which does not call them."""
+    inside = [part for statement in node.body for part in ast.walk(statement)]
+    read = {part.id for part in inside if isinstance(part, ast.Name)}
+    for part in inside:
+        if not isinstance(part, ast.FunctionDef) or part.name in read:
+            continue
+        names = [one.arg for one in part.args.args]
+        matched = [name for name in names if isinstance(production.context.get(name), Model)]
+        if names and matched == names and len(part.args.defaults) == len(names):
+            what = f"'{part.name}' is inside it, and therefore no production; it needs the indentation of '{production.name}'"
+            warn_at(f"production '{production.name}': {what}", production.original_func, part.lineno)
 
 
 @lru_cache(maxsize=16)
@@ -140,7 +155,7 @@ def _check_slots(call: ast.Call, owner: object, method: str, func: Callable[...,
         read = words.matched | words.asked
         slots = [slot for slot in slots_in(text) if slot not in read | words.mentioned | words.modified]
         read &= words.giving  # slots that are read but never set are reported where they are read
-        near = [(slot, slip_of(slot, (other for other in read if words.apart(slot, other)))) for slot in slots]
+        near = [(slot, misspelling_of(slot, (other for other in read if words.apart(slot, other)))) for slot in slots]
         found = [
             (slot, f"no production and no request reads a slot '{slot}'", f"; did you mean '{meant}'?") for slot, meant in near if meant
         ]
@@ -171,7 +186,7 @@ def _check_wildcards(call: ast.Call, func: Callable[..., Any], where: str, known
     except PatternException:
         return  # the request itself will raise this
     for name in sorted(names):
-        meant = slip_of(name, known)
+        meant = misspelling_of(name, known)
         if meant and _VARIABLE.findall(source_of(func)).count(name) == 1:
             warn_at(f"{where}'?{name}' in '{text}' matches anything; did you mean '?{meant}'?", func, call.lineno)
 

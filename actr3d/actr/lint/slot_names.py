@@ -128,12 +128,12 @@ def slots_in(text: str) -> list[str]:
     return _NAMED.findall(text)
 
 
-def slip_of(name: str, known: Iterable[str]) -> str | None:
+def misspelling_of(name: str, known: Iterable[str]) -> str | None:
     """Returns the known name of which `name` looks like a misspelling."""
-    return next((other for other in sorted(known) if is_slip(name, other)), None)
+    return next((other for other in sorted(known) if is_misspelt(name, other)), None)
 
 
-def is_slip(one: str, other: str) -> bool:
+def is_misspelt(one: str, other: str) -> bool:
     """Returns whether two names differ by one typing error: a letter too many, too few or wrong, two exchanged, or capitals.
 
     Deliberately similar names do not count: `num1` and `num2`, `left_x` and `left_y`, `word` and `words`, `height` and

@@ -1,4 +1,4 @@
-"""Converts the answers of a body to the forms that agents, traces and recordings need."""
+"""Converts answers to the forms that agents, traces, recordings and pages need: those of a body, and those to questions of a page."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def own_answer(answer: Any) -> Any:
 
 
 def plain_answer(answer: Any) -> Any:
-    """Returns an answer as plain values, lists and dicts.
+    """Returns any answer as plain values, lists and dicts: a reading of a sensor, an explanation, a row of a table.
 
     A frozen dataclass becomes a dict of its fields except those marked `NOT_TRACED`; an object with a `summary()`, such as a view,
     becomes that.

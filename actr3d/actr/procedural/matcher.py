@@ -385,7 +385,7 @@ class Observed:
             self._listener, self._reported = listener, {}
         known = self.everything()
         news = {label: value for label, value in known.items() if self._reported.get(label, UNKNOWN) != value}
-        # The trace's other events now report what is not included here; if it is included again, that is news.
+        # Other events of the trace report what is missing here. If it is here again in a later call, it counts as changed.
         self._reported = known
         return news
 

@@ -72,9 +72,9 @@ def set_rows(patch: Record, place: Array, yy: float, yz: float, zz: float, optic
     Args:
         patch: The patch whose rows and bounds are set.
         place: The centre in the eye's frame [m].
-        yy: With yz and zz, the squares of its half axes, rotated into the eye's frame; may be flat [m^2].
-        yz: As above.
-        zz: As above.
+        yy: An entry of the matrix of its squared half axes, rotated into the eye's frame [m^2]; the ellipsoid may be flat.
+        yz: Another entry of this matrix.
+        zz: Another entry of this matrix.
         optics: The constants of the eye.
         joined: Whether to extend the rows and bounds already set, to cover the space between this and another ellipsoid.
     """

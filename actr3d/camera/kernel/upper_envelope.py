@@ -81,18 +81,18 @@ def trace_row(v: float, level: float, optics: Record, row: Row, count: int, exte
         extents: The output array, filled as far as there is room; `label` holds the object.
         first: The number of extents already written.
     """
-    done, waiting, present, start, floor = first, zero(), zero(), -optics.right, -math.inf
+    done, processed, present, start, floor = first, zero(), zero(), -optics.right, -math.inf
     sort_by_start(row.order, row.starts, row.pieces, count)
     while True:
-        waiting, present = _activate(start, row, count, waiting, present, floor)
+        processed, present = _activate(start, row, count, processed, present, floor)
         if present == 0:
-            if waiting == count:
+            if processed == count:
                 return end_row(v, optics, row.pieces, extents, first, done)
-            start = row.starts[waiting]
+            start = row.starts[processed]
             continue
         front, rivals, end = _front(row, present)
         floor = row.pieces[front].floor
-        waiting, present, end = _activate_behind(end, row, count, waiting, present, front)
+        processed, present, end = _activate_behind(end, row, count, processed, present, front)
         if rivals == 1:
             done = _append_stretch(front, start, end, level, optics, row, rivals, extents, first, done)
         else:
@@ -107,7 +107,7 @@ def trace_row(v: float, level: float, optics: Record, row: Row, count: int, exte
 
 
 @compiled
-def _activate(start: float, row: Row, count: int, waiting: int, present: int, floor: float) -> tuple[int, int]:
+def _activate(start: float, row: Row, count: int, processed: int, present: int, floor: float) -> tuple[int, int]:
     """Activates the pieces that begin at a tangent, and skips those that one active piece hides completely.
 
     Returns the number of pieces already processed (activated or skipped), and the number of active pieces.
@@ -116,21 +116,21 @@ def _activate(start: float, row: Row, count: int, waiting: int, present: int, fl
         start: The tangent.
         row: The row.
         count: The number of pieces.
-        waiting: The number of pieces already processed.
+        processed: The number of pieces already processed: activated or skipped.
         present: The number of active pieces.
         floor: The greatest floor of the active pieces, or more.
     """
-    while waiting < count:
-        number = row.order[waiting]
+    while processed < count:
+        number = row.order[processed]
         piece = row.pieces[number]
         if floor <= piece.ceiling or not _hidden(piece, row, present):
-            if row.starts[waiting] > start + NEGLIGIBLE:
+            if row.starts[processed] > start + NEGLIGIBLE:
                 break
             row.active[present] = number
             present += 1
             floor = max(floor, piece.floor)
-        waiting += 1
-    return waiting, present
+        processed += 1
+    return processed, present
 
 
 @compiled
@@ -166,22 +166,22 @@ def _front(row: Row, present: int) -> tuple[int, int, float]:
 
 
 @compiled
-def _activate_behind(end: float, row: Row, count: int, waiting: int, present: int, front: int) -> tuple[int, int, float]:
+def _activate_behind(end: float, row: Row, count: int, processed: int, present: int, front: int) -> tuple[int, int, float]:
     """Processes the pieces that begin before a tangent completely behind the front piece; activates those that end after the front piece.
 
     Returns the number of pieces already processed, the number of active pieces, and the tangent at which the next piece begins, or
     the given tangent.
     """
     floor, high = row.pieces[front].floor, row.pieces[front].high
-    while waiting < count and row.starts[waiting] < end:
-        number = row.order[waiting]
+    while processed < count and row.starts[processed] < end:
+        number = row.order[processed]
         if row.pieces[number].ceiling >= floor:
-            return waiting, present, row.starts[waiting]
+            return processed, present, row.starts[processed]
         if row.pieces[number].high > high:
             row.active[present] = number
             present += 1
-        waiting += 1
-    return waiting, present, end
+        processed += 1
+    return processed, present, end
 
 
 @compiled
@@ -215,7 +215,7 @@ def _trace_stretch(
 def _append_stretch(
     winner: int, low: float, high: float, level: float, optics: Record, row: Row, rivals: int, extents: Records, first: int, done: int
 ) -> int:
-    """Appends a stretch in which one piece is nearest, or extends the last extent by it; does nothing for the background."""
+    """Appends a stretch in which one piece is nearest, or extends the last extent to its end; does nothing for the background."""
     object = row.pieces[winner].object
     if object == BACKGROUND:
         return done

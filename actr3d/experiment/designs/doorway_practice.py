@@ -11,7 +11,7 @@ BODIES = {"shoulder_width": Uniform(low=0.36, high=0.52), "speed": Uniform(low=0
 
 @design
 def doorway_practice() -> Design:
-    """Walking through doorways with turns that are not chosen: what the `predictive` walker remembers of passages with empty hands.
+    """Walking through doorways with given turns: what the `predictive` walker remembers of passages with empty hands.
 
     Bodies, speeds and doorways are random. `python -m actr3d.experiment.aperture FOLDER ...` makes the file of
     experiences that is shipped, from this design, from `bar_practice`, and from both with `--set gait=False`.
@@ -34,7 +34,7 @@ def doorway_practice() -> Design:
 
 @design
 def bar_practice() -> Design:
-    """Walking through doorways with a bar in the hands, with turns that are not chosen: what the `predictive` walker remembers of these.
+    """Walking through doorways with a bar in the hands and given turns: what the `predictive` walker remembers of these.
 
     The length of the bar is random, too (0.3 to 1.2 m); doorways are from 0.6 to 1.5 times as wide as the wider of body and bar.
     """

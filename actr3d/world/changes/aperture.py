@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 from annotated_types import Ge
 
@@ -25,6 +26,10 @@ class SetAperture(Change):
     """The free width [m]."""
     name: str = "aperture"
     """The aperture."""
+
+    @classmethod
+    def present(cls, on: World, named: Mapping[str, Any]) -> dict[str, Any]:
+        return {"width": on.aperture_width(named["name"])}
 
     def carry_out(self, on: World) -> None:
         on.set_aperture_width(self.width, self.name)

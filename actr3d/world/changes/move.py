@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 from annotated_types import Ge, Le
 
@@ -31,6 +32,10 @@ class MoveObject(Change):
     """The place along the y axis of the world [m]: to the left of the x axis, seen from above."""
     heading: Heading | None = None
     """The angle from the x axis of the world to the left [rad]; empty: it keeps its heading."""
+
+    @classmethod
+    def present(cls, on: World, named: Mapping[str, Any]) -> dict[str, Any]:
+        return dict(zip(("x", "y", "heading"), on.objects.pose(named["object"]), strict=True))
 
     def carry_out(self, on: World) -> None:
         on.move(self.object, self.x, self.y, self.heading)

@@ -73,4 +73,4 @@ const theme = EditorView.theme({
   ".cm-collapsedLines": { color: "var(--quiet)", background: "var(--raised)" },
 });
 
-export const look = [theme, syntaxHighlighting(style)];
+export const codeTheme = [theme, syntaxHighlighting(style)];

@@ -4,7 +4,7 @@ import { html, useLayoutEffect, useRef, useState } from "../vendor/preact.js";
 import { ChangeMenu } from "../changes/changes.js";
 import { counted } from "../parts/count.js";
 import { runOf, systemsOf } from "./agents.js";
-import { at, production } from "./asked.js";
+import { at, production } from "./explanation.js";
 import { breakpoints, held, toggleBreakpoint } from "./breakpoints.js";
 import { chosenText, isBare, isGone, nothing } from "../run_status.js";
 import { state } from "../store.js";

@@ -4,7 +4,7 @@ import { html } from "../vendor/preact.js";
 import { isGone, runStatus } from "../run_status.js";
 
 /** @param answer The result of `useAnswer`. */
-export function Waiting({ answer }) {
+export function Placeholder({ answer }) {
   const { is, text } = runStatus.value;
   if (isGone.value) return html`<p class="empty">${text}</p>`;
   if (is === "busy" || is === "halted") return html`<p class="late" role="status">${text}</p>`;
