@@ -1,4 +1,4 @@
-"""Base level, noise, fixed amounts, salience and spreading, against numbers worked out here by other means."""
+"""Base level, noise, fixed amounts, salience and spreading, against numbers computed here by other means."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from actr3d.actr import Buffer, Chunk, DMBaseLevel, DMFixed, DMNoise, Memory, MemorySubModule
 from actr3d.errors import ChunkError, ParameterError
-from tests.helpers.small_agents import living, near
+from tests.helpers.small_agents import near, started_agent
 
 getcontext().prec = 40
 PROFILES = ["python-actr", "act-r-7"]
@@ -22,7 +22,7 @@ PUBLISHED = {None: -0.18235, 0: 0.0, 1: -0.07902}
 
 def base_level(times: list[float], read: float, profile: str = "python-actr", **options: Any) -> float:
     memory = Memory(Buffer())
-    agent = living(profile, memory=memory, base=DMBaseLevel(memory, **options))
+    agent = started_agent(profile, memory=memory, base=DMBaseLevel(memory, **options))
     for time in times:
         agent.run(time - agent.now())
         agent.memory.add("a")
@@ -55,7 +55,7 @@ def test_published_base_levels(profile: str, limit: int | None) -> None:
 
 
 @pytest.mark.parametrize(("profile", "expected"), [("python-actr", None), ("act-r-7", 0)])
-def test_which_form_is_the_profiles_own(profile: str, expected: int | None) -> None:
+def test_each_profile_has_its_own_form(profile: str, expected: int | None) -> None:
     times = [0, 10, 40, 70, 90.0]
     assert base_level(times, 100, profile) == base_level(times, 100, profile, limit=expected)
 
@@ -108,14 +108,14 @@ def test_youngest_age() -> None:
 @pytest.mark.parametrize("decay", [0.0, 0.5, 1, 1.0, 2.0, None])
 @pytest.mark.parametrize("limit", [None, 0, 1, 3])
 @pytest.mark.parametrize("times", [[0.0, 0.0, 0.0, 0.0, 0.0], [3.0] * 3, [0.0, 3.0, 3.0, 3.0]], ids=str)
-def test_there_is_always_a_number(profile: str, decay: float | None, limit: int | None, times: list[float]) -> None:
+def test_the_base_level_is_always_a_finite_number(profile: str, decay: float | None, limit: int | None, times: list[float]) -> None:
     for read in (3.0, 3.001, 4.0):
         value = base_level(times, read, profile, decay=decay, limit=limit)
         assert math.isfinite(value)
         assert value <= math.log(len(times) * 2 * 0.001 ** -(decay or 0)) + 1e-9
 
 
-def test_simultaneous_references_count_as_often_as_they_are() -> None:
+def test_simultaneous_references_each_count() -> None:
     assert base_level([2.0] * 5, 6.0, limit=2) == near(math.log(5 * 4**-0.5))
 
 
@@ -124,11 +124,11 @@ def test_references_of_the_past() -> None:
         ("python-actr", None, math.log(110**-0.5 + 60**-0.5)),
         ("act-r-7", None, math.log(110**-0.5 + 60**-0.5)),
         ("act-r-7", 0, math.log(2 / 0.5) - 0.5 * math.log(110)),
-        ("python-actr", 0, math.log(2 / 0.5) - 0.5 * math.log(10)),  # life begins with being added
+        ("python-actr", 0, math.log(2 / 0.5) - 0.5 * math.log(10)),  # the chunk exists from when it is added
         ("python-actr", 1, math.log(60**-0.5 + 2 * (10**0.5 - 60**0.5) / (10 - 60))),
     ]:
         memory = Memory(Buffer())
-        agent = living(profile, memory=memory, base=DMBaseLevel(memory, limit=limit))
+        agent = started_agent(profile, memory=memory, base=DMBaseLevel(memory, limit=limit))
         agent.memory.add("a", time=100)
         agent.memory.add("a", time=50)
         agent.run(10)
@@ -137,7 +137,7 @@ def test_references_of_the_past() -> None:
 
 def test_a_given_base_level_stays_until_it_is_to_be_calculated() -> None:
     memory = Memory(Buffer())
-    agent = living(memory=memory, base=DMBaseLevel(memory))
+    agent = started_agent(memory=memory, base=DMBaseLevel(memory))
     agent.memory.add("a", baselevel=2.5)
     agent.run(4)
     assert agent.memory.get_activation("a") == 2.5
@@ -148,9 +148,9 @@ def test_a_given_base_level_stays_until_it_is_to_be_calculated() -> None:
     assert agent.memory.get_activation("b") == near(math.log(2 * 0.005**-0.5))
 
 
-def test_a_chunk_that_the_module_never_met() -> None:
+def test_a_chunk_that_is_unknown_to_the_module() -> None:
     memory = Memory(Buffer())
-    agent = living(memory=memory, base=DMBaseLevel(memory))
+    agent = started_agent(memory=memory, base=DMBaseLevel(memory))
     agent.memory.dm.append(Chunk("a"))
     with pytest.raises(ChunkError, match="DMBaseLevel has no data about chunk 'a': add it"):
         agent.memory.get_activation("a")
@@ -158,7 +158,7 @@ def test_a_chunk_that_the_module_never_met() -> None:
 
 def test_noise_has_the_logistic_distributions_moments() -> None:
     memory = Memory(Buffer())
-    agent = living(memory=memory, noise=DMNoise(memory, noise=0.4), seed=5)
+    agent = started_agent(memory=memory, noise=DMNoise(memory, noise=0.4), seed=5)
     agent.memory.add("a")
     n = 20_000
     drawn = [agent.memory.get_activation("a") for _ in range(n)]
@@ -176,7 +176,7 @@ def test_base_noise_is_drawn_once_for_each_chunk_and_each_agent() -> None:
         memory = Memory(Buffer())
         noise = DMNoise(memory, noise=0, baseNoise=1.0)
         memory.add("a")  # as in a class's body: there is no model yet
-        agent = living(memory=memory, noise=noise, seed=seed)
+        agent = started_agent(memory=memory, noise=noise, seed=seed)
         agent.memory.add("b")
         values = [agent.memory.get_activation(text) for text in "abab"]
         assert values[:2] == values[2:]
@@ -190,7 +190,7 @@ def test_base_noise_is_drawn_once_for_each_chunk_and_each_agent() -> None:
 
 def test_fixed_amounts_add_up() -> None:
     memory = Memory(Buffer())
-    agent = living(memory=memory, fixed=DMFixed(memory, default=0.25))
+    agent = started_agent(memory=memory, fixed=DMFixed(memory, default=0.25))
     agent.memory.add("a")
     agent.memory.add("b", fixed=2)
     agent.memory.add("b", fixed=0.5)
@@ -199,7 +199,7 @@ def test_fixed_amounts_add_up() -> None:
     assert [agent.memory.get_activation(text) for text in "abc"] == [0.25, 2.5, 0.25]
 
 
-def test_modules_add_up_in_order_and_may_be_ones_own() -> None:
+def test_modules_add_up_in_order_and_may_be_user_defined() -> None:
     class Own(MemorySubModule):
         def __init__(self, memory: Memory) -> None:
             MemorySubModule.__init__(self, memory)
@@ -221,7 +221,7 @@ def test_modules_add_up_in_order_and_may_be_ones_own() -> None:
             return chunk.worth
 
     memory = Memory(Buffer())
-    agent = living(memory=memory, own=Own(memory), fixed=DMFixed(memory, default=0.1))
+    agent = started_agent(memory=memory, own=Own(memory), fixed=DMFixed(memory, default=0.1))
     agent.memory.add("a x", worth=1)
     agent.memory.add("a y", worth=2, fixed=0.2)
     agent.memory.add("a x", worth=3)
@@ -237,7 +237,7 @@ def test_the_order_in_which_uses_are_declared_does_not_count_in_act_r_7(limit: i
     found: list[float] = []
     for times in ([50, 10, 30], [10, 30, 50], [30, 50, 10]):
         memory = Memory(Buffer())
-        agent = living("act-r-7", memory=memory, base=DMBaseLevel(memory, limit=limit))
+        agent = started_agent("act-r-7", memory=memory, base=DMBaseLevel(memory, limit=limit))
         for time in times:
             agent.memory.add("x", time=time)
         agent.run(1)
@@ -245,9 +245,9 @@ def test_the_order_in_which_uses_are_declared_does_not_count_in_act_r_7(limit: i
     assert found == near([found[0]] * 3)
 
 
-def test_times_that_are_not_kept_cannot_come_back() -> None:
+def test_discarded_times_cannot_be_used_again() -> None:
     memory = Memory(Buffer())
-    agent = living(memory=memory, base=DMBaseLevel(memory, limit=0))
+    agent = started_agent(memory=memory, base=DMBaseLevel(memory, limit=0))
     agent.memory.add("x")
     agent.memory.add("x")
     with pytest.raises(ParameterError, match=r"DMBaseLevel\.limit: must be a number, because times of references have not been kept"):

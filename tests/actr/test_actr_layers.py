@@ -35,7 +35,7 @@ def folder_of(name: str) -> str:
     return name.split(".")[0]
 
 
-def test_a_folder_imports_only_what_stands_below_it() -> None:
+def test_a_folder_imports_only_lower_layers() -> None:
     assert len(FILES) > 50
     prefix, wrong = "actr3d.actr.", dict[str, set[str]]()
     for path in FILES:

@@ -1,4 +1,4 @@
-"""Changes by hand of agents: buffers, memories, productions; each is explained, traced, and exact after going back."""
+"""Changes by hand of agents: buffers, memories, productions; each is explained, traced, and exact after a seek."""
 
 from __future__ import annotations
 

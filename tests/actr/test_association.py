@@ -1,4 +1,4 @@
-"""Learned associations and inhibition, against sums written out."""
+"""Learned associations and inhibition, against explicit sums."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import pytest
 
 from actr3d.actr import Buffer, Chunk, DMAssociate, DMInhibition, Memory
 from actr3d.errors import ChunkError
-from tests.helpers.small_agents import living, near
+from tests.helpers.small_agents import near, started_agent
 
 
 def associating(profile: str = "python-actr", **options: Any) -> Any:
     buffer, focus = Buffer(), Buffer()
     memory = Memory(buffer, latency=0.05, threshold=None)
-    return living(profile, buffer=buffer, focus=focus, memory=memory, links=DMAssociate(memory, focus, **options))
+    return started_agent(profile, buffer=buffer, focus=focus, memory=memory, links=DMAssociate(memory, focus, **options))
 
 
 def test_a_given_association() -> None:
@@ -29,7 +29,7 @@ def test_a_given_association() -> None:
     assert agent.memory.get_activation("b") == near(2 * 2 * -0.1)
 
 
-def test_retrievals_strengthen_links_whose_time_stands_still_in_python_act_r() -> None:
+def test_retrievals_strengthen_links_which_do_not_decay_in_python_act_r() -> None:
     agent = associating()
     agent.memory.add("b")
     agent.focus.set("a c")
@@ -74,7 +74,7 @@ def test_links_of_values_that_cannot_be_hashed() -> None:
 
 def test_inhibition() -> None:
     memory = Memory(Buffer())
-    agent = living(memory=memory, inhibition=DMInhibition(memory, decayScale=0.8, timeScale=4))
+    agent = started_agent(memory=memory, inhibition=DMInhibition(memory, decayScale=0.8, timeScale=4))
     agent.memory.add("a")
     agent.run(3)
     agent.memory.add("a")

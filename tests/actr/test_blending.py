@@ -1,4 +1,4 @@
-"""Blending, against the published numbers and means worked out with high precision."""
+"""Blending, against the published numbers and means computed with high precision."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from actr3d.actr import BlendingMemory, Buffer, Chunk, DMFixed, DMNoise, Memory, Partial
 from actr3d.errors import ParameterError
-from tests.helpers.small_agents import living, near
+from tests.helpers.small_agents import near, started_agent
 
 getcontext().prec = 60
 
@@ -23,7 +23,7 @@ def blending(profile: str = "python-actr", noise: float | None = None, **options
     parts: dict[str, Any] = {"buffer": buffer, "memory": memory, "fixed": DMFixed(memory)}
     if noise is not None:
         parts["noise"] = DMNoise(memory, noise=noise)
-    return living(profile, **parts)
+    return started_agent(profile, **parts)
 
 
 def mean(rows: list[tuple[float, float]], t: float) -> float:
@@ -85,7 +85,7 @@ def test_the_threshold_is_compared_with_the_best_or_with_all_together() -> None:
         assert agent.memory.error is not arrives
 
 
-def test_a_chunk_without_numbers_takes_act_r_7s_time_all_the_same() -> None:
+def test_a_chunk_without_numbers_also_takes_act_r_7s_time() -> None:
     agent = blending("act-r-7")
     agent.memory.add("a:x", fixed=0.2)
     agent.memory.add("a:y", fixed=0.1)
@@ -125,7 +125,7 @@ def test_activations_of_any_size(profile: str, level: float) -> None:
     assert agent.buffer.chunk["n"] == near(1.75, rel=1e-9)
 
 
-def test_what_is_no_number_or_has_other_slots_stays_out_in_python_actr() -> None:
+def test_non_numbers_and_chunks_with_other_slots_are_left_out_in_python_actr() -> None:
     agent = blending()
     for text, fixed in [("n:2 a:x", 1.0), ("n:4 a:y", 1.0), ("n:many a:x", 0.5), ("n:100", 0.9), ("n:100 a:x b:y", 0.9)]:
         agent.memory.add(text, fixed=fixed)
@@ -152,7 +152,7 @@ def test_a_blend_of_partial_matches() -> None:
     memory: Any = BlendingMemory(buffer, threshold=-9)
     partial = Partial(memory, strength=2)
     partial.similarity("red", "pink", -0.3)
-    agent = living(buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
+    agent = started_agent(buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
     agent.memory.add("c:red n:1")
     agent.memory.add("c:pink n:5", fixed=0.1)
     agent.memory.request("c:red")
@@ -165,13 +165,13 @@ def test_a_blend_of_partial_matches() -> None:
 
 
 def blend_of(rows: list[tuple[str, float]], request: str, *similarities: tuple[str, str, float], temperature: float = 1.0) -> Any:
-    """Returns what is retrieved in ACT-R 7 from chunks with these activations."""
+    """Returns the blend in ACT-R 7 of chunks with these activations."""
     buffer = Buffer()
     memory: Any = BlendingMemory(buffer, threshold=None)
     partial = Partial(memory, strength=None)
     for a, b, value in similarities:
         partial.similarity(a, b, value)
-    agent = living("act-r-7", buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
+    agent = started_agent("act-r-7", buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
     agent.memory.temperature = temperature
     for text, activation in rows:
         agent.memory.add(text, fixed=activation)
@@ -210,7 +210,7 @@ def test_the_temperature_weighs_experiences() -> None:
     assert blend_of(rows, "is:thing", temperature=0.5)["size"] == "small"  # 4 and 3
 
 
-def test_of_equally_good_values_the_one_that_came_first_wins() -> None:
+def test_the_first_of_equally_good_values_wins() -> None:
     rows = [("is:thing size:large", 0.3), ("is:thing size:small", 0.3)]
     assert blend_of(rows, "is:thing")["size"] == "large"
     assert blend_of(rows[::-1], "is:thing")["size"] == "small"
@@ -236,7 +236,7 @@ def test_the_sum_of_numbers_does_not_make_up_for_missing_ones() -> None:
     assert blend_of(rows, "is:thing")["n"] == near(3.0)
 
 
-def test_what_was_asked_for_stays_as_it_was_asked_for() -> None:
+def test_requested_slots_keep_the_requested_values() -> None:
     rows = [("size:small n:1", 0.0), ("size:small n:2", 0.0)]
     chunk = blend_of(rows, "size:small n:1", ("small", "tiny", 0.0), ("1", "2", 0.0))
     assert chunk == {"size": "small", "n": "1"}
@@ -244,7 +244,7 @@ def test_what_was_asked_for_stays_as_it_was_asked_for() -> None:
     memory: Any = BlendingMemory(buffer, threshold=None)
     partial = Partial(memory, strength=0.1)
     partial.similarity("large", "small", -0.5)
-    agent = living("act-r-7", buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
+    agent = started_agent("act-r-7", buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
     agent.memory.add("size:small n:1", fixed=5)
     agent.memory.request("size:large")
     agent.run(10)
@@ -267,7 +267,7 @@ def test_values_of_any_kind_can_be_blended() -> None:
     rows: list[Any] = [{"v": [1, 2]}, {"v": True}, {"v": [1, 2], "k": 1}, {"v": math.inf}]
     buffer = Buffer()
     memory: Any = BlendingMemory(buffer, threshold=None)
-    agent = living("act-r-7", buffer=buffer, memory=memory, fixed=DMFixed(memory))
+    agent = started_agent("act-r-7", buffer=buffer, memory=memory, fixed=DMFixed(memory))
     for row in rows:
         agent.memory.add(row)
     agent.memory.request("v:?")

@@ -1,4 +1,4 @@
-"""Buffers: setting, changing, emptying, comparing, and what they say when it cannot be done."""
+"""Buffers: setting, changing, emptying, comparing, and errors."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def test_a_misspelt_slot_is_named() -> None:
         goal_of("hello").modify(_1="x")
 
 
-def test_a_slot_whose_own_name_begins_with_a_line() -> None:
+def test_a_slot_name_may_begin_with_an_underscore() -> None:
     goal = goal_of({"_a": 1, "_1": 2})
     goal.modify(_a=5)
     assert goal["_a"] == 5

@@ -73,7 +73,7 @@ def test_mappings_chunks_buffers_and_objects() -> None:
 
 
 @pytest.mark.parametrize("contents", [None, 5, 2.5, True, [1, 2], int, ["abc"], len])
-def test_what_makes_no_chunk_is_named(contents: object) -> None:
+def test_invalid_contents_of_a_chunk_are_named(contents: object) -> None:
     with pytest.raises(ChunkError, match=r"a chunk is made of text, a mapping, a chunk or an object \(got "):
         Chunk(contents)
 
@@ -140,7 +140,7 @@ def test_values_that_are_no_numbers(value: object) -> None:
     assert as_number(value) is None
 
 
-def test_copies_know_no_memory() -> None:
+def test_copies_belong_to_no_memory() -> None:
     agent: Any = Model()
     agent.retrieval = Buffer()
     agent.memory = Memory(agent.retrieval)

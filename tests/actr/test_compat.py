@@ -20,7 +20,7 @@ def cases(*programs: Program) -> list[object]:
 @pytest.mark.daily(35)
 @pytest.mark.parametrize(("program", "seed"), cases(*PROGRAMS))
 def test_prints_what_python_actr_prints(program: Program, seed: int, tmp_path: Path) -> None:
-    folder = tmp_path / "ours"  # a model's log goes into a folder beside its file
+    folder = tmp_path / "library"  # a model's log goes into a folder beside its file
     folder.mkdir()
     file = folder / program.file.name
     file.write_text(program.text, encoding="utf-8")
@@ -30,7 +30,7 @@ def test_prints_what_python_actr_prints(program: Program, seed: int, tmp_path: P
     assert done.stdout.splitlines() == peers["printed"].splitlines()
     assert done.stdout == peers["printed"]
     assert files_written(folder) == peers["files"]
-    assert len(done.stdout.splitlines()) > 3, f"{program.name} prints next to nothing: it shows nothing"
+    assert len(done.stdout.splitlines()) > 3, f"{program.name} prints too little to compare"
 
 
 @pytest.mark.parametrize(("program", "seed"), cases(*TUTORIAL_PROGRAMS))
@@ -39,7 +39,7 @@ def test_tutorial_models_print_what_they_print_under_python_actr(program: Progra
     done = run_command("run", str(program.file), "--seed", str(seed), folder=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout
-    # python_actr prints a last line of its own when a program that imports it ends.
+    # python_actr prints a last line when a program that imports it ends.
     assert done.stdout + "end...\n" == program.recorded(seed)["printed"]
 
 

@@ -1,4 +1,4 @@
-"""Production compilation: what is learned, and what its utility becomes in either profile."""
+"""Production compilation: the learned productions, and their utilities in both profiles."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def compiling(profile: str, until: float) -> Any:
     return agent
 
 
-def test_what_is_compiled() -> None:
+def test_pairs_of_productions_that_are_compiled() -> None:
     agent = compiling("python-actr", 0.4)
     assert [p.name for p in agent._productions] == ["answer", "ask", "stop", "ask-answer-1", "ask-answer-2"]
     first = agent._productions[3]
@@ -28,7 +28,7 @@ def test_what_is_compiled() -> None:
     assert first.post.name == "answer"
 
 
-def test_a_compiled_rule_does_both_at_once_without_memory() -> None:
+def test_a_compiled_rule_does_both_in_one_step_without_memory() -> None:
     agent = compiling("python-actr", 30)
     assert agent.goal.chunk is None
     agent._productions[3].base_utility = 100
@@ -39,7 +39,7 @@ def test_a_compiled_rule_does_both_at_once_without_memory() -> None:
     assert agent.memory._request_count == requests
 
 
-def test_python_act_r_leaves_it_at_nothing_until_it_earns_something() -> None:
+def test_in_python_act_r_its_utility_stays_0_until_a_reward() -> None:
     agent = compiling("python-actr", 2.0)
     assert len(agent.compiling.compiled) == 2
     assert [agent.get_activation(p) for p in agent.compiling.compiled.values()] == [0, 0]

@@ -1,4 +1,4 @@
-"""Saying why: now, at past times, and without changing anything."""
+"""Explanations of the present and of past times, which change nothing."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Agent(ACTR):
 
 
 def agent_of(source: str, seed: int = 3) -> Any:
-    """Returns an agent whose random numbers come from a seed."""
+    """Returns an agent with a seed for its random numbers."""
     agent = load_text(source, "explained.py").Agent()
     with RunLimits(seed=seed):
         ensure_converted(agent)
@@ -89,7 +89,7 @@ def test_the_past_is_explained_as_the_present_was(seed: int) -> None:
         assert agent.explain(then.time) == then
 
 
-def test_asking_changes_nothing() -> None:
+def test_reading_changes_nothing() -> None:
     runs: list[list[str]] = []
     for asks in (False, True):
         agent = agent_of(NOISY)
@@ -151,14 +151,14 @@ def test_the_first_failing_condition_is_named_with_what_was_expected_and_found()
     assert why.production("matching").selected
     assert why.production("matching").bindings == {"c": "red"}
     assert why.production("matching").utility == 0.5
-    told = {name: (r.condition, r.expected, r.found) for r in why.productions if not r.matches for name in [r.name]}
-    assert told["wrong_value"] == ("goal: colour:blue", "'blue'", "'red'")
-    assert told["no_such_slot"] == ("goal: sizes:3", "'3'", "no slot 'sizes'; did you mean 'size'?")
-    assert told["other_value"] == ("goal: colour:!red", "anything but 'red'", "'red'")
-    assert told["same"] == ("goal: size:?c", "'red' (?c)", "'3'")
-    assert told["empty_buffer"] == ("retrieval: 0:?x", "some value for ?x", "retrieval is empty")
-    assert told["not_empty"] == ("goal: None", "empty", "not empty")
-    assert told["says_no"][1] == "anything but False"
+    reasons = {name: (r.condition, r.expected, r.found) for r in why.productions if not r.matches for name in [r.name]}
+    assert reasons["wrong_value"] == ("goal: colour:blue", "'blue'", "'red'")
+    assert reasons["no_such_slot"] == ("goal: sizes:3", "'3'", "no slot 'sizes'; did you mean 'size'?")
+    assert reasons["other_value"] == ("goal: colour:!red", "anything but 'red'", "'red'")
+    assert reasons["same"] == ("goal: size:?c", "'red' (?c)", "'3'")
+    assert reasons["empty_buffer"] == ("retrieval: 0:?x", "some value for ?x", "retrieval is empty")
+    assert reasons["not_empty"] == ("goal: None", "empty", "not empty")
+    assert reasons["says_no"][1] == "anything but False"
     text = str(why)
     assert "+ matching: matches  ?c=red  <- selected" in text
     assert "expected 'blue', found 'red'" in text
@@ -171,25 +171,25 @@ def test_a_retrieval_is_explained_with_every_candidate_and_why_it_won_or_lost() 
     agent.traced()
     with pytest.warns(UserWarning, match="sizes"):
         agent.run(0.051)
-    (told,) = agent.explain().retrievals
-    assert (told.request, told.asked, told.threshold, told.outcome) == ("kind:fruit", "kind:fruit", 0.5, "pending")
-    assert [(c.chunk, c.activation, c.verdict) for c in told.candidates] == [
+    (retrieval,) = agent.explain().retrievals
+    assert (retrieval.request, retrieval.asked, retrieval.threshold, retrieval.outcome) == ("kind:fruit", "kind:fruit", 0.5, "pending")
+    assert [(c.chunk, c.activation, c.verdict) for c in retrieval.candidates] == [
         ("kind:fruit name:apple", 2, "won"),
         ("kind:fruit name:pear", 1, "lost by 1"),
         ("kind:fruit name:plum", 0.25, "lost by 1.75"),
     ]
-    assert told.candidates[1].parts == {"DMFixed": 1}
+    assert retrieval.candidates[1].parts == {"DMFixed": 1}
     agent.run(0.06)
-    (told,) = agent.explain().retrievals
-    assert told.require_new
-    assert told.finsts == ("kind:fruit name:apple",)
-    assert told.excluded == ("kind:fruit name:apple",)
-    assert told.candidates[0].chunk == "kind:fruit name:pear"
+    (retrieval,) = agent.explain().retrievals
+    assert retrieval.require_new
+    assert retrieval.finsts == ("kind:fruit name:apple",)
+    assert retrieval.excluded == ("kind:fruit name:apple",)
+    assert retrieval.candidates[0].chunk == "kind:fruit name:pear"
     agent.run(0.3)
-    (told,) = agent.explain().retrievals
-    assert told.outcome == "failed"
-    assert told.candidates[0].verdict == "below the threshold by 0.25"
-    assert told.latency == near(0.05 * 2.718281828**-0.5)
+    (retrieval,) = agent.explain().retrievals
+    assert retrieval.outcome == "failed"
+    assert retrieval.candidates[0].verdict == "below the threshold by 0.25"
+    assert retrieval.latency == near(0.05 * 2.718281828**-0.5)
     assert [r.outcome for r in agent.explain(0.051).retrievals] == ["pending"]
     assert agent.explain(0.0).retrievals == ()
 
@@ -253,7 +253,7 @@ class Agent(ACTR):
     assert "ask-answer-1" not in [reason.name for reason in agent.explain(0.05).productions]
 
 
-def test_what_cannot_be_explained_is_an_error() -> None:
+def test_impossible_explanations_are_errors() -> None:
     agent = agent_of(NOISY)
     agent.run(0.1)
     with pytest.raises(ParameterError, match="only a run traced"):
@@ -275,7 +275,7 @@ def test_a_trace_of_a_lower_level_cannot_explain_the_past() -> None:
         agent.explain(0.05)
 
 
-def test_neither_tracing_nor_asking_reads_a_property_or_calls_a_pattern() -> None:
+def test_neither_tracing_nor_explaining_reads_a_property_or_calls_a_pattern() -> None:
     source = """
 from actr3d.actr import *
 calls = []
@@ -325,5 +325,5 @@ class Agent(ACTR):
 """
     )
     agent.run(0)
-    (told,) = agent.explain().retrievals
-    assert told.candidates[0].parts == {"get_activation": 2.5}
+    (retrieval,) = agent.explain().retrievals
+    assert retrieval.candidates[0].parts == {"get_activation": 2.5}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.helpers.explanations import agent_of, same_later, told_by
+from tests.helpers.explanations import agent_of, assert_past_matches, recorded_calls
 
 TWO = """
 class Agent(ACTR):
@@ -29,16 +29,16 @@ def verdicts(source: str) -> dict[str, str | None]:
 
 
 def test_the_utilities_of_the_loser_and_the_winner_are_explained() -> None:
-    told = verdicts(TWO.format(more="", high=2.5))
-    assert told["high"] == "selected: the highest utility, 2.5"
-    assert told["low"] == "lost to high: utility 1 against 2.5"
-    assert told["never"] == "did not match when high was selected"
+    explained = verdicts(TWO.format(more="", high=2.5))
+    assert explained["high"] == "selected: the highest utility, 2.5"
+    assert explained["low"] == "lost to high: utility 1 against 2.5"
+    assert explained["never"] == "did not match when high was selected"
 
 
 def test_a_tie_is_explained() -> None:
-    told = sorted(str(verdict) for verdict in verdicts(TWO.format(more="", high=1)).values())
-    assert any(verdict.startswith("selected at random among 2 of utility 1") for verdict in told)
-    assert any("which was chosen at random: both have utility 1" in verdict for verdict in told)
+    explained = sorted(str(verdict) for verdict in verdicts(TWO.format(more="", high=1)).values())
+    assert any(verdict.startswith("selected at random among 2 of utility 1") for verdict in explained)
+    assert any("which was chosen at random: both have utility 1" in verdict for verdict in explained)
 
 
 def test_noise_is_that_of_the_choice() -> None:
@@ -76,9 +76,9 @@ class Agent(ProductionSystem):
     def two(goal='a'): pass
 """)
     agent.run(0.01)
-    told = sorted(str(reason.verdict) for reason in agent.explain().productions)
-    assert told[1] == "selected at random among 2"
-    assert told[0].startswith("not selected: ")
+    explained = sorted(str(reason.verdict) for reason in agent.explain().productions)
+    assert explained[1] == "selected at random among 2"
+    assert explained[0].startswith("not selected: ")
 
 
 OWN = """
@@ -96,11 +96,11 @@ class Agent(ACTR):
 """
 
 
-def test_a_modellers_own_utility_is_what_counts_and_is_not_asked_again() -> None:
+def test_a_modellers_own_utility_counts_and_is_not_called_again() -> None:
     agent = agent_of(OWN)
     agent.traced()
     agent.run(0.01)
-    asked = told_by(agent, "asked")
+    asked = recorded_calls(agent, "asked")
     before = list(asked)
     live = agent.explain()
     assert live.production("one").parts == {"get_activation": 8.0}
@@ -113,7 +113,7 @@ def test_a_modellers_own_utility_is_what_counts_and_is_not_asked_again() -> None
     assert asked == before
 
 
-def test_a_modellers_own_module_is_asked_at_choices_only() -> None:
+def test_a_modellers_own_module_is_called_at_choices_only() -> None:
     agent = agent_of("""
 asked = []
 class Mine(ProceduralSubModule):
@@ -127,7 +127,7 @@ class Agent(ACTR):
     def one(goal='a', utility=1): goal.set('b')
     def two(goal='b'): pass
 """)
-    asked = told_by(agent, "asked")
+    asked = recorded_calls(agent, "asked")
     agent.traced()
     assert asked == []
     agent.run(0.01)
@@ -181,7 +181,7 @@ class Agent(ACTR):
 """)
     agent.traced()
     agent.run(0.0)
-    same_later(agent)
+    assert_past_matches(agent)
     parts = agent.explain(0.02).production("p").parts
     assert list(parts) == ["base", "one", "two"]
     if "PMNoise(0.2" not in module:
@@ -207,7 +207,7 @@ class Agent(ACTR):
 """)
     agent.traced()
     agent.run(0.0)
-    same_later(agent, 60)
+    assert_past_matches(agent, 60)
     made = agent.explain().production("ask-answer-1")
     assert made.parents == ("ask", "answer")
     assert "compiled from ask and answer" in str(made)

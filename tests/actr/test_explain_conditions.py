@@ -1,4 +1,4 @@
-"""Saying how each condition of a production stands, also of those after the first that fails."""
+"""Explanations of each condition of a production, also of those after the first that fails."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Agent(ACTR):
 """
 
 
-def told(agent: Any, name: str, at: float | None = None) -> list[tuple[str, bool | None, str]]:
+def conditions_of(agent: Any, name: str, at: float | None = None) -> list[tuple[str, bool | None, str]]:
     return [(one.condition, one.holds, one.found) for one in agent.explain(at).production(name).conditions]
 
 
@@ -35,13 +35,13 @@ def test_conditions_are_explained_one_by_one() -> None:
     agent.traced()
     agent.run(0.02)
     for at in (None, 0.01):
-        assert told(agent, "fires", at) == [
+        assert conditions_of(agent, "fires", at) == [
             ("goal: task:add", True, "'add'"),
             ("goal: now:?now", True, "'3'"),
             ("other: None", True, "empty"),
             ("goal: last:!?now", True, "'5'"),
         ]
-        assert told(agent, "asks", at)[-1] == ("goal: small()", True, "a value other than False")
+        assert conditions_of(agent, "asks", at)[-1] == ("goal: small()", True, "a value other than False")
 
 
 def test_conditions_after_the_failing_one_are_explained_as_far_as_possible() -> None:
@@ -49,7 +49,7 @@ def test_conditions_after_the_failing_one_are_explained_as_far_as_possible() -> 
     agent.traced()
     agent.run(0.02)
     for at in (None, 0.01):
-        assert told(agent, "fails", at) == [
+        assert conditions_of(agent, "fails", at) == [
             ("goal: task:subtract", False, "'add'"),
             ("goal: now:?now", True, "'3'"),
             ("goal: more:?more", False, "no slot 'more'"),
@@ -59,7 +59,7 @@ def test_conditions_after_the_failing_one_are_explained_as_far_as_possible() -> 
         reason = agent.explain(at).production("fails")
         assert reason.condition == "goal: task:subtract"
         assert reason.bindings == {}, "a production is left at the first condition that fails"
-        assert told(agent, "asks_nothing", at)[-1] == (
+        assert conditions_of(agent, "asks_nothing", at)[-1] == (
             "goal: small()",
             None,
             "unknown (the function is called only if all conditions before it hold)",

@@ -8,7 +8,7 @@ import pytest
 
 from actr3d.actr import ACTR, Buffer, Memory, Model
 from actr3d.errors import ParameterError
-from tests.helpers.explanations import agent_of, same_later, told_by
+from tests.helpers.explanations import agent_of, assert_past_matches, recorded_calls
 
 BINDING = """
 calls = []
@@ -32,7 +32,7 @@ class Agent(ACTR):
 
 def test_results_of_pattern_functions_are_explained_without_calling_them_again() -> None:
     agent = agent_of(BINDING)
-    calls = told_by(agent, "calls")
+    calls = recorded_calls(agent, "calls")
     agent.traced()
     agent.run(0.01)
     before = list(calls)
@@ -46,13 +46,13 @@ def test_results_of_pattern_functions_are_explained_without_calling_them_again()
     assert agent.explain().production("fits").condition == "goal: is_small()"
     assert agent.explain(0.01) == live
     assert calls == [*before, *calls[len(before) :]]
-    told = len(calls)
+    calls_before = len(calls)
     agent.explain()
     agent.explain(0.02)
-    assert len(calls) == told
+    assert len(calls) == calls_before
 
 
-def test_a_function_that_was_asked_of_something_else_is_not_known() -> None:
+def test_the_result_of_a_function_for_other_arguments_is_unknown() -> None:
     agent = agent_of("""
 class Agent(ACTR):
     goal, side = Buffer(), Buffer()
@@ -98,7 +98,7 @@ class Agent(ACTR):
     assert "(as seen since 0.000 s)" in str(agent.explain(0.02))
     assert agent.explain(0.02) == agent.explain()
     assert not agent.explain(0.02).production("nothing").matches
-    agent.lamp.colour = "green"  # nothing tells of that until a production looks
+    agent.lamp.colour = "green"  # no event records this until a production reads it
     assert agent.explain().production("see").found == "'green'"
     agent.run(0.01)
     past = agent.explain(0.025).production("see")
@@ -127,7 +127,7 @@ class Agent(ACTR):
     assert not agent.explain(0.01).production("q").matches
     agent.goal.modify(n="2", step="y")
     events = [event.data["chunk"] for event in agent.sch.trace.select("buffer")]
-    assert events[-2:] == [{"step": "z", "n": "2"}, {"step": "y", "n": "2"}]  # one event for each change, as ever
+    assert events[-2:] == [{"step": "z", "n": "2"}, {"step": "y", "n": "2"}]  # one event for each change, as before
 
 
 ODD = """
@@ -161,7 +161,7 @@ def test_values_of_any_type_are_explained_alike_at_both_times() -> None:
     assert bound == {"x": "(1, 2)", "y": "<Colour.RED: 1>", "z": "0.123457", "i": "[1, 2]", "n": "box", "w": "plain"}
     assert first.production("b").bindings["s"] == "x"
     assert first.production("c").bindings == {"p": "(1, 2)", "q": "<Colour.RED: 1>", "n": "3", "w": "2.5"}
-    same_later(agent)
+    assert_past_matches(agent)
 
 
 def test_an_agent_keeps_its_past_when_it_leaves_or_moves() -> None:
@@ -214,7 +214,7 @@ def test_nothing_is_explained_from_before_an_agent_was_added() -> None:
 
 
 @pytest.mark.parametrize("at", [float("nan"), float("inf"), "0.1", object()])
-def test_what_is_no_time_is_an_error(at: Any) -> None:
+def test_an_invalid_time_is_an_error(at: Any) -> None:
     agent = agent_class()()
     agent.traced()
     agent.run(0.1)
@@ -258,7 +258,7 @@ class Agent(ACTR):
     agent.traced()
     agent.run(0.2)
     why = agent.eye.explain()
-    assert [told.memory for told in why.retrievals] == ["memory"]
+    assert [retrieval.memory for retrieval in why.retrievals] == ["memory"]
     assert agent.eye.explain(0.2) == why
     assert [reason.system for reason in why.productions] == ["eye"]
     assert "in eye:" in str(agent.explain())

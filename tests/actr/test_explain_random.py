@@ -1,4 +1,4 @@
-"""Random models, explained at every step, and once more when their past is told."""
+"""Random models, explained at every step, and again later from the trace."""
 
 from __future__ import annotations
 
@@ -78,9 +78,9 @@ def test_the_past_of_any_model_is_explained_as_its_present_was(seed: int) -> Non
     for then in now:
         past = agent.explain(then.time)
         assert past.retrievals == then.retrievals
-        for was, told in zip(then.productions, past.productions, strict=True):
-            assert (told.parts, told.verdict, told.selected) == (was.parts, was.verdict, was.selected)
-            if told.source is None and told.matches is not None and was.matches is not None:
+        for was, later in zip(then.productions, past.productions, strict=True):
+            assert (later.parts, later.verdict, later.selected) == (was.parts, was.verdict, was.selected)
+            if later.source is None and later.matches is not None and was.matches is not None:
                 certain += 1
-                assert told == was
+                assert later == was
     assert certain > 10

@@ -109,9 +109,9 @@ def test_an_agent_is_added_once() -> None:
 
 
 def test_an_agent_in_a_wall_is_warned_of() -> None:
-    with pytest.warns(ModelWarning, match=r"put into a wall, at \(0, 0\)") as said:
+    with pytest.warns(ModelWarning, match=r"put into a wall, at \(0, 0\)") as caught:
         World(map=ROOM).add(Agent(), 0, 0)
-    assert said[0].filename == __file__
+    assert caught[0].filename == __file__
 
 
 def test_an_agent_without_a_body_is_given_one() -> None:
@@ -153,7 +153,7 @@ def test_a_random_place_is_free_and_comes_from_the_seed() -> None:
     ],
 )
 @pytest.mark.parametrize("directions", [4, 8])
-def test_what_is_around_turns_with_the_body(name: str, dx: int, dy: int, directions: int) -> None:
+def test_neighbouring_cells_turn_with_the_body(name: str, dx: int, dy: int, directions: int) -> None:
     body = placed(2, 3, directions=directions)
     for _ in range(4):
         cell = getattr(body, name)
@@ -254,7 +254,7 @@ def test_setting_a_place_moves_the_body() -> None:
     assert (body.x, body.y) == (3, 1)
 
 
-def test_a_body_in_no_world_says_so() -> None:
+def test_a_body_without_a_world_is_an_error() -> None:
     body: Any = Body()
     for act in (lambda: body.cell, lambda: body.world, body.go_forward, body.go_backward, body.turn_left, lambda: body.ahead_cell.wall):
         with pytest.raises(GridError, match="is in no world"):

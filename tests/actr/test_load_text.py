@@ -1,4 +1,4 @@
-"""Texts that are loaded as modules: any number of them, at once and one after another, as files would be."""
+"""Texts that are loaded as modules: any number of them, concurrently and one after another, as files would be."""
 
 import gc
 import linecache
@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-import actr3d.actr as ours
+import actr3d.actr as library
 from actr3d.actr.loading import load_text, run_text
 from actr3d.errors import ModelFileError
 
@@ -29,7 +29,7 @@ def late():
 
 
 def in_thread(call: Any) -> Any:
-    """Returns what a call gives in another thread."""
+    """Returns the result of a call in another thread."""
     found: list[Any] = []
     thread = threading.Thread(target=lambda: found.append(call()))
     thread.start()
@@ -39,7 +39,7 @@ def in_thread(call: Any) -> Any:
 
 @pytest.fixture
 def real() -> Any:
-    """Something else that goes by the old names, as where python_actr is installed and in use."""
+    """Other modules with the old names, as if python_actr were installed and imported."""
     names = ("python_actr", "ccm", "ccm.lib", "ccm.lib.actr")
     before = {name: sys.modules.pop(name) for name in names if name in sys.modules}
     modules = {name: ModuleType(name) for name in names}
@@ -54,15 +54,15 @@ def real() -> Any:
 @pytest.mark.parametrize("load", [load_text, run_text])
 def test_a_late_import_of_an_old_name_gets_this_library(load: Any, real: Any) -> None:
     module = load(LATE)
-    assert module.late() == {ours.ACTR}
-    assert in_thread(module.late) == {ours.ACTR}
+    assert module.late() == {library.ACTR}
+    assert in_thread(module.late) == {library.ACTR}
 
 
 def test_a_late_import_in_a_production_gets_this_library(real: Any) -> None:
     text = "from ccm import *\nseen = []\nclass A(ACTR):\n    def init():\n        import ccm\n        seen.append(ccm.Buffer)\n"
     module: Any = load_text(text)
     module.A().run(1)
-    assert module.seen == [ours.Buffer]
+    assert module.seen == [library.Buffer]
 
 
 def test_names_the_old_library_does_not_have_are_not_found() -> None:
@@ -137,11 +137,11 @@ seen = (helper.NAME, NAME, helper.PLACE, parts.inner.PLACE, Setting().value)
 """
 
 
-def test_helper_modules_of_two_folders_do_not_meet(folders: list[Path], real: Any) -> None:
+def test_helper_modules_of_two_folders_are_kept_apart(folders: list[Path], real: Any) -> None:
     modules: list[Any] = [load_text(HELPED, "model.py", folder=folder) for folder in folders]
     assert [module.seen for module in modules] == [(n, n, f"inside {n}", f"inside {n}", 3) for n in ("one", "two")]
     assert [in_thread(module.later) for module in reversed(modules)] == ["later two", "later one"]
-    assert all(issubclass(module.Part, ours.Model) and in_thread(module.helper.late) is ours.ACTR for module in modules)
+    assert all(issubclass(module.Part, library.Model) and in_thread(module.helper.late) is library.ACTR for module in modules)
     assert not {"helper", "parts", "later"} & set(sys.modules)
     assert pickle.loads(pickle.dumps(modules[1].Setting(5))) == modules[1].Setting(5)
 
@@ -162,13 +162,13 @@ def test_a_text_that_fails_leaves_nothing_in_the_modules(folders: list[Path]) ->
         assert dict(sys.modules) == before
 
 
-def test_texts_loaded_by_many_threads_at_once_do_not_disturb_each_other(folders: list[Path], real: Any) -> None:
+def test_texts_loaded_concurrently_by_many_threads_do_not_disturb_each_other(folders: list[Path], real: Any) -> None:
     seen: list[Any] = []
 
     def load(number: int) -> None:
         folder = folders[number % 2]
         module: Any = load_text(HELPED + f"number = {number}\nimport ccm\nclass A(ccm.ACTR): pass\n", "model.py", folder=folder)
-        seen.append((module.seen[0] == folder.name, module.later() == f"later {folder.name}", issubclass(module.A, ours.ACTR)))
+        seen.append((module.seen[0] == folder.name, module.later() == f"later {folder.name}", issubclass(module.A, library.ACTR)))
 
     threads = [threading.Thread(target=load, args=[number]) for number in range(24)]
     for thread in threads:
@@ -210,18 +210,18 @@ def test_nothing_is_left_of_unused_texts(folders: list[Path]) -> None:
     assert (len(linecache.cache), len(sys.modules)) == before
 
 
-def test_what_stands_in_the_modules_is_the_loaded_text() -> None:
+def test_the_registered_module_is_the_loaded_text() -> None:
     module: Any = load_text("from __future__ import annotations\nimport dataclasses\n@dataclasses.dataclass\nclass A:\n    x: int = 1\n")
-    stands: Any = sys.modules[module.__name__]
-    assert vars(stands) is vars(module)
+    registered: Any = sys.modules[module.__name__]
+    assert vars(registered) is vars(module)
     assert pickle.loads(pickle.dumps(module.A(3))) == module.A(3)
-    stands.y = 4
+    registered.y = 4
     assert module.y == 4
     with pytest.raises(AttributeError, match="has no attribute 'z'"):
-        _ = stands.z
+        _ = registered.z
     del module
     gc.collect()
-    assert (vars(stands), hasattr(stands, "A")) == ({}, False)
+    assert (vars(registered), hasattr(registered, "A")) == ({}, False)
 
 
 def test_one_text_is_called_the_same_each_time_it_is_loaded_alone() -> None:
@@ -247,7 +247,7 @@ def test_a_file_in_a_copy_of_the_repository_gets_the_library_itself(tmp_path: Pa
     loaded = load_text(source, str(tmp_path / "m.py"), folder=tmp_path)
     ran = run_text(source, str(tmp_path / "m.py"), folder=tmp_path)
     for module in (loaded, ran):
-        assert module.ACTR is ours.ACTR
+        assert module.ACTR is library.ACTR
         assert not hasattr(module.actr3d, "copy")
         assert not hasattr(module.clock, "copy")
 
@@ -287,7 +287,7 @@ def test_a_text_that_is_loaded_again_shares_nothing_that_changes_with_the_first_
     with pytest.raises(ZeroDivisionError) as raised:
         third.Agent().run(1)
     lines = [frame.line for frame in traceback.extract_tb(raised.value.__traceback__) if frame.filename == "counting.py"]
-    assert lines[-2:] == ["later()", "later = lambda: 1 / fails"]  # the lines of the first module do not exist any more
+    assert lines[-2:] == ["later()", "later = lambda: 1 / fails"]  # the lines of the first module no longer exist
 
 
 def test_the_compiler_warns_about_a_text_each_time_it_is_loaded() -> None:

@@ -1,4 +1,4 @@
-"""Loading model files: whatever their encoding, and with everything put back afterwards."""
+"""Loading model files: in any encoding, and with all global state restored afterwards."""
 
 import random
 import sys
@@ -52,7 +52,7 @@ def test_encodings_and_ends_of_lines(tmp_path: Path, data: bytes, text: str) -> 
         (b"x = 1\n\x00\n", "model.py:2: there is a NUL character; this is not Python source"),
     ],
 )
-def test_what_is_no_text_is_refused(tmp_path: Path, data: bytes, message: str) -> None:
+def test_a_file_that_is_no_text_is_refused(tmp_path: Path, data: bytes, message: str) -> None:
     path = tmp_path / "model.py"
     path.write_bytes(data)
     with pytest.raises(ModelFileError, match=message):
@@ -151,7 +151,7 @@ def test_a_broken_python_3_file_is_not_taken_for_python_2(source: str, line: int
         "'print >>f, 1'",
     ],
 )
-def test_what_python_3_can_run_is_not_taken_for_python_2(source: str) -> None:
+def test_valid_python_3_is_not_taken_for_python_2(source: str) -> None:
     run_text(source)
 
 
@@ -164,7 +164,7 @@ def test_what_python_3_can_run_is_not_taken_for_python_2(source: str) -> None:
         ("def f(" + "(" * 100_000, 1),
     ],
 )
-def test_what_is_nested_too_deeply_is_one_short_error(source: str, line: int) -> None:
+def test_code_that_is_nested_too_deeply_is_one_short_error(source: str, line: int) -> None:
     with pytest.raises(ModelFileError, match=rf"^deep.py:{line}: .*(nested|parenthes|closed)") as caught:
         compile_source(source, "deep.py")
     assert len(str(caught.value)) < 400
@@ -204,7 +204,7 @@ if __name__ == '__main__':
 
 
 def test_a_model_is_the_program_and_leaves_nothing_behind(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    run_text("from ccm.lib import grid", folder=folder)  # the library's own parts stay loaded once they were asked for
+    run_text("from ccm.lib import grid", folder=folder)  # parts of the library stay loaded after their first import
     capsys.readouterr()
     (folder / "program.py").write_text(PROGRAM, encoding="utf-8")
     real = ModuleType("python_actr")

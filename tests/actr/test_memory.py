@@ -1,4 +1,4 @@
-"""Requests: times, thresholds, finsts, chances, and whatever modellers may do to a memory."""
+"""Requests: times, thresholds, finsts, probabilities, and what modellers may do with a memory."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from actr3d.actr import Buffer, Chunk, DMBaseLevel, DMFixed, DMNoise, Memory, Me
 from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.declarative.memory import LONGEST
 from actr3d.errors import ChunkError, ModelWarning
-from tests.helpers.small_agents import living, near
+from tests.helpers.small_agents import near, started_agent
 
 
 def remembering(profile: str = "python-actr", kind: Any = Memory, **options: Any) -> Any:
     buffer = Buffer()
     memory = kind(buffer, **options)
-    return living(profile, buffer=buffer, memory=memory, fixed=DMFixed(memory))
+    return started_agent(profile, buffer=buffer, memory=memory, fixed=DMFixed(memory))
 
 
 def arrival(agent: Any, pattern: Any, **keys: Any) -> tuple[float, Any]:
@@ -82,7 +82,7 @@ def test_act_r_7_has_no_maximum_time_unless_one_is_set() -> None:
     assert agent.now() == near(math.exp(3) + 2.5, abs=1e-3)
 
 
-def test_an_activation_that_is_no_number_never_wins_and_is_said() -> None:
+def test_an_activation_that_is_no_number_never_wins_and_is_warned_of() -> None:
     agent = remembering(threshold=-5)
     for text, fixed in [("a 1", math.nan), ("a 2", -1.0), ("a 3", math.nan)]:
         agent.memory.add(text, fixed=fixed)
@@ -97,7 +97,7 @@ def test_an_activation_that_is_no_number_never_wins_and_is_said() -> None:
 def test_recall_has_the_logistic_chance() -> None:
     buffer = Buffer()
     memory = Memory(buffer, threshold=0.3)
-    agent = living(buffer=buffer, memory=memory, fixed=DMFixed(memory), noise=DMNoise(memory, noise=0.5), seed=3)
+    agent = started_agent(buffer=buffer, memory=memory, fixed=DMFixed(memory), noise=DMNoise(memory, noise=0.5), seed=3)
     n = 4000
     for activation in (-0.4, 0.3, 0.9):
         agent.memory.clear()
@@ -131,7 +131,7 @@ def test_a_request_retrieves_the_best_of_all_that_match(seed: int) -> None:
             assert time == near(0.05 * math.exp(-best), abs=1.1e-6)
 
 
-def test_a_draw_is_decided_by_lot() -> None:
+def test_a_tie_is_decided_at_random() -> None:
     agent = remembering(finst_size=0)
     for n in range(3):
         agent.memory.add(f"a {n}")
@@ -160,7 +160,7 @@ def test_finsts() -> None:
         agent.memory.add(f"a {n}", fixed=-0.1 * n + 1)
     found = [str(arrival(agent, "a ?", require_new=True)[1]) for _ in range(3)]
     assert found == ["a 0", "a 1", "a 2"]
-    assert str(arrival(agent, "a ?", require_new=True)[1]) == "a 0"  # the oldest mark had gone
+    assert str(arrival(agent, "a ?", require_new=True)[1]) == "a 0"  # the oldest mark was dropped
     assert [str(chunk) for chunk in agent.memory._last.excluded] == ["a 1", "a 2"]
     agent.run(0.9)
     assert [str(chunk) for chunk in agent.memory.finst.obj] == ["a 2", "a 0"]
@@ -176,7 +176,7 @@ def test_equal_chunks_merge_whatever_form_they_come_in() -> None:
 
     buffer = Buffer()
     memory = Memory(buffer)
-    agent = living(buffer=buffer, memory=memory, base=DMBaseLevel(memory))
+    agent = started_agent(buffer=buffer, memory=memory, base=DMBaseLevel(memory))
     agent.buffer.set({"size": 3, "colour": "red"})
     for form in ({"colour": "red", "size": 3}, Thing(), agent.buffer, Chunk({"colour": "red", "size": 3.0})):
         agent.memory.add(form)
@@ -202,7 +202,7 @@ def test_a_misspelt_keyword_warns_in_the_models_file_and_changes_nothing() -> No
     agent.memory.add("b", baselevel=2, time=4, fixed=1)  # for modules that it does not have
 
 
-def test_own_modules_may_take_keywords_of_their_own() -> None:
+def test_user_defined_modules_may_take_keywords_of_their_own() -> None:
     class Named(MemorySubModule):
         def create(self, chunk: Any, worth: float = 0, **keys: Any) -> None:
             chunk.worth = worth + keys.get("bonus", 0)
@@ -211,7 +211,7 @@ def test_own_modules_may_take_keywords_of_their_own() -> None:
             return chunk.worth
 
     memory = Memory(Buffer())
-    agent = living(memory=memory, named=Named(memory))
+    agent = started_agent(memory=memory, named=Named(memory))
     agent.memory.add("a", worth=2, bonus=3)
     assert agent.memory.get_activation("a") == 5
 
@@ -249,7 +249,7 @@ def test_unhashable_values() -> None:
     assert agent.memory.find_matching_chunks({"a": [1]}) == []
 
 
-def test_a_memory_of_ones_own() -> None:
+def test_a_user_defined_memory() -> None:
     class Own(Memory):
         latency = 0.2
         threshold = -1
@@ -270,14 +270,14 @@ def test_matched_may_leave_candidates_out() -> None:
 
     buffer = Buffer()
     memory = Memory(buffer)
-    agent = living(buffer=buffer, memory=memory, censor=Censor(memory))
+    agent = started_agent(buffer=buffer, memory=memory, censor=Censor(memory))
     agent.memory.add("a bad")
     agent.memory.add("a good")
     assert arrival(agent, "a ?")[1] == Chunk("a good")
     assert arrival(agent, "a bad")[1] is None
 
 
-def test_get_activation_of_what_is_not_there() -> None:
+def test_get_activation_of_an_unknown_chunk() -> None:
     agent = remembering()
     with pytest.raises(ChunkError, match="memory 'memory' has no chunk 'a b'"):
         agent.memory.get_activation("a b")

@@ -225,7 +225,7 @@ def test_a_tree_that_has_run_by_itself_cannot_join() -> None:
         world.part = part
 
 
-def test_a_tree_that_came_to_life_joins_with_its_events() -> None:
+def test_a_started_tree_joins_with_its_events() -> None:
     seen: list[float] = []
 
     class Part(Model):

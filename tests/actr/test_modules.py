@@ -262,7 +262,7 @@ def test_attend_to_new_and_unattended() -> None:
     assert agent.location[0] == "5"
 
 
-def test_examining_what_went_away_clears_the_buffer() -> None:
+def test_examining_an_object_that_is_gone_clears_the_buffer() -> None:
     world = world_of(ball=Model(x=1, y=2, color="red"))
     world.agent.visual.set("old")
     world.agent.vision.examine("color:red")

@@ -1,4 +1,4 @@
-"""Modules made with parameters that they do not have, or that cannot be."""
+"""Modules created with unknown or invalid parameters."""
 
 # The calls are wrong on purpose.
 # pyright: reportCallIssue=false, reportArgumentType=false
@@ -69,12 +69,12 @@ made: Any = None
         (lambda: Buffer("goal"), r"Buffer\(\): too many positional arguments"),
     ],
 )
-def test_what_is_wrong_is_named(make: Callable[[], Any], message: str) -> None:
+def test_wrong_parameters_are_named(make: Callable[[], Any], message: str) -> None:
     with pytest.raises(ParameterError, match=message.replace("? ", r"\? ")):
         make()
 
 
-def test_what_is_right_is_taken() -> None:
+def test_valid_parameters_are_accepted() -> None:
     memory = Memory(Buffer(), 0.1, None, finst_size=2)
     assert (memory.latency, memory.threshold) == (0.1, None)
     memory = Memory(Buffer(), np.float32(0.5), -inf, maximum_time=inf, finst_size=np.int64(0), finst_time=0)

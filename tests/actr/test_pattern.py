@@ -1,4 +1,4 @@
-"""Patterns: every row of the table, read twice: by Pattern.match, and by a production of a real agent."""
+"""Patterns: every row of the table is tested twice: by Pattern.match, and by a production of a real agent."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ class Agent(ACTR):
     module.Agent.act.__defaults__ = (pattern,)
     agent = module.Agent()
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ModelWarning)  # some of these patterns can never match, which is said
+        warnings.simplefilter("ignore", ModelWarning)  # some of these patterns can never match, which gives a warning
         agent.run(0.05)
     assert agent.seen == expected
 
@@ -172,7 +172,7 @@ def test_attributes_and_paths_of_objects() -> None:
     assert Pattern("ahead_cell.broken:!3").match(Body()) is None
 
 
-def test_values_bound_before_stand_for_themselves() -> None:
+def test_variables_that_are_already_bound_are_compared_by_value() -> None:
     bound = {"x": 3, "y": 0.5, "slot": "a", "place": 1}
     assert Pattern("a:?x b:?y", bound).match(Chunk({"a": 3, "b": "0.5"})) == {}
     assert Pattern("a:!?x", bound).match(Chunk("a:3")) is None
@@ -196,7 +196,7 @@ def test_values_bound_before_stand_for_themselves() -> None:
         ("x ?y?", "cannot read '?' in slot '1'"),
     ],
 )
-def test_what_cannot_be_read_is_named(pattern: str, message: str) -> None:
+def test_unreadable_patterns_are_named(pattern: str, message: str) -> None:
     with pytest.raises(PatternException, match=re.escape(message)):
         Pattern(pattern)
     with pytest.raises(Exception, match=r"[Ss]lot|Unknown text|unnamed"):
@@ -258,8 +258,8 @@ def test_the_matcher_finds_what_single_patterns_find(rules: list[tuple[str, str]
             else:
                 buffer.set(dict(contents))
         found = {p.name: p.bound for p in matcher.matching()}
-        ours = {p.name: b for p, (own, _) in zip(productions, patterns, strict=True) if (b := own.match(context)) is not None}
+        expected = {p.name: b for p, (own, _) in zip(productions, patterns, strict=True) if (b := own.match(context)) is not None}
         peers = {p.name: b for p, (_, peer) in zip(productions, patterns, strict=True) if (b := peer.match(context)) is not None}
-        assert found == ours == peers
-        assert list(found) == list(ours)
+        assert found == expected == peers
+        assert list(found) == list(expected)
         assert {p.name for p in productions if matcher.matches(p)} == set(found)

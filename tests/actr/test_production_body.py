@@ -12,7 +12,7 @@ from actr3d.actr.loading import load_text
 
 
 def run_body(body: str, start: str = "n:1 word:cat", pattern: str = "n:?n word:?word", before: str = "", members: str = "") -> Any:
-    """Runs one production with this body, and returns the agent; `out` collects what it has to say."""
+    """Runs one production with this body, and returns the agent; `out` collects its output."""
     text = f"""
 from actr3d.actr import *
 out = []
@@ -224,7 +224,7 @@ def make(step):
     assert agent.goal["n"] == 12
 
 
-def test_what_init_assigns_is_seen_by_every_production_of_that_agent_alone() -> None:
+def test_assignments_in_init_are_seen_by_all_productions_of_that_agent_only() -> None:
     module: Any = load_text(
         """
 from actr3d.actr import *

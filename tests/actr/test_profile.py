@@ -1,4 +1,4 @@
-"""Each row of the table of deviations, at the level of the agent and of the memory, wherever parts may stand."""
+"""Each row of the table of deviations, at the level of the agent and of the memory, wherever the parts are."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from actr3d.actr import ACTR, BlendingMemory, Buffer, Chunk, DMBaseLevel, DMNois
 from actr3d.actr.kernel.profile import ACT_R_7
 from actr3d.actr.loading import load_text
 from actr3d.errors import ModelWarning, ParameterError
-from tests.helpers.small_agents import living, near
+from tests.helpers.small_agents import near, started_agent
 
 LEVELS = ["agent", "memory", "instance"]
 
@@ -135,7 +135,7 @@ def test_python_act_r_does_none_of_this() -> None:
 
 
 @pytest.mark.parametrize("level", LEVELS)
-def test_harvesting_does_not_take_back_that_a_request_failed(level: str) -> None:
+def test_harvesting_does_not_clear_a_failed_request(level: str) -> None:
     agent = agent_of(level)
     agent.memory.request("a")
     agent.buffer.set("b")
@@ -149,7 +149,7 @@ def test_harvesting_does_not_take_back_that_a_request_failed(level: str) -> None
     assert not agent.memory.error
 
 
-def test_the_profile_reaches_every_part_however_it_came() -> None:
+def test_the_profile_reaches_every_part_however_it_was_added() -> None:
     class Inner(Model):
         buffer = Buffer()
         memory = Memory(buffer)
@@ -185,7 +185,7 @@ def test_the_profile_reaches_every_part_however_it_came() -> None:
     agent.later = Memory(agent.buffer)
     alone = Memory(Buffer())
     alone.add("a")
-    assert alone.now() == 0  # it has come to life by itself
+    assert alone.now() == 0  # it has been started by itself
     world.late = Agent()
     agents = [agent, world.late]
     for one in agents:
@@ -196,11 +196,11 @@ def test_the_profile_reaches_every_part_however_it_came() -> None:
     assert world._profile is None
 
 
-def test_a_memory_that_lived_alone_takes_over_the_profile_of_its_agent() -> None:
+def test_a_memory_that_ran_alone_takes_over_the_profile_of_its_agent() -> None:
     buffer = Buffer()
     memory: Any = Memory(buffer)
     assert memory.now() == 0
-    agent = living("act-r-7", buffer=buffer, goal=Buffer())
+    agent = started_agent("act-r-7", buffer=buffer, goal=Buffer())
     agent.memory = memory
     assert memory.latency == 1.0
     agent.goal.set("a")
@@ -208,10 +208,10 @@ def test_a_memory_that_lived_alone_takes_over_the_profile_of_its_agent() -> None
     assert list(memory.dm) == [Chunk("a")]
 
 
-def test_two_memories_of_one_agent_go_each_by_its_own_numbers() -> None:
+def test_two_memories_of_one_agent_each_use_their_own_profile() -> None:
     first, second = Buffer(), Buffer()
     one, other = Memory(first, profile="act-r-7"), Memory(second)
-    agent = living(first=first, second=second, goal=Buffer(), one=one, other=other, b1=DMBaseLevel(one), b2=DMBaseLevel(other))
+    agent = started_agent(first=first, second=second, goal=Buffer(), one=one, other=other, b1=DMBaseLevel(one), b2=DMBaseLevel(other))
     for memory in (agent.one, agent.other):
         memory.add("a")
     assert agent.one.get_activation("a") == near(math.log(2) - 0.5 * math.log(0.05))
@@ -220,7 +220,7 @@ def test_two_memories_of_one_agent_go_each_by_its_own_numbers() -> None:
     agent.goal.set("b")
     agent.goal.clear()
     assert (len(agent.one.dm), len(agent.other.dm)) == (2, 1)
-    plain = living("act-r-7", first=Buffer(), goal=Buffer(), one=Memory(Buffer()), other=Memory(Buffer(), profile="python-actr"))
+    plain = started_agent("act-r-7", first=Buffer(), goal=Buffer(), one=Memory(Buffer()), other=Memory(Buffer(), profile="python-actr"))
     plain.goal.set("b")
     plain.goal.clear()
     assert (len(plain.one.dm), len(plain.other.dm)) == (1, 0)
@@ -229,7 +229,7 @@ def test_two_memories_of_one_agent_go_each_by_its_own_numbers() -> None:
 
 def test_a_retrieved_chunk_goes_back_to_its_own_memory() -> None:
     first, second = Buffer(), Buffer()
-    agent = living("act-r-7", first=first, second=second, one=Memory(first), other=Memory(second))
+    agent = started_agent("act-r-7", first=first, second=second, one=Memory(first), other=Memory(second))
     agent.first.set("a")
     agent.first.clear()
     assert (len(agent.one.dm), len(agent.other.dm)) == (1, 0)
@@ -239,7 +239,7 @@ def test_buffers_of_parallel_systems_are_harvested_into_the_agents_memory() -> N
     class Parallel(ProductionSystem):
         own = Buffer()
 
-    agent = living("act-r-7", parallel=Parallel(), buffer=Buffer(), memory=Memory(Buffer()))
+    agent = started_agent("act-r-7", parallel=Parallel(), buffer=Buffer(), memory=Memory(Buffer()))
     agent.parallel.own.set("a")
     agent.parallel.own.clear()
     assert list(agent.memory.dm) == [Chunk("a")]
@@ -249,7 +249,7 @@ def test_an_unknown_profile() -> None:
     with pytest.raises(ParameterError, match=r"Memory.profile: no profile 'actr-7'; use .*did you mean 'act-r-7'\?"):
         Memory(Buffer(), profile="actr-7")
     with pytest.raises(ParameterError, match=r"Agent.profile: no profile 'lisp'"):
-        living("lisp")
+        started_agent("lisp")
     assert Memory(Buffer(), profile=ACT_R_7).latency == 1.0
 
 

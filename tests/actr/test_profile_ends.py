@@ -1,4 +1,4 @@
-"""When runs end: by ACT-R 7's numbers with the last event that has any effect, by Python ACT-R's as there."""
+"""When runs end: under ACT-R 7 with the last event that has an effect, under Python ACT-R as in python_actr."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from actr3d.actr import ACTR, Buffer, Chunk, DMFixed, Memory, Model
 from actr3d.actr.kernel.events import Trigger
 from actr3d.actr.loading import load_text
 from actr3d.simulation import Simulation
-from tests.helpers.small_agents import living
+from tests.helpers.small_agents import started_agent
 from tests.helpers.walkers import scene_of
 
 
 def remembering(profile: str, **options: Any) -> Any:
     buffer = Buffer()
     memory = Memory(buffer, **options)
-    agent = living(profile, buffer=buffer, memory=memory, fixed=DMFixed(memory))
+    agent = started_agent(profile, buffer=buffer, memory=memory, fixed=DMFixed(memory))
     agent.memory.add("a 1", fixed=1)
     agent.memory.add("a 2")
     agent.memory.add("b")
@@ -35,7 +35,7 @@ def test_a_run_ends_with_the_retrieval_or_when_its_mark_expires(profile: str, en
         assert agent.now() == end
 
 
-def test_marks_expire_all_the_same() -> None:
+def test_marks_still_expire() -> None:
     agent = remembering("act-r-7", latency=0.05, finst_time=1.0)
     found: list[str] = []
     for pause in (0, 0, 0.99):
@@ -62,7 +62,7 @@ agent.run()
 """
 
 
-def test_a_program_written_for_python_actr_may_go_by_act_r_7s_numbers() -> None:
+def test_a_program_written_for_python_actr_may_use_the_profile_of_act_r_7() -> None:
     agent = load_text(PROGRAM, "program.py").agent
     assert agent.now() == 0.05
     assert agent.memory.finst.obj == [Chunk("b")]
@@ -75,7 +75,7 @@ def test_a_program_written_for_python_actr_may_go_by_act_r_7s_numbers() -> None:
 def test_no_run_waits_for_the_answer_to_a_request_that_was_replaced(profile: str, end: float, first: str) -> None:
     buffer = Buffer()
     memory = Memory(buffer, latency=0.05, threshold=-4.60517018599, maximum_time=5.0, finst_time=1.0)
-    agent = living(profile, buffer=buffer, memory=memory, fixed=DMFixed(memory))
+    agent = started_agent(profile, buffer=buffer, memory=memory, fixed=DMFixed(memory))
     agent.memory.add("b")
     agent.memory.add("c", fixed=-4.6051)
     agent.memory.request(first)

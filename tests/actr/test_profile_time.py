@@ -1,4 +1,4 @@
-"""Whole milliseconds under ACT-R 7's numbers, and only there."""
+"""Times in whole milliseconds under ACT-R 7, and only there."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 import actr3d.actr as library
 from actr3d.actr import ACTR, Buffer, Chunk, ImaginalModule, Memory, Model, Motor
 from tests.helpers.python_actr_reference import model_file
-from tests.helpers.small_agents import living, near
+from tests.helpers.small_agents import near, started_agent
 
 
 def test_only_the_events_of_such_agents_lie_at_whole_milliseconds() -> None:
@@ -63,7 +63,7 @@ def test_a_memory_of_its_own_profile_leaves_the_agents_time_alone() -> None:
 
 
 def test_short_steps_of_a_run_add_up_under_act_r_7() -> None:
-    agent = living("act-r-7", motor=Motor())
+    agent = started_agent("act-r-7", motor=Motor())
     for _ in range(10):
         agent.run(0.0004)
     assert agent.now() == 0.004

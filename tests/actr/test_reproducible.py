@@ -1,4 +1,4 @@
-"""One model, one seed: the same bytes, however often it is run."""
+"""One model, one seed: the same bytes in every run."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class Agent(ACTR):
 
 
 @pytest.mark.parametrize("library", ["python_actr", "actr3d.actr"])
-def test_a_run_in_pieces_is_the_run_in_one(library: str) -> None:
+def test_a_run_in_pieces_equals_a_run_in_one_piece(library: str) -> None:
     module = load_text(CLOCKED.replace("python_actr", library))
 
     def events(pieces: list[float]) -> list[tuple[int, str, str, str]]:

@@ -1,4 +1,4 @@
-"""The scheduler: waiting, waking, order, running on and on, and what it says of what it cannot do."""
+"""The scheduler: waiting, waking, order, and repeated runs."""
 
 from __future__ import annotations
 
@@ -215,7 +215,7 @@ def test_a_run_without_events_still_takes_its_time() -> None:
     assert model.now() == 0.5
 
 
-def test_stop_ends_the_run_after_the_present_event_and_the_next_run_goes_on() -> None:
+def test_stop_ends_the_run_after_the_present_event_and_the_next_run_continues() -> None:
     class World(Part):
         def start(self) -> Iterator[Any]:
             yield 1
@@ -281,7 +281,7 @@ def test_priorities_of_triggers() -> None:
 
 
 STEPS = 6000
-"""So many sixtieths of a second are 100 s; rounded one by one they would be 2 ms more."""
+"""The number of sixtieths of a second in 100 s; rounded one by one they would be 2 ms more."""
 
 
 def chain(sch: Scheduler, left: int) -> None:
@@ -319,7 +319,7 @@ def test_delays_that_follow_one_another_do_not_drift(wait: Any) -> None:
     assert world.now() == STEPS / 60
 
 
-def test_many_different_delays_in_turn_do_not_drift() -> None:
+def test_many_different_delays_do_not_drift() -> None:
     delays = [1 / number for number in range(61, 161)]
 
     class World(Model):
@@ -353,7 +353,7 @@ def test_calls_that_schedule_the_next_do_not_drift(first_come: bool) -> None:
     assert sch.time == STEPS / 60
 
 
-def test_what_is_woken_goes_on_from_the_exact_moment() -> None:
+def test_a_woken_generator_continues_from_the_exact_time() -> None:
     class World(Model):
         def start(self) -> Iterator[Any]:
             self.bell = Trigger("bell")
@@ -458,7 +458,7 @@ class Agent({kind}):
     assert fired(module)[-1][0] == STEPS / 60
 
 
-def test_a_series_goes_on_beside_retrievals_which_are_rounded_each_by_itself() -> None:
+def test_a_series_continues_beside_retrievals_that_are_each_rounded() -> None:
     module = run(
         """
 class Agent(ACTR):

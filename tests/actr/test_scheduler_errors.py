@@ -1,4 +1,4 @@
-"""What the scheduler says of what it cannot do, and how it goes on afterwards."""
+"""Errors of the scheduler, and how it continues afterwards."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tests.helpers.scheduler_models import Part, seen
         (1j, r"cannot wait for 1j"),
     ],
 )
-def test_what_cannot_be_waited_for_names_generator_file_and_line(what: Any, message: str) -> None:
+def test_an_invalid_wait_names_generator_file_and_line(what: Any, message: str) -> None:
     class World(Model):
         def start(self) -> Iterator[Any]:
             yield 0.1
@@ -37,22 +37,22 @@ def test_what_cannot_be_waited_for_names_generator_file_and_line(what: Any, mess
         World().run(1)
 
 
-def test_yield_none_ends_the_generator_and_says_so() -> None:
+def test_yield_none_ends_the_generator_with_a_warning() -> None:
     class World(Part):
         def start(self) -> Iterator[Any]:
             yield 0.1
-            yield self.note("told")
+            yield self.note("noted")
             self.note("never")
 
     world = World()
     with pytest.warns(ModelWarning, match=r"World\.start yields None, which ends it here") as caught:
         world.run(1)
     assert caught[0].filename == __file__
-    assert seen(world) == [("told", 0.1)]
+    assert seen(world) == [("noted", 0.1)]
 
 
 @pytest.mark.parametrize("limit", [-1, float("nan"), float("inf"), "1"])
-def test_a_limit_that_is_no_time(limit: Any) -> None:
+def test_an_invalid_limit_is_an_error(limit: Any) -> None:
     with pytest.raises(SchedulerError, match=r"the limit of a run: must be (a finite number of seconds|>= 0) \(got"):
         Model().run(limit)
 
@@ -84,14 +84,14 @@ def test_run_inside_run_advances_time_and_warns(traced: bool) -> None:
     world = World()
     if traced:
         world.traced()
-    with pytest.warns(ModelWarning, match=r"run was called while the model is running \(at 0\.1 s\).*yield a number of seconds") as said:
+    with pytest.warns(ModelWarning, match=r"run was called while the model is running \(at 0\.1 s\).*yield a number of seconds") as caught:
         world.run(3)
-    assert [w.filename for w in said] == [__file__]
+    assert [w.filename for w in caught] == [__file__]
     assert seen(world) == [("other", 0.6), ("after inner run", 1.1), ("end", 2.1)]
     assert world.now() == 3
 
 
-def test_an_error_in_an_event_leaves_a_scheduler_that_can_go_on() -> None:
+def test_a_scheduler_can_continue_after_an_error_in_an_event() -> None:
     class World(Part):
         def start(self) -> Iterator[Any]:
             self.sch.add(lambda: self.note("later"), 2)

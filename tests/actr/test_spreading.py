@@ -10,12 +10,12 @@ import pytest
 
 from actr3d.actr import Buffer, Chunk, DMFixed, DMInhibition, DMSalience, DMSpreading, Memory
 from actr3d.errors import ChunkError, ModelWarning
-from tests.helpers.small_agents import living, near
+from tests.helpers.small_agents import near, started_agent
 
 
 def test_salience_counts_bits() -> None:
     memory = Memory(Buffer())
-    agent = living(memory=memory, salience=DMSalience(memory))
+    agent = started_agent(memory=memory, salience=DMSalience(memory))
     for text in ["colour:red x:1", "colour:red x:2", "colour:red x:3", "colour:green x:4"]:
         agent.memory.add(text)
     agent.salience.weights(colour=2, size=1)
@@ -38,7 +38,7 @@ def fan_agent() -> Any:
     memory, goal = Memory(Buffer()), Buffer()
     spreading = DMSpreading(memory, goal)
     spreading.strength = 1.6
-    agent = living("act-r-7", memory=memory, goal=goal, spreading=spreading)
+    agent = started_agent("act-r-7", memory=memory, goal=goal, spreading=spreading)
     for person, place in FAN:
         agent.memory.add(f"relation:in arg1:{person} arg2:{place}")
     return agent
@@ -66,7 +66,7 @@ def test_only_values_that_can_name_a_chunk_share_the_weight() -> None:
     agent = fan_agent()
     agent.goal.set({"a": "lawyer", "n": 3, "m": "4.5", "nothing": None, "yes": True, "no": "False"})
     assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == near(1.6 - math.log(2))
-    agent.goal.chunk = Chunk({"a": "lawyer", "b": "nan"})  # `set` would add what stood there before to memory
+    agent.goal.chunk = Chunk({"a": "lawyer", "b": "nan"})  # `set` would add the former contents to memory
     assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == near(0.5 * (1.6 - math.log(2)))
     agent.goal.set({"n": 3})
     assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == 0
@@ -79,14 +79,14 @@ def test_a_negative_strength_of_association_counts_nothing_and_warns_in_the_mode
     with pytest.warns(ModelWarning, match="the fan of 'in' is large enough to inhibit") as caught:
         assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == 0
     assert [warning.filename for warning in caught] == [__file__]
-    assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == 0  # said once
+    assert agent.memory.get_activation("relation:in arg1:lawyer arg2:store") == 0  # warns once
 
 
 def test_spreading_of_python_act_r_is_not_clipped() -> None:
     memory, goal, imaginal = Memory(Buffer()), Buffer(), Buffer()
     spreading = DMSpreading(memory, goal, imaginal)
     spreading.weight[imaginal] = 0.5
-    agent = living(memory=memory, goal=goal, imaginal=imaginal, spreading=spreading)
+    agent = started_agent(memory=memory, goal=goal, imaginal=imaginal, spreading=spreading)
     for n in range(9):
         agent.memory.add(f"in x{n}")
     agent.goal.set("in x1 in")
@@ -98,7 +98,7 @@ def test_spreading_of_python_act_r_is_not_clipped() -> None:
 def test_spreading_takes_any_value_and_knows_what_came_before_it() -> None:
     memory, goal = Memory(Buffer()), Buffer()
     memory.add({"list": [1, 2]})
-    agent = living(memory=memory, goal=goal, spreading=DMSpreading(memory, goal))
+    agent = started_agent(memory=memory, goal=goal, spreading=DMSpreading(memory, goal))
     agent.memory.add({"list": [1, 2], "b": "x"})
     agent.goal.set({"list": [1, 2]})
     assert agent.memory.get_activation({"list": [1, 2]}) == near(1 - math.log(3))
@@ -133,7 +133,7 @@ def test_equal_chunks_that_are_created_by_hand_count_each() -> None:
 @pytest.mark.parametrize("kind", [DMFixed, DMInhibition])
 def test_other_memory_modules_accept_the_same_chunk_twice_too(kind: Any) -> None:
     memory = Memory(Buffer())
-    agent = living(memory=memory, module=kind(memory))
+    agent = started_agent(memory=memory, module=kind(memory))
     agent.memory.add("a")
     agent.run(1)
     (module,) = agent.memory.adaptors
@@ -146,7 +146,7 @@ def test_chunks_that_have_left_the_memory_or_changed_do_not_count_in_act_r_7() -
     memory, goal = Memory(Buffer()), Buffer()
     spreading = DMSpreading(memory, goal)
     spreading.strength = 2
-    agent = living("act-r-7", memory=memory, goal=goal, spreading=spreading)
+    agent = started_agent("act-r-7", memory=memory, goal=goal, spreading=spreading)
     agent.goal.set("x")
     chunks: Any = agent.memory.dm
 
@@ -170,7 +170,7 @@ def test_chunks_that_have_left_the_memory_or_changed_do_not_count_in_act_r_7() -
 
 def test_inhibition_counts_from_the_latest_use_in_act_r_7() -> None:
     memory = Memory(Buffer())
-    agent = living("act-r-7", memory=memory, inhibition=DMInhibition(memory))
+    agent = started_agent("act-r-7", memory=memory, inhibition=DMInhibition(memory))
     agent.run(10)
     agent.memory.add("a", time=3)
     agent.memory.add("b", time=20)

@@ -39,7 +39,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def values(folder: Path) -> dict[str, list[str]]:
-    """Returns what each setting's data files say."""
+    """Returns the contents of each setting's data files."""
     found: dict[str, list[str]] = {}
     for file in sorted(folder.rglob("*.data")):
         found.setdefault(file.parent.name, []).append(file.read_text(encoding="utf-8"))
@@ -63,7 +63,7 @@ def test_a_sweep_tries_every_combination() -> None:
         ("a = [1,\n  2]; b = 2\nc = 3", {"a": 5, "b": 6}, "a = (5\n); b = 6\nc = 3"),
     ],
 )
-def test_values_are_exchanged_on_their_own_lines(source: str, chosen: dict[str, Any], wanted: str) -> None:
+def test_values_are_replaced_on_their_own_lines(source: str, chosen: dict[str, Any], wanted: str) -> None:
     text = with_values(source, chosen)
     assert text == wanted
     space: dict[str, Any] = {}
@@ -95,7 +95,7 @@ def test_every_value_is_text_that_runs(value: Any, wanted: str) -> None:
 
 
 @pytest.mark.parametrize("value", [object(), [1, print], {"x": 1j}])
-def test_a_value_that_no_text_stands_for_is_refused(value: Any) -> None:
+def test_a_value_without_a_text_form_is_refused(value: Any) -> None:
     with pytest.raises(ParameterError, match=r"parameter 'a': .* cannot be written in the model's text; use numbers, texts, lists"):
         with_values("a = 1", {"a": value})
 

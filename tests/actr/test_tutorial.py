@@ -1,4 +1,4 @@
-"""Every model does what its golden trace says, and does it again.
+"""Every model repeats its golden trace, each time it is run.
 
 After an intended change of behaviour, `uv run python tests/golden/make.py` records the golden traces again.
 """
@@ -34,7 +34,7 @@ LARGEST = 300_000
 
 
 def record(name: str, *words: str) -> bytes:
-    """Runs a model in a process of its own, and returns what it printed."""
+    """Runs a model in a separate process, and returns its output."""
     done = run_command(*command(name, *words), folder=ROOT)
     assert (done.returncode, done.stderr) == (0, "")
     return done.stdout.encode()

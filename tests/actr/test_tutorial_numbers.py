@@ -1,6 +1,6 @@
-"""The tutorial models show what their texts say: every number against its equation, written down here once more.
+"""The tutorial models show what their texts say: every number is compared with its equation, repeated here.
 
-Shares are measured in more trials than the models run by themselves, and may lie four standard errors off.
+Shares are measured in more trials than the models run by themselves, and may differ by four standard errors.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def times(text: str) -> list[float]:
 
 
 def larger_by(d: float, s: float) -> float:
-    """Returns how often one of two logistic noises of scale s exceeds the other by d, by numerical integration."""
+    """Returns the probability that one of two logistic noises of scale s exceeds the other by d, by numerical integration."""
     step = s / 200
     points = [i * step for i in range(-8000, 8001)]
 
@@ -45,33 +45,33 @@ def larger_by(d: float, s: float) -> float:
 
 
 def near(share: float, expected: float, trials: int) -> bool:
-    """Tells whether a share in so many trials lies within four standard errors of what is expected."""
+    """Returns whether a share of n trials lies within four standard errors of the expected one."""
     return abs(share - expected) < 4 * math.sqrt(expected * (1 - expected) / trials)
 
 
 @pytest.mark.parametrize(("first", "last"), [(2, 6), (0, 12), (4, 5)])
 def test_counting_takes_a_tenth_of_a_second_for_each_number(first: int, last: int, capsys: pytest.CaptureFixture[str]) -> None:
     run("counting", first=first, last=last)
-    said = capsys.readouterr().out.splitlines()
-    assert [int(re.findall(r"s: (\d+)", line)[0]) for line in said] == list(range(first, last + 1))
-    assert times("\n".join(said)) == approx([0.15 + 0.1 * n for n in range(last - first)] + [0.1 + 0.1 * (last - first)])
+    printed = capsys.readouterr().out.splitlines()
+    assert [int(re.findall(r"s: (\d+)", line)[0]) for line in printed] == list(range(first, last + 1))
+    assert times("\n".join(printed)) == approx([0.15 + 0.1 * n for n in range(last - first)] + [0.1 + 0.1 * (last - first)])
 
 
 @pytest.mark.parametrize(("a", "b"), [(5, 3), (3, 5), (7, 0), (2, 2)])
 def test_addition_takes_longer_for_a_larger_second_number(a: int, b: int, capsys: pytest.CaptureFixture[str]) -> None:
     run("addition", a=a, b=b)
-    said = capsys.readouterr().out
-    assert said.startswith(f"{a} + {b} = {a + b} ")
-    assert times(said) == approx([0.1 + 0.25 * b])
+    printed = capsys.readouterr().out
+    assert printed.startswith(f"{a} + {b} = {a + b} ")
+    assert times(printed) == approx([0.1 + 0.25 * b])
 
 
 @pytest.mark.parametrize("threshold", [0, -1])
 def test_each_link_of_the_network_takes_the_same(threshold: int, capsys: pytest.CaptureFixture[str]) -> None:
     run("semantic_network", threshold=threshold)
-    said = capsys.readouterr().out
+    printed = capsys.readouterr().out
     failure = 0.05 * math.exp(-threshold)
-    assert times(said) == approx([0.05 + 0.15 * n for n in (0, 1, 2, 3, 1)] + [0.45 + 0.1 + failure], abs=0.0006)
-    assert [line.split()[2] for line in said.splitlines()] == ["yes"] * 5 + ["no"]
+    assert times(printed) == approx([0.05 + 0.15 * n for n in (0, 1, 2, 3, 1)] + [0.45 + 0.1 + failure], abs=0.0006)
+    assert [line.split()[2] for line in printed.splitlines()] == ["yes"] * 5 + ["no"]
 
 
 @pytest.mark.parametrize(("strength", "attention"), [(1.6, 1.0), (2.0, 1.0), (1.6, 0.5), (1.6, 0)])
@@ -95,9 +95,9 @@ def test_similar_letters_are_confused_as_often_as_the_equation_says(noise: float
     for one, other, similarity in (("b", "d", -0.03), ("m", "n", -0.06), ("c", "g", -0.12)):
         expected = larger_by(-penalty * similarity, noise)
         assert module.predicted(similarity)[0] == approx(expected, abs=1e-6)
-        said = [(cue, word) for cue in (one, other) for word in module.agent.answers[cue]]
-        assert len(said) == 2 * trials
-        shares.append(sum(word[0] != cue for cue, word in said) / (2 * trials))
+        printed = [(cue, word) for cue in (one, other) for word in module.agent.answers[cue]]
+        assert len(printed) == 2 * trials
+        shares.append(sum(word[0] != cue for cue, word in printed) / (2 * trials))
         assert near(shares[-1], expected, 2 * trials)
     assert shares == sorted(shares, reverse=True)
 
@@ -133,27 +133,27 @@ def test_a_compiled_production_of_equal_utility_is_used_half_the_time() -> None:
 @pytest.mark.parametrize("last", [1, 6, 9])
 def test_two_agents_take_turns(last: int, capsys: pytest.CaptureFixture[str]) -> None:
     room = run("two_agents", last=last).room
-    said = capsys.readouterr().out.splitlines()
-    assert [line.split()[2:] for line in said] == [[("ben", "ada")[n % 2], "writes", str(n)] for n in range(1, last + 1)]
-    assert times("\n".join(said)) == approx([0.15 * n for n in range(1, last + 1)])
+    printed = capsys.readouterr().out.splitlines()
+    assert [line.split()[2:] for line in printed] == [[("ben", "ada")[n % 2], "writes", str(n)] for n in range(1, last + 1)]
+    assert times("\n".join(printed)) == approx([0.15 * n for n in range(1, last + 1)])
     assert (room.board.turn, room.ada.goal["task"], room.ben.goal["task"]) == ("nobody", "watch", "watch")
 
 
 @pytest.mark.parametrize("smoke_time", [0.02, 0.29, 0.305, 0.33])
 def test_the_agent_reacts_to_an_alarm_in_its_next_cycle(smoke_time: float, capsys: pytest.CaptureFixture[str]) -> None:
     run("parallel_system", smoke_time=smoke_time)
-    said = capsys.readouterr().out
-    when = {what: times(next(line for line in said.splitlines() if what in line))[0] for what in ("alarm", "off")}
+    printed = capsys.readouterr().out
+    when = {what: times(next(line for line in printed.splitlines() if what in line))[0] for what in ("alarm", "off")}
     assert when["alarm"] == approx(smoke_time + 0.01)
     assert 0.05 <= round(when["off"] - when["alarm"], 6) <= 0.1
-    assert said.count("stirs") == round(when["off"] / 0.05) - 1
+    assert printed.count("stirs") == round(when["off"] / 0.05) - 1
 
 
 def test_a_stir_with_a_higher_utility_fires_before_the_alarm(capsys: pytest.CaptureFixture[str]) -> None:
     run("parallel_system", until=2, change=('def stir(goal="task:stir")', 'def stir(goal="task:stir", utility=2)'))
-    said = capsys.readouterr().out
-    assert said.count("stirs") == 40
-    assert "turns the stove off" not in said
+    printed = capsys.readouterr().out
+    assert printed.count("stirs") == 40
+    assert "turns the stove off" not in printed
 
 
 @pytest.mark.parametrize(("red", "green"), [(0.9, 0.4), (0.5, 0.5), (1.0, 0.2)])
@@ -201,9 +201,9 @@ def test_words_are_forgotten_as_the_equation_says(decay: float, threshold: float
 @pytest.mark.parametrize("delay", [0.2, 0.4])
 def test_each_change_of_the_image_takes_its_delay(delay: float, capsys: pytest.CaptureFixture[str]) -> None:
     run("imaginal", imaginal_delay=delay)
-    said = capsys.readouterr().out
-    assert times(said) == approx([0.1 + delay + (0.15 + delay) * n for n in range(3)])
-    assert [int(total) for total in re.findall(r"s: (\d+)", said)] == [3, 7, 9]
+    printed = capsys.readouterr().out
+    assert times(printed) == approx([0.1 + delay + (0.15 + delay) * n for n in range(3)])
+    assert [int(total) for total in re.findall(r"s: (\d+)", printed)] == [3, 7, 9]
 
 
 def test_a_request_to_a_busy_imaginal_module_is_lost(capsys: pytest.CaptureFixture[str]) -> None:
@@ -215,13 +215,13 @@ def test_sgoms_the_longer_the_interruption_the_longer_it_takes_to_find_back(caps
     for call, interrupted in ((4.0, 2.06), (0.5, 2.06), (10.0, 2.06)):
         run("sgoms", call_time=call)
         lines = [line.split(" s: ") for line in capsys.readouterr().out.splitlines()]
-        said = {what: moment for moment, what in lines}  # the last of each
+        printed = {what: moment for moment, what in lines}  # the last of each
         # From the interruption: begin, choose, start and end of two unit tasks that take 1 s and the call; look, end; ask.
         away = 0.05 + 0.05 + (0.05 + 1.0 + 0.05) + 0.1 + (0.05 + call + 0.05) + 0.1 + 0.05
         back = interrupted + away + 0.05 * math.sqrt(away) + 0.05
-        assert float(said["steep"]) == approx(back + 0.05, abs=0.001)
+        assert float(printed["steep"]) == approx(back + 0.05, abs=0.001)
         # Steeping ends after 1.05 s; 0.15 s to the next unit task, and as much to the end; 0.05 s to notice it.
-        assert float(said["that is all"]) == approx(back + 0.05 + 1.05 + 0.15 + 0.05 + 1.05 + 0.15 + 0.05, abs=0.001)
+        assert float(printed["that is all"]) == approx(back + 0.05 + 1.05 + 0.15 + 0.05 + 1.05 + 0.15 + 0.05, abs=0.001)
 
 
 @pytest.mark.parametrize(
@@ -232,10 +232,10 @@ def test_sgoms_the_longer_the_interruption_the_longer_it_takes_to_find_back(caps
         (1.27, "now", ["boil", "pick_up", "talk", "steep", "pour"]),
     ],
 )
-def test_sgoms_the_tea_goes_on_where_it_was_left(ring: float, when: str, order: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_sgoms_the_tea_continues_where_it_was_left(ring: float, when: str, order: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     run("sgoms", ring_at=ring, when=when)
-    said = [line.split(" s: ")[1] for line in capsys.readouterr().out.splitlines()]
-    assert [what for what in said if what not in ("the telephone rings", "that is all")] == order
+    printed = [line.split(" s: ")[1] for line in capsys.readouterr().out.splitlines()]
+    assert [what for what in printed if what not in ("the telephone rings", "that is all")] == order
 
 
 @pytest.mark.parametrize(("call", "forgotten"), [(18.0, False), (18.8, True)])

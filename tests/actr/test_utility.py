@@ -1,4 +1,4 @@
-"""Utilities and their learning, against published numbers and sums written out."""
+"""Utilities and their learning, against published numbers and explicit sums."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_published_utilities(profile: str) -> None:
 
 
 @pytest.mark.parametrize(("profile", "expected"), [("python-actr", 3.97), ("act-r-7", 3.57)])
-def test_a_base_utility_of_ones_own(profile: str, expected: float) -> None:
+def test_a_user_defined_base_utility(profile: str, expected: float) -> None:
     agent = steps(learning=PMNew(alpha=0.2), profile=profile, first=2)
     agent.reward(10)
     assert in_order(agent) == near([expected, 1.98, 1.99])
@@ -123,7 +123,7 @@ def test_temporal_difference() -> None:
     assert in_order(agent) == near([u1, u2, u3])
 
 
-def test_modules_of_ones_own_add_up() -> None:
+def test_user_defined_modules_add_up() -> None:
     class Constant(ProceduralSubModule):
         def __init__(self, worth: float) -> None:
             self.worth = worth

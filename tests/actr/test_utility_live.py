@@ -28,7 +28,7 @@ ATTRIBUTES = ("base_utility", "util", "td_u", "successes", "failures", "time", "
 
 @pytest.fixture(autouse=True)
 def old_names(monkeypatch: pytest.MonkeyPatch) -> None:
-    """python_actr's PMPGC asks for a name that Python 3.10 took away."""
+    """python_actr's PMPGC uses a name that Python 3.10 removed."""
     monkeypatch.setattr(collections, "Callable", collections.abc.Callable, raising=False)
 
 

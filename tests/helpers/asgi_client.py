@@ -1,4 +1,4 @@
-"""Speaks to the application without a server, as ASGI does: also with headers that no client would send."""
+"""Calls the application through ASGI without a server, also with headers that no client would send."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _scope(kind: str, path: str, headers: Iterable[Header], query: str, method: 
 
 
 class Answer:
-    """What came back."""
+    """The answer to a request."""
 
     def __init__(self, messages: list[MutableMapping[str, Any]]) -> None:
         self.messages = messages
@@ -81,18 +81,18 @@ async def call(
     leaving: asyncio.Event | None = None,
     first: Callable[[], Awaitable[object]] | None = None,
 ) -> Answer:
-    """Sends a request and returns the answer, in an event loop that there is already.
+    """Sends a request from a running event loop, and returns the answer.
 
     Args:
-        app: Who is asked.
-        path: For what.
-        headers: With which headers.
-        query: What stands after the path.
-        method: How.
-        body: What is sent.
-        parts: What is sent before that.
-        leaving: When this is set, the client has gone.
-        first: Is called when the answer begins.
+        app: The application.
+        path: The path of the request.
+        headers: The headers of the request.
+        query: The query string.
+        method: The HTTP method.
+        body: The body, or its last part.
+        parts: Parts of the body that are sent before `body`.
+        leaving: An event; the client disconnects when it is set.
+        first: Called when the answer begins.
     """
     waiting = [{"type": "http.request", "body": part, "more_body": True} for part in parts or ()]
     waiting.append({"type": "http.request", "body": body, "more_body": False})
@@ -100,7 +100,7 @@ async def call(
 
 
 def connect(app: ASGIApp, path: str, *headers: Header) -> Answer:
-    """Opens a websocket, and says nothing more."""
+    """Opens a websocket and sends nothing; returns the answer."""
     waiting: list[dict[str, Any]] = [{"type": "websocket.connect"}, {"type": "websocket.disconnect", "code": 1001}]
     return asyncio.run(_call(app, _scope("websocket", path, headers, "", ""), waiting))
 
@@ -118,7 +118,7 @@ async def _call(
     async def receive() -> MutableMapping[str, Any]:
         if waiting:
             return waiting.pop(0)
-        await answered.wait()  # clients stay until they have their answer
+        await answered.wait()  # a client stays connected until it has its answer
         return {"type": "http.disconnect"}
 
     async def send(message: MutableMapping[str, Any]) -> None:

@@ -16,11 +16,11 @@ mujoco: Any = importlib.import_module("mujoco")
 Floats = NDArray[np.float64]
 
 JUST = 2e-6
-"""How far beside an edge the oracle looks, as a part of the screen: fifty times as near as is promised."""
+"""Distance from an edge at which the oracle casts rays, as a fraction of the screen: a fiftieth of the promised accuracy."""
 
 
 def compiled(world: str, assets: str = "", eye: str = "") -> tuple[Any, Any]:
-    """Returns model and data of a scene; the site 'eye' looks along x from 1.5 m above the origin unless told otherwise."""
+    """Returns model and data of a scene; the site 'eye' looks along x from 1.5 m above the origin by default."""
     eye = eye or '<site name="eye" pos="0 0 1.5"/>'
     mj_model = mujoco.MjModel.from_xml_string(f"<mujoco><asset>{assets}</asset><worldbody>{eye}{world}</worldbody></mujoco>")
     mj_data = mujoco.MjData(mj_model)
@@ -29,14 +29,14 @@ def compiled(world: str, assets: str = "", eye: str = "") -> tuple[Any, Any]:
 
 
 def seen(world: str, assets: str = "", eye: str = "", **parameters: Any) -> tuple[GeometricCamera, View]:
-    """Returns a camera at the site 'eye', and what it sees."""
+    """Returns a camera at the site 'eye', and its view."""
     mj_model, mj_data = compiled(world, assets, eye)
     camera = GeometricCamera(mj_model, site="eye", parameters=CameraParameters(**parameters))
     return camera, camera.look(mj_data)
 
 
 class Oracle:
-    """Knows what MuJoCo's rays hit; for flat screens and eyes at the site 'eye'."""
+    """Casts MuJoCo's rays, for flat screens and eyes at the site 'eye'."""
 
     def __init__(self, mj_model: Any, mj_data: Any, parameters: CameraParameters) -> None:
         self._model, self._data, self._parameters = mj_model, mj_data, parameters
@@ -87,7 +87,7 @@ def disagreements(mj_model: Any, mj_data: Any, parameters: CameraParameters, sam
 
 
 def _wrong_edges(oracle: Oracle, y: float, extents: list[tuple[list[float], int]], known: dict[int, int]) -> list[str]:
-    """Compares the edges of one row's extents with rays beside them; learns which label stands for which object."""
+    """Compares the edges of one row's extents with rays beside them; records which label belongs to which object."""
     wrong: list[str] = []
     for (x1, x2, d1, d2, *_), label in extents:
         step = min(JUST, (x2 - x1) / 4)
@@ -96,8 +96,8 @@ def _wrong_edges(oracle: Oracle, y: float, extents: list[tuple[list[float], int]
         if hits[1] != thing or hits[2] != thing or hits[3] != thing or thing == 0:
             wrong.append(f"y={y} label {label} [{x1}, {x2}]: rays hit {hits}, not {thing}")
         if (hits[0] == thing and x1 > JUST) or (hits[4] == thing and x2 < 1 - JUST):
-            wrong.append(f"y={y} label {label} [{x1}, {x2}]: goes on beyond its edges: {hits}")
-        for told, hit, distance in zip((d1, d2), *oracle.look(np.array([x1 + 1e-9, x2 - 1e-9]), y), strict=True):
-            if hit == thing and abs(told - distance) > 1e-3 * max(1.0, told / 5):
-                wrong.append(f"y={y} label {label} [{x1}, {x2}]: distance {told}, but rays say {distance}")
+            wrong.append(f"y={y} label {label} [{x1}, {x2}]: continues beyond its edges: {hits}")
+        for seen_distance, hit, distance in zip((d1, d2), *oracle.look(np.array([x1 + 1e-9, x2 - 1e-9]), y), strict=True):
+            if hit == thing and abs(seen_distance - distance) > 1e-3 * max(1.0, seen_distance / 5):
+                wrong.append(f"y={y} label {label} [{x1}, {x2}]: distance {seen_distance}, but rays say {distance}")
     return wrong

@@ -23,13 +23,13 @@ _CONTEXT.set_forkserver_preload(["actr3d.cli", "actr3d.simulation", "actr3d.runn
 def run_command(
     *words: str, folder: Path | None = None, environment: Mapping[str, str] | None = None, timeout: float = 120
 ) -> CompletedProcess[str]:
-    """Runs `actr3d` with arguments and returns its exit code and what it wrote.
+    """Runs `actr3d` with arguments and returns its exit code and output.
 
     Args:
         words: The arguments.
-        folder: The working directory; None for the present one.
-        environment: Environment variables that differ from the present ones.
-        timeout: How long it may take [s].
+        folder: The working directory; None for the current one.
+        environment: Environment variables that differ from the current ones.
+        timeout: Maximum duration [s].
 
     Raises:
         TimeoutExpired: If it takes longer; it is killed.
@@ -52,7 +52,7 @@ def _text(path: Path) -> str:
 
 
 def _run(words: tuple[str, ...], folder: str, environment: dict[str, str], out: str, error: str) -> None:
-    """Runs the command in this process, which has no other purpose."""
+    """Runs the command in this process, which serves no other purpose."""
     from actr3d.cli import main
 
     for number, path in ((1, out), (2, error)):

@@ -44,7 +44,7 @@ luck = model.random.random()
 '''
 
 SLOW_COUNTER = COUNTER.replace('if mode == "fail"', 'import time\ntime.sleep(0.03)\nif mode == "fail"')
-"""A trial takes long enough that something can happen meanwhile, and little of the processor."""
+"""A model whose trials last long enough for a test to act meanwhile, and use little of the processor."""
 
 DESIGN = """
 from actr3d.experiment import Design, Group, Normal, Uniform, design
@@ -75,6 +75,6 @@ def write_experiment(
 
 
 def trial_processes() -> set[int]:
-    """Returns the processes of this one that run trials."""
+    """Returns the child processes that run trials."""
     found = subprocess.run(["pgrep", "-P", str(os.getpid()), "-f", "trial_process"], capture_output=True, text=True)
     return {int(one) for one in found.stdout.split()}

@@ -10,15 +10,15 @@ from actr3d.actr.loading import load_text
 
 
 def agent_of(source: str, seed: int = 3) -> Any:
-    """Returns an agent whose random numbers come from a seed, and that has not run yet."""
+    """Returns an agent that has not run yet, with a seed for its random numbers."""
     agent = load_text("from actr3d.actr import *\n" + source, "explained.py").Agent()
     with RunLimits(seed=seed):
         ensure_converted(agent)
     return agent
 
 
-def same_later(agent: Any, steps: int = 40, step: float = 0.0125) -> None:
-    """Runs a traced agent, explaining it on the way, and asserts that its past is told later as its present was."""
+def assert_past_matches(agent: Any, steps: int = 40, step: float = 0.0125) -> None:
+    """Runs a traced agent and explains it at each step; asserts that each explanation is the same when it is past."""
     now: list[Any] = []
     for _ in range(steps):
         now.append(agent.explain())
@@ -27,7 +27,7 @@ def same_later(agent: Any, steps: int = 40, step: float = 0.0125) -> None:
         assert agent.explain(then.time) == then
 
 
-def told_by(agent: Any, name: str) -> list[str]:
-    """Returns a list of the model file's own, in which its functions write that they were called."""
+def recorded_calls(agent: Any, name: str) -> list[str]:
+    """Returns a global list of the model file, in which its functions record their calls."""
     production = next(iter(agent._productions))
     return production.original_func.__globals__[name]

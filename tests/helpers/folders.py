@@ -10,7 +10,7 @@ from pathlib import Path
 
 @contextmanager
 def not_writable(folder: Path) -> Generator[None]:
-    """Makes a folder one that nobody can write to, inside the block; root can write everywhere, and acts as somebody else."""
+    """Makes a folder read-only inside the block. Root could still write there, so it becomes another user for the block."""
     for path in (*folder.iterdir(), folder):
         path.chmod(0o555 if path.is_dir() else 0o444)
     was = os.geteuid()

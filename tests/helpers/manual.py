@@ -1,4 +1,4 @@
-"""The code blocks of Markdown pages: what a reader would type, and what the page says it prints.
+"""The code blocks of Markdown pages: the input of a reader, and the output that the page shows.
 
 The blocks of a page follow one another, as a reader would copy them:
 
@@ -31,7 +31,7 @@ END_OF_BLOCK = "\N{SYMBOL FOR RECORD SEPARATOR}"
 
 @dataclass
 class Program:
-    """One file of a page: the blocks it is made of, each with what it prints, if the page says so."""
+    """One file of a page: its blocks, each with its output if the page shows it."""
 
     name: str
     blocks: list[str] = field(default_factory=list[str])
@@ -43,7 +43,7 @@ class Program:
         return "".join(self.blocks)
 
     def run(self) -> Iterator[tuple[str | None, str]]:
-        """Runs the program in the present folder; yields what the page says that each block prints, and what it prints."""
+        """Runs the program in the current folder; yields the expected and the printed output of each block."""
         marked = f"\nprint({END_OF_BLOCK!r}, end='')\n".join([*self.blocks, ""])
         out = io.StringIO()
         with contextlib.redirect_stdout(out):
@@ -57,7 +57,7 @@ def has_code(page: Path) -> bool:
 
 
 def check(page: Path, folder: Path) -> None:
-    """Runs the code of a page in a folder, and compares what it prints with what the page says.
+    """Runs the code of a page in a folder, and compares its output with that of the page.
 
     Raises:
         AssertionError: If they differ.
@@ -91,7 +91,7 @@ def check(page: Path, folder: Path) -> None:
 
 
 def compare(expected: str, found: str) -> None:
-    """Compares what a page shows with what was printed; a line `...` of the page matches any lines.
+    """Compares the output that a page shows with the printed output; a line `...` of the page matches any lines.
 
     Raises:
         AssertionError: If they differ.
@@ -103,14 +103,14 @@ def compare(expected: str, found: str) -> None:
 
 
 def _commands(text: str) -> Iterator[tuple[str, str]]:
-    """Yields the commands of a block, and what each prints."""
+    """Yields the commands of a block, each with its output."""
     for part in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
         command, _, printed = part.partition("\n")
         yield command, printed
 
 
 def _carried_out(command: str) -> str:
-    """Runs `actr3d ...`; returns what it prints, errors included."""
+    """Runs `actr3d ...`; returns its output, errors included."""
     name, *arguments = shlex.split(command)
     assert name == "actr3d", f"only `actr3d` can be run here (got {command!r})"
     out = io.StringIO()

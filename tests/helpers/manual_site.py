@@ -1,4 +1,4 @@
-"""The manual as a site, built once for all who need it."""
+"""The manual as a site, built once for all tests that need it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SOURCES = ("docs", "actr3d", "models", "workbench", "static", "mkdocs.yml", "CHA
 def built_manual() -> Path:
     """Builds the manual unless it is newer than its sources; a warning, such as of a broken link or a missing docstring, fails.
 
-    Of two processes that want it at once, one builds it and the other waits.
+    If two processes need it at the same time, one builds it while the other waits.
     """
     SITE.parent.mkdir(exist_ok=True)
     with (SITE.parent / "manual.lock").open("w") as lock:

@@ -12,7 +12,7 @@ from actr3d.world import Floor, Mannequin, Scene
 
 
 def mover(**parameters: Any) -> Callable[[], Any]:
-    """Returns what makes an agent that has a motor module, and does nothing by itself."""
+    """Returns a factory of agents that have a motor module and do nothing by themselves."""
 
     def make() -> Any:
         retrieval, posture = Buffer(), Buffer()
@@ -37,17 +37,17 @@ def moving(*parts: Any, body: Any = None, trace: str = "none", seed: int = 1, **
     return simulation, motor_of(simulation, body.name)
 
 
-def until(simulation: Simulation, condition: Callable[[], bool], most: int = 1000) -> int:
-    """Goes on tick by tick until something is so; returns how many ticks that took."""
-    for ticks in range(most):
+def until(simulation: Simulation, condition: Callable[[], bool], max_ticks: int = 1000) -> int:
+    """Steps until a condition holds; returns the number of ticks."""
+    for ticks in range(max_ticks):
         if condition():
             return ticks
         simulation.step()
-    raise AssertionError("it never came true")
+    raise AssertionError("the condition never held")
 
 
 def during(simulation: Simulation, act: Callable[[], None]) -> None:
-    """Goes on by a tick, in the midst of which a mind does something."""
+    """Runs one tick, and calls a function in the middle of it, as an agent would."""
     agents: Any = simulation.timeline.lockstep.agents
     agents.environment.sch.call_after(0.005, act)
     simulation.step()

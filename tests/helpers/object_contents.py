@@ -1,4 +1,4 @@
-"""What an object is made of, all the way down, as plain values: to compare a moment with the same moment later."""
+"""Converts an object and all that it refers to into plain values, to compare its contents at two times."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def picture(thing: Any, left_out: Collection[tuple[str, str]]) -> dict[str, Any]
 
     Args:
         thing: The object.
-        left_out: What does not count: the names of a class and of one of its attributes.
+        left_out: What is ignored: pairs of the names of a class and of one of its attributes.
     """
     found: dict[str, Any] = {}
     _walk(thing, type(thing).__name__, found, {}, left_out)
@@ -31,13 +31,13 @@ def picture(thing: Any, left_out: Collection[tuple[str, str]]) -> dict[str, Any]
 
 def _walk(thing: Any, path: str, found: dict[str, Any], seen: dict[int, tuple[Any, str]], left_out: Collection[tuple[str, str]]) -> None:
     if isinstance(thing, PLAIN):
-        found[path] = repr(cast("object", thing))  # of a number all its digits; NaN is equal to itself
+        found[path] = repr(cast("object", thing))  # numbers with all their digits; NaN is equal to itself
     elif isinstance(thing, CODE):
         found[path] = getattr(cast("object", thing), "__qualname__", type(cast("object", thing)).__name__)
     elif id(thing) in seen:
         found[path] = f"is {seen[id(thing)][1]}"
     else:
-        seen[id(thing)] = thing, path  # as long as it is kept, nothing else has its number
+        seen[id(thing)] = thing, path  # while it is kept, no other object has its id
         for name, part in _parts(thing):
             if not any((kind.__name__, name) in left_out for kind in type(thing).__mro__):
                 _walk(part, f"{path}.{name}", found, seen, left_out)
@@ -48,7 +48,7 @@ def _parts(thing: Any) -> list[tuple[str, Any]]:
         array = cast("NDArray[Any]", thing)
         base: Any = array.base
         if base is not None and not isinstance(base, np.ndarray):
-            return []  # it is MuJoCo's
+            return []  # an object of MuJoCo
         return [("array", (array.shape, array.dtype.str, array.tobytes()))]
     if isinstance(thing, mujoco.MjModel):
         return [("arrays", {name: array.tobytes() for name in dir(thing) if isinstance(array := getattr(thing, name), np.ndarray)})]

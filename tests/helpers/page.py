@@ -1,4 +1,4 @@
-"""How tests look at the page: with patience, in a Chromium that draws without a graphics card."""
+"""Helpers for tests of the page, in a Chromium that draws without a graphics card."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from playwright.sync_api import APIResponse, Browser, ConsoleMessage, Error, Pag
 
 PATIENCE = 60_000
 """Maximum time that a test waits [ms]; machines are slow at times."""
-expect.set_options(timeout=PATIENCE)  # whatever is expected, and not for five seconds only
+expect.set_options(timeout=PATIENCE)  # the default is five seconds
 
 OPTIONS = ("--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader")
 
@@ -24,7 +24,7 @@ NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chro
 
 
 def browser_path() -> str | None:
-    """Returns where a Chromium is; None where there is none."""
+    """Returns the path of a Chromium, or None if there is none."""
     return next((path for name in NAMES if (path := shutil.which(name)) is not None), None)
 
 
@@ -41,7 +41,7 @@ def launched(path: str) -> Generator[Browser]:
 
 @contextmanager
 def chromium() -> Generator[Browser]:
-    """Starts a Chromium; where there is none the test is skipped, or fails in CI, which is to have one."""
+    """Starts a Chromium. If there is none, the test is skipped; in CI it fails."""
     path = browser_path()
     if path is None:
         if os.environ.get("CI"):
@@ -52,7 +52,7 @@ def chromium() -> Generator[Browser]:
 
 
 PART = "window.part = (path) => import(new URL(path, document.querySelector('script[type=module]').src))"
-"""Defines `part("store.js")`, the module of the page with which a test looks inside."""
+"""Defines `part("store.js")`, which gives a test a JavaScript module of the page."""
 
 ANSWERS = """{
   const asked = window.fetch;
@@ -62,7 +62,7 @@ ANSWERS = """{
     return answer ? Promise.resolve(Response.json(answer.json, { status: answer.status })) : asked(what, options);
   };
 }"""
-"""Gives the page what `answers` has put into its session storage."""
+"""Answers requests of the page as `answers` has written to its session storage."""
 
 NO_SCENE = """{
   const kind = HTMLIFrameElement.prototype;
@@ -72,7 +72,7 @@ NO_SCENE = """{
     setTimeout(() => window.dispatchEvent(new MessageEvent("message", { source: this.contentWindow, data: { drawn: true } })));
   } });
 }"""
-"""Leaves the 3D view empty where a test is about something else: to draw it without a graphics card takes seconds of two processors."""
+"""Leaves the 3D view empty in tests of other things: without a graphics card, drawing it keeps two processors busy for seconds."""
 
 
 LASTING = ("once", "add_init_script", "expose_binding", "expose_function")
@@ -80,16 +80,16 @@ LASTING = ("once", "add_init_script", "expose_binding", "expose_function")
 
 
 class Users:
-    """The users of a workbench in one browser, each with a page and a memory of its own.
+    """The users of a workbench in one browser, each with their own page and browser storage.
 
-    A page that a user has left is given to the next one, as the browser starts a process for a new one, which must read and compile
-    all files of the page again: half of the time that a page takes to load. A page that keeps something of a test is closed.
+    A page is reused for the next user: for a new page the browser starts a process, which must read and compile all files of the page
+    again, half of the time that a page takes to load. A page that a test has changed lastingly is closed.
     """
 
     def __init__(self, browser: Browser, url: str) -> None:
         self._browser = browser
         self._url = url
-        self._elsewhere = f"{url}/nothing"  # what the workbench does not have: of its origin, so that the browser keeps the page's process
+        self._elsewhere = f"{url}/nothing"  # not found, but of the same origin, so that the browser keeps the page's process
         self._free: dict[bool, list[Page]] = {True: [], False: []}
         self._taken: list[tuple[bool, Page]] = []
         self._changed: set[Page] = set()
@@ -97,7 +97,7 @@ class Users:
         self._listeners: dict[Page, list[tuple[Any, ...]]] = {}
 
     def new(self, scene: bool, hear: Callable[[str], object] | None = None) -> Page:
-        """Returns the page of a user who has not been here before, and who sees the 3D view or not.
+        """Returns the page of a new user, with or without the 3D view.
 
         `hear` receives each error on the page's console.
         """
@@ -108,7 +108,7 @@ class Users:
         return page
 
     def leave(self) -> None:
-        """Empties all pages; what the users did is forgotten."""
+        """Empties all pages, and removes everything that the users stored."""
         taken, self._taken = self._taken, []
         for scene, page in taken:
             for other in page.context.pages:
@@ -179,7 +179,7 @@ def shows(page: Page, where: str, text: str) -> None:
 
 
 def until(page: Page, condition: Callable[[], bool]) -> None:
-    """Waits until something is so that no locator can tell."""
+    """Waits for a condition that no locator can express."""
     end = time.monotonic() + PATIENCE / 1000
     while not condition():
         assert time.monotonic() < end
@@ -192,10 +192,10 @@ def becomes_true(page: Page, question: str) -> None:
 
 
 def answer_to(route: Route) -> APIResponse:
-    """Returns what the server answers to a request of the page.
+    """Returns the server's answer to a request of the page.
 
-    The server closes a connection that nobody has used for some seconds, perhaps while a request is on its way to it. A browser then sends
-    the request again on a new connection; Playwright must be told to.
+    The server closes a connection that is idle for some seconds, perhaps while a request is being sent on it. A browser then repeats the
+    request on a new connection; Playwright does so only with `max_retries`.
     """
     return route.fetch(max_retries=1)
 
@@ -216,7 +216,7 @@ def answers(page: Page, path: str, json: dict[str, Any], status: int = 200) -> N
 
 @contextmanager
 def holding(page: Page, where: str, wanted: Callable[[Request], bool]) -> Generator[list[tuple[Route, APIResponse]]]:
-    """Holds back what the server answers to such requests, which it has done; yields those that are held until now."""
+    """Holds back the server's answers to such requests, which the server has carried out; yields the ones that are held."""
     held: list[tuple[Route, APIResponse]] = []
 
     def hold(route: Route) -> None:
@@ -234,12 +234,12 @@ def holding(page: Page, where: str, wanted: Callable[[Request], bool]) -> Genera
 
 
 def drawn(page: Page) -> None:
-    """Waits until the page has been drawn with what it has taken in."""
+    """Waits until the page has been drawn with the data that it has received."""
     page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
 def duplicate(page: Page) -> Page:
-    """Returns a page with the address and the session storage of another one, as a browser makes it that duplicates a tab."""
+    """Returns a copy of a page with the same address and session storage, as a browser makes it to duplicate a tab."""
     twin = page.context.new_page()
     twin.add_init_script(f"Object.assign(sessionStorage, {page.evaluate('JSON.stringify(sessionStorage)')})")
     twin.goto(page.url)
@@ -247,7 +247,7 @@ def duplicate(page: Page) -> Page:
 
 
 def choose(page: Page, model: str) -> None:
-    """Shows a model, and waits until it is there."""
+    """Opens a model, and waits until it is shown."""
     page.get_by_label("Model", exact=True).select_option(model)
     shows(page, "#time", "t =")
 

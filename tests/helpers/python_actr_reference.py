@@ -10,7 +10,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import actr3d.actr as ours
+from actr3d import actr
 
 MODELS = Path(__file__).parents[1] / "models" / "made"
 
@@ -27,12 +27,12 @@ def reference() -> Any:
     return merged
 
 
-LIBRARIES: tuple[Any, Any] = (ours, reference())
-"""Ours, then the reference."""
+LIBRARIES: tuple[Any, Any] = (actr, reference())
+"""This library, then the reference."""
 
 
 def model_file(name: str) -> Any:
-    """Loads a file of tests/models/made afresh; its `make(library)` returns a model's class."""
+    """Loads a file of tests/models/made as a new module; its `make(library)` returns a model's class."""
     path = MODELS / f"{name}.py"
     spec = importlib.util.spec_from_file_location(f"tests_models_{name}", path)
     assert spec is not None
@@ -43,7 +43,7 @@ def model_file(name: str) -> Any:
 
 
 def recording_buffer(library: Any, events: list[tuple[float, Any]]) -> Any:
-    """Returns a buffer that notes when it is set and cleared, and what it holds then."""
+    """Returns a buffer that records when it is set and cleared, and its contents then."""
 
     def set_chunk(self: Any, chunk: Any) -> None:
         library.Buffer.set(self, chunk)
@@ -57,7 +57,7 @@ def recording_buffer(library: Any, events: list[tuple[float, Any]]) -> Any:
 
 
 def seeded_agent(library: Any, seed: int, **parts: Any) -> Any:
-    """Returns a living agent with these parts, at time 0, whose random numbers come from `random.Random(seed)`."""
+    """Returns a started agent with these parts, at time 0, whose random numbers come from `random.Random(seed)`."""
     agent = type("Agent", (library.ACTR,), parts)()
     agent.run(limit=0)
     agent.random.seed(seed)

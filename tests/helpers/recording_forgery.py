@@ -1,4 +1,4 @@
-"""Changes recordings behind their back, as their owner with the key could: all checksums and the seal are made to fit."""
+"""Forges recordings as an owner of the key could: with correct checksums and a correct seal."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Change = str | Callable[[sqlite3.Connection], object]
 
 
 def change(path: Path, *changes: Change) -> None:
-    """Changes the file of a recording, and leaves its checksums as they are."""
+    """Changes the file of a recording without updating its checksums."""
     with closing(sqlite3.connect(path)) as file, file:
         for each in changes:
             if callable(each):
@@ -30,7 +30,7 @@ def forge(path: Path, *changes: Change, key: bytes | None = None) -> None:
     Args:
         path: The recording.
         changes: Statements of SQL, each of which must change something, or functions of the open file.
-        key: The key of whoever seals it; that of this installation unless given.
+        key: The key of the seal; by default that of this installation.
     """
     change(path, *changes, _seal_again(key or make_key() or b""))
 

@@ -10,7 +10,7 @@ from actr3d.runner.verdict import Verdict, give_verdict
 
 
 def verdict(path: Path) -> Verdict:
-    """Returns what the process of `actr3d replay PATH` says of a recording."""
+    """Returns the verdict of the process of `actr3d replay PATH`."""
     with tempfile.TemporaryDirectory() as folder:
         to = Path(folder, "verdict")
         give_verdict(file=str(path), to=str(to), trust=False, any_version=False)

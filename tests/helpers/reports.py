@@ -33,7 +33,7 @@ def store_rows(
         measures: Computes the measures of a trial; a key `error` makes it a failure.
         participants: The number of participants of each group.
         trials: The number of trials of each cell.
-        values: Other values than those of the design.
+        values: Values that replace those of the design.
         least: The number of the first trial that has a row.
     """
     experiment = specify(design, participants=participants, trials=trials, values=values)
@@ -49,7 +49,7 @@ def store_rows(
 
 
 def walk(trial: Trial) -> dict[str, Any]:
-    """Returns the measures of a walker that turns as one line of geometry says, with some spread, and more when it is fast."""
+    """Returns the measures of a walker whose turn follows from the geometry, with some spread, and is larger at a fast pace."""
     width = trial.values["shoulder_width"]
     need = float(baseline_angle([trial.values["aperture"] / width])[0])
     spread = 0.3 * math.sin(7.0 * trial.number)

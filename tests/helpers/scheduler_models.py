@@ -1,4 +1,4 @@
-"""A model that notes what happens, for the tests of the scheduler."""
+"""A model that records events, for the tests of the scheduler."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from actr3d.actr import Model
 
 
 class Part(Model):
-    """A model that notes what happens and when."""
+    """A model that records events and their times."""
 
     def __init__(self) -> None:
         self._seen: list[tuple[Any, float]] = []

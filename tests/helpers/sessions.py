@@ -26,10 +26,10 @@ PATIENCE = 180.0
 
 
 class Desk:
-    """An event loop of its own with workers, and sessions for each test.
+    """An event loop with workers, and sessions for each test.
 
     Args:
-        memory: How much memory a model may take [MB].
+        memory: Maximum memory of a model [MB].
     """
 
     def __init__(self, memory: int = 1500) -> None:
@@ -57,7 +57,7 @@ class Desk:
         return self.do(call(app, path, HOST, COOKIE, *headers, **more))
 
     def listed(self, folder: Path, first: int = 0, most: int = 1000) -> tuple[int, list[Summary]]:
-        """Returns how many recordings a folder has, and the summaries of some."""
+        """Returns the number of recordings of a folder, and the summaries of some."""
         return self.do(self.sessions(folder).listing.some(first, most))
 
     def begin(self, folder: Path, source: str, *, name: str = "model.py", wait: str | None = "paused", **options: Any) -> Talk:
@@ -93,7 +93,7 @@ class Desk:
 
 
 class Talk:
-    """Speaks with one session."""
+    """Sends commands to one session and reads its state."""
 
     def __init__(self, desk: Desk, session: Session, sessions: Sessions) -> None:
         self.desk = desk

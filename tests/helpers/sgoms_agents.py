@@ -46,9 +46,9 @@ class World(Model):
 
 
 def cooking(body: str = "class Agent(Base): pass", *bells: Any, seconds: float = 10, seed: int = 1, traced: bool = True) -> Any:
-    """Runs the class Agent of a text, interrupted as bells say: time, request, time, request. Returns the text's module.
+    """Runs the class Agent of a text; `bells` interrupt it: time, request, time, request. Returns the text's module.
 
-    It has the `agent`, the `trace`, and what was `said`: when which unit task was begun.
+    The module has the `agent`, the `trace`, and in `said` the time and name of each unit task that began.
     """
     module: Any = load_text(HEAD + body, "planning.py")
     with RunLimits(seed=seed):
@@ -61,8 +61,8 @@ def cooking(body: str = "class Agent(Base): pass", *bells: Any, seconds: float =
     return module
 
 
-def told(module: Any, *kinds: str) -> list[str]:
-    """Returns what the trace tells of some levels: `0.15 begun tea/boil`."""
+def level_events(module: Any, *kinds: str) -> list[str]:
+    """Returns the events of some levels as texts: `0.15 begun tea/boil`."""
     return [f"{event.time:.10g} {event.data['what']} {event.data['path']}" for event in module.trace if event.kind in kinds]
 
 

@@ -11,8 +11,8 @@ near: Any = importlib.import_module("pytest").approx
 """`pytest.approx`, which has no complete types."""
 
 
-def living(profile: str | None = None, seed: int = 1, **parts: Any) -> Any:
-    """Returns an agent with these parts that has come to life, at time 0."""
+def started_agent(profile: str | None = None, seed: int = 1, **parts: Any) -> Any:
+    """Returns an agent with these parts that has been started, at time 0."""
     if profile is not None:
         parts["profile"] = profile
     agent: Any = type("Agent", (ACTR,), parts)()

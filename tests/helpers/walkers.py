@@ -35,7 +35,7 @@ class Driver(ACTR):
         body.set("position", "head_yaw", 0.3 * self.random.random())
         body.request("pose", noise=0.05)
 """
-"""Walks, and looks where it is again and again; goes another way at random."""
+"""Walks, reads its pose repeatedly, and changes its direction at random."""
 
 Driver: Any = load_text(DRIVER, "driver.py").Driver
 

@@ -1,4 +1,4 @@
-"""An agent for the tests of what is said of a model that most likely does not mean what it says."""
+"""An agent for the tests of warnings about probable mistakes in a model."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class Agent(ACTR):
 
 
 def warned(body: str, length: float = 0.0) -> list[tuple[str, int]]:
-    """Returns what is said of an agent with these methods, with the line (the first line of the body is 10)."""
+    """Returns the warnings about an agent with these methods, with the line (the first line of the body is 10)."""
     text = HEAD + "\n".join("    " + line for line in body.splitlines())
-    with warnings.catch_warnings(record=True) as said:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         agent: Any = load_text(text, "loud.py").Agent()
         agent.run(length)
-    assert all(w.category is ModelWarning and w.filename == "loud.py" for w in said)
-    return [(str(w.message), w.lineno) for w in said]
+    assert all(w.category is ModelWarning and w.filename == "loud.py" for w in caught)
+    return [(str(w.message), w.lineno) for w in caught]

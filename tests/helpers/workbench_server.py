@@ -1,4 +1,4 @@
-"""The workbench as users start it: the command in a process of its own."""
+"""The workbench as users start it: the command in a separate process."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Served:
     def __init__(self, process: subprocess.Popen[str], lines: list[str], folder: Path) -> None:
         self.process = process
         self.lines = lines
-        """What it has printed."""
+        """What the command has printed."""
         self.folder = folder
         self.address = lines[-1]
         self.token = self.address.partition("?token=")[2]
@@ -68,4 +68,4 @@ def served(folder: Path, *options: str) -> Generator[Served]:
             rest = process.stdout.read()
             process.wait(30)
             assert not re.search("Traceback|Exception", rest), rest
-            assert running.token not in rest  # it is told once, as the address
+            assert running.token not in rest  # it is printed once, as part of the address

@@ -1,4 +1,4 @@
-"""The motor module: commands, muscle groups, limits, and what is refused."""
+"""The motor module: commands, muscle groups, limits, and refusals."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ ARM = """<mujoco><worldbody><body name="base"><geom size="0.1"/>
     </body></body></body></worldbody>
   <actuator><velocity name="a" joint="shoulder" kv="200"/><velocity name="b" joint="elbow" kv="200"/>
     <velocity name="c" joint="grip" kv="200"/></actuator></mujoco>"""
-"""An arm on a pedestal, as a robot's description may have it; nothing moves its wrist."""
+"""An arm on a pedestal, as in a robot's description; no actuator moves its wrist."""
 
 
 def angle(simulation: Simulation, joint: str, body: str = "walker") -> float:
-    """Returns where a joint truly is [degrees]."""
+    """Returns the true position of a joint [degrees]."""
     return math.degrees(simulation.world.bodies[body].joints[joint].position)
 
 
@@ -75,7 +75,7 @@ def test_a_movement_without_an_angle_ends_at_the_limit_and_says_so(command: str,
     assert angle(simulation, joint) == near(ends, abs=0.01)
     assert ended(motor, joint.rpartition("_")[0]) == "limit"
     getattr(motor, command)(*given)
-    assert until(simulation, lambda: not motor.busy) == 2, "at the limit it ends at once"
+    assert until(simulation, lambda: not motor.busy) == 2, "at the limit it ends immediately"
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
@@ -105,7 +105,7 @@ def test_a_stopped_movement_stays_where_it_was() -> None:
     assert motor.parent.posture.chunk["torso_yaw"] == round(stood)
 
 
-def test_groups_move_at_once_while_it_walks_and_turns() -> None:
+def test_several_muscle_groups_move_while_it_walks_and_turns() -> None:
     simulation, motor = moving()
     motor.walk(1.2)
     motor.turn(30, speed=60)
@@ -203,7 +203,7 @@ def test_lowering_the_arms_moves_both_to_where_they_hang() -> None:
     assert motor.left_upper_arm_pitch_angle == motor.right_upper_arm_roll_angle == 0
 
 
-def test_several_groups_are_stopped_at_once_and_the_rest_goes_on() -> None:
+def test_stopping_several_groups_leaves_the_others_moving() -> None:
     simulation, motor = moving()
     motor.walk(1.0)
     motor.rotate_torso()
@@ -255,7 +255,7 @@ def test_a_movement_is_prepared_for_as_long_as_a_parameter_says_and_can_be_stopp
     assert angle(simulation, "torso_yaw") == near(12, abs=0.01)
 
 
-def test_a_change_of_speed_is_prepared_too_and_the_former_speed_goes_on_meanwhile() -> None:
+def test_the_former_speed_continues_while_a_change_of_speed_is_prepared() -> None:
     simulation, motor = moving(preparation=0.25, initiation=0.05)
     motor.walk(1.0)
     motor.turn(speed=20)
@@ -271,7 +271,7 @@ def test_a_change_of_speed_is_prepared_too_and_the_former_speed_goes_on_meanwhil
     motor.walk(0)
     motor.walk(0.8)
     simulation.step(60)
-    assert base.speed[0] == near(0.8, abs=0.02), "a change that is still prepared is gone with the walk that it changes"
+    assert base.speed[0] == near(0.8, abs=0.02), "a change in preparation ends with the walk that it would change"
 
 
 def test_a_speed_may_change_while_its_movement_is_prepared() -> None:
@@ -289,7 +289,7 @@ def test_a_speed_may_change_while_its_movement_is_prepared() -> None:
     assert (base.speed[0], math.degrees(base.speed[2])) == (near(1.5, abs=0.02), near(-40, abs=0.5))
 
 
-# -- what is refused
+# -- refusals
 
 
 def test_a_busy_group_refuses_and_others_do_not() -> None:
@@ -301,8 +301,9 @@ def test_a_busy_group_refuses_and_others_do_not() -> None:
     assert (motor.error, motor.refusal) == (False, None)
     until(simulation, lambda: not motor.busy)
     assert angle(simulation, "left_shoulder_yaw") == near(-20, abs=0.01)
-    told = [event.data for event in simulation.trace or () if event.kind == "refused"]
-    assert told == [{"movement": "compress_shoulder_left", "why": "busy"}]
+
+    refused = [event.data for event in simulation.trace or () if event.kind == "refused"]
+    assert refused == [{"movement": "compress_shoulder_left", "why": "busy"}]
 
 
 @pytest.mark.parametrize(
@@ -318,7 +319,7 @@ def test_a_busy_group_refuses_and_others_do_not() -> None:
         ("rotate_torso", (10,)),
     ],
 )
-def test_any_accepted_command_resets_what_an_earlier_one_was_refused_for(command: str, given: tuple[Any, ...]) -> None:
+def test_an_accepted_command_clears_an_earlier_refusal(command: str, given: tuple[Any, ...]) -> None:
     simulation, motor = moving()
     motor.walk(1)
     motor.turn(speed=20)
@@ -329,7 +330,7 @@ def test_any_accepted_command_resets_what_an_earlier_one_was_refused_for(command
     assert (motor.error, motor.refusal) == (False, None)
 
 
-def test_what_would_move_a_busy_group_too_is_refused_as_a_whole() -> None:
+def test_a_command_that_would_also_move_a_busy_group_is_refused() -> None:
     simulation, motor = moving()
     motor.rotate("left_upper_arm", "pitch", angle=-90)
     simulation.step(2)
@@ -376,7 +377,7 @@ def test_an_angle_beyond_the_limit_is_refused() -> None:
         ("walk", ("fast",), r"walk: speed: must be a number \(got 'fast'\)"),
     ],
 )
-def test_what_there_is_not_is_an_error(command: str, given: tuple[Any, ...], message: str) -> None:
+def test_unknown_names_and_impossible_arguments_are_errors(command: str, given: tuple[Any, ...], message: str) -> None:
     _, motor = moving()
     with pytest.raises(WorldError, match=message):
         getattr(motor, command)(*given)
@@ -409,7 +410,7 @@ def test_an_agent_without_a_body_gets_an_error() -> None:
         _ = agent.motor.body
 
 
-def test_a_body_that_cannot_walk_says_so_with_the_line_that_asked() -> None:
+def test_a_command_that_a_body_cannot_carry_out_is_an_error_at_its_line() -> None:
     simulation, motor = moving(body=Car(name="walker"))
     with pytest.raises(WorldError, match=r"walker cannot walk; its commands are: .*steering"):
         motor.walk(1)
@@ -420,7 +421,7 @@ def test_a_body_that_cannot_walk_says_so_with_the_line_that_asked() -> None:
     assert angle(simulation, "steer") == near(10, abs=0.05)
 
 
-def test_what_is_commanded_before_the_body_is_known_is_done_then_and_its_errors_name_the_line() -> None:
+def test_commands_wait_until_the_body_is_known_and_their_errors_name_the_line() -> None:
     simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": mover()})
     motor = motor_of(simulation)
     motor.rotate_torso(12)
@@ -432,7 +433,7 @@ def test_what_is_commanded_before_the_body_is_known_is_done_then_and_its_errors_
     assert "test_motor.py" in str(failed.value.__notes__)
 
 
-# -- what is in the way
+# -- obstacles
 
 
 def test_a_walker_at_a_wall_is_blocked() -> None:
@@ -466,7 +467,7 @@ def test_a_body_at_a_wall_can_walk_away_from_it() -> None:
     assert simulation.world.bodies["walker"].get("pose").x < -0.5
 
 
-def test_with_endless_patience_it_pushes_on() -> None:
+def test_without_a_limit_of_patience_it_keeps_pushing() -> None:
     simulation, motor = moving(Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0)), patience=None)
     motor.walk(1.0)
     simulation.step(300)
@@ -530,7 +531,7 @@ def test_an_imported_arm_is_known_and_moved() -> None:
     assert angle(simulation, "shoulder", "arm") == near(40, abs=0.5)
     assert (motor.shoulder_angle, motor.upper_end, motor.finger_end) == (40, "done", "limit")
     assert motor.grip_position == near(0.05, abs=0.001)
-    assert motor.fore_busy, "a joint without limits turns until it is told to stop"
+    assert motor.fore_busy, "a joint without limits turns until a command stops it"
     motor.stop("fore")
     simulation.step(2)
     assert motor.fore_end == "stopped"
@@ -591,9 +592,9 @@ class Slip(ACTR):
     simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": load_text(text, "slip.py").Slip})
     with pytest.warns(
         ModelWarning, match=r"'go' can never match: 'motor' has no attribute 'torso_bussy'; did you mean 'torso_busy'\?"
-    ) as told:
+    ) as caught:
         simulation.step(3)
-    assert len(told) == 1
+    assert len(caught) == 1
     simulation.seek(0)
     simulation.step(3)
 
@@ -611,9 +612,9 @@ class Turner(ACTR):
 """
     make = load_text(text, "turner.py").Turner
     Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": make}).step(3)
-    with pytest.warns(ModelWarning, match="'motor' has no attribute 'torso_busy'") as told:
+    with pytest.warns(ModelWarning, match="'motor' has no attribute 'torso_busy'") as caught:
         Simulation(Scene(parts=(Floor(), Car(name="car"))), {"car": make}).step(3)
-    assert len(told) == 1
+    assert len(caught) == 1
     Simulation(Scene(parts=(Floor(), Car(name="car"))), {"car": make}).step(3)
 
 
@@ -633,12 +634,12 @@ def test_two_agents_move_their_own_bodies() -> None:
     assert (one.torso_yaw_angle, other.torso_yaw_angle) == (30, -60)
 
 
-def test_nothing_is_asked_while_nothing_moves() -> None:
+def test_no_request_is_made_while_nothing_moves() -> None:
     simulation, motor = moving(trace="all")
     simulation.step(50)
     answers = [event for event in simulation.trace or () if event.kind == "answer"]
     assert [event.data["word"] for event in answers] == ["anatomy", "proprioception"]
-    # Where all joints stand, the recorded physics tells; here it would be most of all that is traced.
+    # The recorded physics has the positions of all joints; here they would be most of the trace.
     assert answers[1].data["value"].keys() == {"moving", "speed", "walking", "turning", "width", "depth", "height", "middle"}
     motor.rotate_torso(12)
     simulation.step(50)

@@ -1,4 +1,4 @@
-"""The motor module is exact: through seek, with observers, in recordings; and keeps its promises whatever is commanded."""
+"""The motor module is exact: with seek, observers and recordings, and under any commands."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def restless(trace: str = "all") -> Simulation:
 
 
 @pytest.mark.slow
-def test_any_past_time_comes_back_exactly() -> None:
+def test_any_past_time_is_restored_exactly() -> None:
     simulation = restless()
     digests = [digest(simulation)]
     for _ in range(150):
@@ -124,7 +124,7 @@ COMMANDS = ("rotate", "free", "stop", "stop all", "walk", "turn", "arms")
 
 
 def command(motor: Any, choose: random.Random) -> None:
-    """Gives some command, possible or not."""
+    """Gives a random command, valid or not."""
     joints = [name for name, joint in motor._limbs.joints.items() if joint.driven]
     joint = choose.choice(joints)
     speed = choose.choice([20, 90, 240])
@@ -147,7 +147,7 @@ def command(motor: Any, choose: random.Random) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_whatever_is_commanded_limits_hold_and_what_is_known_is_so(seed: int) -> None:
+def test_limits_hold_and_knowledge_of_the_body_is_true_under_any_commands(seed: int) -> None:
     choose = random.Random(seed)
     simulation, motor = moving(seed=seed)
     body = simulation.world.bodies["walker"]
@@ -163,7 +163,7 @@ def test_whatever_is_commanded_limits_hold_and_what_is_known_is_so(seed: int) ->
             assert joint.lower - 2e-3 <= joint.position <= joint.upper + 2e-3
             seen[name] = [min(seen[name][0], joint.position), max(seen[name][1], joint.position)]
             if abs(body.hold.joint_speed(joint)) > 0.01:
-                assert name.rpartition("_")[0] in busy, "who moves is busy"
+                assert name.rpartition("_")[0] in busy, "a moving group is busy"
     motor.stop()
     simulation.step(2)
     for name in body.joints:
@@ -207,7 +207,7 @@ def test_left_and_right_are_mirrored(seed: int) -> None:
     assert [near(of, abs=2e-3) for of in widths(1)] == widths(-1)
 
 
-def test_a_user_who_moves_the_body_is_felt_when_it_moves_next() -> None:
+def test_a_body_moved_by_a_user_is_felt_at_its_next_movement() -> None:
     simulation, motor = moving()
     simulation.command("posture", {"head_yaw": 0.5}, speed=10.0)
     simulation.step(20)

@@ -1,4 +1,4 @@
-"""The body schema: what is felt of the body, and the postures that are remembered of it."""
+"""The body schema: felt positions of the body, and remembered postures."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def postures(motor: Any, pattern: str = "posture:?") -> list[dict[str, Any]]:
 
 
 def swing(simulation: Simulation, motor: Any, to: float) -> None:
-    """Turns torso and both shoulders to one side, until all are there."""
+    """Turns torso and both shoulders to one side, until all have arrived."""
     forward, backward = ("right", "left") if to > 0 else ("left", "right")
     motor.rotate_torso(to)
     motor.extend_shoulder(forward)
@@ -33,7 +33,7 @@ def swing(simulation: Simulation, motor: Any, to: float) -> None:
     until(simulation, lambda: not motor.busy)
 
 
-# -- what is known of the body
+# -- knowledge of the body
 
 
 def test_the_parts_are_those_of_the_body_in_its_order() -> None:
@@ -51,7 +51,7 @@ def test_the_parts_are_those_of_the_body_in_its_order() -> None:
         motor.joint("torso")
 
 
-def test_least_and_most_are_those_of_the_true_angles_to_the_last_tick() -> None:
+def test_extremes_are_those_of_the_true_angles_up_to_the_last_tick() -> None:
     simulation, motor = moving()
     body = simulation.world.bodies["walker"]
     seen: dict[str, list[float]] = {name: [joint.position] for name, joint in body.joints.items()}
@@ -67,7 +67,7 @@ def test_least_and_most_are_those_of_the_true_angles_to_the_last_tick() -> None:
         until(simulation, watch)
     for name, angles in seen.items():
         joint = motor.joint(name)
-        # What is not moved gives way a little and comes back, also where nothing is felt.
+        # Joints without a command give way a little and return, also while nothing is felt.
         exact = 1e-8 if name in ("torso_yaw", "head_yaw") else 1e-4
         assert (joint.minimum, joint.maximum, joint.angle) == near((min(angles), max(angles), angles[-1]), abs=exact, rel=0)
 
@@ -120,7 +120,7 @@ def test_a_posture_is_stored_at_the_start_and_where_movements_end() -> None:
     assert (ended["left_shoulder_yaw"], ended["extreme"], ended["torso_yaw"]) == (-20, "minimum", 10)
 
 
-def test_other_joints_are_in_a_posture_where_they_are_not_as_at_the_start() -> None:
+def test_a_posture_includes_other_joints_that_have_left_their_start() -> None:
     simulation, motor = moving()
     motor.rotate("pelvis", "yaw", angle=6)
     until(simulation, lambda: not motor.busy)
@@ -154,7 +154,7 @@ def test_a_joint_that_a_user_moves_meanwhile_does_not_hide_the_extremes_of_anoth
     assert "pelvis_yaw" in passing[0]
 
 
-def test_postures_felt_again_merge_and_are_recalled_the_better() -> None:
+def test_postures_felt_again_merge_and_gain_activation() -> None:
     simulation, motor = moving()
     memory = motor.parent.memory
     memory.base_level = DMBaseLevel(memory)
@@ -207,7 +207,7 @@ def test_a_posture_is_stored_on_request_under_a_name() -> None:
     assert felt["torso_yaw"] == near(13, abs=1)
 
 
-def test_storing_a_posture_does_not_take_back_that_a_request_failed() -> None:
+def test_storing_a_posture_does_not_clear_a_failed_request() -> None:
     simulation, motor = moving()
     memory = motor.parent.memory
     memory.request("posture:unheard")
@@ -282,7 +282,7 @@ class Finder(ACTR):
 """
 
 
-def test_productions_move_by_what_they_bind_and_match_busy_and_postures() -> None:
+def test_productions_command_bound_values_and_match_busy_and_postures() -> None:
     simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": load_text(FINDER, "finder.py").Finder})
     simulation.run()
     motor = motor_of(simulation)

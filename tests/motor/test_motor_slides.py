@@ -47,13 +47,13 @@ def test_each_command_needs_the_speed_of_a_slide() -> None:
             getattr(motor, command)(*given)
 
 
-def test_a_part_turns_and_slides_at_once_each_in_its_unit() -> None:
+def test_a_part_turns_and_slides_together_each_in_its_unit() -> None:
     simulation, motor = crane()
     motor.assume("pan:10 lift:0.2", speed=2)
     simulation.step(50)
     pan, lift = (simulation.world.bodies["crane"].joints[name].position for name in ("pan", "lift"))
     assert (math.degrees(pan), lift) == (near(1, abs=0.1), near(0.2, abs=0.001))
-    assert motor.mast_busy, "it turns still"
+    assert motor.mast_busy, "it still turns"
     until(simulation, lambda: not motor.busy)
     assert (motor.mast_end, motor.pan_angle, motor.lift_position) == ("done", 10, near(0.2, abs=0.001))
 

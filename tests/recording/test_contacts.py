@@ -1,4 +1,4 @@
-"""Contacts within ticks: a recording has what the skin feels, of each tick, and a run is the same with it or without."""
+"""Contacts within ticks: a recording has those that the skin feels in each tick, and does not change the run."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def struck() -> Simulation:
 
 
 def felt(simulation: Simulation, ticks: int = TICKS) -> Contacts:
-    """Runs a simulation whose body feels; returns what has touched it, by tick."""
+    """Runs a simulation whose agent reads the skin; returns the felt contacts by tick."""
     skin = simulation.world.bodies["walker"]
     skin.touched = tuple[Touch, ...]()
     found: Contacts = {}
@@ -111,7 +111,7 @@ def test_another_future_has_contacts_of_its_own(known: Contacts, tmp_path: Path)
         assert replay(recorded, struck).difference is None
 
 
-def test_of_what_stands_on_the_floor_nothing_is_written(tmp_path: Path) -> None:
+def test_contacts_of_resting_objects_are_not_recorded(tmp_path: Path) -> None:
     simulation = Simulation(Scene(parts=(Floor(), Crate(height=0.2))))
     with simulation.record(tmp_path / "run"):
         simulation.step(20)
@@ -136,7 +136,7 @@ def test_of_what_stands_on_the_floor_nothing_is_written(tmp_path: Path) -> None:
         ("[" * 200_000, "something in it is nested too deeply"),
     ],
 )
-def test_damaged_contacts_are_called_that(contacts: str, message: str, original: Path, tmp_path: Path) -> None:
+def test_damaged_contacts_are_reported(contacts: str, message: str, original: Path, tmp_path: Path) -> None:
     path = tmp_path / "run"
     path.write_bytes(original.read_bytes())
     forge(path, lambda file: file.execute("UPDATE states SET contacts = ? WHERE first = 0", (contacts,)))

@@ -1,4 +1,4 @@
-"""A recording that was changed in any way is damaged: it never agrees, and never ends in a traceback."""
+"""A recording with any change is damaged: it never agrees, and never causes a traceback."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ def original_(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def content(path: Path) -> list[Any]:
-    """Returns all that a recording says: everything but its checksums."""
+    """Returns the content of a recording without its checksums."""
     with closing(sqlite3.connect(path)) as file:
         tables = [file.execute(f"SELECT * FROM {table} ORDER BY 1").fetchall() for table in COLUMNS]
         return [file.execute("SELECT * FROM facts ORDER BY 1").fetchall(), *([row[:-1] for row in rows] for rows in tables)]
 
 
 def sealed(path: Path) -> list[Any]:
-    """Returns what says that a recording was made by this installation."""
+    """Returns the seal of a recording, which shows that this installation made it."""
     with closing(sqlite3.connect(path)) as file:
         return file.execute("SELECT * FROM seal").fetchall()
 
@@ -60,13 +60,13 @@ def altered(value: Any, choose: random.Random) -> Any:
 
 
 def edit(file: sqlite3.Connection, choose: random.Random) -> None:
-    """Changes something, as with an editor for databases."""
+    """Changes a database, as an editor for databases could."""
     table = choose.choice(["facts", "facts", "seal", *COLUMNS])
     key = "name" if table == "facts" else "first"
     rows = file.execute(f"SELECT * FROM {table}").fetchall()
     columns = [column[1] for column in file.execute(f"PRAGMA table_info({table})")]
     row, other = choose.sample(rows, 2) if len(rows) > 1 else rows * 2
-    column = choose.randrange(len(columns) - (table in COLUMNS))  # of the seal, its checksum, too
+    column = choose.randrange(len(columns) - (table in COLUMNS))  # also the checksum of the seal
     match choose.randrange(5):
         case 0:
             file.execute(f"DELETE FROM {table} WHERE {key} = ?", (row[0],))
@@ -82,8 +82,8 @@ def edit(file: sqlite3.Connection, choose: random.Random) -> None:
             file.execute(f"UPDATE OR REPLACE {table} SET {columns[column]} = ? WHERE {key} = ?", (altered(row[column], choose), row[0]))
 
 
-def test_no_recording_agrees_whose_content_was_changed(original: Path, tmp_path: Path) -> None:
-    whole, said = original.read_bytes(), content(original)
+def test_a_recording_with_changed_content_never_agrees(original: Path, tmp_path: Path) -> None:
+    whole, before = original.read_bytes(), content(original)
     found = {"damaged": 0, "foreign": 0, "the same": 0}
     seal = sealed(original)
     path = tmp_path / "run"
@@ -105,7 +105,7 @@ def test_no_recording_agrees_whose_content_was_changed(original: Path, tmp_path:
         except RecordingError:
             found["damaged"] += 1
             continue
-        assert content(path) == said, number
+        assert content(path) == before, number
         assert made_here == (sealed(path) == seal), number
         found["the same" if made_here else "foreign"] += 1
     assert found["damaged"] > EDITS / 2
@@ -114,7 +114,7 @@ def test_no_recording_agrees_whose_content_was_changed(original: Path, tmp_path:
         assert str(replay(recorded, driving)).startswith("every byte agrees: 40 ticks, ")
 
 
-def test_what_has_new_checksums_is_compared_all_the_same(original: Path, tmp_path: Path) -> None:
+def test_a_recording_with_new_checksums_is_still_compared(original: Path, tmp_path: Path) -> None:
     path = tmp_path / "run"
     for forged, message in [
         (["DELETE FROM answers"], "differs: answer 1; recorded: nothing"),
@@ -187,7 +187,7 @@ def program_(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize(("statement", "message"), FACTS)
-def test_what_is_wrong_in_a_recording_is_said(
+def test_errors_in_a_recording_are_reported(
     statement: str, message: str, program: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "run"
@@ -197,13 +197,13 @@ def test_what_is_wrong_in_a_recording_is_said(
     else:
         forge(path, statement)
     assert main(["replay", str(path)]) == 2
-    told = capsys.readouterr()
-    assert told.err.startswith("error: ")
-    assert message in told.err
-    assert len(told.err) < 1_000
+    captured = capsys.readouterr()
+    assert captured.err.startswith("error: ")
+    assert message in captured.err
+    assert len(captured.err) < 1_000
 
 
-def test_a_file_that_would_keep_a_reader_busy_for_ever_is_refused_at_once(program: Path, tmp_path: Path) -> None:
+def test_a_file_that_would_keep_a_reader_busy_for_ever_is_refused_immediately(program: Path, tmp_path: Path) -> None:
     path = tmp_path / "run"
     path.write_bytes(program.read_bytes())
     endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT i, i FROM n"

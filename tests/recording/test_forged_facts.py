@@ -1,4 +1,4 @@
-"""Facts that were forged, with checksums and seal that fit, are found wherever running the program again can show it."""
+"""Forged facts with correct checksums and seal are found wherever a replay can show it."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def verdict(path: Path) -> tuple[int, str]:
 
 
 @pytest.mark.parametrize("run", RUNS)
-def test_what_is_not_forged_agrees(run: str, recordings: dict[str, Path]) -> None:
+def test_unforged_facts_agree(run: str, recordings: dict[str, Path]) -> None:
     with Recorded(recordings[run]) as recorded:
         assert recorded.facts["until"] == (0.5 if run == "limits" else None)
         if run not in ("program", "failed"):
@@ -130,7 +130,7 @@ FORGERIES: list[tuple[str, tuple[Forgery, ...]]] = [
 
 
 @pytest.mark.parametrize("run", RUNS)
-def test_what_is_forged_does_not_agree(run: str, recordings: dict[str, Path], tmp_path: Path) -> None:
+def test_forged_facts_do_not_agree(run: str, recordings: dict[str, Path], tmp_path: Path) -> None:
     agreed: list[tuple[list[str], str]] = []
     path = tmp_path / "run"
     for changes in (changes for name, changes in FORGERIES if name == run):

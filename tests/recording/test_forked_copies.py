@@ -1,4 +1,4 @@
-"""A forked copy of a process that records, or compares, does neither: the recording is that of the first process."""
+"""A fork of a process that records or compares does neither: the recording is that of the first process."""
 
 from __future__ import annotations
 

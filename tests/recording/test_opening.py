@@ -1,4 +1,4 @@
-"""Files of recordings that somebody has made to hurt: nothing in them computes without end, and each is refused with a reason."""
+"""Malicious files of recordings: none makes the reader compute without end, and each is refused with a reason."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def altered(path: Path, script: str) -> None:
         "CREATE INDEX more ON facts (hex(value))",
     ],
 )
-def test_what_has_other_tables_is_no_recording(path: Path, script: str) -> None:
+def test_a_file_with_other_tables_is_no_recording(path: Path, script: str) -> None:
     altered(path, script)
     with pytest.raises(RecordingError, match="it has other tables than a recording"):
         Recorded(path)

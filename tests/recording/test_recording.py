@@ -1,4 +1,4 @@
-"""Recordings: one file a run, whole after a kill, and an error where it cannot be written."""
+"""Recordings: one file per run, complete after a kill, and an error if it cannot be written."""
 
 from __future__ import annotations
 
@@ -75,10 +75,10 @@ def test_a_recording_holds_everything(tmp_path: Path) -> None:
         assert list(recorded.commands()) == [
             (1, 50, {"command": "aperture", "data": {"values": [], "named": {"width": 0.5}, "body": None}})
         ]
-        told = [(event.source, event.data["value"]) for event in simulation.trace.select("answer")]
+        expected = [(event.source, event.data["value"]) for event in simulation.trace.select("answer")]
         answers = list(recorded.answers())
-        assert [(f"{answer.body}.body", answer.value) for answer in answers][: len(told)] == told
-        assert len(answers) >= len(told) > 10
+        assert [(f"{answer.body}.body", answer.value) for answer in answers][: len(expected)] == expected
+        assert len(answers) >= len(expected) > 10
         assert [answer.tick for answer in answers] == sorted(answer.tick for answer in answers)
         facts = recorded.facts
     assert (facts["seed"], facts["period_us"], facts["timestep_us"], facts["subject"], facts["place"]) == (1, 10_000, 2_000, 7, "here")
@@ -111,7 +111,7 @@ def test_unusual_values_are_recorded_as_in_the_trace(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("error", [MemoryError(), KeyboardInterrupt()])
-def test_whatever_loses_items_stops_the_recording(error: BaseException, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_any_loss_of_items_stops_the_recording(error: BaseException, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def raising(*_: object) -> str:
         raise error
 
@@ -142,7 +142,7 @@ def test_an_answer_that_cannot_be_recorded_keeps_what_came_before(tmp_path: Path
         assert [event.data["number"] for event in recorded.events()] == [1]
 
 
-def test_a_text_that_no_encoding_has_stays_when_a_run_goes_back(tmp_path: Path) -> None:
+def test_a_text_that_cannot_be_encoded_is_kept_after_a_seek(tmp_path: Path) -> None:
     events = [TraceEvent(time, "top", "state", {"word": "größe \ud800", "answer": math.inf}) for time in (5, 6)]
     with Recording(tmp_path / "run", {"kind": "simulation"}) as recording:
         for event in events:
@@ -158,13 +158,13 @@ def test_a_killed_run_leaves_all_but_the_last_second(wait: float, tmp_path: Path
     path = tmp_path / "run"
     with subprocess.Popen(program(path), stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
-        said: list[tuple[int, float]] = []
-        while not said or time.monotonic() - said[0][1] < wait:
-            said.append((int(process.stdout.readline()), time.monotonic()))
+        printed: list[tuple[int, float]] = []
+        while not printed or time.monotonic() - printed[0][1] < wait:
+            printed.append((int(process.stdout.readline()), time.monotonic()))
         os.kill(process.pid, signal.SIGKILL)
         killed = time.monotonic()
         process.wait()
-    due = max([tick for tick, when in said if when < killed - 1], default=0)
+    due = max([tick for tick, when in printed if when < killed - 1], default=0)
     with Recorded(path) as recorded:
         assert recorded.ticks >= due
         states = list(recorded.states())
@@ -235,7 +235,7 @@ def test_a_reader_does_not_hold_up_the_end(tmp_path: Path) -> None:
         assert recorded.event_count == 1
         recording.event(TraceEvent(1, "agent", "output", {"text": "two"}))
         recording.close()
-        assert recorded.event_count == 1  # it is read as it was
+        assert recorded.event_count == 1  # it is read as it was then
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
 
 
@@ -287,7 +287,7 @@ except Exception as error:
             Recording(folder / "nowhere" / "run", {})
 
 
-def test_what_is_there_is_not_replaced(tmp_path: Path) -> None:
+def test_an_existing_file_is_not_replaced(tmp_path: Path) -> None:
     path = tmp_path / "run"
     path.write_text("precious", encoding="utf-8")
     with pytest.raises(RecordingError, match="exists already"):
@@ -311,7 +311,7 @@ def test_a_recording_begins_with_its_run(tmp_path: Path) -> None:
         (b"", "is not a recording: it has other tables"),
     ],
 )
-def test_what_is_no_recording_is_called_that(content: bytes | None, message: str, tmp_path: Path) -> None:
+def test_a_file_that_is_no_recording_is_reported(content: bytes | None, message: str, tmp_path: Path) -> None:
     path = tmp_path / "run"
     if content is not None:
         path.write_bytes(content)
@@ -362,7 +362,7 @@ def test_a_run_is_recorded_once_at_a_time(tmp_path: Path) -> None:
         ({"subject": {"a": [{1: 2}]}}, r"the fact 'subject' cannot be recorded, .*: the keys of a dict must be texts \(got 1\)"),
     ],
 )
-def test_facts_that_are_none_of_the_users_are_refused(facts: dict[str, Any], message: str, tmp_path: Path) -> None:
+def test_facts_that_a_user_may_not_set_are_refused(facts: dict[str, Any], message: str, tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match=message):
         driving().record(tmp_path / "run", **facts)
     assert not (tmp_path / "run").exists()
@@ -395,7 +395,7 @@ def test_facts_without_a_value_are_damage(tmp_path: Path) -> None:
         Recorded(tmp_path / "run")
 
 
-def test_what_going_back_drops_can_be_copied_before(tmp_path: Path) -> None:
+def test_events_that_a_seek_drops_can_be_copied_before(tmp_path: Path) -> None:
     simulation = driving()
     with simulation.record(tmp_path / "run", subject=7) as recording:
         simulation.run(0.3)
@@ -403,7 +403,7 @@ def test_what_going_back_drops_can_be_copied_before(tmp_path: Path) -> None:
         simulation.run(0.3)
         simulation.seek(0.2)
         recording.copy_to(tmp_path / "before")
-        with Recorded(tmp_path / "before") as before:  # it is closed at once
+        with Recorded(tmp_path / "before") as before:  # it is closed immediately
             assert (before.ticks, before.facts["subject"], before.facts["ended"], before.over) == (60, 7, {"by": "left"}, False)
             assert [command.tick for command in before.commands()] == [30]
             assert [state.tick for state in before.states()] == list(range(61))
@@ -436,7 +436,7 @@ def test_a_copy_of_a_run_that_was_over_says_how_it_ended(tmp_path: Path) -> None
             assert recorded.facts["ended"] == ended
 
 
-def test_a_copy_that_cannot_be_written_leaves_nothing_and_the_recording_goes_on(tmp_path: Path) -> None:
+def test_a_copy_that_cannot_be_written_leaves_nothing_and_the_recording_continues(tmp_path: Path) -> None:
     (tmp_path / "there").write_text("precious", encoding="utf-8")
     simulation = driving()
     with simulation.record(tmp_path / "run") as recording:
@@ -454,7 +454,7 @@ def test_a_copy_that_cannot_be_written_leaves_nothing_and_the_recording_goes_on(
         assert recorded.ticks == 20
 
 
-def test_each_second_of_simulated_time_is_written_however_soon_it_comes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_second_of_simulated_time_is_written_however_fast_the_run_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(writer, "INTERVAL", 1_000)  # nothing is written for the time on the wall
     simulation = driving()
     recording, events = simulation.record(tmp_path / "run"), Recording(tmp_path / "events", {"kind": "program"})

@@ -1,4 +1,4 @@
-"""A replay runs with what the recording holds, and not at all where nobody trusts it."""
+"""A replay runs only the files in the recording, and only if the recording is trusted."""
 
 from __future__ import annotations
 
@@ -59,12 +59,12 @@ def build() -> Simulation:
 """
 FILES = {"helper.py": "def fail():\n    return 1 / 0\n", "lib/inside.py": "", "package/__init__.py": ""}
 TRAP = "import os, pathlib; pathlib.Path(os.environ['TRAP']).touch()\n"
-"""What nobody may run."""
+"""A module that must not run."""
 
 
 @pytest.fixture(autouse=True)
 def _path(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Takes back what models add to the path."""
+    """Removes what models add to the path."""
     monkeypatch.setattr(sys, "path", list(sys.path))
 
 
@@ -129,12 +129,12 @@ def test_a_recording_from_elsewhere_is_run_only_where_it_is_trusted(
 ) -> None:
     path = recorded(tmp_path / "own", text)
     trap.unlink()
-    forge(path, key=b"somebody else")
+    forge(path, key=b"another key")
     capsys.readouterr()
     assert main(["replay", str(path)]) == 2
-    told = capsys.readouterr().err
-    assert told.startswith(f"error: '{path}' was not made by this installation")
-    assert "--trust" in told
+    captured = capsys.readouterr().err
+    assert captured.startswith(f"error: '{path}' was not made by this installation")
+    assert "--trust" in captured
     with Recorded(path) as read:
         assert not read.made_here
         with pytest.raises(UntrustedError, match="replay\\(recorded, trust=True\\)"):
@@ -145,11 +145,11 @@ def test_a_recording_from_elsewhere_is_run_only_where_it_is_trusted(
     assert trap.exists()
 
 
-def test_what_a_caller_makes_needs_no_trust(tmp_path: Path) -> None:
+def test_a_simulation_that_the_caller_builds_needs_no_trust(tmp_path: Path) -> None:
     simulation = driving()
     with simulation.record(tmp_path / "run"):
         simulation.run(0.1)
-    forge(tmp_path / "run", key=b"somebody else")
+    forge(tmp_path / "run", key=b"another key")
     with Recorded(tmp_path / "run") as read:
         assert replay(read, driving).difference is None
 
@@ -176,9 +176,7 @@ def test_a_file_with_an_impossible_name_ends_in_no_traceback(name: str, tmp_path
 
 
 @pytest.mark.parametrize("text", ["import random\nprint(1)\n", BUILT])
-def test_a_module_that_python_has_loaded_itself_is_none_of_a_recording(
-    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_recording_cannot_replace_a_module_that_python_uses(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded(tmp_path / "own", text)
     forge(path, 'INSERT OR REPLACE INTO facts VALUES (\'helpers\', \'{"random": ["random.py", "x = 1"]}\')')
     capsys.readouterr()

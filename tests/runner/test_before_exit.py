@@ -1,4 +1,4 @@
-"""What a model has printed and done before it ends its own process is written, and the command says what is kept."""
+"""Models that end their own process: their output and recording are kept, and the command reports what is kept."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_a_model_that_ends_its_process_loses_nothing(text: str, end: str, code: 
         assert "ended" not in recorded.facts
 
 
-def test_what_was_done_is_also_kept_if_the_arguments_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_run_is_also_kept_if_the_arguments_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def do_nothing(**_: object) -> None:
         pass
 
@@ -78,7 +78,7 @@ def test_what_was_done_is_also_kept_if_the_arguments_are_named(monkeypatch: pyte
         "os.kill(os.getpid(), 0); raise OSError",
     ],
 )
-def test_a_model_that_fails_to_end_its_process_goes_on(tries: str, tmp_path: Path) -> None:
+def test_a_model_that_fails_to_end_its_process_continues(tries: str, tmp_path: Path) -> None:
     file, path = tmp_path / "model.py", tmp_path / "run"
     file.write_text(f"import os\nprint('a', end=' ')\ntry:\n    {tries}\nexcept OSError:\n    print('b')\n", encoding="utf-8")
     done = run_command("run", str(file), "--record", str(path))

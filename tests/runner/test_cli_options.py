@@ -82,7 +82,7 @@ def test_a_field_without_default_must_be_given() -> None:
     assert "must be given" in options_help([field])
 
 
-def test_a_redeclared_field_without_docstring_has_no_help_also_where_it_is_the_last_one() -> None:
+def test_a_redeclared_field_without_docstring_has_no_help_even_as_the_last_one() -> None:
     text = """from dataclasses import dataclass
 
 @dataclass
@@ -147,7 +147,7 @@ def test_wrong_options_are_reported(lamp: Any, words: list[str], message: str) -
         read_options(words, parameters_of(lamp.Parameters), ["--seed"])
 
 
-def test_settings_know_texts(lamp: Any) -> None:
+def test_settings_may_be_texts(lamp: Any) -> None:
     assert read_settings(["name=5", "power=5", "other=5"], parameters_of(lamp.Parameters)) == {"name": "5", "power": 5, "other": 5}
 
 
@@ -168,11 +168,11 @@ def test_settings_of_unknown_parameters_are_python_literals(text: str, value: An
 
 
 @pytest.mark.parametrize("text", ["[cat,dog]", "(cat)", "['cat'"])
-def test_a_list_whose_quotes_the_shell_has_removed_is_refused(text: str) -> None:
+def test_a_list_that_lost_its_quotes_in_the_shell_is_refused(text: str) -> None:
     says = f'--ablate word: must be a list or tuple of Python (got {text!r}); a shell removes quotes, so quote the whole: --ablate "word='
     with pytest.raises(SettingError, match=re.escape(says)):
         read_settings([f"word={text}"], (), "--ablate")
-    assert read_settings([f"word={text!r}"], ()) == {"word": text}, "a text in quotes of its own"
+    assert read_settings([f"word={text!r}"], ()) == {"word": text}, "the text keeps its own quotes"
 
 
 @pytest.fixture
@@ -184,13 +184,13 @@ def file(tmp_path: Path) -> Path:
 
 def test_help_lists_the_options_of_the_model(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(file), "--help"]) == 0
-    told = capsys.readouterr()
-    assert "--seed N" in told.out
+    captured = capsys.readouterr()
+    assert "--seed N" in captured.out
     assert (
         "  --power             number, > 0, <= 100 [W]; default 60.0\n                      How bright it is at full power [W].\n"
-        in told.out
+        in captured.out
     )
-    assert "Exit codes: 0 the model ran, whatever its result; 1 it failed" in " ".join(told.out.split())
+    assert "Exit codes: 0 the model ran, whatever its result; 1 it failed" in " ".join(captured.out.split())
     assert main(["run", "--help"]) == 0
     assert "--power" not in capsys.readouterr().out
 
@@ -210,10 +210,10 @@ def test_impossible_parameters_are_one_line_and_code_2(
     words: list[str], message: str, file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["run", str(file), *words]) == 2
-    told = capsys.readouterr()
-    assert told.out == ""
-    assert told.err.startswith(f"error: {message}")
-    assert told.err.count("\n") == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith(f"error: {message}")
+    assert captured.err.count("\n") == 1
 
 
 def test_an_error_of_the_model_itself_is_code_1(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -236,6 +236,6 @@ def test_the_result_is_the_last_line(file: Path, tmp_path: Path, capsys: pytest.
 def test_the_result_is_recorded_and_compared(file: Path, tmp_path: Path) -> None:
     assert main(["run", str(file), "--seed", "1", "--record", str(tmp_path / "run")]) == 0
     forge(tmp_path / "run", "UPDATE events SET data = replace(data, '\"declined\"', '\"passed\"') WHERE data LIKE '%\"declined\"%'")
-    told = verdict(tmp_path / "run")
-    assert told.code == 1
-    assert '"passed"' in told.text
+    report = verdict(tmp_path / "run")
+    assert report.code == 1
+    assert '"passed"' in report.text

@@ -1,4 +1,4 @@
-"""The line that an error is reported at: the one that caused it, although another one was running."""
+"""Errors are reported at the line that caused them, even if another line was running."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The verdict of a replay stands, whatever the recorded program does to the process that runs it."""
+"""The verdict of a replay is reliable, whatever the recorded program does to its process."""
 
 from __future__ import annotations
 
@@ -71,10 +71,10 @@ def test_a_program_that_ends_the_process_leaves_no_verdict(
     capfd.readouterr()
     assert main(["replay", str(path)]) == 2
     assert not list(temporary.iterdir())
-    told = capfd.readouterr()
-    assert told.err.startswith("error: no verdict: ")
-    assert how in told.err
-    assert "agrees" not in told.out
+    captured = capfd.readouterr()
+    assert captured.err.startswith("error: no verdict: ")
+    assert how in captured.err
+    assert "agrees" not in captured.out
 
 
 def test_a_program_that_exits_from_its_last_handler_keeps_its_verdict(
@@ -106,7 +106,7 @@ def test_a_program_that_meddles_with_its_process_is_still_found_to_differ(does: 
 
 
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_what_ends_the_command_ends_the_replay(sign: signal.Signals, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_signal_that_ends_the_command_ends_the_replay(sign: signal.Signals, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mark = path.with_name("mark")
     record(path, first=f"Path({str(mark)!r}).write_text(str(os.getpid())); threading.Event().wait()")
     monkeypatch.setenv("AGAIN", "1")
@@ -125,7 +125,7 @@ def test_what_ends_the_command_ends_the_replay(sign: signal.Signals, path: Path,
         os.kill(child, 0)
 
 
-def test_a_replay_goes_through_sets_as_the_run_did(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_replay_iterates_over_sets_in_the_recorded_order(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = path.with_name("sets.py")
     file.write_text("print(list({'one', 'two', 'three', 'four', 'five', 'six', 'seven'}))\n", encoding="utf-8")
     assert run_command("run", str(file), "--record", str(path)).returncode == 0

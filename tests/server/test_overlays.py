@@ -18,7 +18,7 @@ from actr3d.world import Car, Floor, Mannequin, Scene, Wall, World
 from tests.helpers.sessions import Desk, Talk
 from tests.server.test_recorded_runs import APERTURE, agrees, ended, recording
 from tests.server.test_reopened import reopened
-from tests.simulation.test_looking_on import sensing
+from tests.simulation.test_observers import sensing
 from workbench.overlays import OVERLAYS, Drawn, Observed, Overlay, ViewSettings
 from workbench.overlays.frustum import Frustum
 from workbench.overlays.overlay import overlay

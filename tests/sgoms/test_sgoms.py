@@ -1,4 +1,4 @@
-"""Planning units: how they lead from unit task to unit task, in which time, and what the trace tells of each level."""
+"""Planning units: the order and times of their unit tasks, and the trace of each level."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 
 from actr3d.actr.loading import load_text
 from tests.helpers.commands import run_command
-from tests.helpers.sgoms_agents import HEAD, cooking, fired, told
+from tests.helpers.sgoms_agents import HEAD, cooking, fired, level_events
 from tests.helpers.small_agents import near
 
 ROOT = Path(__file__).parents[2]
@@ -40,7 +40,7 @@ def test_an_ordered_planning_unit_takes_two_productions_and_a_retrieval_from_uni
     # 0.15 s to ask, retrieve and take; each unit task lasts 0.05 (begin) + 2 * 0.05 (steps) + 0.05 s (end).
     assert module.said == [(near(0.2), "boil"), (near(0.2 + 0.3 + 0.05), "steep"), (near(0.2 + 2 * 0.35), "pour")]
     assert [name for _, name in fired(module)][:3] == ["sgoms_begin", "sgoms_take", "begin"]
-    assert told(module, "planning_unit") == ["0 begun tea", "1.2 ended tea"]
+    assert level_events(module, "planning_unit") == ["0 begun tea", "1.2 ended tea"]
     assert module.agent.b_plan_unit["state"] == "finished"
     assert module.agent.b_unit_task.chunk is None
 
@@ -66,7 +66,7 @@ def test_a_situated_planning_unit_follows_the_situation() -> None:
     # Begin and choose take 0.05 s each; likewise to look at the new situation and to choose.
     assert module.said == [(near(0.15), "wash"), (near(0.3), "sweep")]
     assert [name for _, name in fired(module)][-2:] == ["sgoms_look", "sgoms_tidy_finished"]
-    assert told(module, "planning_unit", "unit_task") == [
+    assert level_events(module, "planning_unit", "unit_task") == [
         "0 begun tidy",
         "0.1 begun tidy/wash",
         "0.15 ended tidy/wash",
@@ -84,7 +84,7 @@ def test_a_situated_planning_unit_waits_until_something_fits() -> None:
     assert module.said[0] == (near(10.1), "wash")
 
 
-def test_of_several_unit_tasks_that_fit_utility_decides_and_chance_between_equals() -> None:
+def test_utility_decides_between_unit_tasks_that_fit_and_chance_between_equals() -> None:
     both = TIDY.replace("dishes:dirty floor:clean", "dishes:dirty floor:dirty")
     firsts = Counter(cooking(both, seconds=0.2, seed=seed, traced=False).said[0][1] for seed in range(100))
     assert abs(firsts["wash"] - 50) < 20  # four standard errors
@@ -114,7 +114,7 @@ class Agent(SGOMS):
         b_unit_task.modify(state="finished")
 """
     )
-    assert told(module, "planning_unit", "unit_task", "method", "operator") == [
+    assert level_events(module, "planning_unit", "unit_task", "method", "operator") == [
         "0 begun tea",
         "0.15 begun tea/boil",
         "0.2 begun tea/boil/heat",
@@ -137,7 +137,7 @@ class Agent(SGOMS):
     }
 
 
-def test_a_method_set_again_begins_again_and_one_that_goes_on_does_not() -> None:
+def test_a_method_that_is_set_again_restarts_and_one_that_continues_does_not() -> None:
     module = cooking(
         """
 class Agent(SGOMS):
@@ -156,7 +156,7 @@ class Agent(SGOMS):
 """,
         seconds=0.45,
     )
-    assert told(module, "planning_unit", "method") == [
+    assert level_events(module, "planning_unit", "method") == [
         "0 begun tea",
         "0.2 begun tea/boil/heat",
         "0.3 ended tea/boil/heat",
@@ -167,17 +167,17 @@ class Agent(SGOMS):
     ]
 
 
-def test_a_trace_that_begins_later_says_what_is_going_on() -> None:
+def test_a_trace_that_begins_later_shows_what_is_in_progress() -> None:
     module = cooking(seconds=0.22)
     later = module.agent.traced("production")
     module.agent.parent.run(0.3)
-    tells = [(event.kind, event.data["what"], event.data["path"]) for event in later if "path" in event.data]
-    assert sorted(tells[:3]) == [
+    progress = [(event.kind, event.data["what"], event.data["path"]) for event in later if "path" in event.data]
+    assert sorted(progress[:3]) == [
         ("method", "going on", "tea/boil/work"),
         ("planning_unit", "going on", "tea"),
         ("unit_task", "going on", "tea/boil"),
     ]
-    assert tells[3:] == [("method", "ended", "tea/boil/work"), ("unit_task", "ended", "tea/boil"), ("unit_task", "begun", "tea/steep")]
+    assert progress[3:] == [("method", "ended", "tea/boil/work"), ("unit_task", "ended", "tea/boil"), ("unit_task", "begun", "tea/steep")]
 
 
 def test_explain_includes_the_productions_of_plans() -> None:
@@ -196,7 +196,7 @@ def test_the_same_seed_gives_the_same_events_and_tracing_changes_nothing() -> No
     assert first.said == cooking(noisy, traced=False).said != other.said
 
 
-def test_an_agent_may_stand_alone_and_go_on_to_another_planning_unit() -> None:
+def test_an_agent_without_an_environment_may_continue_with_another_planning_unit() -> None:
     module: Any = load_text(
         HEAD
         + """
@@ -214,7 +214,7 @@ class Agent(Base):
     assert agent.now() == near(1.2 + 0.05 + 0.15 + 0.2 + 0.15 + 0.05)
 
 
-def test_a_request_that_takes_the_place_of_the_plans_own_is_made_up_for() -> None:
+def test_a_retrieval_of_the_plan_that_another_request_replaces_is_requested_again() -> None:
     module = cooking(
         """
 class Meddler(ProductionSystem):
@@ -237,7 +237,7 @@ class Agent(Base):
 
 
 @pytest.mark.parametrize("name", ["planning_units", "sgoms_patrol", "sgoms_rows"])
-def test_models_with_buffers_of_their_own_run_without_a_word(name: str, tmp_path: Path) -> None:
+def test_models_with_buffers_of_their_own_run_without_warnings(name: str, tmp_path: Path) -> None:
     copy = shutil.copy(ROOT / "tests" / "models" / f"{name}.py", tmp_path)
     done = run_command("run", str(copy), "--seed", "1", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")

@@ -1,4 +1,4 @@
-"""What is wrong with a planning unit is said at once, with the name that was most likely meant."""
+"""Errors of planning units, which suggest the name that was most likely meant."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tests.helpers.sgoms_agents import HEAD, cooking
         (lambda: Situated(until="x:1", start="x:2"), "cannot be called 'start'"),
     ],
 )
-def test_what_cannot_be_a_planning_unit(declare: Any, message: str) -> None:
+def test_invalid_planning_units_are_refused(declare: Any, message: str) -> None:
     with pytest.raises(PlanError, match=message):
         declare()
 
@@ -99,7 +99,7 @@ def test_a_state_that_resembles_finished_is_one_of_the_agents_own_if_a_productio
     assert agent.b_plan_unit["state"] == "finished"
 
 
-def test_a_unit_task_that_no_production_takes_on() -> None:
+def test_a_unit_task_that_no_production_matches() -> None:
     text = body("b_unit_task.modify(state='finished')").replace('"boil", "pour"', '"boil", "puor"')
     with pytest.raises(PlanError, match=r"planning unit 'tea' of Agent: no production matches its unit task 'puor'.*did you mean 'pour'"):
         cooking(text)
@@ -179,8 +179,8 @@ def test_planning_units_are_inherited_and_each_agent_has_its_own_buffers() -> No
     ("buffer", "chunk"),
     [("b_plan_unit", "planning_unit:tea"), ("b_method", "method:pour"), ("b_interrupt", "planning_unit:phone when:now")],
 )
-def test_an_agent_that_does_not_live_yet_has_no_buffer_of_its_own(buffer: str, chunk: str) -> None:
-    """What was set there used to be every agent's, of whatever class, and a planning unit set so never began."""
+def test_an_agent_that_has_not_started_has_no_buffer_of_its_own(buffer: str, chunk: str) -> None:
+    """Setting it would change the buffer of all agents of any class, and the planning unit would never begin."""
     agent = load_text(HEAD + body("b_unit_task.modify(state='finished')"), "agent.py").Agent()
     with pytest.raises(PlanError, match=r"before its agent has started; do it in the agent's init\(\), or after its run\(0\)"):
         getattr(agent, buffer).set(chunk)
@@ -198,7 +198,7 @@ def test_an_agent_that_does_not_live_yet_has_no_buffer_of_its_own(buffer: str, c
         ("b_interrupt", {"when": "nwo"}, "has no valid 'when'; did you mean 'now'"),
     ],
 )
-def test_what_is_modified_is_checked_like_what_is_set(buffer: str, changes: dict[str, str], message: str) -> None:
+def test_modified_buffers_are_checked_like_buffers_that_are_set(buffer: str, changes: dict[str, str], message: str) -> None:
     agent = load_text(HEAD + body("b_unit_task.modify(state='finished')"), "agent.py").Agent()
     agent.run(0.06)
     agent.b_interrupt.set("planning_unit:phone when:end")

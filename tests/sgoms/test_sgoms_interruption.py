@@ -1,4 +1,4 @@
-"""Interruptions of planning units, at once and at the end of a unit task; responses; and how an agent finds back."""
+"""Interruptions of planning units, immediately and at the end of a unit task; responses; and how an agent resumes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.sgoms_agents import cooking, fired, told
+from tests.helpers.sgoms_agents import cooking, fired, level_events
 from tests.helpers.small_agents import near
 
 AGENT = "class Agent(Base): pass"
@@ -27,7 +27,7 @@ def moments(module: Any, name: str) -> list[float]:
 def test_a_unit_task_ends_before_an_interruption_at_its_end() -> None:
     module = cooking(AGENT, 0.22, END)
     assert tasks(module) == ["boil", *PHONE, "steep", "pour"]
-    assert told(module, "planning_unit", "unit_task")[:6] == [
+    assert level_events(module, "planning_unit", "unit_task")[:6] == [
         "0 begun tea",
         "0.15 begun tea/boil",
         "0.35 ended tea/boil",
@@ -35,19 +35,19 @@ def test_a_unit_task_ends_before_an_interruption_at_its_end() -> None:
         "0.4 begun phone",
         "0.55 begun phone/pick_up",
     ]
-    assert "1.25 ended phone" in told(module, "planning_unit")
-    # One production to ask for the place, its retrieval, one to go on; the next unit task is then asked for.
-    assert told(module, "planning_unit")[-2:] == ["1.4 resumed tea", "2.25 ended tea"]
+    assert "1.25 ended phone" in level_events(module, "planning_unit")
+    # One production requests the place, the retrieval follows, one production continues; then the next unit task is requested.
+    assert level_events(module, "planning_unit")[-2:] == ["1.4 resumed tea", "2.25 ended tea"]
     assert moments(module, "sgoms_ask_next")[2:3] == near([1.45])
     events = [event.data for event in module.trace if event.kind == "planning_unit"]
     assert [event.get("by") for event in events] == [None, "phone", None, None, None, None]
 
 
-def test_an_interruption_at_once_cuts_the_unit_task_which_begins_again() -> None:
+def test_an_immediate_interruption_cuts_the_unit_task_which_begins_again() -> None:
     module = cooking(AGENT, 0.22, NOW)
-    # At 0.22 s a step of work is under way; it is done at 0.25 s, then the interruption is decided on.
+    # At 0.22 s a step of work is in progress; it is done at 0.25 s, then the interruption is chosen.
     assert tasks(module) == ["boil", *PHONE, "boil", "steep", "pour"]
-    assert told(module, "planning_unit", "unit_task", "method")[:8] == [
+    assert level_events(module, "planning_unit", "unit_task", "method")[:8] == [
         "0 begun tea",
         "0.15 begun tea/boil",
         "0.2 begun tea/boil/work",
@@ -57,7 +57,7 @@ def test_an_interruption_at_once_cuts_the_unit_task_which_begins_again() -> None
         "0.3 begun phone",
         "0.45 begun phone/pick_up",
     ]
-    assert "1.3 begun tea/boil" in told(module, "unit_task")
+    assert "1.3 begun tea/boil" in level_events(module, "unit_task")
     steps = [moment for moment in moments(module, "work") if moment > 1.3]
     assert len(steps) == 3 * 2
 
@@ -73,13 +73,13 @@ class Agent(Base):
     assert tasks(cooking(body, 0.22, NOW)) == ["boil no", "pick_up no", "talk no", "boil yes", "steep no", "pour no"]
 
 
-def test_a_unit_task_may_go_on_where_it_was_cut() -> None:
+def test_a_unit_task_may_continue_where_it_was_cut() -> None:
     body = "class Agent(Base):\n    resume_at = 'method'\n    steps = 4"
     module = cooking(body, 0.31, NOW)
     assert tasks(module) == ["boil", *PHONE, "steep", "pour"]
     # Three of four steps are done when it is cut at 0.4 s: 0.25, 0.3 and 0.35.
     at = next(event.time for event in module.trace if event.data.get("what") == "resumed")
-    assert [line for line in told(module, "planning_unit", "unit_task", "method") if line.startswith(f"{at:.10g} ")] == [
+    assert [line for line in level_events(module, "planning_unit", "unit_task", "method") if line.startswith(f"{at:.10g} ")] == [
         f"{at:.10g} resumed tea",
         f"{at:.10g} resumed tea/boil",
         f"{at:.10g} resumed tea/boil/work",
@@ -88,7 +88,7 @@ def test_a_unit_task_may_go_on_where_it_was_cut() -> None:
     assert between == near([at + 0.05])
 
 
-def test_a_method_without_slot_names_goes_on_where_it_was_cut() -> None:
+def test_a_method_without_slot_names_continues_where_it_was_cut() -> None:
     body = """
 class Agent(Base):
     resume_at = "method"
@@ -123,20 +123,20 @@ class Agent(Base):
 """
     module = cooking(body, 0.2, NOW)
     assert tasks(module) == ["wash", *PHONE, "wipe"]
-    assert told(module, "planning_unit")[-1].endswith("ended tidy")
+    assert level_events(module, "planning_unit")[-1].endswith("ended tidy")
 
 
 @pytest.mark.parametrize("when", ["now", "end"])
 @pytest.mark.parametrize("ring", [0.345, 0.35, 0.355, 0.395, 0.40, 0.42, 0.45, 0.46])
 def test_an_interruption_between_two_unit_tasks_waits_for_neither(ring: float, when: str) -> None:
     module = cooking(AGENT, ring, f"planning_unit:phone when:{when}")
-    if ring == 0.46:  # the next unit task has been decided on; it begins, and may be cut
+    if ring == 0.46:  # the next unit task has been chosen; it begins, and may be cut
         expected = ["boil", *PHONE, "steep", "pour"] if when == "now" else ["boil", "steep", *PHONE, "pour"]
     else:
         expected = ["boil", *PHONE, "steep", "pour"]
     assert tasks(module) == expected
-    assert told(module, "planning_unit")[-1].endswith("ended tea")
-    assert told(module, "unit_task").count("0.35 ended tea/boil") == 1
+    assert level_events(module, "planning_unit")[-1].endswith("ended tea")
+    assert level_events(module, "unit_task").count("0.35 ended tea/boil") == 1
 
 
 def test_an_interruption_before_the_first_unit_task() -> None:
@@ -147,7 +147,7 @@ def test_an_interruption_before_the_first_unit_task() -> None:
 def test_a_response_can_be_interrupted_itself() -> None:
     module = cooking(AGENT, 0.22, NOW, 0.6, "planning_unit:alarm when:now")
     assert tasks(module) == ["boil", "pick_up", "run", "pick_up", "talk", "boil", "steep", "pour"]
-    assert [line.split(maxsplit=1)[1] for line in told(module, "planning_unit")] == [
+    assert [line.split(maxsplit=1)[1] for line in level_events(module, "planning_unit")] == [
         "begun tea",
         "interrupted tea",
         "begun phone",
@@ -171,10 +171,10 @@ def test_the_same_interruption_twice_has_two_places() -> None:
 def test_an_interruption_by_the_response_that_is_running_waits_for_its_end() -> None:
     module = cooking(AGENT, 0.22, NOW, 0.6, NOW)
     assert tasks(module) == ["boil", *PHONE, *PHONE, "boil", "steep", "pour"]
-    assert told(module, "planning_unit")[-2].endswith("resumed tea")
+    assert level_events(module, "planning_unit")[-2].endswith("resumed tea")
 
 
-def test_a_response_that_comes_while_the_place_is_being_remembered_goes_back_to_it() -> None:
+def test_a_response_during_the_retrieval_of_the_place_returns_to_it() -> None:
     slow = "class Agent(Base):\n    DM = Memory(SGOMS.b_DM, latency=0.2)"
     asked = moments(cooking(slow, 0.4, NOW), "sgoms_resume")[0]
     module = cooking(slow, 0.4, NOW, asked + 0.05, "planning_unit:alarm when:end")
@@ -188,7 +188,7 @@ def test_without_a_planning_unit_the_response_simply_runs() -> None:
     module = cooking(body, 0.22, NOW)
     assert tasks(module) == PHONE
     assert module.agent.b_plan_unit["interrupted"] == "none"
-    assert told(module, "planning_unit")[0] == "0.27 begun phone"
+    assert level_events(module, "planning_unit")[0] == "0.27 begun phone"
     later = cooking(AGENT, 3.0, END)
     assert tasks(later) == ["boil", "steep", "pour", *PHONE]
 
@@ -230,7 +230,7 @@ def test_a_forgotten_place_is_a_state_that_productions_match() -> None:
     failed = asked + 0.05 * math.exp(-0.5)
     assert moments(module, "sgoms_forget_place") == near([failed + 0.05], abs=2e-6)
     assert module.said[3][0] == near(failed + 0.1, abs=2e-6)
-    assert [line.split(maxsplit=1)[1] for line in told(module, "planning_unit")] == [
+    assert [line.split(maxsplit=1)[1] for line in level_events(module, "planning_unit")] == [
         "begun tea",
         "interrupted tea",
         "begun phone",
@@ -253,7 +253,7 @@ class Agent(Base):
 """
     module = cooking(body, seconds=2)
     assert tasks(module) == ["boil", "forgot tea", "steep"]
-    assert [line.split(maxsplit=1)[1] for line in told(module, "planning_unit")] == ["begun tea"]
+    assert [line.split(maxsplit=1)[1] for line in level_events(module, "planning_unit")] == ["begun tea"]
     none = body.replace("threshold=0", "threshold=9").replace("DM.add(", "DM.threshold = -9; DM.add(")
     module = cooking(none, seconds=2)
     assert tasks(module) == ["forgot tea", "boil", "steep"]

@@ -73,12 +73,12 @@ def walking() -> Simulation:
 
 
 @pytest.mark.slow
-def test_seek_goes_back_into_an_interruption_and_on_from_there_exactly() -> None:
+def test_a_seek_into_an_interruption_is_exact_and_so_is_the_run_from_there() -> None:
     simulation = walking()
     simulation.run(5)
     assert simulation.trace is not None
-    told = [(event.data["what"], event.data["path"]) for event in simulation.trace if event.kind == "planning_unit"]
-    assert told == [
+    events = [(event.data["what"], event.data["path"]) for event in simulation.trace if event.kind == "planning_unit"]
+    assert events == [
         ("begun", "route"),
         ("interrupted", "route"),
         ("begun", "halt"),
@@ -105,7 +105,7 @@ def test_seek_goes_back_into_an_interruption_and_on_from_there_exactly() -> None
 
 
 @pytest.mark.daily(1)
-@pytest.mark.parametrize("kind", ["mind alone", "with a body"])
+@pytest.mark.parametrize("kind", ["without a body", "with a body"])
 def test_a_recording_is_replayed_byte_for_byte(kind: str, tmp_path: Path) -> None:
     text = f"{HEAD}class Agent(Base):\n    DM = Memory(SGOMS.b_DM)\nworld = World()\nworld.agent = Agent()\n"
     text += "world.bell = later(0.22, 'planning_unit:phone when:now')\nworld.run(5)\nprint(said)\n"
@@ -118,7 +118,7 @@ def test_a_recording_is_replayed_byte_for_byte(kind: str, tmp_path: Path) -> Non
         assert done.returncode == 0, done.stderr
 
 
-def test_with_the_numbers_of_act_r_7_harvested_chunks_do_not_lead_astray() -> None:
+def test_under_act_r_7_harvested_chunks_do_not_change_the_order() -> None:
     body = 'class Agent(Base):\n    profile = "act-r-7"\n    DM = Memory(SGOMS.b_DM, latency=0.05)'
     module = cooking(body, 0.3, "planning_unit:phone when:now", 1.0, "planning_unit:alarm when:end")
     assert [task for _, task in module.said] == ["boil", "pick_up", "talk", "run", "boil", "steep", "pour"]

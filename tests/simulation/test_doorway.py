@@ -1,4 +1,4 @@
-"""The model of a doorway: it sees how wide the gap is, turns where it must, and touches nothing."""
+"""The model of a walk through a doorway: it sees the width of the gap, turns if necessary, and touches nothing."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ def doorway() -> Any:
 def test_it_turns_below_the_critical_ratio_and_passes_untouched(doorway: Any, capsys: Any, width: float, turns: bool) -> None:
     simulation = doorway.build(doorway.Parameters(width=width))
     walker = simulation.world.bodies["walker"]
-    touched = walker.get("contacts")  # from now on every physics step is watched
+    touched = walker.get("contacts")  # from now on every physics step is recorded
     while simulation.time < 10 and not touched and walker.get("pose").x < 8:
         simulation.step()
         touched = walker.get("contacts")
-    said = capsys.readouterr().out
+    printed = capsys.readouterr().out
     assert touched == ()
     assert walker.get("pose").x > 7.9
-    assert f"a gap of {width:.2f} m" in said
-    assert ("turns" in said) == turns
+    assert f"a gap of {width:.2f} m" in printed
+    assert ("turns" in printed) == turns
 
 
 def test_its_parameters_do_what_they_say(doorway: Any) -> None:
@@ -44,7 +44,7 @@ def test_its_parameters_do_what_they_say(doorway: Any) -> None:
 
 @pytest.mark.parametrize("when", [0.0, 3.0, 5.2])
 def test_its_speed_may_change_before_and_on_its_way(doorway: Any, when: float) -> None:
-    """At 5.2 s it has turned its shoulders, and looks no more."""
+    """At 5.2 s it has turned its shoulders, and no longer looks."""
     simulation = doorway.build(doorway.Parameters(width=0.5))
     simulation.run(when)
     simulation.command("parameter", "walker.speed", 0.8)

@@ -1,4 +1,4 @@
-"""Simulations that a traced program makes: each is a run of the program's trace."""
+"""Simulations that a traced program creates: each is a run of the program's trace."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ def test_the_data_name_parts_as_the_programs_trace_does() -> None:
     lines = "\n".join(event.to_json() for event in second)
     assert lines.count("<top#2.namer.goal>") >= 3
     assert lines.count("<top#2.namer.memory>") >= 2
-    assert lines.count("<namer.") == lines.count('"says": "<namer.goal>"') == 1  # the model's own text stays as it is
+    assert lines.count("<namer.") == lines.count('"says": "<namer.goal>"') == 1  # the model's own text is unchanged
     (retrieved,) = [event for event in second if event.kind == "retrieval"]
     assert "what:<top#2.namer.goal>" in retrieved.data["chunk"]
     third = "\n".join(event.to_json() for event in trace if event.run == 3)

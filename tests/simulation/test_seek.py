@@ -1,4 +1,4 @@
-"""Going back: any past time exactly, and on from there as the first time."""
+"""Seek: any past time is restored exactly, and the run continues from there as the first time."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ COMMANDS = {
     110: ("posture", {"torso_yaw": 0.2}, "walker"),
     120: ("aperture", 0.6, None),
 }
-"""After which tick: the word, its value, and the body."""
+"""By tick: the command after it, its value, and the body."""
 
 
 def command(simulation: Simulation, tick: int) -> None:
@@ -34,7 +34,7 @@ def command(simulation: Simulation, tick: int) -> None:
 
 
 def first_run(ticks: int = 200, simulation: Simulation | None = None) -> tuple[Simulation, list[str]]:
-    """Returns a simulation that has been run with commands, and the digest at the end of each tick, before its commands."""
+    """Returns a simulation that was run with commands, and the digest at the end of each tick, before its commands."""
     simulation = simulation or driving("all")
     digests = [digest(simulation)]
     for tick in range(ticks):
@@ -73,7 +73,7 @@ def build() -> Simulation:
 
 
 @pytest.mark.parametrize("kept", ["count", "len(seen)", "len(Counter.seen)"])
-def test_a_run_whose_agents_use_what_going_back_cannot_undo_says_so_and_does_not_go_on(kept: str) -> None:
+def test_a_run_with_state_that_seek_cannot_restore_reports_it_and_stops(kept: str) -> None:
     simulation = load_text(COUNTED.replace("KEPT", kept)).build()
     simulation.run(1)
     for _ in range(2):
@@ -85,7 +85,7 @@ def test_a_run_whose_agents_use_what_going_back_cannot_undo_says_so_and_does_not
 
 @pytest.mark.slow
 @pytest.mark.parametrize("answers", [7, 0], ids=["first answers", "no answers"])
-def test_any_past_time_comes_back_exactly_and_goes_on_exactly(answers: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_any_past_time_is_restored_and_continued_exactly(answers: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(timeline, "MAX_ANSWERS", answers)
     monkeypatch.setattr(timeline, "SPACING", 10)
     simulation, digests = first_run()
@@ -105,14 +105,14 @@ def test_any_past_time_comes_back_exactly_and_goes_on_exactly(answers: int, monk
     assert digest(simulation) == first_run(250)[1][250]
 
 
-def test_known_answers_are_not_asked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_known_answers_are_not_requested_again(monkeypatch: pytest.MonkeyPatch) -> None:
     simulation, digests = first_run()
     monkeypatch.setattr(Body, "get", None)
     simulation.seek(1.5)
     assert digest(simulation) == digests[150]
 
 
-def test_many_states_are_thinned_out_and_still_lead_anywhere(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_thinned_out_states_still_lead_to_any_time(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(timeline, "SPACING", 2)
     monkeypatch.setattr(timeline, "MAX_STATES", 5)
     simulation, digests = first_run()
@@ -149,7 +149,7 @@ def test_a_command_that_fails_in_the_past_changes_nothing() -> None:
     assert digest(simulation) == digests[200]
 
 
-def test_commands_at_the_present_that_were_not_repeated_yet_go_with_the_future() -> None:
+def test_commands_that_were_not_repeated_yet_are_dropped_with_the_future() -> None:
     simulation, digests = first_run(79)  # the last command came after tick 78
     simulation.seek(0.78)
     assert digest(simulation) == digests[78]
@@ -159,7 +159,7 @@ def test_commands_at_the_present_that_were_not_repeated_yet_go_with_the_future()
     assert [event.data["command"] for event in simulation.trace.select("command")] == ["aperture", "stop", "aperture"]
 
 
-def test_listeners_hear_nothing_of_the_way_back() -> None:
+def test_listeners_receive_nothing_during_a_seek() -> None:
     simulation, _ = first_run()
     heard: list[Any] = []
     ticks: list[int] = []
@@ -181,7 +181,7 @@ def test_a_time_between_ticks_is_refused() -> None:
         simulation.seek(-0.01)
 
 
-def test_an_agent_that_uses_more_than_the_seed_is_found_out() -> None:
+def test_an_agent_that_depends_on_more_than_the_seed_is_detected() -> None:
     text = """
 from actr3d.actr import *
 from actr3d.simulation import BodyPort
@@ -208,7 +208,7 @@ def lines(path: Path) -> tuple[list[str], list[bytes], list[Any], list[Any]]:
         return [event.to_json() for event in recorded.events()], states, list(recorded.commands()), list(recorded.answers())
 
 
-def test_a_recording_holds_each_thing_once_however_often_a_run_goes_back(tmp_path: Path) -> None:
+def test_a_recording_holds_each_event_once_after_any_number_of_seeks(tmp_path: Path) -> None:
     straight, wandering = driving("all"), driving("all")
     with straight.record(tmp_path / "straight"):
         first_run(200, straight)
@@ -225,7 +225,7 @@ def test_a_recording_holds_each_thing_once_however_often_a_run_goes_back(tmp_pat
 
 
 @pytest.mark.parametrize("tick", [0, 50, 78])
-def test_another_future_takes_the_place_of_the_recorded_one(tick: int, tmp_path: Path) -> None:
+def test_a_new_future_replaces_the_recorded_one(tick: int, tmp_path: Path) -> None:
     changed, direct = driving(), driving()
     with changed.record(tmp_path / "changed"):
         first_run(150, changed)
@@ -250,7 +250,7 @@ def test_seek_before_the_first_step() -> None:
     assert simulation.ticks == 1
 
 
-def test_what_an_agent_does_with_an_answer_does_not_change_the_one_that_is_stored() -> None:
+def test_an_agent_cannot_change_a_stored_answer() -> None:
     text = """
 from actr3d.actr import *
 from actr3d.simulation import BodyPort
@@ -271,7 +271,7 @@ class Taker(Model):
 
 
 @pytest.mark.parametrize("trace", ["production", "all"])
-def test_a_run_whose_agents_do_less_than_the_first_time_says_so(trace: str) -> None:
+def test_agents_that_do_less_than_the_first_time_are_an_error(trace: str) -> None:
     text = """
 from actr3d.actr import *
 lives = []
@@ -313,7 +313,7 @@ def test_an_undone_command_is_not_repeated_and_those_before_it_are(tmp_path: Pat
         assert recorded.ticks == 50
 
 
-def test_undo_at_the_start_and_of_a_command_that_is_yet_to_be_repeated() -> None:
+def test_undo_at_the_start_and_of_a_command_that_is_not_yet_repeated() -> None:
     simulation = driving("all")
     fresh = digest(simulation)
     simulation.command("aperture", 0.5)

@@ -1,4 +1,4 @@
-"""Lockstep: agents and bodies go through the same time, exactly, whatever the wall clock and onlookers do."""
+"""Lockstep: agents and bodies share exactly the same time, independent of the wall clock and of observers."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from actr3d.world.body import SENSORS, sensor
 from tests.helpers.small_agents import near
 from tests.helpers.walkers import Driver, digest, driving, scene_of
 
-MINDS: Any = load_text(
+AGENTS: Any = load_text(
     """
 from actr3d.actr import *
 
@@ -101,7 +101,7 @@ class Early(Model):
 """,
     "agents.py",
 )
-BodyPort = MINDS.BodyPort
+BodyPort = AGENTS.BodyPort
 
 
 def with_port(kind: Any) -> Any:
@@ -110,7 +110,7 @@ def with_port(kind: Any) -> Any:
 
 @pytest.fixture(name="asked")
 def asked_(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
-    """Counts what bodies are asked, by their names."""
+    """Counts the requests to bodies, by name."""
     counts: Counter[str] = Counter()
     get = Body.get
 
@@ -122,13 +122,13 @@ def asked_(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     return counts
 
 
-def test_a_tick_thinks_and_a_tock_moves_and_answers() -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker}, seed=1, trace="all")
+def test_agents_run_in_a_tick_and_bodies_move_and_answer_in_a_tock() -> None:
+    simulation = Simulation(scene_of("walker"), {"walker": AGENTS.Asker}, seed=1, trace="all")
     simulation.run(1.0)
-    mind: Any = simulation.agents["walker"]
-    asked, busy, answered, arrived, felt, nothing = mind.times
+    agent: Any = simulation.agents["walker"]
+    asked, busy, answered, arrived, felt, nothing = agent.times
     assert (asked, busy) == (("asked", 0.05), ("busy", True))
-    assert answered[:2] == ("answered", 0.05)  # asked at the very end of a tick, answered when the next begins
+    assert answered[:2] == ("answered", 0.05)  # requested at the very end of a tick, answered when the next begins
     assert (answered[2].x, answered[2].y, answered[2].heading) == near((0, 0, 0), abs=1e-6)
     assert answered[3] is False
     assert arrived[1].x == near(0.2, abs=1e-3)
@@ -148,7 +148,7 @@ REQUESTS = [("get", "pose"), ("set", "waypoint"), ("get", "pose"), ("get", "pose
 
 
 def test_events_at_the_very_end_of_a_tick_belong_to_it() -> None:
-    simulation = Simulation(Scene(), bodiless={"edge": MINDS.Edge})
+    simulation = Simulation(Scene(), bodiless={"edge": AGENTS.Edge})
     edge: Any = simulation.agents["edge"]
     simulation.tick()
     assert edge.done == ("exactly at the end",)
@@ -186,7 +186,7 @@ def test_one_seed_gives_the_same_bytes_in_one_run_or_in_steps_with_pauses_and_at
     assert digest(long) == digest(single) == digest(paced) != digest(other)
 
 
-def test_onlookers_see_everything_and_change_nothing() -> None:
+def test_observers_see_everything_and_change_nothing() -> None:
     alone, watched = driving("all"), driving("all")
     seen: list[tuple[int, float, int]] = []
     events: list[Any] = []
@@ -210,7 +210,7 @@ def test_onlookers_see_everything_and_change_nothing() -> None:
     assert events == list(watched.trace)
 
 
-def test_a_listener_that_fails_ends_the_run_after_the_tick_that_can_go_on_then() -> None:
+def test_a_failing_listener_ends_the_run_after_its_tick_and_the_run_can_continue() -> None:
     simulation, other = driving("all"), driving("all")
 
     def listener(event: Any) -> None:
@@ -234,14 +234,14 @@ def test_an_observer_cannot_step_what_it_observes() -> None:
 
 
 @pytest.mark.parametrize("look", ["listen", "until"])
-def test_listeners_and_conditions_only_look_too(look: str) -> None:
-    simulation, told = driving("all"), list[str]()
+def test_listeners_and_conditions_are_observers_too(look: str) -> None:
+    simulation, errors = driving("all"), list[str]()
 
     def meddle(_: object) -> bool:
         for change in (simulation.step, simulation.tock, lambda: simulation.seek(0), lambda: simulation.command("aperture", 1.0)):
             with pytest.raises(SimulationError, match="observers, listeners and `until` cannot") as caught:
                 change()
-            told.append(str(caught.value))
+            errors.append(str(caught.value))
         return False
 
     if look == "listen":
@@ -249,7 +249,7 @@ def test_listeners_and_conditions_only_look_too(look: str) -> None:
         simulation.step(5)
     else:
         simulation.run(0.05, until=meddle)
-    assert len(told) >= 20
+    assert len(errors) >= 20
     plain = driving("all")
     plain.step(5)
     assert digest(simulation) == digest(plain)
@@ -266,7 +266,7 @@ def test_a_glimpse_shows_positions_of_its_own_moment() -> None:
 
 
 def test_a_body_without_an_agent_and_an_agent_without_a_body(asked: Counter[str]) -> None:
-    simulation = Simulation(scene_of("walker", "empty"), {"walker": Driver}, bodiless={"watcher": MINDS.First}, seed=1)
+    simulation = Simulation(scene_of("walker", "empty"), {"walker": Driver}, bodiless={"watcher": AGENTS.First}, seed=1)
     environment: Any = simulation.agents["watcher"].parent
     said: list[tuple[str, float]] = []
     environment.said = said
@@ -278,7 +278,7 @@ def test_a_body_without_an_agent_and_an_agent_without_a_body(asked: Counter[str]
 
 
 def test_simultaneous_events_of_several_agents_have_one_order() -> None:
-    simulation = Simulation(Scene(), bodiless={"b": MINDS.First, "a": MINDS.First, "c": MINDS.First})
+    simulation = Simulation(Scene(), bodiless={"b": AGENTS.First, "a": AGENTS.First, "c": AGENTS.First})
     environment: Any = simulation.agents["a"].parent
     said: list[tuple[str, float]] = []
     environment.said = said
@@ -287,16 +287,16 @@ def test_simultaneous_events_of_several_agents_have_one_order() -> None:
 
 
 def test_an_agent_that_calls_stop_ends_the_run_with_its_tick() -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Stopper})
+    simulation = Simulation(scene_of("walker"), {"walker": AGENTS.Stopper})
     report = simulation.run(1)
-    mind: Any = simulation.agents["walker"]
-    assert (report.ended_by, report.ticks, simulation.time, mind.ticks) == ("stop", 3, 0.03, "to the end of its tick")
-    assert mind.now() == simulation.time
+    agent: Any = simulation.agents["walker"]
+    assert (report.ended_by, report.ticks, simulation.time, agent.ticks) == ("stop", 3, 0.03, "to the end of its tick")
+    assert agent.now() == simulation.time
     assert simulation.run(0.02).ended_by == "seconds"
 
 
 def test_advance_runs_up_to_a_number_of_ticks_and_ends_with_the_run() -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Stopper})
+    simulation = Simulation(scene_of("walker"), {"walker": AGENTS.Stopper})
     assert (simulation.advance(2), simulation.ticks) == (None, 2)
     assert (simulation.advance(5), simulation.ticks) == ("stop", 3)
     assert (simulation.advance(5), simulation.ticks) == ("done", 4)  # nothing prevents one more
@@ -314,14 +314,14 @@ def test_advance_gives_the_same_bytes_as_single_steps() -> None:
 
 
 def test_a_run_without_limits_ends_when_no_agent_has_anything_left_to_do() -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Asker})
+    simulation = Simulation(scene_of("walker"), {"walker": AGENTS.Asker})
     report = simulation.run()
     assert report.ended_by == "done"
     assert simulation.agents["walker"].times[-1][0] == "nothing"
-    assert Simulation(Scene(), bodiless={"idle": MINDS.Idle}).run(0.05).ticks == 5
+    assert Simulation(Scene(), bodiless={"idle": AGENTS.Idle}).run(0.05).ticks == 5
 
 
-def test_a_run_without_limits_goes_on_until_bodies_are_where_commands_send_them() -> None:
+def test_a_run_without_limits_continues_until_bodies_have_reached_their_targets() -> None:
     simulation = Simulation(scene_of("walker", "other"))
     walker, other = simulation.world.bodies.values()
     simulation.command("waypoint", 0.2, 0, speed=1.0, body="walker")
@@ -345,16 +345,16 @@ def test_a_movement_that_something_blocks_does_not_keep_a_run_going() -> None:
     assert walker.base.place[:2] == near((0, 0))
 
 
-def test_until_is_asked_after_each_tock() -> None:
+def test_until_is_checked_after_each_tock() -> None:
     simulation = driving()
     report = simulation.run(until=lambda seen: seen.tick == 7)
     assert (report.ended_by, report.ticks, report.simulated) == ("until", 7, 0.07)
 
 
 def test_real_time_is_kept_and_measured_and_lateness_reported() -> None:
-    simulation = Simulation(Scene(), bodiless={"idle": MINDS.Idle})
+    simulation = Simulation(Scene(), bodiless={"idle": AGENTS.Idle})
     report = simulation.run(0.2, real_time=2)
-    assert report.wall >= 0.1  # never faster than asked for
+    assert report.wall >= 0.1  # never faster than requested
     assert report.factor == near(report.simulated / report.wall)
     simulation.observe(lambda seen: time.sleep(0.005))
     late = simulation.run(0.05, real_time=100)
@@ -375,12 +375,12 @@ def test_commands_work_between_steps_on_world_bodies_and_agents() -> None:
     simulation.run(0.5)
     assert simulation.agents["walker"].looks > 100
     assert simulation.trace is not None
-    told = simulation.trace.select("command")
-    assert [(event.time, event.data["command"]) for event in told] == [(0.03, c) for c in ("aperture", "posture", "parameter", "parameter")]
+    commands = simulation.trace.select("command")
+    assert [(e.time, e.data["command"]) for e in commands] == [(0.03, c) for c in ("aperture", "posture", "parameter", "parameter")]
 
 
 def odd(value: Any) -> Any:
-    """Returns a value of another type than what takes it asks for."""
+    """Returns a value without its type, to pass it where another type is required."""
     return value
 
 
@@ -437,20 +437,20 @@ WRONG: list[tuple[Callable[[Any], object], str]] = [
     (lambda s: Simulation(s.world, trace=cast("Any", [])), r"no level \[\]; use one of none"),
     (lambda s: s.command("stop", body=[]), r"command and body must be text \(got \[\]\)"),
     (lambda s: BodyPort().set("walk", 1), "'walk' is sent to a body before the agent runs; send it while its Simulation runs"),
-    (lambda s: with_port(MINDS.Idle)().body.get("pose"), "'pose' is sent to a body before the agent runs"),
+    (lambda s: with_port(AGENTS.Idle)().body.get("pose"), "'pose' is sent to a body before the agent runs"),
     (lambda s: BodyPort(Buffer()).request("pose"), "'pose' is sent to a body before the agent runs"),
-    (lambda s: Simulation(s.world, {"walker": with_port(MINDS.Early)}).run(0.1), "has not answered 'pose' yet"),
+    (lambda s: Simulation(s.world, {"walker": with_port(AGENTS.Early)}).run(0.1), "has not answered 'pose' yet"),
 ]
 
 
 @pytest.mark.parametrize(("wrong", "message"), WRONG)
-def test_what_is_wrong_is_said(wrong: Callable[[Simulation], object], message: str) -> None:
+def test_errors_say_what_is_wrong(wrong: Callable[[Simulation], object], message: str) -> None:
     with pytest.raises(Actr3dError, match=message):
         wrong(driving())
 
 
 class Returned:
-    """A measure with the result that it is given."""
+    """A measure that returns a given result."""
 
     def __init__(self, returned: Any) -> None:
         self.returned = returned
@@ -492,11 +492,11 @@ def test_agents_cannot_use_the_names_of_a_living_environment() -> None:
     assert {name for name in set(dir(environment)) - before if name[0] != "_"} == set(agents._LATER)
 
 
-def test_an_unknown_word_names_the_modellers_line() -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": with_port(MINDS.Wrong)})
+def test_an_unknown_command_names_the_modellers_line() -> None:
+    simulation = Simulation(scene_of("walker"), {"walker": with_port(AGENTS.Wrong)})
     with pytest.raises(WorldError, match="has no actuator 'wlk'; did you mean 'walk'") as caught:
         simulation.run(0.1)
-    line = 1 + MINDS.__dict__["__actr3d_source__"].split("\n").index('        self.body.set("wlk", 1)')
+    line = 1 + AGENTS.__dict__["__actr3d_source__"].split("\n").index('        self.body.set("wlk", 1)')
     assert caught.value.__notes__ == [f"  requested by 'walker.body' in agents.py:{line}"]
     with pytest.raises(SimulationError, match=r"the run has failed at 0\.02 s and cannot go on"):
         simulation.step()
@@ -505,29 +505,29 @@ def test_an_unknown_word_names_the_modellers_line() -> None:
 
 
 def test_one_object_cannot_be_two_agents() -> None:
-    agent: Any = MINDS.Idle()
+    agent: Any = AGENTS.Idle()
     simulation = Simulation(Scene(), bodiless={"a": lambda: agent, "b": lambda: agent})
     with pytest.raises(SimulationError, match=r"agents\['b'\]: must make a new agent each time"):
         simulation.step()
 
 
-def test_other_threads_submit_commands_and_do_nothing_else() -> None:
+def test_other_threads_can_only_submit_commands() -> None:
     simulation = Simulation(scene_of("walker"))
-    said: list[str] = []
+    errors: list[str] = []
 
     def other() -> None:
         for call in (simulation.tick, simulation.step, partial(simulation.step, 0), partial(simulation.advance, 0)):
             try:
                 call()
             except SimulationError as error:
-                said.append(str(error))
+                errors.append(str(error))
 
     watched: list[int] = []
     simulation.observe(lambda seen: watched.append(threading.get_ident()), of_calls=True)
     thread = threading.Thread(target=other)
     thread.start()
     thread.join()
-    assert said == ["a simulation belongs to the thread that made it; another one may use submit"] * 4
+    assert errors == ["a simulation belongs to the thread that made it; another one may use submit"] * 4
     assert watched == []
     futures: list[Any] = []
     threads = [threading.Thread(target=lambda: futures.append(simulation.submit("walk", 0.5))) for _ in range(8)]
@@ -576,8 +576,8 @@ class Agent(Model):
     assert numbers[0] == numbers[1] != numbers[2]
 
 
-def test_a_body_without_requests_is_asked_nothing(asked: Counter[str]) -> None:
-    simulation = Simulation(scene_of("walker"), {"walker": MINDS.Idle})
+def test_no_sensor_is_read_without_a_request(asked: Counter[str]) -> None:
+    simulation = Simulation(scene_of("walker"), {"walker": AGENTS.Idle})
     simulation.run(0.1)
     assert not asked
     assert isinstance(simulation.agents["walker"], (ACTR, Model))
@@ -616,7 +616,7 @@ def build() -> Simulation:
 """
 
 
-def test_an_agent_that_stops_without_end_in_no_time_says_so() -> None:
+def test_an_endless_loop_of_stops_is_an_error() -> None:
     simulation = load_text(HALT.replace("IMPORT", "actr3d.actr").replace("TIME", "0"), "halt.py").build()
     with pytest.raises(SchedulerError, match="endless loop at 0 s"):
         simulation.run(0.1)

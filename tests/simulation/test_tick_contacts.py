@@ -6,7 +6,7 @@ from actr3d.simulation.tick_contacts import TickContacts
 from actr3d.world import Floor, Mannequin, Scene, SimpleObject, Wall, World
 
 
-def test_what_stands_on_something_counts_while_a_body_holds_it() -> None:
+def test_contacts_of_a_resting_object_count_while_a_body_holds_it() -> None:
     table = Wall(name="table", start=(0.05, -0.5), end=(0.05, -0.22), thickness=0.1, height=0.56)
     cup = SimpleObject(name="cup", size=(0.05, 0.05, 0.2), position=(0.05, -0.24, 0.66), mass=0.5)
     world = World(Scene(parts=(Floor(), table, cup, Mannequin(name="walker"))))
@@ -19,6 +19,6 @@ def test_what_stands_on_something_counts_while_a_body_holds_it() -> None:
         contacts.take()
         world.step(5)
         found.append(set(contacts.take()))
-    assert world.mj_data.ncon > 0, "it stands there all the time"
+    assert world.mj_data.ncon > 0, "the cup is on the table all the time"
     assert found == [set(), {("walker", "cup", "table")}, set()]
     assert contacts.take() == {}

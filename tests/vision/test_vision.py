@@ -13,7 +13,7 @@ from actr3d.trace import Trace
 from actr3d.vision import Vision
 from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, Wall, World
 from tests.helpers.small_agents import near
-from tests.helpers.vision_scenes import Mindful, agent, events
+from tests.helpers.vision_scenes import AgentWithoutPhysics, agent, events
 from tests.helpers.walkers import digest
 
 HEAD = """
@@ -51,7 +51,7 @@ def asking(request: str, options: str = "", goal: str = "look") -> Any:
 
 
 def test_an_opening_comes_as_a_chunk_in_metres_and_degrees() -> None:
-    seer = Mindful(room(), mind(ONCE)).tick(11).mind
+    seer = AgentWithoutPhysics(room(), mind(ONCE)).tick(11).agent
     chunk = dict(seer.visual.chunk)
     assert chunk.pop("height") == near(2.5, abs=0.1)
     assert chunk.pop("depth") == math.inf
@@ -76,7 +76,7 @@ def test_what_fails_is_not_returned_and_the_buffer_empties(asked: str) -> None:
     def nothing(goal="wait", vision="busy:False error:True"):
         goal.set("nothing")
 """)
-    seer = Mindful(room(), kind).tick(20).mind
+    seer = AgentWithoutPhysics(room(), kind).tick(20).agent
     assert seer.visual.chunk is None
     assert seer.vision.error is True
     assert str(seer.goal.chunk) == "nothing"
@@ -107,30 +107,32 @@ def test_what_holds_is_returned(asked: str) -> None:
         vision.request({request})
         goal.set("wait")
 """)
-    assert Mindful(room(), kind).tick(20).mind.visual.chunk["feature"] == "opening"
+    assert AgentWithoutPhysics(room(), kind).tick(20).agent.visual.chunk["feature"] == "opening"
 
 
 def test_a_doorway_whose_top_is_out_of_sight_may_be_high_enough() -> None:
     world = room()
     world.bodies["walker"].set("teleport", 6.2, 0)
-    chunk = Mindful(world, mind(ONCE)).tick(11).mind.visual.chunk
+    chunk = AgentWithoutPhysics(world, mind(ONCE)).tick(11).agent.visual.chunk
     assert chunk["cut"] is True
     assert chunk["height"] < 1.5
-    assert Mindful(world, asking("vision.request('feature:opening', height='<1.4')")).tick(11).mind.visual.chunk["cut"]
+    assert AgentWithoutPhysics(world, asking("vision.request('feature:opening', height='<1.4')")).tick(11).agent.visual.chunk["cut"]
 
 
 def test_obstacles_within_a_radius_and_a_bearing() -> None:
     world = room(SimpleObject(name="box", position=(1.5, -0.2, 0.9), size=(0.3, 0.3, 1.8)))
-    near_by = Mindful(world, asking("vision.request('feature:obstacle', radius=2, bearing=30)")).tick(11).mind.visual.chunk
+    near_by = AgentWithoutPhysics(world, asking("vision.request('feature:obstacle', radius=2, bearing=30)")).tick(11).agent.visual.chunk
     assert near_by["feature"] == "obstacle"
     assert near_by["distance"] == near(1.25, abs=0.01)
     assert -16 < near_by["direction"] < -2
     assert "time_to_contact" not in near_by
-    assert Mindful(world, asking("vision.request('feature:obstacle', radius=1)")).tick(11).mind.vision.error
+    assert AgentWithoutPhysics(world, asking("vision.request('feature:obstacle', radius=1)")).tick(11).agent.vision.error
     assert near_by["aside"] == near(0.05, abs=0.01)
-    assert Mindful(world, asking("vision.request('feature:obstacle', radius=2, aside=0.03)")).tick(11).mind.vision.error
-    assert Mindful(world, asking("vision.request('feature:obstacle', time_to_contact=1)")).tick(11).mind.vision.error
-    told = Mindful(world, asking("vision.request('feature:obstacle', time_to_contact=1, speed=1.4)")).tick(11).mind.visual.chunk
+    assert AgentWithoutPhysics(world, asking("vision.request('feature:obstacle', radius=2, aside=0.03)")).tick(11).agent.vision.error
+    assert AgentWithoutPhysics(world, asking("vision.request('feature:obstacle', time_to_contact=1)")).tick(11).agent.vision.error
+    told = (
+        AgentWithoutPhysics(world, asking("vision.request('feature:obstacle', time_to_contact=1, speed=1.4)")).tick(11).agent.visual.chunk
+    )
     assert told["time_to_contact"] == near(near_by["distance"] / 1.4, abs=0.04)
 
 
@@ -181,7 +183,7 @@ def test_the_time_to_contact_is_known_from_two_looks() -> None:
 )
 def test_invalid_requests_are_reported(request_: str, says: str) -> None:
     with pytest.raises(Actr3dError, match=says.replace("? ", r"\? ")):
-        Mindful(room(), asking(request_)).tick(11)
+        AgentWithoutPhysics(room(), asking(request_)).tick(11)
 
 
 def test_invalid_parameters_are_reported() -> None:
@@ -202,7 +204,7 @@ def test_invalid_parameters_are_reported() -> None:
     with pytest.raises(ParameterError):
         Vision()  # type: ignore[call-arg]
     with pytest.raises(VisionError, match=r"must return a number >= 0 \(got -1"):
-        Mindful(room(), asking("vision.request('feature:opening')", ", salience=lambda feature: -1")).tick(11)
+        AgentWithoutPhysics(room(), asking("vision.request('feature:opening')", ", salience=lambda feature: -1")).tick(11)
 
 
 def test_an_agent_without_a_body_sees_nothing() -> None:
@@ -217,7 +219,7 @@ def test_an_agent_without_a_body_sees_nothing() -> None:
 
 def arrivals(body: str, options: str = "", seed: int = 1, ticks: int = 40) -> list[tuple[float, dict[str, Any]]]:
     trace = Trace("all")
-    Mindful(room(), mind(body, options), seed, trace).tick(ticks)
+    AgentWithoutPhysics(room(), mind(body, options), seed, trace).tick(ticks)
     return list(events(trace, "sight"))
 
 
@@ -262,7 +264,7 @@ def test_noise_of_edges_and_distances_is_of_its_size_and_from_the_seed() -> None
 
     def widths(options: str) -> list[float]:
         kind = mind("\n    def look(goal=None, vision='busy:False', visual=None):\n        vision.request('feature:opening')\n", options)
-        return [Mindful(world, kind, seed).tick(11).mind.visual.chunk["width"] for seed in range(150)]
+        return [AgentWithoutPhysics(world, kind, seed).tick(11).agent.visual.chunk["width"] for seed in range(150)]
 
     def sd(numbers: list[float]) -> float:
         mean = sum(numbers) / len(numbers)
@@ -308,7 +310,7 @@ class Agent(Model):
         self.width = self.visual["width"]
 """
     )
-    seer = Mindful(room(), kind).tick(11).mind
+    seer = AgentWithoutPhysics(room(), kind).tick(11).agent
     assert (seer.at, seer.width) == (0.07, 0.6)
 
 
@@ -342,7 +344,7 @@ class Agent(ACTR):
         goal.set("done ?w")
 """
     )
-    seer = Mindful(room(), kind, 1, trace).tick(30).mind
+    seer = AgentWithoutPhysics(room(), kind, 1, trace).tick(30).agent
     asked = [(time, data["bottom_up"]) for time, data in events(trace, "request")]
     came = [(time, data["bottom_up"], data.get("held", False)) for time, data in events(trace, "sight")]
     # Alone, it goes round every 30 ms: 10 ms of a production, 20 ms of a search.
@@ -375,7 +377,7 @@ class Agent(Model):
         self.second = self.now()
 """
     )
-    seer = Mindful(room(), kind, 1, trace).tick(30).mind
+    seer = AgentWithoutPhysics(room(), kind, 1, trace).tick(30).agent
     assert (seer.first, seer.second) == (0.083, 0.123)
     assert [time for time, _ in events(trace, "answer")] == [0.02, 0.04, 0.09]  # it looks anew
     assert [(data["bottom_up"], data["chunk"]["feature"]) for _, data in events(trace, "sight")] == [(False, "opening"), (True, "obstacle")]
@@ -397,7 +399,7 @@ class Agent(Model):
         self.at_last = (self.visual["feature"], self.vision.error)
 """
     )
-    seer = Mindful(room(), kind).tick(40).mind
+    seer = AgentWithoutPhysics(room(), kind).tick(40).agent
     assert seer.then == ("opening", False)
     assert seer.at_last == ("obstacle", True)  # the error is of what was asked top-down
 

@@ -18,7 +18,7 @@ from actr3d.vision.request_parser import read_request
 from actr3d.world import Aperture, Floor, Mannequin, Scene, SimpleObject, World
 from tests.helpers.camera_scenes import compiled, seen
 from tests.helpers.small_agents import near
-from tests.helpers.vision_scenes import Mindful, agent, doorway, found, pole, wall
+from tests.helpers.vision_scenes import AgentWithoutPhysics, agent, doorway, found, pole, wall
 
 SCENE = doorway(4.0, 0.8) + pole("post", 2.0, 0.5) + wall("far", 8.0, 4.0, -4.0)
 EYES: list[dict[str, Any]] = [
@@ -231,7 +231,7 @@ def test_a_model_can_define_a_detector() -> None:
     stick = SimpleObject(name="stick", shape="cylinder", size=(0.015, 1.9), position=(3.0, 0.0, 0.95), mass=None)
     world = World(Scene(parts=(Floor(), Aperture(), stick, Mannequin(name="walker"))))
     kind = agent(OWN)
-    seeing = Mindful(world, kind).tick(12).mind
+    seeing = AgentWithoutPhysics(world, kind).tick(12).agent
     assert seeing.visual.chunk["feature"] == "thin"
     assert seeing.visual.chunk["width"] == near(0.03, abs=0.001)
     agent(OWN)  # loaded again, it takes its own place

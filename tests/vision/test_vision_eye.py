@@ -14,7 +14,7 @@ from actr3d.vision import Emma, Vision
 from actr3d.vision.encoding import saccade_time
 from actr3d.world import Aperture, Car, Floor, Mannequin, Scene, World
 from tests.helpers.small_agents import near
-from tests.helpers.vision_scenes import Mindful, agent, events
+from tests.helpers.vision_scenes import AgentWithoutPhysics, agent, events
 
 SCENE = Scene(parts=(Floor(), Aperture(width=0.8, position=(5.0, 2.0)), Mannequin(name="walker")))
 ASIDE = math.degrees(math.atan2(2.0, 5.0))
@@ -110,10 +110,10 @@ def test_the_eye_turns_to_what_a_request_has_found_and_then_looks_at_it() -> Non
 def test_directions_are_from_the_body_wherever_the_eye_looks() -> None:
     world = World(SCENE)
     kind = agent(KIND.replace(" OPTIONS", ""))
-    straight = Mindful(world, kind).tick(12).mind.visual.chunk["direction"]
+    straight = AgentWithoutPhysics(world, kind).tick(12).agent.visual.chunk["direction"]
     world.bodies["walker"].set("gaze", 0.4, -0.1)
     world.step(100)
-    turned = Mindful(world, kind).tick(12).mind.visual.chunk["direction"]
+    turned = AgentWithoutPhysics(world, kind).tick(12).agent.visual.chunk["direction"]
     assert straight == near(ASIDE, abs=0.6)
     assert turned == near(straight, abs=0.2)
 
@@ -243,7 +243,7 @@ class Agent(Model):
 """
     )
     trace = Trace("all")
-    Mindful(World(SCENE), kind, 1, trace).tick(30)
+    AgentWithoutPhysics(World(SCENE), kind, 1, trace).tick(30)
     assert [data["call"] for _, data in events(trace, "request")] == ["request", "request"]
 
 
@@ -266,7 +266,7 @@ class Agent(Model):
 """
     )
     scene = Scene(parts=(Floor(), Aperture(width=3.0, position=(9.0, 0.0), heading=0.4), Car(name="walker", heading=0.4)))
-    chunk = Mindful(World(scene), kind).tick(10).mind.visual.chunk
+    chunk = AgentWithoutPhysics(World(scene), kind).tick(10).agent.visual.chunk
     assert chunk["width"] == near(3.0, abs=0.01)
     eye = (1.2 * math.cos(0.4) - 0.35 * math.sin(0.4), 1.2 * math.sin(0.4) + 0.35 * math.cos(0.4))
     assert chunk["direction"] == near(math.degrees(math.atan2(-eye[1], 9.0 - eye[0]) - 0.4), abs=1)

@@ -17,7 +17,7 @@ from actr3d.vision.request_parser import read_request
 from actr3d.vision.salience import share, weigh
 from actr3d.world import Aperture, Floor, Mannequin, Scene, World
 from tests.helpers.small_agents import near
-from tests.helpers.vision_scenes import Mindful, agent
+from tests.helpers.vision_scenes import AgentWithoutPhysics, agent
 
 HEAD = """
 import math
@@ -57,7 +57,7 @@ def registry() -> Iterator[None]:
 
 def lives(text: str) -> Any:
     world = World(Scene(parts=(Floor(), Aperture(width=0.6), Mannequin(name="walker"))))
-    return Mindful(world, agent(HEAD + text)).tick(12).mind
+    return AgentWithoutPhysics(world, agent(HEAD + text)).tick(12).agent
 
 
 def asked(pattern: str = "feature:opening", **slots: Any) -> str:

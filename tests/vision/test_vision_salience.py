@@ -16,7 +16,7 @@ from actr3d.vision import Opening
 from actr3d.vision.salience import KINDS, share, survivors
 from actr3d.world import Floor, Mannequin, Scene, Wall, World
 from tests.helpers.small_agents import near
-from tests.helpers.vision_scenes import Mindful, agent, events
+from tests.helpers.vision_scenes import AgentWithoutPhysics, agent, events
 
 SEEDS = 1000
 LEVEL = 0.001
@@ -46,14 +46,14 @@ def two_openings() -> World:
 def chosen(options: str = "", seeds: int = SEEDS) -> Counter[float | None]:
     """Returns how often which width was chosen; None where nothing was found."""
     kind = agent(KIND.replace("OPTIONS", options))
-    agents = (Mindful(two_openings(), kind, seed).tick(6).mind for seed in range(seeds))
+    agents = (AgentWithoutPhysics(two_openings(), kind, seed).tick(6).agent for seed in range(seeds))
     return Counter(None if mind.visual.chunk is None else mind.visual.chunk["width"] for mind in agents)
 
 
 def saliences() -> dict[float, float]:
     """Returns the saliences that the trace tells, by width."""
     trace = Trace("all")
-    Mindful(two_openings(), agent(KIND.replace("OPTIONS", "")), 1, trace).tick(6)
+    AgentWithoutPhysics(two_openings(), agent(KIND.replace("OPTIONS", "")), 1, trace).tick(6)
     ((_, data),) = list(events(trace, "search"))
     return {slots["width"]: weight for slots, weight in data["noticed"]}
 

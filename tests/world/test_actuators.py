@@ -1,4 +1,4 @@
-"""What a body is told, it does: exactly, until told otherwise."""
+"""Bodies carry out commands exactly, until the next command."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from actr3d.world.sensors.touch import present
 from tests.helpers.small_agents import near
 
 
-def living(*parts: Any, **of: Any) -> tuple[World, Body]:
+def world_with_walker(*parts: Any, **of: Any) -> tuple[World, Body]:
     """Returns a world with a floor, a mannequin called `walker` and more, and its body."""
     world = World(Scene(parts=(Floor(), Mannequin(name="walker", **of), *parts)))
     return world, world.bodies["walker"]
@@ -30,7 +30,7 @@ def ticks(world: World, count: int) -> None:
 
 @pytest.mark.parametrize(("target", "speed", "takes"), [(0.7, 2.0, 35), (-0.33, 1.0, 33), (0.005, 2.0, 1), (0.505, 1.0, 51)])
 def test_a_joint_goes_to_a_position_at_its_speed_and_ends_exactly_there(target: float, speed: float, takes: int) -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("position", "torso_yaw", target, speed)
     joint = body.joints["torso_yaw"]
     for tick in range(1, takes):
@@ -43,8 +43,8 @@ def test_a_joint_goes_to_a_position_at_its_speed_and_ends_exactly_there(target: 
     assert joint.position == near(target, abs=1e-6)
 
 
-def test_joints_that_stand_still_hold_while_others_swing() -> None:
-    world, body = living()
+def test_joints_at_rest_hold_while_others_swing() -> None:
+    world, body = world_with_walker()
     for n in range(8):
         body.set("posture", {"torso_yaw": 0.8 * (-1) ** n, "left_shoulder_yaw": 0.3 * (-1) ** n}, speed=4.0)
         ticks(world, 60)
@@ -53,7 +53,7 @@ def test_joints_that_stand_still_hold_while_others_swing() -> None:
 
 
 def test_a_joint_turns_at_its_speed_in_one_long_step() -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("position", "torso_yaw", 0.7, 2.0)
     world.step(100)
     assert body.joints["torso_yaw"].position == near(0.4, abs=1e-3)
@@ -63,7 +63,7 @@ def test_a_joint_turns_at_its_speed_in_one_long_step() -> None:
 
 
 def test_a_posture_moves_several_joints_while_walking() -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("walk", 1.4)
     targets = {"torso_yaw": 0.8, "left_shoulder_yaw": 0.2, "head_pitch": -0.3, "right_upper_arm_pitch": -1.0}
     body.set("posture", targets, speed=3.0)
@@ -74,7 +74,7 @@ def test_a_posture_moves_several_joints_while_walking() -> None:
 
 @pytest.mark.parametrize(("by", "speed"), [(1.5, 2.0), (-7.0, 4.0)])
 def test_a_turn_while_walking_has_the_commanded_angle(by: float, speed: float) -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("walk", 0.5)
     body.set("turn", by, speed)
     ticks(world, math.ceil(abs(by) / speed * 100) - 1)
@@ -91,7 +91,7 @@ def test_a_turn_while_walking_has_the_commanded_angle(by: float, speed: float) -
 
 @pytest.mark.parametrize("seed", range(4))
 def test_a_posture_of_all_joints_is_reached_by_all_though_some_are_there_first(seed: int) -> None:
-    world, body = living()
+    world, body = world_with_walker()
     random = np.random.default_rng(seed)
     targets = {name: random.uniform(joint.lower, joint.upper) for name, joint in body.joints.items() if not name.startswith("pelvis")}
     body.set("posture", targets, speed=3.0)
@@ -101,7 +101,7 @@ def test_a_posture_of_all_joints_is_reached_by_all_though_some_are_there_first(s
 
 
 def test_a_position_beyond_a_limit_ends_at_the_limit() -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("position", "head_yaw", 3.0, 4.0)
     ticks(world, 60)
     assert body.joints["head_yaw"].position == near(body.joints["head_yaw"].upper)
@@ -109,7 +109,7 @@ def test_a_position_beyond_a_limit_ends_at_the_limit() -> None:
 
 
 def test_a_new_command_replaces_the_old_one() -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("position", "torso_yaw", 1.0, 1.0)
     body.set("waypoint", 3.0, 0.0)
     ticks(world, 10)
@@ -122,8 +122,8 @@ def test_a_new_command_replaces_the_old_one() -> None:
 
 
 @pytest.mark.parametrize("point", [(2.0, 0.0), (1.0, 1.5), (-1.0, 0.3), (0.004, 0.0)])
-def test_a_waypoint_is_reached_exactly_and_it_stands_there(point: tuple[float, float]) -> None:
-    world, body = living(position=(0.0, 0.0))
+def test_a_body_reaches_a_waypoint_exactly_and_stops_there(point: tuple[float, float]) -> None:
+    world, body = world_with_walker(position=(0.0, 0.0))
     body.set("waypoint", *point, speed=1.5, turn=3.0)
     ticks(world, 300)
     pose = body.get("pose")
@@ -133,7 +133,7 @@ def test_a_waypoint_is_reached_exactly_and_it_stands_there(point: tuple[float, f
 
 
 def test_a_heading_is_turned_to_the_shorter_way_round() -> None:
-    world, body = living(heading=3.0)
+    world, body = world_with_walker(heading=3.0)
     body.set("heading", -3.0, 1.0)
     ticks(world, 10)
     assert body.base.place[2] == near(3.1, abs=1e-3)
@@ -142,8 +142,8 @@ def test_a_heading_is_turned_to_the_shorter_way_round() -> None:
     assert not body.motion
 
 
-def test_teleport_keeps_posture_and_goes_on_walking_the_new_way() -> None:
-    world, body = living()
+def test_teleport_keeps_the_posture_and_the_walk_continues_in_the_new_direction() -> None:
+    world, body = world_with_walker()
     body.set("walk", 1.0)
     body.set("position", "torso_yaw", 0.2)
     ticks(world, 20)
@@ -160,8 +160,8 @@ CUP = SimpleObject(name="cup", size=(0.05, 0.05, 0.2), position=(0.0, -0.24, 0.6
 """Beside the right hand of a mannequin of the usual size."""
 
 
-def test_what_is_grasped_comes_along_until_released() -> None:
-    world, body = living(CUP)
+def test_a_grasped_object_moves_with_the_hand_until_released() -> None:
+    world, body = world_with_walker(CUP)
     body.set("grasp", "cup")
     assert body.get("grasp") == {"left": None, "right": "cup"}
     body.set("position", "right_upper_arm_pitch", -1.2)
@@ -188,7 +188,7 @@ def test_what_is_grasped_comes_along_until_released() -> None:
 
 
 def test_the_name_of_an_object_may_look_like_a_number() -> None:
-    _, body = living(SimpleObject(name="5", size=CUP.size, position=CUP.position, mass=CUP.mass))
+    _, body = world_with_walker(SimpleObject(name="5", size=CUP.size, position=CUP.position, mass=CUP.mass))
     body.set("grasp", 5)
     assert body.get("grasp")["right"] == "5"
 
@@ -197,7 +197,7 @@ def test_a_hand_carries_the_weight_of_all_parts_of_what_it_holds() -> None:
     parts = '<geom size=".02" mass="0.2"/><body pos="0 0 -.1" gravcomp="{}"><joint/><geom size=".02" mass="2"/></body>'
     for gravcomp, weight in ((0, 2.2), (0.5, 1.2)):
         text = f'<mujoco><worldbody><body name="bag">{parts.format(gravcomp)}</body></worldbody></mujoco>'
-        world, body = living(Imported(name="a", text=text, free=True, position=(0.0, -0.24, 0.66)))
+        world, body = world_with_walker(Imported(name="a", text=text, free=True, position=(0.0, -0.24, 0.66)))
         body.set("grasp", "a_bag")
         assert world.mj_data.xfrc_applied.sum(axis=0) == near((0, 0, 9.81 * weight, 0, 0, 0))
         ticks(world, 50)
@@ -206,9 +206,9 @@ def test_a_hand_carries_the_weight_of_all_parts_of_what_it_holds() -> None:
         assert not world.mj_data.xfrc_applied.any()
 
 
-def test_what_is_held_feels_what_it_touches() -> None:
+def test_contacts_of_a_held_object_are_felt() -> None:
     stick = SimpleObject(name="stick", size=(0.6, 0.05, 0.05), position=(0.1, -0.24, 0.66), mass=0.5)
-    world, body = living(Wall(name="wall", start=(0.6, -3.0), end=(0.6, 3.0)), stick)
+    world, body = world_with_walker(Wall(name="wall", start=(0.6, -3.0), end=(0.6, 3.0)), stick)
     body.set("grasp", "stick")
     body.set("walk", 0.3)
     ticks(world, 100)
@@ -217,8 +217,8 @@ def test_what_is_held_feels_what_it_touches() -> None:
     assert "stick" not in {touch.part for touch in present(body)}
 
 
-def test_what_both_hands_hold_is_carried_until_both_let_go() -> None:
-    world, body = living(SimpleObject(name="tray", size=(0.1, 0.5, 0.05), position=(0.132, 0.0, 0.66), mass=1.0))
+def test_an_object_in_both_hands_is_carried_until_both_release_it() -> None:
+    world, body = world_with_walker(SimpleObject(name="tray", size=(0.1, 0.5, 0.05), position=(0.132, 0.0, 0.66), mass=1.0))
     body.set("grasp", "tray", "left")
     body.set("grasp", "tray", "right")
     assert body.get("grasp") == {"left": "tray", "right": "tray"}
@@ -233,14 +233,14 @@ def test_what_both_hands_hold_is_carried_until_both_let_go() -> None:
 
 
 def test_nothing_out_of_reach_is_grasped() -> None:
-    _, body = living(SimpleObject(name="far", position=(2.0, 0, 0.15)), CUP)
+    _, body = world_with_walker(SimpleObject(name="far", position=(2.0, 0, 0.15)), CUP)
     body.set("grasp", "far")
     body.set("grasp", "cup", hand="left")
     assert body.get("grasp") == {"left": None, "right": None}
 
 
 def test_a_grasp_is_part_of_the_state() -> None:
-    world, body = living(CUP, SimpleObject(name="other", size=(0.05, 0.05, 0.2), position=(0.0, 0.24, 0.66), mass=0.3))
+    world, body = world_with_walker(CUP, SimpleObject(name="other", size=(0.05, 0.05, 0.2), position=(0.0, 0.24, 0.66), mass=0.3))
     body.set("grasp", "cup")
     body.set("position", "right_upper_arm_pitch", -1.0)
     ticks(world, 10)
@@ -258,8 +258,8 @@ def test_a_grasp_is_part_of_the_state() -> None:
 
 
 def test_a_start_against_a_wall_is_only_a_push() -> None:
-    """A command sets a speed at once only where nothing touches: else orders given again and again would press it into a wall."""
-    world, body = living(Wall(name="wall", start=(0.2, -2.0), end=(0.2, 2.0), thickness=0.1))
+    """A command sets a speed immediately only without contact; otherwise repeated commands would press the body into a wall."""
+    world, body = world_with_walker(Wall(name="wall", start=(0.2, -2.0), end=(0.2, 2.0), thickness=0.1))
     body.set("walk", 0.5)
     ticks(world, 50)
     body.set("walk", 3.0)
@@ -271,7 +271,7 @@ def test_a_start_against_a_wall_is_only_a_push() -> None:
 
 @dataclass(frozen=True)
 class Arm:
-    """A described body that knows nothing of ours: a motor on a hinge."""
+    """A body that is described in MJCF alone: a motor on a hinge."""
 
     name: str = "arm"
 
@@ -342,7 +342,7 @@ def test_an_imported_body_shows_its_joints_and_takes_controls() -> None:
     ],
 )
 def test_wrong_commands_are_refused_with_a_reason_and_do_nothing(word: Any, values: tuple[Any, ...], message: str) -> None:
-    world, body = living(CUP)
+    world, body = world_with_walker(CUP)
     body.set("waypoint", 3.0, 0.0)
     body.set("position", "torso_yaw", 0.5)
     before = world.state()

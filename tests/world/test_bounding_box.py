@@ -34,7 +34,7 @@ HEIGHTS = np.array([[0, 0.2, 0.1], [0.5, 1.0, 0.3], [0.0, 0.4, 0.9]])
 
 @dataclass(frozen=True)
 class Shape:
-    """A body of one geom that flies freely."""
+    """A free body of one geom."""
 
     kind: Any
     name: str = "shape"
@@ -138,7 +138,7 @@ def test_a_mannequin_and_its_load_are_held_tightly_in_any_posture_and_frame(seed
         tightly_holds(body.bounding_box(name), (points - origin) @ axes)
 
 
-def test_what_a_hand_holds_is_in_the_box() -> None:
+def test_a_held_object_is_in_the_box() -> None:
     cup = SimpleObject(name="cup", size=(0.06, 0.06, 0.3), position=(0.0, -0.26, 0.7), mass=0.2)
     world = World(Scene(parts=(Mannequin(name="walker"), cup)))
     body = world.bodies["walker"]
@@ -156,7 +156,7 @@ def test_a_resized_geom_is_seen() -> None:
     assert body.bounding_box().size == near((0.8, 0.8, 0.8))
 
 
-def test_asking_changes_nothing() -> None:
+def test_reading_changes_nothing() -> None:
     (asked, body), (unasked, _) = posed(1, None), posed(1, None)
     for _ in range(20):
         body.bounding_box()
@@ -172,7 +172,7 @@ def test_unknown_frames_are_refused_with_a_reason() -> None:
 
 
 def test_mujoco_agrees_on_the_sampled_shapes() -> None:
-    """The sampled surfaces are those that rays hit: the oracle is not our own reading of MuJoCo's sizes."""
+    """The sampled surfaces are those that rays hit: the oracle does not depend on an interpretation of MuJoCo's sizes."""
     for kind in (mjtGeom.mjGEOM_CAPSULE, mjtGeom.mjGEOM_CYLINDER, mjtGeom.mjGEOM_HFIELD, mjtGeom.mjGEOM_MESH):
         world = World(Scene(parts=(Shape(kind),)))
         world.refresh()

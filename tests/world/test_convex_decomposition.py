@@ -1,4 +1,4 @@
-"""Convex parts are made once, and kept in the user's cache folder, whatever happens to that."""
+"""Convex parts are computed once and kept in the user's cache folder, also if the cache is damaged or read-only."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def ring() -> Surface:
 
 
 def box() -> Surface:
-    """Returns what is cut at once: it is convex."""
+    """Returns a box, which is convex and therefore decomposed fast."""
     mesh = creation.box((0.3, 0.5, 0.4))
     return surface(np.asarray(mesh.vertices), np.asarray(mesh.faces), "box")
 
@@ -44,7 +44,7 @@ def never(*_: object) -> list[NDArray[np.float64]]:
     raise AssertionError("made again")
 
 
-def test_they_are_made_once(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_parts_are_computed_once(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = convex_parts(box(), 0.2, 1)
     assert len(list(cache.iterdir())) == 1
     monkeypatch.setattr(convex_decomposition, "_cut", never)
@@ -76,13 +76,13 @@ def test_a_broken_file_is_made_again(cache: Path) -> None:
         assert file.read_bytes() == whole
 
 
-def test_where_nothing_can_be_written_they_are_made_all_the_same(cache: Path) -> None:
+def test_parts_are_computed_where_nothing_can_be_written(cache: Path) -> None:
     cache.parent.mkdir()
     cache.write_bytes(b"a file where the folder would be")
     assert len(convex_parts(ring(), 0.2, 1)) > 2
 
 
-def test_threads_that_write_at_once_leave_one_whole_file(cache: Path) -> None:
+def test_threads_that_write_concurrently_leave_one_complete_file(cache: Path) -> None:
     parts = [np.full((1000, 3), 1.5) for _ in range(20)]
     with ThreadPoolExecutor(8) as pool:
         list(pool.map(convex_decomposition.write_cached, ["name"] * 40, [parts] * 40))
@@ -102,13 +102,13 @@ sys.stdin.readline()
 for _ in range(120):
     convex_decomposition.write_cached("name", mine)
     found = convex_decomposition.read_cached("name")
-    assert found is not None, "a file that is not whole"
+    assert found is not None, "an incomplete file was read"
     assert len(found) == 1 and found[0].tobytes() in (mine[0].tobytes(), other[0].tobytes())
 """
 
 
 @pytest.mark.slow
-def test_two_processes_that_write_at_once_never_find_a_file_that_is_not_whole(cache: Path) -> None:
+def test_processes_that_write_concurrently_never_read_an_incomplete_file(cache: Path) -> None:
     with ExitStack() as stack:
         commands = [[sys.executable, "-c", WRITER, mine, other] for mine, other in (("1", "2"), ("2", "1"))]
         running = [stack.enter_context(Popen(command, stdin=PIPE, stdout=PIPE, stderr=PIPE, text=True)) for command in commands]
@@ -123,7 +123,7 @@ def test_two_processes_that_write_at_once_never_find_a_file_that_is_not_whole(ca
     assert [path.name for path in cache.iterdir()] == ["name"]
 
 
-def test_what_was_not_used_for_longest_makes_room(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_least_recently_used_file_is_removed(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     part = [np.zeros((100, 3))]
     monkeypatch.setattr(convex_decomposition, "MAX_CACHE_BYTES", 8000)
     for number, name in enumerate(("a", "b", "c")):

@@ -1,4 +1,4 @@
-"""Gait: what people's gait measures, in the frame of the world; its variability, its end, and obstacles."""
+"""Gait: measures of human gait, in the world's frame; its variability, its end, and obstacles."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from actr3d.world import Floor, Gait, Mannequin, Scene, Wall, World
 from actr3d.world.bodies.mannequin import CLEARANCE
 
 REGULAR = Gait(wander=0, timing=0)
-"""A gait whose steps are all alike."""
+"""A gait without variability."""
 FEET = [f"p_{side}_foot" for side in ("left", "right")]
 
 
@@ -162,7 +162,7 @@ def test_it_walks_as_far_as_without_gait() -> None:
     assert heading == pytest.approx(0, abs=0.002)
 
 
-def test_a_command_moves_a_joint_that_gait_moves_and_gait_goes_on_about_its_end() -> None:
+def test_a_command_moves_a_joint_of_the_gait_which_continues_around_the_new_position() -> None:
     world = walker()
     body = world.bodies["p"]
     torso = body.joints["torso_yaw"]
@@ -179,7 +179,7 @@ def test_a_command_moves_a_joint_that_gait_moves_and_gait_goes_on_about_its_end(
     assert torso.position == pytest.approx(0.8, abs=1e-3)
 
 
-def test_who_is_turned_sideways_steps_along_the_way() -> None:
+def test_a_body_turned_sideways_steps_along_its_path() -> None:
     world = walker(sideways=True)
     body = world.bodies["p"]
     body.set("position", "stance_yaw", math.pi / 3, 4.0)

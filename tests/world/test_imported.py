@@ -1,4 +1,4 @@
-"""MJCF and URDF files come into a scene as they are, and change nothing of it; broken ones say why, and where."""
+"""MJCF and URDF files are added to a scene unchanged, and do not change it; errors name the file and the line."""
 
 from __future__ import annotations
 
@@ -73,14 +73,14 @@ def names(mj_model: MjModel, kind: str, count: int) -> list[str]:
 
 
 def ray(world: World, start: tuple[float, float, float], way: tuple[float, float, float]) -> tuple[float, str]:
-    """Returns how far a ray goes [m], and the body that it hits."""
+    """Returns the length of a ray [m], and the body that it hits."""
     world.refresh()
     geom = np.zeros(1, dtype=np.int32)
     distance = mujoco.mj_ray(world.mj_model, world.mj_data, np.array(start, float), np.array(way, float), None, 1, -1, geom, None)
     return distance, world.mj_model.body(world.mj_model.geom_bodyid[geom[0]]).name if distance >= 0 else ""
 
 
-def test_an_mjcf_file_comes_in_as_mujoco_reads_it_alone(tmp_path: Path) -> None:
+def test_an_mjcf_file_is_added_as_mujoco_compiles_it_alone(tmp_path: Path) -> None:
     alone = MjSpec.from_string(ARM).compile()
     inside = model(Floor(), Imported(name="a", path=file(tmp_path, ARM)), SimpleObject(name="box"))
     assert names(inside, "body", inside.nbody) == ["world", "a_base", "a_arm", "box"]
@@ -131,7 +131,7 @@ def test_one_file_several_times_and_a_scene_several_times() -> None:
     assert first.state().mj_state.tobytes() == second.state().mj_state.tobytes()
 
 
-def test_a_urdf_file_comes_in_with_names_limits_and_what_is_seen() -> None:
+def test_a_urdf_file_is_added_with_names_limits_and_visuals() -> None:
     with pytest.warns(ModelWarning, match="links that move without a mass are given 1 g: 'frame'"):
         cart = Imported(name="c", text=CART, position=(0, 0, 2), free=True)
     world = World(Scene(parts=(cart,)))
@@ -147,7 +147,7 @@ def test_a_urdf_file_comes_in_with_names_limits_and_what_is_seen() -> None:
     assert world.mj_data.body("c_base").xpos[2] < 2
 
 
-def test_shapes_of_hidden_groups_are_met_and_not_seen() -> None:
+def test_shapes_of_hidden_groups_collide_and_are_not_seen() -> None:
     text = (
         '<mujoco><asset><material name="m" rgba="1 1 1 1"/></asset><worldbody><body name="b"><geom size="0.2" contype="0" conaffinity="0"/>'
     )
@@ -236,25 +236,25 @@ def test_a_ros_package_is_found_above_the_file_and_with_a_folder_given(tmp_path:
         Imported(name="i", path=relative)
 
 
-def test_gaps_are_filled_and_said(tmp_path: Path) -> None:
+def test_gaps_are_filled_with_a_warning(tmp_path: Path) -> None:
     turned = creation.box()
     turned.invert()
     file(tmp_path, turned.export(file_type="stl"), "meshes/one.stl")
     path = file(tmp_path, MESHES.format("one.stl", "one"))
     message = r"Imported 'i': one\.stl: all its triangles faced inwards and are reversed; "
-    with pytest.warns(ModelWarning, match=message + r"there is no texture 'meshes/t\.png' \(robot\.xml, line 2\): plain grey") as said:
+    with pytest.warns(ModelWarning, match=message + r"there is no texture 'meshes/t\.png' \(robot\.xml, line 2\): plain grey") as caught:
         part = Imported(name="i", path=path)
-    assert [warning.filename for warning in said] == [__file__], "the warning names the modeller's line"
+    assert [warning.filename for warning in caught] == [__file__], "the warning names the modeller's line"
     assert model(part).body("i_b").mass[0] == near(8000, rel=1e-6)
 
 
-def test_what_mujoco_says_is_said_at_the_modeller_s_line() -> None:
+def test_warnings_of_mujoco_are_given_at_the_modellers_line() -> None:
     text = mjcf('<body name="b"><flexcomp name="f" type="grid" count="3 3 1" spacing="1 1 1" dim="2"/></body>')
     with pytest.warns(
         ModelWarning, match="Imported 'i': flex 'f' is not rigid and has no equality constraints .*; Element name 'f'"
-    ) as said:
+    ) as caught:
         Imported(name="i", text=text)
-    assert [warning.filename for warning in said] == [__file__]
+    assert [warning.filename for warning in caught] == [__file__]
 
 
 def test_the_eye_is_a_site_of_the_file() -> None:
@@ -424,7 +424,7 @@ CLOTH = """<mujoco><worldbody><body name="cloth" pos="0.5 0 1.2"><flexcomp name=
     [(ROOM, 0.0, "i_geom_1"), (ROOM, -math.pi / 2, "i_body_0"), (CLOTH, 0.0, "i_cloth")],
     ids=["fixed", "body", "soft"],
 )
-def test_what_has_no_name_or_is_soft_is_felt_too(text: str, direction: float, feels: str) -> None:
+def test_unnamed_and_soft_parts_are_felt_too(text: str, direction: float, feels: str) -> None:
     world = World(Scene(parts=(Imported(name="i", text=text), Mannequin(name="walker"))))
     body = world.bodies["walker"]
     body.set("walk", 1.0, direction=direction)
@@ -451,7 +451,7 @@ def test_the_feet_of_a_walker_touch_what_lies_directly_in_the_world_of_a_file(na
 
     before_file = walked(Imported(name="i", text=STEP.format(named, "")))
     before_wall = walked(Wall(name="w", start=(1, -2), end=(1, 2), thickness=0.2, height=0.3))
-    assert before_file.get("pose").x == near(before_wall.get("pose").x, abs=0.01), "1.5 where only its thighs were stopped"
+    assert before_file.get("pose").x == near(before_wall.get("pose").x, abs=0.01), "it was 1.5 when only the thighs were stopped"
     assert {touch.other for touch in before_file.get("contacts")} == {"i_step" if named else "i_geom_1"}
 
 
@@ -480,7 +480,7 @@ def test_names_that_look_like_numbers_are_names() -> None:
 
 
 def test_every_field_of_a_geom_is_moved() -> None:
-    """A later MuJoCo may have more."""
+    """A later version of MuJoCo may have more."""
     geom = MjSpec().worldbody.add_geom()
     apart = {"name", "frame", "set_frame", "plugin", "alt", "id", "parent", "signature", "classname", "compiler"}
     assert {field for field in dir(geom) if not field.startswith("_")} - apart == set(GEOM_FIELDS)
@@ -488,7 +488,7 @@ def test_every_field_of_a_geom_is_moved() -> None:
 
 
 def test_no_text_crashes_the_process(tmp_path: Path) -> None:
-    """Descriptions with a value replaced by an extreme one either compile or are a `WorldError`; in a process of its own."""
+    """Descriptions with a value replaced by an extreme one either compile or are a `WorldError`; in a separate process."""
     rich = ARM.replace(
         "<worldbody>",
         '<asset><texture name="t" type="2d" builtin="checker" width="8" height="8"/><material name="m" texture="t" texrepeat="1 1"/>'

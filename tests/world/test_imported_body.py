@@ -1,4 +1,4 @@
-"""Bodies from files: a mind can live in them."""
+"""Bodies from files: agents can control them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def arm(heading: float = 0.0) -> ImportedBody:
     return ImportedBody(name="arm", text=ARM, eye="tip", heading=heading)
 
 
-def test_what_the_file_has_is_found() -> None:
+def test_parts_joints_and_eye_of_the_file_are_found() -> None:
     world = World(Scene(parts=(Floor(), arm(), SimpleObject(name="ball", shape="sphere", size=(0.2,)))))
     body = world.bodies["arm"]
     assert body.parts == ("base", "arm")
@@ -54,7 +54,7 @@ def test_a_robot_of_urdf_is_a_body_too_and_falls_when_it_is_free() -> None:
     assert world.bodies["r"].get("pose").z == near(1.5, abs=0.01)
 
 
-def test_a_simulation_takes_it() -> None:
+def test_a_simulation_accepts_it() -> None:
     simulation = Simulation(Scene(parts=(Floor(), arm())), seed=1)
     simulation.command("control", "turn", 0.3)
     simulation.run(2)
@@ -85,7 +85,7 @@ DRIVES = """<mujoco><worldbody><body name="base"><geom size="0.1"/><site name="h
     <adhesion name="stick" body="base" ctrlrange="0 1"/></actuator></mujoco>"""
 
 
-def test_whatever_an_actuator_pulls_at_it_is_the_body_s_that_it_moves() -> None:
+def test_an_actuator_belongs_to_the_body_that_it_moves() -> None:
     text = DRIVES.replace("<worldbody>", '<worldbody><site name="hook" pos="1 0 0"/>')
     body = World(Scene(parts=(ImportedBody(name="r", text=text),))).bodies["r"]
     assert list(body.controls) == ["joint", "site", "cord", "sum", "turn", "stick"]
@@ -158,7 +158,7 @@ UNNAMED = """<mujoco><worldbody><body name="r"><joint axis="0 0 1"/><geom size="
   <actuator><motor joint="joint_0"/><motor joint="joint_0" name="own"/><motor joint="joint_0"/></actuator></mujoco>"""
 
 
-def test_what_has_no_name_is_called_the_same_wherever_the_body_is_in_a_scene() -> None:
+def test_generated_names_do_not_depend_on_the_place_in_a_scene() -> None:
     robot = ImportedBody(name="r", text=UNNAMED)
     for parts in ((robot,), (SimpleObject(name="one"), robot, SimpleObject(name="other"))):
         world = World(Scene(parts=parts))
@@ -183,7 +183,7 @@ def test_parts_without_a_name_are_frames() -> None:
 
 
 @pytest.mark.parametrize("lies", [(0.7071067811865476, 0.7071067811865476, 0, 0), (0.9238795325112867, 0, 0.3826834323650898, 0)])
-def test_a_free_body_that_lies_or_leans_does_so_still_after_it_was_moved(lies: tuple[float, float, float, float]) -> None:
+def test_a_free_body_keeps_its_tilt_when_it_is_moved(lies: tuple[float, float, float, float]) -> None:
     world = World(Scene(parts=(ImportedBody(name="r", text=ROBOT, free=True, quaternion=lies),)))
     body = world.bodies["r"]
     before = body.get("pose")

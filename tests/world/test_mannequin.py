@@ -1,4 +1,4 @@
-"""The mannequin: its sizes, its joints, how it walks, and that nothing lets it through a wall."""
+"""The mannequin: its sizes, its joints, its walk, and its collisions with walls."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SEGMENTS = (
 )
 
 
-def living(*parts: Any, **of: Any) -> tuple[World, Body]:
+def world_with_walker(*parts: Any, **of: Any) -> tuple[World, Body]:
     """Returns a world with a floor, a mannequin called `walker` and more, and its body."""
     world = World(Scene(parts=(Floor(), Mannequin(name="walker", **of), *parts)))
     return world, world.bodies["walker"]
@@ -44,7 +44,7 @@ def felt(world: World, body: Body, count: int) -> set[tuple[str, str]]:
 @pytest.mark.parametrize("trunk", ["ellipsoid", "box"])
 @pytest.mark.parametrize(("shoulder_width", "depth", "height"), [(0.404, 0.22, 1.62), (0.444, 0.25, 1.75), (0.484, 0.3, 1.9)])
 def test_it_has_the_size_it_is_given(trunk: str, shoulder_width: float, depth: float, height: float) -> None:
-    _, body = living(trunk=trunk, shoulder_width=shoulder_width, depth=depth, height=height, heading=0.7)
+    _, body = world_with_walker(trunk=trunk, shoulder_width=shoulder_width, depth=depth, height=height, heading=0.7)
     box = body.bounding_box("body")
     assert (box.width, box.depth, box.upper[2]) == near((shoulder_width, depth, height), abs=1e-9)
     assert box.lower[2] == near(0.005, abs=1e-9)
@@ -54,13 +54,13 @@ def test_it_has_the_size_it_is_given(trunk: str, shoulder_width: float, depth: f
     ("height", "shoulder_width", "depth", "eye_height"), [(1.75, 0.27, 0.25, None), (1.75, 1.6, 1.7, None), (0.3, 0.1, 0.1, 0.295)]
 )
 def test_unusual_sizes_are_kept_too(height: float, shoulder_width: float, depth: float, eye_height: float | None) -> None:
-    _, body = living(height=height, shoulder_width=shoulder_width, depth=depth, eye_height=eye_height)
+    _, body = world_with_walker(height=height, shoulder_width=shoulder_width, depth=depth, eye_height=eye_height)
     box = body.bounding_box("body")
     assert (box.width, box.depth, box.upper[2]) == near((shoulder_width, depth, height), abs=1e-9)
 
 
 def test_eye_and_hands_are_where_the_sizes_say() -> None:
-    world, body = living(height=1.8, eye_height=1.7, arm_length=0.8)
+    world, body = world_with_walker(height=1.8, eye_height=1.7, arm_length=0.8)
     assert world.mj_data.site("walker_eye").xpos[2] == near(1.7)
     hand, way = world.mj_data.geom("walker_left_hand"), world.mj_model.geom("walker_left_hand").size
     assert hand.xpos[2] - way[0] - way[1] == near(0.818 * 1.8 - 0.8)
@@ -68,12 +68,12 @@ def test_eye_and_hands_are_where_the_sizes_say() -> None:
 
 
 def test_it_weighs_what_it_is_given_with_its_load() -> None:
-    world, _ = living(mass=60, load=Load(mass=4))
+    world, _ = world_with_walker(mass=60, load=Load(mass=4))
     assert world.mj_model.body("walker").subtreemass == near(64, abs=0.5)
 
 
-def test_it_turns_hips_and_legs_with_the_trunk_and_goes_on_the_same_way() -> None:
-    world, body = living(sideways=True)
+def test_it_turns_hips_and_legs_with_the_trunk_and_keeps_its_direction() -> None:
+    world, body = world_with_walker(sideways=True)
     before = body.bounding_box("body").width
     body.set("walk", 1.0)
     body.set("position", "stance_yaw", math.radians(80), 2.5)
@@ -89,7 +89,7 @@ def test_it_turns_hips_and_legs_with_the_trunk_and_goes_on_the_same_way() -> Non
 
 
 def test_it_weighs_the_same_with_legs_that_turn() -> None:
-    (ahead, _), (sideways, _) = living(), living(sideways=True)
+    (ahead, _), (sideways, _) = world_with_walker(), world_with_walker(sideways=True)
     assert sideways.mj_model.body("walker").subtreemass == near(ahead.mj_model.body("walker").subtreemass)
 
 
@@ -97,7 +97,7 @@ def test_it_weighs_the_same_with_legs_that_turn() -> None:
 @pytest.mark.parametrize("position", [(0.0, 1.0), (14.0, -3.0)])
 def test_wherever_it_starts_it_has_the_same_inertia(gait: Gait | None, position: tuple[float, float]) -> None:
     def inertia(position: tuple[float, float]) -> Any:
-        world, _ = living(sideways=True, gait=gait, position=position)
+        world, _ = world_with_walker(sideways=True, gait=gait, position=position)
         world.solve()
         unit, product = np.zeros(world.mj_model.nv), np.zeros(world.mj_model.nv)
         unit[world.mj_model.joint("walker_heading").dofadr] = 1
@@ -109,7 +109,7 @@ def test_wherever_it_starts_it_has_the_same_inertia(gait: Gait | None, position:
 
 @pytest.mark.parametrize("sideways", [False, True])
 def test_every_joint_is_three_hinges_that_stop_at_their_limits(sideways: bool) -> None:
-    world, body = living(sideways=sideways)
+    world, body = world_with_walker(sideways=sideways)
     stance = {"stance_yaw"} if sideways else set[str]()
     assert set(body.joints) == {f"{segment}_{hinge}" for segment in SEGMENTS for hinge in ("yaw", "pitch", "roll")} | stance
     start = world.state()
@@ -123,7 +123,7 @@ def test_every_joint_is_three_hinges_that_stop_at_their_limits(sideways: bool) -
 
 
 def test_right_limits_mirror_left_ones() -> None:
-    _, body = living()
+    _, body = world_with_walker()
     for part in ("shoulder", "upper_arm"):
         for hinge, mirrored in (("yaw", True), ("pitch", False), ("roll", True)):
             left, right = (body.joints[f"{side}_{part}_{hinge}"].limits for side in ("left", "right"))
@@ -131,7 +131,7 @@ def test_right_limits_mirror_left_ones() -> None:
 
 
 def test_joints_turn_at_a_constant_speed() -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("walk", 1.3)
     body.set("joint", "torso_yaw", 2.0)
     body.set("joint", "left_shoulder_yaw", -0.5)
@@ -143,8 +143,8 @@ def test_joints_turn_at_a_constant_speed() -> None:
 
 
 @pytest.mark.parametrize("heading", [0.0, 1.0, -2.5])
-def test_it_walks_at_its_speed_and_stops_dead(heading: float) -> None:
-    world, body = living(position=(0.5, -0.5), heading=heading)
+def test_it_walks_at_its_speed_and_stops_immediately(heading: float) -> None:
+    world, body = world_with_walker(position=(0.5, -0.5), heading=heading)
     body.set("walk", 1.4)
     ticks(world, 100)
     there = body.get("pose")
@@ -159,7 +159,7 @@ def test_it_walks_at_its_speed_and_stops_dead(heading: float) -> None:
 
 
 def test_walking_and_turning_is_a_circle() -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("walk", 1.2, 0.8)
     path: list[tuple[float, float]] = []
     for _ in range(round(2 * math.pi / 0.8 / 0.01)):
@@ -171,7 +171,7 @@ def test_walking_and_turning_is_a_circle() -> None:
 
 
 def test_it_walks_sideways_and_backwards() -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("walk", 1.0, direction=math.pi / 2)
     ticks(world, 50)
     body.set("walk", -2.0)
@@ -185,7 +185,7 @@ WALLS = [0.05, 0.1, 0.3]
 
 
 def still(_: Body, __: int) -> None:
-    """Lets arms hang."""
+    """Does not move its arms."""
 
 
 def swinging(body: Body, tick: int) -> None:
@@ -212,7 +212,7 @@ def test_nothing_gets_through_a_wall(
 ) -> None:
     walls = Wall(name="wall", start=(1.5, -15.0), end=(1.5, 15.0), thickness=thickness, height=6.0)
     faces = heading if speed > 0 else heading + math.pi
-    world, body = living(walls, load=load, heading=faces, trunk="box")
+    world, body = world_with_walker(walls, load=load, heading=faces, trunk="box")
     body.set("walk", speed)
     near_face = 1.5 - thickness / 2
     reached = 0.0
@@ -229,9 +229,9 @@ def test_nothing_gets_through_a_wall(
 @pytest.mark.parametrize("mass", [2.0, 30.0])
 @pytest.mark.parametrize("heading", [0.68, 0.85])
 def test_a_long_bar_does_not_get_through_while_it_stops_and_starts(thickness: float, mass: float, heading: float) -> None:
-    """The wall turns bar and trunk back as fast as the legs go on: stopped alone, the legs would fling the bar into the wall."""
+    """The wall turns bar and trunk back as fast as the legs move on; if only it stopped, the legs would push the bar into the wall."""
     wall = Wall(name="wall", start=(3.0, -20.0), end=(3.0, 20.0), thickness=thickness)
-    world, body = living(wall, load=Load(size=(5.0, 0.03), mass=mass), heading=heading)
+    world, body = world_with_walker(wall, load=Load(size=(5.0, 0.03), mass=mass), heading=heading)
     for tick in range(180):
         body.set("stop")
         body.set("walk", 3.0)
@@ -239,8 +239,8 @@ def test_a_long_bar_does_not_get_through_while_it_stops_and_starts(thickness: fl
         assert body.bounding_box().upper[0] < 3.02, f"at tick {tick}"
 
 
-def test_what_is_in_the_way_stops_it_and_it_pushes_no_harder_than_it_can() -> None:
-    world, body = living(Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0)), leg_force=250)
+def test_an_obstacle_stops_it_and_it_pushes_with_limited_force() -> None:
+    world, body = world_with_walker(Wall(name="wall", start=(1.0, -2.0), end=(1.0, 2.0)), leg_force=250)
     body.set("walk", 2.0)
     ticks(world, 200)
     assert body.get("velocity").linear == near((0, 0, 0), abs=1e-3)
@@ -249,8 +249,8 @@ def test_what_is_in_the_way_stops_it_and_it_pushes_no_harder_than_it_can() -> No
     assert sum(touch.force for touch in touches) == near(250, rel=0.01)
 
 
-def test_what_is_in_the_way_stops_a_joint() -> None:
-    world, body = living(Wall(name="wall", start=(-2.0, 0.5), end=(2.0, 0.5)))
+def test_an_obstacle_stops_a_joint() -> None:
+    world, body = world_with_walker(Wall(name="wall", start=(-2.0, 0.5), end=(2.0, 0.5)))
     body.set("joint", "left_upper_arm_roll", 2.0)
     ticks(world, 150)
     joint = body.joints["left_upper_arm_roll"]
@@ -262,7 +262,7 @@ def test_what_is_in_the_way_stops_a_joint() -> None:
 
 
 def test_a_light_object_is_pushed_away_and_felt() -> None:
-    world, body = living(SimpleObject(name="ball", shape="sphere", size=(0.4,), mass=2, position=(0.6, 0, 0.4)))
+    world, body = world_with_walker(SimpleObject(name="ball", shape="sphere", size=(0.4,), mass=2, position=(0.6, 0, 0.4)))
     body.set("walk", 1.0)
     assert body.get("contacts") == ()
     forces: list[float] = []
@@ -275,7 +275,7 @@ def test_a_light_object_is_pushed_away_and_felt() -> None:
 
 
 def test_two_people_feel_each_other() -> None:
-    world, body = living(Mannequin(name="other", position=(1.0, 0.0), heading=math.pi))
+    world, body = world_with_walker(Mannequin(name="other", position=(1.0, 0.0), heading=math.pi))
     body.set("walk", 1.0)
     ticks(world, 100)
     mine, theirs = body.get("contacts"), world.bodies["other"].get("contacts")
@@ -285,8 +285,8 @@ def test_two_people_feel_each_other() -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_its_own_parts_and_the_floor_are_not_in_its_way(seed: int) -> None:
-    world, body = living(load=Load(shape="box", size=(0.3, 0.4, 0.3)) if seed % 2 else None)
+def test_its_own_parts_and_the_floor_are_no_obstacles(seed: int) -> None:
+    world, body = world_with_walker(load=Load(shape="box", size=(0.3, 0.4, 0.3)) if seed % 2 else None)
     random = np.random.default_rng(seed)
     for name, joint in body.joints.items():
         if not name.startswith("pelvis"):
@@ -300,7 +300,7 @@ def test_its_own_parts_and_the_floor_are_not_in_its_way(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_after_a_shove_it_comes_to_rest_without_rattling(seed: int) -> None:
-    world, _ = living()
+    world, _ = world_with_walker()
     world.mj_data.qvel[:] = np.random.default_rng(seed).normal(0, 3, world.mj_model.nv)
     world.mj_data.qvel[:2] = 0
     world.changed()
@@ -310,7 +310,7 @@ def test_after_a_shove_it_comes_to_rest_without_rattling(seed: int) -> None:
 
 @pytest.mark.parametrize("size", [(2.0, 0.03), (0.8, 0.03), (0.2, 0.03)])
 def test_a_bar_is_held_by_both_hands(size: tuple[float, float]) -> None:
-    world, body = living(load=Load(size=size))
+    world, body = world_with_walker(load=Load(size=size))
     assert body.bounding_box("body").width == near(max(size[0], 0.444), abs=1e-4)
     for turn in (0.0, 0.3):
         body.set("posture", {"torso_yaw": turn, "left_shoulder_yaw": turn, "right_shoulder_yaw": turn})
@@ -327,7 +327,7 @@ def test_a_bar_is_held_by_both_hands(size: tuple[float, float]) -> None:
 
 def test_the_load_is_felt_and_keeps_it_out_of_a_gap() -> None:
     gap = (Wall(name="left", start=(1.5, 0.4), end=(1.5, 3)), Wall(name="right", start=(1.5, -3), end=(1.5, -0.4)))
-    world, body = living(*gap, load=BAR)
+    world, body = world_with_walker(*gap, load=BAR)
     body.set("walk", 1.0)
     assert felt(world, body, 200) == {("load", "left"), ("load", "right")}
     assert body.get("pose").x < 1.4
@@ -338,7 +338,7 @@ def test_the_load_is_felt_and_keeps_it_out_of_a_gap() -> None:
 def test_it_does_not_walk_through_its_own_load(load: Load, speed: float) -> None:
     """Arms give way where the load is stopped; then it lies against the trunk, and the legs push with all they have."""
     gap = (Wall(name="left", start=(1.5, 0.4), end=(1.5, 3)), Wall(name="right", start=(1.5, -3), end=(1.5, -0.4)))
-    world, body = living(*gap, load=load)
+    world, body = world_with_walker(*gap, load=load)
     body.set("walk", speed)
     ticks(world, 400)
     world.refresh()
@@ -348,8 +348,8 @@ def test_it_does_not_walk_through_its_own_load(load: Load, speed: float) -> None
 
 
 def test_a_box_in_front_makes_it_deeper() -> None:
-    _, plain = living()
-    _, laden = living(load=Load(shape="box", size=(0.4, 0.5, 0.3), mass=5))
+    _, plain = world_with_walker()
+    _, laden = world_with_walker(load=Load(shape="box", size=(0.4, 0.5, 0.3), mass=5))
     box = laden.bounding_box("body")
     assert box.width == near(0.5, abs=1e-3)
     assert box.upper[0] > plain.bounding_box("body").upper[0] + 0.4
@@ -358,7 +358,7 @@ def test_a_box_in_front_makes_it_deeper() -> None:
 def test_only_a_box_gets_wider_when_it_begins_to_turn() -> None:
     widths: dict[str, float] = {}
     for trunk in ("box", "ellipsoid"):
-        world, body = living(trunk=trunk)
+        world, body = world_with_walker(trunk=trunk)
         body.set("position", "torso_yaw", 0.3)
         ticks(world, 20)
         widths[trunk] = body.bounding_box("body").width
@@ -366,8 +366,8 @@ def test_only_a_box_gets_wider_when_it_begins_to_turn() -> None:
     assert widths["box"] == near(0.444 * math.cos(0.3) + 0.25 * math.sin(0.3), abs=1e-3)
 
 
-def test_going_on_from_a_state_gives_the_same_bytes_with_commands_on_their_way() -> None:
-    world, body = living(load=BAR)
+def test_continuing_from_a_state_gives_the_same_bytes_with_commands_in_progress() -> None:
+    world, body = world_with_walker(load=BAR)
     body.set("waypoint", 2.0, 1.0)
     body.set("position", "torso_yaw", 0.8, 0.5)
     ticks(world, 30)
@@ -399,7 +399,7 @@ def test_going_on_from_a_state_gives_the_same_bytes_with_commands_on_their_way()
 )
 def test_wrong_mannequins_are_refused_with_a_reason(wrong: dict[str, Any], message: str) -> None:
     with pytest.raises(Actr3dError, match=message):
-        living(**wrong)
+        world_with_walker(**wrong)
 
 
 @pytest.mark.parametrize(

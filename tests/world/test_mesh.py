@@ -1,4 +1,4 @@
-"""Meshes of every format stand where they should, are seen as they are, met as they should be; broken ones say why."""
+"""Meshes of every format have the right place, appearance and contacts; broken files are refused with a reason."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def file(folder: Path, content: str | bytes, name: str = "mesh.obj") -> Path:
 
 
 def rays(world: World, starts: NDArray[Any], ways: NDArray[Any]) -> list[tuple[float, str]]:
-    """Returns for each ray how far it goes [m] (-1 is a miss), and the geom it hits."""
+    """Returns the length of each ray [m] (-1 is a miss), and the geom that it hits."""
     world.refresh()
     found: list[tuple[float, str]] = []
     for start, way in zip(starts, ways, strict=True):
@@ -77,7 +77,7 @@ def random_rays(count: int = 300) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def nearest(mesh: Any, starts: NDArray[Any], ways: NDArray[Any]) -> NDArray[Any]:
-    """Returns how far each ray goes to the triangles [m], -1 a miss, in closed form for each triangle (Cramer's rule)."""
+    """Returns the length of each ray to the triangles [m], -1 for a miss, in closed form for each triangle (Cramer's rule)."""
     best = np.full(len(starts), np.inf)
     for a, b, c in np.asarray(mesh.triangles):
         system = np.stack([np.broadcast_to(b - a, ways.shape), np.broadcast_to(c - a, ways.shape), -ways], axis=-1)
@@ -141,7 +141,7 @@ def test_mass_and_inertia_are_those_of_the_solid(kind: str, tmp_path: Path) -> N
 
 
 def rest(tmp_path: Path, collision: str) -> float:
-    """Returns how high a ball lies that fell into a ring of 0.3 m inner radius and 0.4 m height [m]."""
+    """Returns the height at which a ball rests that fell into a ring of 0.3 m inner radius and 0.4 m height [m]."""
     path = written(tmp_path, creation.annulus(0.3, 0.5, 0.4).apply_translation((0, 0, 0.2)), "stl")
     ring = Mesh.from_mapping({"name": "ring", "path": path, "collision": collision})
     ball = SimpleObject(name="ball", shape="sphere", size=(0.1,), position=(0.01, 0, 0.7))
@@ -160,7 +160,7 @@ def test_a_ball_falls_into_a_ring_of_parts_lies_on_its_hull_and_passes_no_collis
 @pytest.mark.slow
 def test_parts_hold_a_ball_inside_a_bowl(tmp_path: Path) -> None:
     outer, inner = creation.cylinder(0.5, 0.4, sections=16), creation.cylinder(0.4, 0.4, sections=16)
-    # A bowl by hand: walls outside and inside, a rim between the two, a bottom for each.
+    # A bowl of triangles: walls outside and inside, a rim between the two, a bottom for each.
     outer_top, inner_top = 0.2, 0.2
     angles = np.arange(16) * np.pi / 8
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -320,9 +320,9 @@ def test_broken_files_are_refused_with_a_reason(name: str, content: Callable[[],
 
 
 def repaired(path: Path, message: str, **options: Any) -> World:
-    with pytest.warns(ModelWarning, match=message) as said:
+    with pytest.warns(ModelWarning, match=message) as caught:
         mesh = Mesh.from_mapping({"name": "m", "path": path, **options})
-    assert [warning.filename for warning in said] == [__file__], "the warning names the modeller's line"
+    assert [warning.filename for warning in caught] == [__file__], "the warning names the modeller's line"
     return World(Scene(parts=(mesh,)))
 
 
@@ -352,19 +352,19 @@ REPAIRED: list[tuple[str, Callable[[], str | bytes], str]] = [
 
 
 @pytest.mark.parametrize(("name", "content", "message"), REPAIRED, ids=[f"{n}-{case[0]}" for n, case in enumerate(REPAIRED)])
-def test_what_can_be_repaired_is_repaired_and_said(name: str, content: Callable[[], str | bytes], message: str, tmp_path: Path) -> None:
+def test_repairs_are_made_with_a_warning(name: str, content: Callable[[], str | bytes], message: str, tmp_path: Path) -> None:
     world = repaired(file(tmp_path, content(), name), message, mass=1)
     assert (world.mj_model.nmeshface, world.mj_model.nmeshvert) == (4, 4)
     assert min(world.mj_model.body("m").inertia) > 0
 
 
-def test_a_mesh_with_a_hole_weighs_and_meets_as_its_hull(tmp_path: Path) -> None:
+def test_a_mesh_with_a_hole_has_the_mass_and_contacts_of_its_hull(tmp_path: Path) -> None:
     box = creation.box((1, 1, 1))
     open_box = trimesh.Trimesh(box.vertices, box.faces[:-1])
     path = written(tmp_path, open_box, "ply")
     world = repaired(path, r"it is not closed \(watertight\): contacts and mass are those of its convex hull", mass=6)
     assert world.mj_model.body("m").inertia == near([1, 1, 1], rel=1e-6)
-    assert Mesh(name="m", path=path, collision="none").digest, "nothing is said where nothing depends on it"
+    assert Mesh(name="m", path=path, collision="none").digest, "there is no warning where nothing depends on it"
     with pytest.raises(MeshError, match=r"Mesh 'm' \(mesh\.ply\): only a closed surface, .* can be cut into parts"):
         Mesh(name="m", path=path, collision="parts")
 
@@ -463,7 +463,7 @@ def test_files_together_have_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_no_bytes_crash_the_process(tmp_path: Path) -> None:
-    """Files with a few bytes changed, cut or doubled either make a world or a `MeshError`; in a process of its own."""
+    """Files with a few bytes changed, cut or doubled either make a world or a `MeshError`; in a separate process."""
     for kind in ("stl", "obj", "ply", "off", "glb"):
         written(tmp_path, wedge(), kind)
     code = """

@@ -1,4 +1,4 @@
-"""Moving and pushing by hand: bodies, walls, fixed and loose objects; exact after going back."""
+"""Moving and pushing by hand: bodies, walls, fixed and loose objects; exact after a seek."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_everything_that_does_not_belong_to_an_aperture_can_be_moved() -> None:
         assert made.objects.pose(name)[2] == pytest.approx(0.5)  # it keeps its heading
 
 
-def test_a_wall_that_was_moved_stands_in_the_way() -> None:
+def test_a_moved_wall_is_an_obstacle() -> None:
     def walked(x: float | None) -> float:
         made = world()
         if x is not None:
@@ -71,7 +71,7 @@ def holding(*parts: Wall) -> Simulation:
     return simulation
 
 
-def test_what_a_hand_holds_is_not_moved_by_hand() -> None:
+def test_a_held_object_cannot_be_moved_by_a_user() -> None:
     simulation = holding()
     before = simulation.world.state_bytes()
     with pytest.raises(WorldError, match=r"'o' cannot be moved: it is in the right hand of 'm'; release it first"):
@@ -82,7 +82,7 @@ def test_what_a_hand_holds_is_not_moved_by_hand() -> None:
     assert simulation.world.objects.pose("o")[:2] == (0.1, -3.0)
 
 
-def test_a_body_is_not_put_where_what_it_holds_would_be_inside_a_wall() -> None:
+def test_a_body_is_not_moved_to_where_its_held_object_would_be_inside_a_wall() -> None:
     simulation = holding(Wall(name="w", start=(2.4, -1), end=(2.4, 1)))
     before = simulation.world.state_bytes()
     with pytest.raises(WorldError, match=r"'m' cannot be put at \(2.2, 0\) m: it would be inside 'w'; leave room"):
@@ -126,7 +126,7 @@ def test_a_push_has_its_impulse_and_the_legs_withstand_a_weak_one() -> None:
     assert 0.01 < ways[1] < ways[2] < 0.5
 
 
-def test_pushes_that_are_under_way_are_part_of_the_state() -> None:
+def test_pushes_in_progress_are_part_of_the_state() -> None:
     made = world()
     made.push("walker", 0.0, 500.0, 0.3)
     made.step(40)

@@ -1,4 +1,4 @@
-"""What is told to stand still does: its own limbs do not move it, and a load does not make it creep."""
+"""A standing body keeps its place: its own limbs do not move it, and a load does not make it creep."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from actr3d.world import Body, Floor, Load, Mannequin, Scene, SimpleObject, Wall
 from tests.helpers.small_agents import near
 
 
-def living(*parts: object, **of: object) -> tuple[World, Body]:
+def world_with_walker(*parts: object, **of: object) -> tuple[World, Body]:
     """Returns a world with a mannequin called `walker` and more, and its body."""
     world = World(Scene(parts=(Floor(), Mannequin(name="walker", **of), *parts)))  # type: ignore[arg-type]
     return world, world.bodies["walker"]
@@ -29,7 +29,7 @@ def flailing(body: Body, tick: int, names: list[str], speed: float) -> None:
 @pytest.mark.parametrize("speed", [4.2, 16.0])
 @pytest.mark.parametrize("load", [None, Load(size=(2.0, 0.03), mass=5), Load(shape="box", size=(0.3, 0.3, 0.1), mass=2)])
 def test_a_standing_body_is_not_moved_by_its_own_limbs(load: Load | None, speed: float) -> None:
-    world, body = living(load=load, position=(1.0, 2.0), heading=0.5)
+    world, body = world_with_walker(load=load, position=(1.0, 2.0), heading=0.5)
     names = ["pelvis_pitch", "torso_yaw", "torso_roll", "left_upper_arm_pitch", "right_upper_arm_roll", "head_pitch"]
     for tick in range(300):
         flailing(body, tick, names, speed)
@@ -44,8 +44,8 @@ def test_a_standing_body_is_not_moved_by_its_own_limbs(load: Load | None, speed:
 
 
 @pytest.mark.parametrize("sideways", [False, True])
-def test_extreme_postures_do_not_move_it_nor_turn_it_from_its_way(sideways: bool) -> None:
-    world, body = living(sideways=sideways)
+def test_extreme_postures_neither_move_it_nor_turn_it_from_its_path(sideways: bool) -> None:
+    world, body = world_with_walker(sideways=sideways)
     body.set("walk", 1.0)
     low = {name: joint.lower for name, joint in body.joints.items()}
     for _ in range(3):
@@ -55,14 +55,14 @@ def test_extreme_postures_do_not_move_it_nor_turn_it_from_its_way(sideways: bool
         world.step(500)
     pose = body.get("pose")
     assert pose.heading == near(0.0, abs=0.05)
-    assert pose.x == near(6.0, abs=0.15 if sideways else 0.05)  # to who stands sideways, its way is what else is across
-    assert pose.y == near(0.0, abs=0.15)  # who walks keeps speed and heading, and is not led back to a line
+    assert pose.x == near(6.0, abs=0.15 if sideways else 0.05)  # a body that stands sideways moves along its lateral axis
+    assert pose.y == near(0.0, abs=0.15)  # a walking body keeps speed and heading, and is not led back to a line
 
 
 def test_a_joint_without_a_command_bears_a_load() -> None:
-    """Six kilograms lie on the box that it holds; the bound of the servos, 60 N m, is more."""
+    """Six kilograms lie on the box in its hands, which need less than the limit of the servos, 60 N m."""
     lies = SimpleObject(name="weight", shape="box", size=(0.2, 0.2, 0.1), mass=6, position=(0.36, 0.0, 1.2))
-    world, body = living(lies, load=Load(shape="box", size=(0.4, 0.5, 0.1), mass=2))
+    world, body = world_with_walker(lies, load=Load(shape="box", size=(0.4, 0.5, 0.1), mass=2))
     world.step(1000)
     start = {name: joint.position for name, joint in body.joints.items()}
     assert {touch.other for touch in body.get("contacts")} == {"weight"}
@@ -74,7 +74,7 @@ def test_a_joint_without_a_command_bears_a_load() -> None:
 
 def test_a_push_moves_a_standing_body_and_it_stays_there() -> None:
     other = Mannequin(name="other", position=(0.7, 0.0), leg_force=200)
-    world, body = living(other, leg_force=400)
+    world, body = world_with_walker(other, leg_force=400)
     body.set("walk", 0.5)
     world.step(1000)
     pushed = world.bodies["other"].get("pose").x
@@ -87,16 +87,16 @@ def test_a_push_moves_a_standing_body_and_it_stays_there() -> None:
     assert there > pushed - 0.02
 
 
-def test_who_is_stronger_is_not_pushed_away() -> None:
-    world, body = living(Mannequin(name="other", position=(0.7, 0.0), heading=math.pi), leg_force=150)
+def test_a_stronger_body_is_not_pushed_away() -> None:
+    world, body = world_with_walker(Mannequin(name="other", position=(0.7, 0.0), heading=math.pi), leg_force=150)
     body.set("walk", 0.5)
     world.step(3000)
     assert world.bodies["other"].get("pose").x == near(0.7, abs=0.02)
 
 
 def test_people_who_press_on_each_other_feel_no_blows() -> None:
-    """MuJoCo's own tolerance finds two trunks that hardly touch 1 cm deep in each other now and then: 40 kN."""
-    world, body = living(Mannequin(name="other", position=(1.0, 0.0), heading=math.pi))
+    """With MuJoCo's own tolerance, two trunks that hardly touch are at times found 1 cm deep in each other: 40 kN."""
+    world, body = world_with_walker(Mannequin(name="other", position=(1.0, 0.0), heading=math.pi))
     body.set("walk", 1.0)
     body.get("contacts")
     world.step(450)
@@ -106,7 +106,7 @@ def test_people_who_press_on_each_other_feel_no_blows() -> None:
 
 
 def test_a_limb_that_was_pushed_away_comes_back() -> None:
-    world, body = living(Wall(name="wall", start=(0.0, 0.45), end=(3.0, 0.45)), position=(-0.6, 0.2))
+    world, body = world_with_walker(Wall(name="wall", start=(0.0, 0.45), end=(3.0, 0.45)), position=(-0.6, 0.2))
     body.set("walk", 0.5)
     bent = 0.0
     for _ in range(200):
@@ -119,8 +119,8 @@ def test_a_limb_that_was_pushed_away_comes_back() -> None:
 
 
 @pytest.mark.parametrize("seed", [10, 12, 15])
-def test_how_it_stops_does_not_depend_on_whether_somebody_has_looked(seed: int) -> None:
-    def stopped(*, looked: bool) -> list[float]:
+def test_how_it_stops_does_not_depend_on_observers(seed: int) -> None:
+    def stopped(*, observed: bool) -> list[float]:
         draw = random.Random(seed)
         world = World(Scene(parts=(Floor(), Mannequin(name="m"))))
         body = world.bodies["m"]
@@ -128,18 +128,18 @@ def test_how_it_stops_does_not_depend_on_whether_somebody_has_looked(seed: int) 
             with suppress(WorldError):  # some joints are too slow for it
                 body.set("joint", joint, draw.uniform(-6, 6))
         world.step(draw.randrange(20, 90))
-        if looked:
+        if observed:
             body.get("pose")
         for joint in draw.sample(list(body.joints), 4):
             body.set("joint", joint, 0.0)
         world.step(10)
         return world.mj_data.qpos.tolist()
 
-    assert stopped(looked=True) == stopped(looked=False)
+    assert stopped(observed=True) == stopped(observed=False)
 
 
 def test_after_a_limit_it_is_at_rest() -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("joint", "pelvis_pitch", 16.0)
     world.step(250)
     assert body.joints["pelvis_pitch"].position == near(body.joints["pelvis_pitch"].upper, abs=1e-3)
@@ -158,14 +158,14 @@ def test_after_a_limit_it_is_at_rest() -> None:
         ("walk", (True,), r"walk: speed: must be a number \(got True\)"),
     ],
 )
-def test_what_no_person_can_do_is_refused(word: str, values: tuple[object, ...], message: str) -> None:
-    _, body = living()
+def test_commands_beyond_human_limits_are_refused(word: str, values: tuple[object, ...], message: str) -> None:
+    _, body = world_with_walker()
     with pytest.raises(WorldError, match=message):
         body.set(word, *values)
 
 
 def test_numbers_may_come_as_text() -> None:
-    world, body = living()
+    world, body = world_with_walker()
     body.set("walk", "1.2")
     world.step(500)
     assert body.get("pose").x == near(1.2)

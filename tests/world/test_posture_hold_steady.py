@@ -1,4 +1,4 @@
-"""The quick look whether all is as told is taken where nothing is off, finds what is, and changes nothing."""
+"""The fast check for a steady state is used where nothing deviates, detects deviations, and changes nothing."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from tests.helpers.small_agents import near
 
 
 def course(heading: float) -> tuple[list[bytes], list[bool]]:
-    """Returns the states of a walk with commands, up to a wall, and whether the steady state was reached at each look."""
+    """Returns the states of a walk with commands, up to a wall, and whether each check found the steady state."""
     wall = Wall(name="wall", start=(1.5, -9), end=(1.5, 9))
     world = World(Scene(parts=(Floor(), Mannequin(name="walker", heading=heading), Mannequin(name="other", position=(-1, 1)), wall)))
     body = world.bodies["walker"]
     states: list[bytes] = []
-    looks: list[bool] = []
+    checks: list[bool] = []
     is_reached = SteadyState.is_reached
 
-    def looked(self: SteadyState) -> bool:
-        looks.append(is_reached(self))
-        return looks[-1]
+    def checked(self: SteadyState) -> bool:
+        checks.append(is_reached(self))
+        return checks[-1]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(SteadyState, "is_reached", looked)
+        patch.setattr(SteadyState, "is_reached", checked)
         for tick in range(300):
             if tick in (10, 120, 200):
                 body.set("walk", 1.0, (0.0, 0.7)[tick == 120], 0.3)
@@ -35,7 +35,7 @@ def course(heading: float) -> tuple[list[bytes], list[bool]]:
                 body.set("posture", {"torso_yaw": 0.3, "left_upper_arm_pitch": -0.5 * (tick == 60)}, 2.0)
             world.step(5)
             states.append(world.state_bytes())
-    return states, looks
+    return states, checks
 
 
 def never(_: SteadyState) -> bool:
@@ -43,9 +43,9 @@ def never(_: SteadyState) -> bool:
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.8])
-def test_it_is_taken_and_changes_nothing(heading: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    quick, looks = course(heading)
-    assert sum(looks) > 300  # of 600 of two bodies, one of which never does anything
+def test_the_fast_check_is_used_and_changes_nothing(heading: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    quick, checks = course(heading)
+    assert sum(checks) > 300  # of 600 checks of two bodies, one of which never moves
     monkeypatch.setattr(SteadyState, "is_reached", never)
     thorough, _ = course(heading)
     assert quick == thorough
@@ -60,7 +60,7 @@ def standing() -> tuple[World, Body]:
 
 
 @pytest.mark.parametrize("which", ["place", "speed", "control"])
-def test_what_is_off_is_found(which: str) -> None:
+def test_deviations_are_found(which: str) -> None:
     world, body = standing()
     joint, data = body.joints["torso_yaw"], world.mj_data
     control = body.control("torso_yaw").start
@@ -80,7 +80,7 @@ def test_its_commanded_speed_bounds_all_its_points() -> None:
     assert body.hold.before_step(0.01) > 1.0 + 2.0 * 0.2
 
 
-def test_a_car_whose_wheels_roll_as_they_will_has_no_such_bound() -> None:
+def test_a_car_with_freely_rolling_wheels_has_no_such_bound() -> None:
     world = World(Scene(parts=(Floor(), Car(name="car"))))
     car = world.bodies["car"]
     world.step(50)

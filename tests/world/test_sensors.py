@@ -1,4 +1,4 @@
-"""Sensors say what is so at this moment, and change nothing by being read."""
+"""Sensors report the present state, and reading them changes nothing."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ WALL = Wall(name="wall", start=(3.0, -10.0), end=(3.0, 10.0), thickness=0.2)
 
 @dataclass(frozen=True)
 class Crate:
-    """A box that flies freely and feels what it stands on."""
+    """A free box that feels contacts."""
 
     name: str = "crate"
     height: float = 0.5
@@ -125,7 +125,7 @@ def test_the_accelerometer_is_of_the_present_and_not_of_the_step_before() -> Non
     assert crate.get("accelerometer") == near((0, 0, 0), abs=1e-9)
 
 
-def test_joints_say_where_they_are() -> None:
+def test_joints_report_their_positions() -> None:
     world, body = walker_in()
     body.set("position", "torso_yaw", 0.5, 2.0)
     body.set("joint", "head_yaw", -10.0)
@@ -224,7 +224,7 @@ def test_proximity_is_the_nearest_surface() -> None:
 
 @cache
 def can_draw() -> bool:
-    """Returns whether this machine has EGL, asked in a process of its own."""
+    """Returns whether this machine has EGL, tested in a separate process."""
     code = "import mujoco.egl; mujoco.egl.GLContext(64, 64).make_current()"
     return subprocess.run([sys.executable, "-c", code], capture_output=True, check=False).returncode == 0
 
@@ -327,7 +327,7 @@ def test_noise_by_field_leaves_the_others_exact() -> None:
 
 
 class Spot(NamedTuple):
-    """A reading of an own sensor."""
+    """A reading of a user-defined sensor."""
 
     x: float
     name: str
@@ -379,7 +379,7 @@ def test_noise_comes_from_the_seed_and_from_its_own_sensor() -> None:
     assert one != three
 
 
-def test_noise_goes_on_exactly_from_a_state() -> None:
+def test_noise_continues_exactly_from_a_state() -> None:
     world, body = walker_in(noise=(("pose", 0.1),))
     body.get("pose")
     state = world.state()

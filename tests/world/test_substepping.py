@@ -1,4 +1,4 @@
-"""However fast limbs and loads move, nothing gets through a wall, and the physics does not diverge."""
+"""Fast limbs and loads do not pass through walls, and the physics does not diverge."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_a_fast_car_stops_at_a_thin_wall() -> None:
         assert body.bounding_box().upper[0] < 40.0
 
 
-def test_finer_steps_are_a_matter_of_the_state_alone() -> None:
+def test_finer_steps_depend_on_the_state_alone() -> None:
     world, body, names, _ = random_walker(1, 0.02)
     body.set("walk", 3.0, 8.0)
     states: list[bytes] = []

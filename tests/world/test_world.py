@@ -1,4 +1,4 @@
-"""A world is compiled from a scene, keeps exact time, and goes on exactly from a state."""
+"""A world is compiled from a scene, keeps exact time, and continues exactly from a state."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_the_aperture_is_as_wide_as_it_says_before_and_during_a_run(heading: flo
     assert faces(world) == near(0.45, abs=1e-9)
 
 
-def test_going_on_from_a_state_gives_the_same_bytes() -> None:
+def test_continuing_from_a_state_gives_the_same_bytes() -> None:
     world = doorway()
     world.step(100)
     world.set_aperture_width(0.5)
@@ -136,14 +136,14 @@ def test_wrong_scenes_are_refused_with_a_reason(wrong: Callable[[], object], mes
         wrong()
 
 
-def test_physics_that_diverges_says_so() -> None:
+def test_divergence_of_the_physics_is_reported() -> None:
     world = doorway()
     world.mj_data.qvel[0] = 1e20
     with pytest.raises(Actr3dError, match="the physics diverged near"):
         world.step()
 
 
-def test_what_has_diverged_is_named() -> None:
+def test_the_diverged_body_is_named() -> None:
     near_one, far = SimpleObject(name="near"), SimpleObject(name="far", position=(1e12, 0, 0))
     with pytest.raises(Actr3dError, match=r"the physics diverged near 0\.002 s, at 'far'"):
         World(Scene(parts=(Mannequin(), near_one, far))).step()
@@ -153,7 +153,7 @@ def test_what_has_diverged_is_named() -> None:
         world.step()
 
 
-def test_a_world_that_diverged_goes_on_from_an_earlier_state() -> None:
+def test_a_world_that_diverged_continues_from_an_earlier_state() -> None:
     world = doorway()
     world.step(10)
     state = world.state()
@@ -167,14 +167,14 @@ def test_a_world_that_diverged_goes_on_from_an_earlier_state() -> None:
     assert world.state().mj_state.tobytes() == expected.mj_state.tobytes()
 
 
-def test_an_aperture_does_not_close_on_what_stands_in_it() -> None:
+def test_an_aperture_does_not_close_on_a_body_inside_it() -> None:
     parts = (Floor(), Aperture(position=(0.0, 0.0)), Mannequin(name="walker"), Wall(name="beside", start=(-1, 2.5), end=(1, 2.5)))
     world = World(Scene(parts=parts))
     before = world.state()
     with pytest.raises(Actr3dError, match=r"aperture 'aperture' cannot be 0\.3 m wide now: walker would be inside its walls"):
         world.set_aperture_width(0.3)
     assert world.state().mj_state.tobytes() == before.mj_state.tobytes()
-    with pytest.raises(Actr3dError, match=r"cannot be 0\.44 m wide now"):  # 2 mm at each side: it may fling the person out
+    with pytest.raises(Actr3dError, match=r"cannot be 0\.44 m wide now"):  # 2 mm at each side: it may push the person out
         world.set_aperture_width(0.44)
     world.set_aperture_width(0.443)
     world.step(100)
@@ -190,7 +190,7 @@ def test_an_aperture_narrowed_bit_by_bit_squeezes_out_or_stops_at_the_body_in_it
         with suppress(Actr3dError):
             world.set_aperture_width(max(0.0, world.aperture_width() - rate))
         world.step(5)
-        assert np.abs(world.mj_data.qvel).max() < 100  # 500 rad/s where walls were closed on it at once
+        assert np.abs(world.mj_data.qvel).max() < 100  # it would be 500 rad/s if the walls closed on it in one step
     pose = world.bodies["walker"].get("pose")
     assert abs(pose.x) < 3
     assert abs(pose.y) < 0.5
@@ -228,7 +228,7 @@ def test_a_closing_aperture_stops_at_a_person_in_it(person: dict[str, Any], clos
     world = World(Scene(parts=(Floor(), Aperture(width=0.47, position=(0.0, 0.0), closing=closing), Mannequin(name="m", **person))))
     for _ in range(150):
         world.step(5)
-        assert np.hypot(*world.bodies["m"].base.speed[:2]) < 0.1 + closing / 2, "17 m/s where it was squeezed"
+        assert np.hypot(*world.bodies["m"].base.speed[:2]) < 0.1 + closing / 2, "it was 17 m/s when the body was squeezed"
     assert world.aperture_width() > 0.2
     assert world.bodies["m"].get("pose").x == near(0, abs=0.05)
 
@@ -285,7 +285,7 @@ def test_a_body_that_stands_inside_something_fixed_is_refused_at_the_start() -> 
         World(Scene(parts=(Floor(), Mannequin(name="m", position=(7.0, 0.0)), Aperture(width=0.3))))
 
 
-def test_a_body_may_touch_a_wall_and_stand_in_what_yields_at_the_start() -> None:
+def test_a_body_may_touch_a_wall_and_overlap_a_movable_object_at_the_start() -> None:
     touches, ball = Wall(name="w", start=(0.174, -1), end=(0.174, 1)), SimpleObject(name="ball", position=(-0.2, 0, 0.5))
     World(Scene(parts=(Floor(), Mannequin(name="m"), touches, ball)))
     sunk = ImportedBody(name="r", text='<mujoco><worldbody><body name="b"><geom size="0.1"/></body></worldbody></mujoco>', free=True)

@@ -1,4 +1,4 @@
-"""The state of a world is complete: whatever changes in it goes back with it, and nothing of it is forgotten."""
+"""The state of a world is complete: restoring it restores everything in the world that can change."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ DERIVED = {
     ("Physics", "_numbers"),  # scratch memory
     ("Physics", "renderer"),  # draws pictures of the state
     ("ModelChanges", "_image"),
-    ("ModelChanges", "_original"),  # made when it is first needed, and always the same
+    ("ModelChanges", "_original"),  # created when first needed, and always the same
     ("PostureHold", "_steady"),
     ("PostureHold", "_new"),  # a short cut that never changes the result
-    ("Body", "_senses"),  # all senses that were ever made; those in use are in the state
+    ("Body", "_senses"),  # all sensors that were ever created; those in use are in the state
     ("_Shapes", "_sizes"),
     ("_Shapes", "_formula"),  # computed again where sizes have changed
 }
-"""Attributes that hold nothing of their own: they follow from the state, or are never looked at again. Whoever adds an attribute that
-changes adds it to `state()` and `restore()`, or here with a reason."""
+"""Attributes that need not be saved: they follow from the state, or are never read again. A new attribute that changes must
+be added to `state()` and `restore()`, or here with a reason."""
 
 COMMANDS: dict[str, list[tuple[str, tuple[Any, ...]]]] = {
     "walk": [("walker", (0.4, 0.2))],
@@ -63,9 +63,9 @@ READINGS: dict[str, list[tuple[str, dict[str, Any]]]] = {
     "contacts": [("walker", {}), ("arm", {})],
     **{word: [("walker", {"noise": 0.01})] for word in ("joints", "gyroscope", "pose", "rangefinder", "accelerometer")},
 }
-"""What is asked beside each sensor without values, among it what leaves a trace in the body."""
+"""Requests with values; each sensor is also read without values. Some of these requests change the body."""
 PICTURES = {"image", "depth"}
-"""They need EGL, and leave nothing but what draws them."""
+"""They need EGL, and change nothing but the renderer."""
 
 
 def numbers_for(command: str) -> tuple[float, ...]:
@@ -111,7 +111,7 @@ def test_a_state_holds_all_that_any_command_and_any_reading_changes() -> None:
         assert differences(picture(state, ()), picture(there.state(), ())) == {}
 
 
-def test_what_a_program_changes_in_the_compiled_scene_is_part_of_the_state() -> None:
+def test_changes_of_the_compiled_scene_by_a_program_are_part_of_the_state() -> None:
     there = world()
     start = there.state()
     model: Any = there.mj_model

@@ -1,4 +1,4 @@
-"""Helper modules in recordings: a replay runs them as they were, whatever has become of their files."""
+"""Helper modules in recordings: a replay runs the recorded texts, even if the files have changed."""
 
 from __future__ import annotations
 

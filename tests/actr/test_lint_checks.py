@@ -1,4 +1,4 @@
-"""What the library says of a model that most likely does not mean what it says, and that saying so changes nothing."""
+"""Warnings about probable mistakes in a model, which change nothing."""
 
 from __future__ import annotations
 
@@ -47,15 +47,15 @@ from tests.helpers.warnings_of_models import HEAD, warned
         ("def init(): memory.treshold = 3", "Memory has no parameter 'treshold'; did you mean 'threshold'?", 10),
     ],
 )
-def test_what_is_not_meant_is_said_at_its_line(body: str, message: str, line: int) -> None:
+def test_probable_mistakes_are_warned_of_at_their_line(body: str, message: str, line: int) -> None:
     if body == "def init(): goal.set('?x')":
         with pytest.raises(ChunkError, match=r"'\?x' is not bound"), pytest.warns(ModelWarning, match="nothing binds"):
             load_text(HEAD + "    " + body, "loud.py").Agent().run(0)
         return
-    said = warned(body)
-    assert len(said) == 1, said
-    assert message in said[0][0]
-    assert said[0][1] == line
+    caught = warned(body)
+    assert len(caught) == 1, caught
+    assert message in caught[0][0]
+    assert caught[0][1] == line
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_what_is_not_meant_is_said_at_its_line(body: str, message: str, line: in
         "production_time = 0.1\nproduct = 3\nthreshold = 2",
     ],
 )
-def test_what_may_be_meant_is_let_be(body: str) -> None:
+def test_legitimate_code_gives_no_warning(body: str) -> None:
     assert warned(body) == []
 
 

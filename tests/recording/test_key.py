@@ -1,4 +1,4 @@
-"""Which recordings this installation made itself: it seals them with a key of its own."""
+"""Each installation seals its recordings with its own key, and recognizes them by it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def made_here(path: Path) -> bool:
         return read.made_here
 
 
-def test_a_recording_is_known_to_the_installation_that_made_it(tmp_path: Path, data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_recording_is_recognized_by_the_installation_that_made_it(tmp_path: Path, data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = recorded(tmp_path / "run")
     assert made_here(path)
     assert key_file() == data / "actr3d" / "key"
@@ -68,7 +68,7 @@ def test_a_changed_recording_is_damaged_and_with_new_checksums_foreign(changed: 
         assert not made_here(path)
 
 
-def test_a_run_that_was_killed_went_back_or_was_copied_is_known_too(tmp_path: Path) -> None:
+def test_a_killed_rewound_or_copied_run_is_recognized_too(tmp_path: Path) -> None:
     simulation = driving()
     recording = simulation.record(tmp_path / "run")
     simulation.run(0.3)
@@ -101,7 +101,7 @@ def test_many_processes_that_need_the_first_key_have_the_same(data: Path) -> Non
     assert keys == {key.hex()}
 
 
-def test_a_key_that_is_none_is_replaced(tmp_path: Path) -> None:
+def test_an_invalid_key_is_replaced(tmp_path: Path) -> None:
     path = recorded(tmp_path / "run")
     key_file().write_bytes(b"")
     assert not made_here(path)

@@ -14,7 +14,7 @@ from actr3d.errors import ModelWarning, SchedulerError
 from tests.helpers.model_trees import Ball
 
 
-def test_what_cannot_be_copied_is_shared() -> None:
+def test_objects_that_cannot_be_copied_are_shared() -> None:
     class World(Model):
         module = math
         lock = threading.Lock()
@@ -51,7 +51,7 @@ def test_keyword_attributes() -> None:
     assert (model.x, model.word) == (3, "w")
 
 
-def test_a_class_attribute_wins_over_a_value_set_before_life_as_in_python_actr_and_says_so() -> None:
+def test_a_class_attribute_overrides_an_earlier_value_as_in_python_actr_with_a_warning() -> None:
     ball: Any = Ball(color="green")
     with pytest.warns(ModelWarning, match=r"Ball\.color was set to 'green', but becomes 'red', as its class says"):
         ball.run(1)

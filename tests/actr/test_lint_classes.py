@@ -1,4 +1,4 @@
-"""What is said of methods and attributes in the classes of agents, environments and modules."""
+"""Warnings about methods and attributes in the classes of agents, environments and modules."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from actr3d.errors import ModelWarning
 from tests.helpers.warnings_of_models import warned
 
 
-def said_of_world(body: str, agent: bool) -> list[tuple[str, int]]:
-    """Returns what is said of an environment with these methods (the first line of the body is 6), with an agent or without."""
+def warnings_about_world(body: str, agent: bool) -> list[tuple[str, int]]:
+    """Returns the warnings about an environment with these methods (the first line of the body is 6), with an agent or without."""
     head = "from actr3d.actr import *\nclass Agent(ACTR):\n    goal = Buffer()\nclass World(Model):\n"
     text = head + f"    part = {'Agent' if agent else 'Buffer'}()\n" + "\n".join("    " + line for line in body.splitlines())
-    with warnings.catch_warnings(record=True) as said:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         load_text(text, "world.py").World().run(1)
-    assert all(w.category is ModelWarning and w.filename == "world.py" for w in said)
-    return [(str(w.message), w.lineno) for w in said]
+    assert all(w.category is ModelWarning and w.filename == "world.py" for w in caught)
+    return [(str(w.message), w.lineno) for w in caught]
 
 
 @pytest.mark.parametrize("agent", [True, False])
@@ -39,12 +39,12 @@ def said_of_world(body: str, agent: bool) -> list[tuple[str, int]]:
         ("def go(self):\n    self.stop", "'self.stop' without brackets does nothing", 7),
     ],
 )
-def test_methods_of_environments_are_looked_at(body: str, message: str, line: int, agent: bool) -> None:
+def test_methods_of_environments_are_checked(body: str, message: str, line: int, agent: bool) -> None:
     call = "goal.clear" if agent else "clear"
-    said = said_of_world(body.replace("{call}", call), agent)
-    assert len(said) == 1, said
-    assert message.replace("{call}", call) in said[0][0]
-    assert said[0][1] == line
+    caught = warnings_about_world(body.replace("{call}", call), agent)
+    assert len(caught) == 1, caught
+    assert message.replace("{call}", call) in caught[0][0]
+    assert caught[0][1] == line
 
 
 @pytest.mark.parametrize(
@@ -59,8 +59,8 @@ def test_methods_of_environments_are_looked_at(body: str, message: str, line: in
         "def go(self):\n    self.stop()\n    self.part.name\n    self.go()",
     ],
 )
-def test_methods_that_may_be_meant_are_let_be(body: str) -> None:
-    assert said_of_world(body, agent=True) == []
+def test_legitimate_methods_give_no_warning(body: str) -> None:
+    assert warnings_about_world(body, agent=True) == []
 
 
 @pytest.mark.parametrize(
@@ -82,11 +82,11 @@ def test_methods_that_may_be_meant_are_let_be(body: str) -> None:
         ("def p(goal=''):\n    self.profil = 1\n    self.stop()", "Agent has no parameter 'profil'; did you mean 'profile'?", 11),
     ],
 )
-def test_parameters_that_are_set_under_a_misspelt_name_are_said(body: str, message: str, line: int) -> None:
-    said = [one for one in warned(body, 1) if "tresholds" not in one[0]]
-    assert len(said) == 1, said
-    assert message in said[0][0]
-    assert said[0][1] == line
+def test_misspelt_parameters_are_warned_of(body: str, message: str, line: int) -> None:
+    caught = [one for one in warned(body, 1) if "tresholds" not in one[0]]
+    assert len(caught) == 1, caught
+    assert message in caught[0][0]
+    assert caught[0][1] == line
 
 
 @pytest.mark.parametrize(
@@ -102,8 +102,8 @@ def test_parameters_that_are_set_under_a_misspelt_name_are_said(body: str, messa
     ],
 )
 def test_names_given_to_compilation_are_those_that_productions_see(names: str, message: str | None) -> None:
-    said = warned(f"\ncompiling = PMCompile({names})", 1)
-    assert said == ([] if message is None else [(f"PMCompile.{message}", 11)])
+    caught = warned(f"\ncompiling = PMCompile({names})", 1)
+    assert caught == ([] if message is None else [(f"PMCompile.{message}", 11)])
 
 
 def memory() -> Memory:
@@ -125,15 +125,15 @@ def memory() -> Memory:
         (lambda: ACTR(), "production_tme"),
     ],
 )
-def test_every_kind_of_module_says_it_and_takes_the_value_all_the_same(make: Callable[[], Any], name: str) -> None:
+def test_every_kind_of_module_warns_and_still_takes_the_value(make: Callable[[], Any], name: str) -> None:
     module = make()
-    with pytest.warns(ModelWarning, match=f"{type(module).__name__} has no parameter '{name}'; did you mean") as said:
+    with pytest.warns(ModelWarning, match=f"{type(module).__name__} has no parameter '{name}'; did you mean") as caught:
         setattr(module, name, 0.5)
-    assert said[0].filename == __file__
+    assert caught[0].filename == __file__
     assert getattr(module, name) == 0.5
 
 
-def test_other_attributes_are_let_be() -> None:
+def test_other_attributes_give_no_warning() -> None:
     for module, name in [(memory(), "note"), (memory(), "threshold"), (memory(), "thresholds"), (DMSpreading(memory()), "strength")]:
         setattr(module, name, 1)
     for name in ("production_times", "production_time_total", "production", "goal", "goal2"):
@@ -147,10 +147,10 @@ def test_other_attributes_are_let_be() -> None:
     module.noize = 2
 
 
-def test_display_says_so_where_it_is_called() -> None:
-    with pytest.warns(ModelWarning, match="display.. opens no window here") as said:
+def test_display_warns_where_it_is_called() -> None:
+    with pytest.warns(ModelWarning, match="display.. opens no window here") as caught:
         display(None)
-    assert said[0].filename == __file__
-    with pytest.warns(ModelWarning, match="opens no window") as said:
+    assert caught[0].filename == __file__
+    with pytest.warns(ModelWarning, match="opens no window") as caught:
         load_text("from actr3d.actr import *\n\ndisplay(Model())\n", "shown.py")
-    assert [(w.filename, w.lineno) for w in said] == [("shown.py", 3)]
+    assert [(w.filename, w.lineno) for w in caught] == [("shown.py", 3)]

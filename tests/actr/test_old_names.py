@@ -135,7 +135,7 @@ def test_a_real_library_that_was_imported_before_stays_intact() -> None:
         del sys.modules["ccm"]
 
 
-def test_blocks_may_stand_inside_one_another() -> None:
+def test_blocks_may_be_nested() -> None:
     with aliases():
         outer = importlib.import_module("ccm")
         with aliases():

@@ -1,4 +1,4 @@
-"""What observers of a run can do: read the trace from a number on, memories, the eye and the senses. The run does not change."""
+"""Observers of a run read its trace, memories, eye and sensors, and do not change the run."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def doorway(**settings: Any) -> Simulation:
 
 class Own(MemorySubModule):
     def activation(self, chunk: Any) -> float:
-        raise AssertionError("a modeller's code is not run for who looks on")
+        raise AssertionError("a modeller's code is not run for observers")
 
 
 class Knowing(ACTR):
@@ -52,7 +52,7 @@ class Knowing(ACTR):
 
 
 class Senses(Model):
-    """Walks to a wall, and reads noisy senses and the skin, the skin first when it has walked for a while."""
+    """Walks to a wall and reads noisy sensors, and after a while also the skin."""
 
     def start(self) -> Any:
         agent: Any = self.parent
@@ -83,7 +83,7 @@ def test_an_observer_may_read_every_sense_of_a_body_and_the_agent_senses_the_sam
     seen: list[Any] = []
 
     def look(_: object) -> None:
-        for word in set(body.sensors) - {"image", "depth"}:  # these have no state, and take long
+        for word in set(body.sensors) - {"image", "depth"}:  # these have no state, and are slow
             with suppress(WorldError):  # some need options
                 seen.append(body.get(word, noise=0.1 if word == "rangefinder" else None))
 
@@ -97,14 +97,14 @@ def test_an_observer_may_read_every_sense_of_a_body_and_the_agent_senses_the_sam
 
 @dataclass(frozen=True)
 class Distances:
-    """The least distance to the wall, as a noisy sensor has it, and whether the skin has felt anything."""
+    """The minimum distance to the wall by a noisy sensor, and whether the skin has felt anything."""
 
     least: float
     touched: bool
 
 
 class Reads:
-    """A measure that reads noisy sensors, and the skin, which remembers."""
+    """A measure that reads noisy sensors, and the skin, which has a state."""
 
     def begin(self, world: World) -> None:
         self.body = world.bodies["walker"]
@@ -173,7 +173,7 @@ def test_an_observer_cannot_change_the_world() -> None:
     assert refused == ["World.step", "World.move", "World.push", "World.set_aperture_width", "World.restore"]
 
 
-def test_the_events_from_a_number_on() -> None:
+def test_events_are_read_from_a_number_on() -> None:
     model: Any = Knowing()
     trace = model.traced()
     model.run(0)
@@ -209,7 +209,7 @@ def test_noise_and_a_modellers_own_terms_are_not_computed_for_the_table() -> Non
     assert model.random.getstate() == before
 
 
-def test_an_observer_takes_no_warning_away() -> None:
+def test_an_observer_does_not_consume_warnings() -> None:
     model: Any = Knowing()
     model.run(0)
     spreading: Any = DMSpreading(model.memory, model.goal)
@@ -258,7 +258,7 @@ def test_a_program_is_notified_when_its_time_advances() -> None:
     assert passed == [(start * 1000, end * 1000) for start, end in ms]
 
 
-def test_a_program_can_be_ended_there() -> None:
+def test_a_program_can_be_ended_when_it_is_notified() -> None:
     def end(_: Scheduler, to: int) -> None:
         if to > 500_000:
             raise EndOfRun
@@ -280,7 +280,7 @@ def test_a_simulation_can_be_traced_after_it_was_made() -> None:
         driving().traced("some")
 
 
-def test_a_program_s_trace_that_keeps_nothing_does_not_hinder() -> None:
+def test_a_simulation_is_traced_although_the_programs_trace_keeps_nothing() -> None:
     with RunLimits(trace=Trace("all", keep=False)):
         simulation = driving()
         simulation.traced()
@@ -289,7 +289,7 @@ def test_a_program_s_trace_that_keeps_nothing_does_not_hinder() -> None:
     assert len(simulation.trace) > 10
 
 
-def test_planned_commands_are_done_again() -> None:
+def test_planned_commands_are_repeated() -> None:
     first, second = driving("all"), driving("all")
     first.step(5)
     first.command("aperture", 0.9)
@@ -311,32 +311,32 @@ def test_a_simulation_is_done_when_no_agent_has_anything_left_to_do() -> None:
     assert not simulation.done
 
 
-def test_a_complaint_names_the_modeller_s_line() -> None:
+def test_an_error_names_the_modellers_line() -> None:
     with pytest.raises(ZeroDivisionError) as caught:
         run_text(f"{CLOCK}def halve(n):\n    return n / 0\nhalve(1)", "mine.py")
-    told = traceback_report(caught.value)
-    assert (told.file, told.line) == ("mine.py", 7)
-    assert told.message == "ZeroDivisionError: division by zero"
-    assert "loading.py" not in told.text
+    report = traceback_report(caught.value)
+    assert (report.file, report.line) == ("mine.py", 7)
+    assert report.message == "ZeroDivisionError: division by zero"
+    assert "loading.py" not in report.text
 
 
-def test_a_complaint_names_the_modeller_s_line_where_a_module_of_python_s_raises() -> None:
+def test_an_error_names_the_modellers_line_where_a_module_of_python_raises() -> None:
     with pytest.raises(ValueError, match="Expecting") as caught:
         run_text("import json\njson.loads('no')", "mine.py")
-    told = traceback_report(caught.value)
-    assert (told.file, told.line) == ("mine.py", 2)
-    assert "decoder.py" in told.text
+    report = traceback_report(caught.value)
+    assert (report.file, report.line) == ("mine.py", 2)
+    assert "decoder.py" in report.text
 
 
 @pytest.mark.parametrize("text", ["1 +", "x = 3\nprint 'so'\n"])
-def test_a_complaint_names_the_line_that_cannot_be_read(text: str) -> None:
+def test_an_error_names_the_line_that_cannot_be_read(text: str) -> None:
     with pytest.raises(Exception, match="bad") as caught:
         run_text(text, "bad.py")
-    told = traceback_report(caught.value)
-    assert (told.file, told.line) == ("bad.py", 1 if "+" in text else 2)
+    report = traceback_report(caught.value)
+    assert (report.file, report.line) == ("bad.py", 1 if "+" in text else 2)
 
 
-def test_a_live_field_says_so() -> None:
+def test_a_live_field_shows_its_command_in_its_repr() -> None:
     assert repr(Live("parameter", "walker.speed", body="walker")) == "Live('parameter', 'walker.speed', body='walker')"
     hint: Any = Annotated[float, Live("aperture")]
     assert hint.__metadata__[0].before == ()

@@ -1,4 +1,4 @@
-"""`actr3d run --record` of programs that make simulations themselves: all of them is held, and compared."""
+"""`actr3d run --record` of programs that create simulations themselves: every simulation is recorded and compared."""
 
 from __future__ import annotations
 
@@ -83,8 +83,8 @@ def test_all_simulations_of_a_program_are_recorded_as_they_went(path: Path, caps
         answers = list(recorded.answers())
         assert {answer.run for answer in answers} == {1, 2}
         events = list(recorded.events())
-        told = [event.data["value"] for event in events if event.kind == "answer" and event.run == 2]
-        assert [answer.value for answer in answers if answer.run == 2][: len(told)] == told
+        values = [event.data["value"] for event in events if event.kind == "answer" and event.run == 2]
+        assert [answer.value for answer in answers if answer.run == 2][: len(values)] == values
         assert [run for run, _ in groupby(event.run for event in events[: states[30].events])] == [1]
         assert states[-1].events < len(events)
     capsys.readouterr()
@@ -92,7 +92,7 @@ def test_all_simulations_of_a_program_are_recorded_as_they_went(path: Path, caps
     assert capsys.readouterr().out == f"every byte agrees: 100 ticks, {len(events):,} events\n"
 
 
-def test_what_a_program_records_is_what_its_simulation_records_of_itself(tmp_path: Path) -> None:
+def test_a_program_records_the_same_as_its_simulation(tmp_path: Path) -> None:
     file = tmp_path / "program.py"
     own = tmp_path / "own"
     file.write_text(
@@ -164,11 +164,11 @@ SOURCE = "UPDATE facts SET value = replace(value, '{}', '{}') WHERE name = 'sour
         ("INSERT INTO commands SELECT 2, run, 51, data, checksum FROM commands WHERE first = 1", "the recording holds 1 command more"),
     ],
 )
-def test_a_replay_says_where_a_simulation_of_a_program_differs(alter: Change, message: str, path: Path) -> None:
+def test_a_replay_reports_where_a_simulation_of_a_program_differs(alter: Change, message: str, path: Path) -> None:
     forge(path, alter)
-    told = verdict(path)
-    assert told.code == 1
-    assert message in told.text
+    report = verdict(path)
+    assert report.code == 1
+    assert message in report.text
 
 
 def test_a_program_that_was_killed_agrees_as_far_as_it_goes(tmp_path: Path) -> None:
@@ -192,14 +192,14 @@ def test_a_program_that_was_killed_agrees_as_far_as_it_goes(tmp_path: Path) -> N
         assert comparison.events + comparison.unfinished == recorded.event_count
 
 
-def test_a_program_that_raises_what_is_no_exception_is_recorded_as_failed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_program_that_raises_a_base_exception_is_recorded_as_failed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, recording = tmp_path / "odd.py", tmp_path / "odd.rec"
     file.write_text("print('begun')\nclass Odd(BaseException): pass\nraise Odd('on purpose')\n", encoding="utf-8")
     assert main(["run", str(file), "--seed", "1", "--record", str(recording)]) == 1
     assert "Odd: on purpose" in capsys.readouterr().err
-    told = verdict(recording)
-    assert told.code == 0
-    assert "failed after 0 s (Odd: on purpose)" in told.text
+    report = verdict(recording)
+    assert report.code == 0
+    assert "failed after 0 s (Odd: on purpose)" in report.text
 
 
 def test_a_program_that_prints_the_report_of_its_run_agrees_with_itself(

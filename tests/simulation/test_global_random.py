@@ -1,4 +1,4 @@
-"""Minds that draw from Python's module `random`, or from numpy's, do not share it with the rest of the program."""
+"""Agents that draw from Python's `random` or numpy's `random` do not share its state with the rest of the program."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def alone(seed: int) -> list[float]:
     return drawn(simulation)
 
 
-def test_simulations_that_are_stepped_in_turn_do_not_disturb_each_other() -> None:
+def test_simulations_that_are_stepped_alternately_do_not_disturb_each_other() -> None:
     one, two = drawing(1), drawing(2)
     for _ in range(20):
         one.step()
@@ -174,17 +174,17 @@ for _ in range(2):
 
 
 @pytest.mark.parametrize("first", ["", "import numpy.random; numpy.random.seed(3); numpy.random.normal()"])
-def test_what_a_program_draws_with_numpy_comes_from_its_seed_wherever_it_is_imported(first: str, tmp_path: Path) -> None:
+def test_numbers_drawn_with_numpy_come_from_the_seed_of_the_program_wherever_it_is_imported(first: str, tmp_path: Path) -> None:
     file = tmp_path / "noisy.py"
     file.write_text(NUMPY, encoding="utf-8")
     text = f"import sys; from actr3d.cli import main; {first}\n"
     text += "for seed in '112':\n    main(['run', sys.argv[1], '--seed', seed])\n    print('over')\n"
     text += "print(numpy.random.normal())" if first else ""
     command = [sys.executable, "-c", text, str(file)]
-    said = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
-    one, again, other, after = (part.splitlines() for part in said.split("over\n"))
+    printed = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
+    one, again, other, after = (part.splitlines() for part in printed.split("over\n"))
     assert one == again
     assert len(set(one)) == 3
     assert one[0] != other[0]
     if first:
-        assert float(after[0]) == np.random.RandomState(3).normal(size=2)[1]  # what it was before comes back
+        assert float(after[0]) == np.random.RandomState(3).normal(size=2)[1]  # its former state is restored

@@ -1,6 +1,6 @@
-"""Worlds of several agents, made at random, in which much happens at the same moment: the order is python_actr's.
+"""Random worlds of several agents with many simultaneous events: their order is that of python_actr.
 
-All times are binary fractions, which python_actr's floats add up exactly; others it takes for different by their last bit.
+All times are binary fractions, which python_actr's floats add up exactly; other times would differ in their last bit.
 """
 
 from __future__ import annotations
@@ -115,10 +115,10 @@ def world(seed: int) -> str:
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(3, 12))])
-def test_what_happens_at_once_happens_in_the_same_order(seed: int, tmp_path: Path) -> None:
+def test_simultaneous_events_happen_in_the_same_order(seed: int, tmp_path: Path) -> None:
     file = tmp_path / "world.py"
     file.write_text(world(seed), encoding="utf-8")
-    ours = run_command("run", str(file), "--seed", str(seed), folder=tmp_path)
-    assert ours.returncode == 0, ours.stderr
-    assert ours.stdout.splitlines() == run_peer(world(seed), seed)["printed"].splitlines()
-    assert "act " in ours.stdout
+    result = run_command("run", str(file), "--seed", str(seed), folder=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.splitlines() == run_peer(world(seed), seed)["printed"].splitlines()
+    assert "act " in result.stdout

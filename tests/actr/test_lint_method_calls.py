@@ -1,4 +1,4 @@
-"""What is said of actions that are most likely not meant."""
+"""Warnings about probable mistakes in the actions of productions."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ COUNTING = (
         ),
     ],
 )
-def test_a_misspelt_slot_is_said(body: str, message: str) -> None:
-    said = warned(COUNTING + body)
-    assert len(said) == 1, said
-    assert message in said[0][0]
-    assert said[0][1] == 13 + len(body.splitlines())
+def test_a_misspelt_slot_is_warned_of(body: str, message: str) -> None:
+    caught = warned(COUNTING + body)
+    assert len(caught) == 1, caught
+    assert message in caught[0][0]
+    assert caught[0][1] == 13 + len(body.splitlines())
 
 
 @pytest.mark.parametrize(
@@ -59,13 +59,13 @@ def test_a_misspelt_slot_is_said(body: str, message: str) -> None:
         "    self.eye.set('cuont:1')\ndef show(self): pass",
     ],
 )
-def test_other_slots_are_let_be(body: str) -> None:
+def test_other_slots_give_no_warning(body: str) -> None:
     if "eye.set" in body:
         body = body.replace("self.eye.set", "print")
     assert warned(COUNTING + body) == []
 
 
-def test_slots_that_the_memory_holds_are_let_be() -> None:
+def test_slots_that_the_memory_holds_give_no_warning() -> None:
     text = HEAD + "    def init():\n        memory.request('numbr:?x')\n        memory.add('number:1')\n"
     agent: Any = load_text(text, "loud.py").Agent()
     ensure_converted(agent)
@@ -96,7 +96,7 @@ def test_slots_that_the_memory_holds_are_let_be() -> None:
         ("count", "count", False),
     ],
 )
-def test_which_names_count_as_misspelt(one: str, other: str, misspelt: bool) -> None:
+def test_misspellings_are_recognized(one: str, other: str, misspelt: bool) -> None:
     assert is_misspelt(one, other) is misspelt
     assert is_misspelt(other, one) is misspelt
 
@@ -120,11 +120,11 @@ def test_which_names_count_as_misspelt(one: str, other: str, misspelt: bool) -> 
         ("def p(goal='a'):\n    self.stop", "'self.stop' without brackets does nothing; did you mean 'self.stop()'?"),
     ],
 )
-def test_actions_that_are_not_meant_are_said(body: str, message: str) -> None:
-    said = [(text, line) for text, line in warned(body) if "slot" not in text]
-    assert len(said) == 1, said
-    assert message in said[0][0]
-    assert said[0][1] == 11
+def test_probable_mistakes_in_actions_are_warned_of(body: str, message: str) -> None:
+    caught = [(text, line) for text, line in warned(body) if "slot" not in text]
+    assert len(caught) == 1, caught
+    assert message in caught[0][0]
+    assert caught[0][1] == 11
 
 
 @pytest.mark.parametrize(
@@ -143,7 +143,7 @@ def test_actions_that_are_not_meant_are_said(body: str, message: str) -> None:
         "def p(goal='a'):\n    self.stop()\n    self.eye.busy\n    memory.threshold",
     ],
 )
-def test_actions_that_may_be_meant_are_let_be(body: str) -> None:
+def test_legitimate_actions_give_no_warning(body: str) -> None:
     assert [text for text, _ in warned(body)] == []
 
 
@@ -161,7 +161,7 @@ def agent_that(body: str) -> Any:
         ("1 / 0", ZeroDivisionError, ""),
     ],
 )
-def test_an_error_in_what_a_production_set_going_names_the_production(action: str, error: type[Exception], note: str) -> None:
+def test_an_error_in_a_method_that_a_production_started_names_the_production(action: str, error: type[Exception], note: str) -> None:
     agent = agent_that(f"    def act(self):\n        yield 0.2\n        {action}\n")
     with pytest.raises(error) as caught:
         agent.run(1)
@@ -191,21 +191,21 @@ def test_a_generator_called_after_a_production_has_failed_is_not_its() -> None:
 
 
 @pytest.mark.parametrize("what", ["(None, 0.2)", "[self.note(), (0.2,)]", "(0.2, (None, 'name'))"])
-def test_none_among_what_is_waited_for_is_said(what: str) -> None:
+def test_none_in_a_tuple_of_waits_is_warned_of(what: str) -> None:
     start = f"    def start(self):\n        yield {what}\n        self.seen = self.now()\n"
     text = f"from actr3d.actr import *\nclass World(Model):\n    seen = 0\n{start}    def note(self): pass\n"
     world: Any = load_text(text, "loud.py").World()
-    with pytest.warns(ModelWarning, match=r"World\.start yields a tuple with None in it, which ends it for all that wait for it") as said:
+    with pytest.warns(ModelWarning, match=r"World\.start yields a tuple with None in it, which ends it for all that wait for it") as caught:
         world.run(1)
-    assert [(w.filename, w.lineno) for w in said] == [("loud.py", 5)]
+    assert [(w.filename, w.lineno) for w in caught] == [("loud.py", 5)]
     assert world.seen == 0.2
 
 
 @pytest.mark.parametrize("outer", ["p(goal='count:?x')", "init()"])
-def test_a_production_inside_another_one_is_said(outer: str) -> None:
-    said = warned(f"def {outer}:\n    goal.set('count:1')\n    def inner(goal='count:1', retrieval=None):\n        goal.clear()")
+def test_a_production_inside_another_one_is_warned_of(outer: str) -> None:
+    caught = warned(f"def {outer}:\n    goal.set('count:1')\n    def inner(goal='count:1', retrieval=None):\n        goal.clear()")
     name = outer.partition("(")[0]
-    (text,) = [(text, line) for text, line in said if "inner" in text]
+    (text,) = [(text, line) for text, line in caught if "inner" in text]
     assert text == (f"production '{name}': 'inner' is inside it, and therefore no production; it needs the indentation of '{name}'", 12)
 
 
@@ -218,5 +218,5 @@ def test_a_production_inside_another_one_is_said(outer: str) -> None:
         "def inner():\n        return 1",
     ],
 )
-def test_other_functions_inside_a_production_are_not(inner: str) -> None:
+def test_other_functions_inside_a_production_give_no_warning(inner: str) -> None:
     assert [text for text, _ in warned(f"def p(goal='count:?x'):\n    {inner}") if "inside" in text] == []

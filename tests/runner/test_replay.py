@@ -1,4 +1,4 @@
-"""`actr3d run --record` and `actr3d replay`: a recording is run again, and every byte compared."""
+"""`actr3d run --record` and `actr3d replay`: a recording is run again, and every byte is compared."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def recorded_run(file: Path, *words: str) -> Path:
     return path
 
 
-def test_what_a_file_builds_is_run_to_its_end_recorded_and_replayed(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_simulation_that_a_file_builds_is_run_to_its_end_recorded_and_replayed(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded_run(file, "--set", "times=4", "--set", "height=0.5")
     assert capsys.readouterr().out.split()[1::2] == ["1", "2", "3", "4"]
     with Recorded(path) as recorded:
@@ -150,7 +150,7 @@ def test_a_walker_that_stops_before_a_wall_is_recorded_and_replayed(tmp_path: Pa
     assert f"every byte agrees: {ticks:,} ticks" in verdict(path).text
 
 
-def test_until_ends_what_is_built_with_a_whole_tick(file: Path) -> None:
+def test_until_ends_a_built_simulation_with_a_whole_tick(file: Path) -> None:
     path = recorded_run(file, "--until", "0.127")
     with Recorded(path) as recorded:
         assert recorded.ticks == 12
@@ -188,7 +188,7 @@ def test_a_program_without_a_world_is_recorded_and_replayed(name: str, tmp_path:
     assert (printed == capsys.readouterr().out) or name == "noisy.py"
 
 
-def test_a_program_without_a_world_does_not_load_what_worlds_need(tmp_path: Path) -> None:
+def test_a_program_without_a_world_does_not_load_the_packages_of_worlds(tmp_path: Path) -> None:
     text = "import sys; from actr3d.cli import main; code = main(sys.argv[1:]); sys.exit(code or ('mujoco' in sys.modules) * 9)"
     for words in (["run", "models/counting.py"], ["run", "models/counting.py", "--record", str(tmp_path / "run")]):
         assert subprocess.run([sys.executable, "-c", text, *words], cwd=ROOT, check=False, capture_output=True, timeout=60).returncode == 0
@@ -214,12 +214,12 @@ CHANGES = [
 
 @pytest.mark.daily(2)
 @pytest.mark.parametrize(("change", "message"), CHANGES)
-def test_a_replay_says_where_it_differs(change: str, message: str, file: Path) -> None:
+def test_a_replay_reports_where_it_differs(change: str, message: str, file: Path) -> None:
     path = recorded_run(file)
     forge(path, change)
-    told = verdict(path)
-    assert told.code == (2 if "error" in message else 1)
-    assert message in told.text
+    report = verdict(path)
+    assert report.code == (2 if "error" in message else 1)
+    assert message in report.text
 
 
 def test_other_versions_may_be_tried(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -278,9 +278,9 @@ def test_a_program_that_ends_earlier_or_later_differs(tmp_path: Path) -> None:
     path = recorded_run(file)
     for before, after, message in ((2, 1, "differs: the run ended after "), (1, 3, "recorded: nothing; now: ")):
         forge(path, in_fact("sources", f"range({before})", f"range({after})"))
-        told = verdict(path)
-        assert told.code == 1
-        assert message in told.text
+        report = verdict(path)
+        assert report.code == 1
+        assert message in report.text
 
 
 CUT = """UPDATE events SET count = count - 1, data = json_remove(data, '$[#-1]') WHERE first = (SELECT max(first) FROM events)"""
@@ -300,7 +300,7 @@ def test_a_recording_that_was_broken_off_agrees_as_far_as_it_goes(tmp_path: Path
     assert str(comparison) == f"agrees up to the end of the recording: {comparison.events} events; {INTERRUPTED}"
 
 
-def test_what_a_program_of_its_own_has_simulated_is_replayed_by_it(tmp_path: Path) -> None:
+def test_a_recording_made_by_another_program_is_replayed_by_that_program(tmp_path: Path) -> None:
     simulation = driving()
     with simulation.record(tmp_path / "run"):
         simulation.run(0.3)
@@ -324,11 +324,11 @@ def test_a_run_that_fails_is_recorded_until_then(tmp_path: Path, capsys: pytest.
     path = tmp_path / "run"
     assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 1
     assert "has no attribute 'halt'" in capsys.readouterr().err
-    told = verdict(path)
-    assert told.code == 0
+    report = verdict(path)
+    assert report.code == 0
     assert re.fullmatch(
         r"agrees up to the end of the recording: 14 ticks, \d+ events; the run failed after 0.14 s \(AttributeError: .*'halt'\)\n",
-        told.text,
+        report.text,
     )
 
 
@@ -343,9 +343,9 @@ def test_a_program_that_exits_is_replayed_to_its_end(code: int, tmp_path: Path, 
     assert main(["replay", str(path)]) == 0
     assert capsys.readouterr().out.startswith("every byte agrees: ")
     forge(path, "UPDATE facts SET value = replace(value, 'over', 'more') WHERE name = 'sources'")
-    told = verdict(path)
-    assert told.code == 1
-    assert '"text": "moreend..."' in told.text
+    report = verdict(path)
+    assert report.code == 1
+    assert '"text": "moreend..."' in report.text
 
 
 @pytest.mark.daily(1)
@@ -361,9 +361,9 @@ def test_a_replay_that_fails_differs(leave: str, tmp_path: Path, monkeypatch: py
     monkeypatch.setenv("FAIL", "run")
     assert verdict(path) == Verdict(code=1, text=f"differs: the run failed after 0.09 s ({what})\n")
     monkeypatch.setenv("FAIL", "build")
-    told = verdict(path)
-    assert told.code == 2
-    assert f"error: what '{path}' holds cannot be built here: {what}\n" in told.text
+    report = verdict(path)
+    assert report.code == 2
+    assert f"error: what '{path}' holds cannot be built here: {what}\n" in report.text
 
 
 @pytest.mark.parametrize(
@@ -463,7 +463,7 @@ def test_a_build_without_parameters() -> None:
     "text",
     ["def build(model):\n    return model\nprint(build(3))", "class A:\n    def build(self) -> Simulation: pass", "not python (", ""],
 )
-def test_other_functions_called_build_are_none(text: str) -> None:
+def test_other_functions_called_build_are_ignored(text: str) -> None:
     assert not has_build(text)
     assert problem_of_build(text) is None
 
@@ -481,19 +481,19 @@ def printed_lines(path: Path) -> list[tuple[float, str]]:
         return [(event.time, event.data["text"]) for event in recorded.events() if event.kind == "output"]
 
 
-def test_lines_that_a_model_prints_are_recorded_where_they_come(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_printed_lines_of_a_model_are_recorded_in_order(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file.write_text(PRINTING.replace("print(side, self.times)", "print(self.times); print('end', end='')"), encoding="utf-8")
     path = recorded_run(file)
     assert capsys.readouterr().out == "loaded and ready\n1\nend2\nend3\nend"
     assert printed_lines(path) == [(0.0, "loaded and ready"), (0.05, "1"), (0.1, "end2"), (0.15, "end3"), (0.15, "end")]
     assert verdict(path).code == 0
     forge(path, "UPDATE events SET data = replace(data, 'end2', 'end7')")
-    told = verdict(path)
-    assert told.code == 1
-    assert '"text": "end7"' in told.text
+    report = verdict(path)
+    assert report.code == 1
+    assert '"text": "end7"' in report.text
 
 
-def test_lines_that_a_program_prints_are_recorded_where_they_come(tmp_path: Path) -> None:
+def test_printed_lines_of_a_program_are_recorded_in_order(tmp_path: Path) -> None:
     file = tmp_path / "talking.py"
     text = NOISY + "import sys\nsys.stdout.buffer.write('größe\\n'.encode())\nsys.stdout.writelines(['a', 'b\\n'])\nprint('c', end='')\n"
     file.write_text("print('first')\n" + text.replace("Noisy().run()", "Noisy().run(0.22)\n    print('run')"), encoding="utf-8")
@@ -548,7 +548,7 @@ def test_a_replay_compares_how_the_run_ended(text: str, name: str, then: str, ot
     assert other in differs.text
 
 
-def test_a_run_that_failed_then_and_does_not_now_differs(tmp_path: Path) -> None:
+def test_a_replay_without_the_recorded_failure_differs(tmp_path: Path) -> None:
     for text in (BUILT, "print(1)\n"):
         file = tmp_path / "model.py"
         file.write_text(text, encoding="utf-8")

@@ -144,7 +144,7 @@ def test_nothing_that_a_model_says_becomes_markup(text: str) -> None:
     assert f"{text}!" in page.cells
 
 
-def test_what_changes_has_columns_and_what_does_not_stands_below() -> None:
+def test_changing_values_have_columns_and_constant_ones_are_below() -> None:
     rows: list[tuple[float, str, Any]] = [
         (0.0, "a", "x"),
         (0.0, "fixed", 7),

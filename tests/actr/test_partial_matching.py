@@ -1,4 +1,4 @@
-"""Partial matching, against published numbers and sums written out."""
+"""Partial matching, against published numbers and explicit sums."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 from actr3d.actr import Buffer, Chunk, DMFixed, Memory, Partial
 from actr3d.errors import ModelWarning
-from tests.helpers.small_agents import living
+from tests.helpers.small_agents import started_agent
 
 
 def partial_agent(profile: str = "python-actr", kind: Any = Partial, **options: Any) -> Any:
@@ -17,7 +17,7 @@ def partial_agent(profile: str = "python-actr", kind: Any = Partial, **options: 
     partial = kind(memory, **options)
     partial.similarity("red", "pink", -0.3)
     partial.similarity("blue", "red", -0.8)
-    return living(profile, buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
+    return started_agent(profile, buffer=buffer, memory=memory, partial=partial, fixed=DMFixed(memory))
 
 
 def costs(agent: Any, pattern: str) -> dict[str, tuple[float, float]]:
@@ -70,7 +70,7 @@ def test_which_partial_serves_a_request() -> None:
     buffer = Buffer()
     memory = Memory(buffer, threshold=None)
     first, second = Partial(memory, strength=1), Partial(memory, strength=3)
-    agent = living(buffer=buffer, memory=memory, first=first, second=second)
+    agent = started_agent(buffer=buffer, memory=memory, first=first, second=second)
     agent.memory.add("a:x")
     assert costs(agent, "a:y") == {"a:x": (-1, -1)}
     agent.second.request("a:y")
@@ -112,7 +112,7 @@ def test_an_object_that_only_knows_how_to_match() -> None:
         def match(self, key: Any, a: str, b: str) -> float:
             return -1.0
 
-    agent = living(memory=Memory(Buffer()))
+    agent = started_agent(memory=Memory(Buffer()))
     agent.memory.add("n:x")
     agent.memory.partials.append(Plain())
     assert costs(agent, "n:y") == {"n:x": (-1, -1)}

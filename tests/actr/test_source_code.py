@@ -1,4 +1,4 @@
-"""Where productions come from: forms of definition, inheritance, files, and the errors that name them."""
+"""Sources of productions: forms of definition, inheritance, files, and the errors that name them."""
 
 from __future__ import annotations
 
@@ -219,7 +219,7 @@ def test_a_misspelt_method_in_a_body_is_recognized() -> None:
     assert "in production 'init' (forms.py:5) at 0 s; did you mean 'set'?" in caught.value.__notes__
 
 
-def test_no_source_is_said_plainly() -> None:
+def test_missing_source_code_is_reported_plainly() -> None:
     space: dict[str, Any] = {}
     text = HEAD + "class Agent(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('a')\n"
     exec(text, space)
@@ -227,7 +227,7 @@ def test_no_source_is_said_plainly() -> None:
         space["Agent"]().run(1)
 
 
-def test_a_file_that_changed_after_it_was_loaded_is_said_plainly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_that_changed_after_it_was_loaded_is_reported_plainly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "changed_since.py"
     text = HEAD + "class Agent(ACTR):\n    goal = Buffer()\n    def init():\n        goal.set('a')\n"
     path.write_text(text)
@@ -325,13 +325,15 @@ print(len(failures))
 """
 
 
-def test_several_threads_can_parse_at_once() -> None:
+def test_several_threads_can_parse_concurrently() -> None:
     model = Path(__file__).parents[2] / "models" / "aperture_passage.py"
     done = subprocess.run([sys.executable, "-c", THREADS, str(model)], check=True, capture_output=True, text=True)
     assert done.stdout == "0\n"
 
 
-def test_a_file_that_has_changed_since_its_import_is_not_run_half_new(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_that_has_changed_since_its_import_is_not_run_in_a_mixture_of_versions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     file = tmp_path / "edited_since.py"
     body = "    def init(): goal.set('go')\n    def act(goal='go'): goal.set('end')\n"
     text = f"from actr3d.actr import *\nclass A(ACTR):\n    goal = Buffer()\n{body}"

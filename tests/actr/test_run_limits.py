@@ -140,7 +140,7 @@ def test_other_threads_have_no_limits() -> None:
 
 
 class Counter(Model):
-    """Does something for a second, and then nothing any more."""
+    """Counts for a second, and then does nothing."""
 
     def start(self) -> Any:
         for _ in range(4):
@@ -169,7 +169,7 @@ def test_a_run_that_needs_no_time_is_never_cut() -> None:
         model.run()  # nothing is left to do
         model.run(0)
         model.sch.add(model.stop)
-        model.run(5)  # stopped at once, though it might have lasted longer
+        model.run(5)  # stopped immediately, although the limit was later
         assert not limits.ended
         with pytest.raises(EndOfRun):
             model.run(0.1)
@@ -253,7 +253,7 @@ def outcome(file: Path, folder: Path, monkeypatch: pytest.MonkeyPatch, until: fl
 
 
 @pytest.mark.parametrize("file", [pytest.param(f, id=f.stem, marks=[] if f.stem in QUICK else pytest.mark.slow) for f in MODELS])
-def test_what_ends_by_itself_ends_as_without_a_limit(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_ends_by_itself_is_the_same_without_a_limit(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     free = outcome(file, tmp_path / "free", monkeypatch, None)
     limited = outcome(file, tmp_path / "limited", monkeypatch, 10_000_000)
     assert free[0] == limited[0]

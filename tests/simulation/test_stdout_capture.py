@@ -1,4 +1,4 @@
-"""What agents print: told as events however the run is recorded, and printed once however often it is lived through."""
+"""Prints of agents become events in every kind of recording, and are printed once although a seek repeats the run."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def talking(trace: str = "all", seed: int = 1) -> Simulation:
     return Simulation(Scene(parts=(Floor(), SimpleObject(name="box"))), bodiless={"talker": Talker}, seed=seed, trace=trace)
 
 
-def said(events: Any) -> list[tuple[float, str]]:
+def lines_in(events: Any) -> list[tuple[float, str]]:
     return [(event.time, event.data["text"]) for event in events if event.kind == "output"]
 
 
@@ -97,17 +97,17 @@ def test_a_recording_holds_the_same_lines_however_it_is_made(tmp_path: Path, cap
     assert capfd.readouterr().out == ""
 
 
-def test_lines_stand_in_the_trace_at_their_time(capsys: pytest.CaptureFixture[str]) -> None:
+def test_lines_are_in_the_trace_at_their_time(capsys: pytest.CaptureFixture[str]) -> None:
     simulation = talking("production")
     simulation.run(0.05)
     lines = capsys.readouterr().out.splitlines()
     assert simulation.trace is not None
     times = [0.0, *(time for number in range(3) for time in [0.015 * (number + 1)] * 2)]
-    assert said(simulation.trace) == list(zip(times, lines, strict=True))
+    assert lines_in(simulation.trace) == list(zip(times, lines, strict=True))
 
 
 @pytest.mark.parametrize("trace", ["none", "all"])
-def test_what_was_printed_once_is_not_printed_again(trace: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_lines_are_not_printed_again_after_a_seek(trace: str, capsys: pytest.CaptureFixture[str]) -> None:
     simulation, other = talking(trace), talking(trace)
     other.run(0.08)
     once = capsys.readouterr().out
@@ -123,7 +123,7 @@ def test_what_was_printed_once_is_not_printed_again(trace: str, capsys: pytest.C
     assert 0 < len(again) < len(once)
 
 
-def test_a_recording_holds_each_line_once_and_those_of_another_way(tmp_path: Path) -> None:
+def test_a_recording_holds_each_line_once_and_those_of_a_new_future(tmp_path: Path) -> None:
     simulation = talking()
     with simulation.record(tmp_path / "run"):
         simulation.run(0.06)
@@ -140,7 +140,7 @@ def test_a_recording_holds_each_line_once_and_those_of_another_way(tmp_path: Pat
     assert recorded(tmp_path / "run") == recorded(tmp_path / "other")
 
 
-def test_what_onlookers_and_other_threads_print_is_no_event(capsys: pytest.CaptureFixture[str]) -> None:
+def test_prints_of_observers_and_of_other_threads_are_no_events(capsys: pytest.CaptureFixture[str]) -> None:
     def listen(event: TraceEvent) -> None:
         sys.stdout.write(f"heard {event.kind}\n")
         thread = threading.Thread(target=print, args=("elsewhere",))
@@ -165,7 +165,7 @@ def test_another_thread_may_print_while_agents_run(capsys: pytest.CaptureFixture
     simulation.run(0.02)
     assert capsys.readouterr().out == "elsewhere\n"
     assert simulation.trace is not None
-    assert said(simulation.trace) == []
+    assert lines_in(simulation.trace) == []
 
 
 def test_an_agent_may_print_elsewhere(capsys: pytest.CaptureFixture[str]) -> None:
@@ -178,7 +178,7 @@ def test_an_agent_may_print_elsewhere(capsys: pytest.CaptureFixture[str]) -> Non
     assert sys.stdout is before
     assert "aside" not in capsys.readouterr().out
     assert simulation.trace is not None
-    assert all("aside" not in text for _, text in said(simulation.trace))
+    assert all("aside" not in text for _, text in lines_in(simulation.trace))
 
 
 def test_output_goes_where_the_program_redirects_it(capsys: pytest.CaptureFixture[str]) -> None:
@@ -201,7 +201,7 @@ def test_a_line_printed_to_an_output_that_the_file_has_kept_is_recorded_too(tmp_
     assert main(["replay", str(tmp_path / "run")]) == 0
 
 
-def test_a_run_that_goes_on_after_its_recording_was_closed_keeps_nothing_for_it(tmp_path: Path) -> None:
+def test_a_run_that_continues_after_its_recording_was_closed_keeps_nothing_for_it(tmp_path: Path) -> None:
     simulation = talking("none")
     with simulation.record(tmp_path / "run") as recording:
         simulation.run(0.05)

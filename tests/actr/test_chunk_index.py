@@ -1,4 +1,4 @@
-"""The chunk store finds just what looking through all chunks would find, whatever was done to it."""
+"""The chunk store finds exactly the chunks that a search through all of them finds, after any changes."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def perform(store: ChunkStore, what: str, place: int, items: dict[Any, Any]) -> 
             del known[slot]
     elif what == "slice":
         store[place % len(store) :] = [chunk]
-    elif what == "grow":  # a value that changes by itself, unseen
+    elif what == "grow":  # a value that changes by itself, unnoticed
         lists: list[Any] = [value for value in known.values() if isinstance(value, list)]
         for value in lists:
             value.append(place)
@@ -99,9 +99,9 @@ def test_a_chunk_in_two_stores_keeps_both_up_to_date() -> None:
     assert one.with_value("a", "1") == other.with_value("a", "1") == []
 
 
-def test_copies_stand_alone() -> None:
+def test_copies_are_independent() -> None:
     store = ChunkStore()
-    for number in range(2000):  # deeper than Python's stack, were copying to go from chunk to chunk
+    for number in range(2000):  # deeper than Python's stack, if copying went from chunk to chunk
         store.keep(Chunk({"n": number}))
     assert store.equal_to(Chunk({"n": 7})) is store[7]
     for twin in (copy.deepcopy(store), pickle.loads(pickle.dumps(store))):
@@ -112,7 +112,7 @@ def test_copies_stand_alone() -> None:
         assert store.with_value("n", "changed") == []
 
 
-def test_a_copied_chunk_lies_in_no_memory() -> None:
+def test_a_copied_chunk_is_in_no_memory() -> None:
     store = ChunkStore()
     chunk = Chunk("a:1")
     store.keep(chunk)

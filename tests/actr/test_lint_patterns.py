@@ -1,4 +1,4 @@
-"""What is said of patterns that can never match."""
+"""Warnings about patterns that can never match."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ from tests.helpers.warnings_of_models import warned
         ("def p(memory='error:Ture'): pass", "and never 'Ture'; did you mean 'error:True'?"),
     ],
 )
-def test_what_can_never_match_is_said(body: str, message: str) -> None:
-    said = warned(body)
-    assert len(said) == 1, said
-    assert message in said[0][0]
-    assert said[0][1] == 10
+def test_patterns_that_can_never_match_are_warned_of(body: str, message: str) -> None:
+    caught = warned(body)
+    assert len(caught) == 1, caught
+    assert message in caught[0][0]
+    assert caught[0][1] == 10
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_what_can_never_match_is_said(body: str, message: str) -> None:
         "def p(eye='busy:tired'): pass",
     ],
 )
-def test_what_can_match_is_let_be(body: str) -> None:
+def test_patterns_that_can_match_give_no_warning(body: str) -> None:
     assert warned(body) == []
 
 
@@ -68,7 +68,7 @@ def test_what_can_match_is_let_be(body: str) -> None:
         ("?s:1", {"s": "1", "?s": "1"}, False),
     ],
 )
-def test_what_is_said_of_a_pattern_is_so(pattern: str, objects: Mapping[Any, str], matches: bool) -> None:
+def test_warnings_about_a_pattern_are_true(pattern: str, objects: Mapping[Any, str], matches: bool) -> None:
     assert (Pattern(pattern).match(dict(objects)) is not None) is matches
 
 
@@ -92,24 +92,24 @@ Agent().run(0)
 """
 
 
-def said_of(pattern: str, more: str = "") -> list[tuple[str, int]]:
-    """Returns what is said of a whole program, run as such, in which a production matches the goal with `pattern`."""
-    with warnings.catch_warnings(record=True) as said:
+def warnings_about(pattern: str, more: str = "") -> list[tuple[str, int]]:
+    """Returns the warnings about a complete program, run as such, in which a production matches the goal with `pattern`."""
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         run_text(PROGRAM.replace("from_", "from_" if "from_" in more else "count").format(pattern=pattern, more=more), "whole.py")
-    assert all(w.category is ModelWarning and w.filename == "whole.py" for w in said)
-    return [(str(w.message), w.lineno) for w in said]
+    assert all(w.category is ModelWarning and w.filename == "whole.py" for w in caught)
+    return [(str(w.message), w.lineno) for w in caught]
 
 
 @pytest.mark.parametrize("pattern", ["weather:rainy", "count ? ?x ?y", "from:1 weather:!wet"])
-def test_a_slot_that_no_chunk_of_the_program_can_have_is_said(pattern: str) -> None:
+def test_a_slot_that_no_chunk_of_the_program_can_have_is_warned_of(pattern: str) -> None:
     slot = "3" if "?y" in pattern else "weather"
-    assert said_of(pattern) == [(f"production 'q' can never match: no chunk is ever given a slot '{slot}'", 14)]
+    assert warnings_about(pattern) == [(f"production 'q' can never match: no chunk is ever given a slot '{slot}'", 14)]
 
 
 @pytest.mark.parametrize("pattern", ["count ?x ?y", "from:!2", "1:2 2:?z"])
-def test_a_slot_that_some_chunk_has_is_let_be(pattern: str) -> None:
-    assert said_of(pattern) == []
+def test_a_slot_that_some_chunk_has_gives_no_warning(pattern: str) -> None:
+    assert warnings_about(pattern) == []
 
 
 @pytest.mark.parametrize(
@@ -129,9 +129,9 @@ def test_a_slot_that_some_chunk_has_is_let_be(pattern: str) -> None:
         "    other = Own(goal)",
     ],
 )
-def test_nothing_is_said_where_chunks_may_have_other_slots(more: str) -> None:
-    assert said_of("weather:rainy", more) == []
+def test_no_warning_is_given_where_chunks_may_have_other_slots(more: str) -> None:
+    assert warnings_about("weather:rainy", more) == []
 
 
-def test_nothing_is_said_of_a_module_that_others_may_use() -> None:
+def test_no_warning_is_given_about_a_module_that_others_may_use() -> None:
     assert warned("def init(): goal.set('a:1')\ndef p(goal='weather:1'): pass") == []
