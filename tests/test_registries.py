@@ -17,7 +17,7 @@ from mujoco import MjSpec
 import actr3d.actr
 import actr3d.camera  # pyright: ignore[reportUnusedImport] # it registers `view`
 import actr3d.world
-from actr3d.actr.declarative.activation import ACTIVATION_PARTS
+from actr3d.actr.declarative.activation_parts import ACTIVATION_PARTS
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.loading import load_text
 from actr3d.actr.modules import MODULES

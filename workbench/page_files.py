@@ -11,7 +11,7 @@ from starlette.responses import Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
-from actr3d.actr.declarative.activation import ACTIVATION_PARTS
+from actr3d.actr.declarative.activation_parts import ACTIVATION_PARTS
 from actr3d.trace_kinds import GROUPS, KINDS
 from workbench.shipped import static
 

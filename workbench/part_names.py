@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from actr3d.actr.declarative.activation import ACTIVATION_PARTS
+from actr3d.actr.declarative.activation_parts import ACTIVATION_PARTS
 
 _NUMBERED = re.compile(r"(.*?)( \d+)?", re.DOTALL)
 

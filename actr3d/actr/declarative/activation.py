@@ -6,40 +6,16 @@ Each is made with its memory: `dm_n = DMNoise(memory, noise=0.3)`. A chunk's act
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from random import Random
-from typing import Any, Final, Protocol, TypeVar, cast
+from typing import Any, Final, Protocol, cast
 
+from actr3d.actr.declarative.activation_parts import activation_part
 from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.kernel.model import Model, ensure_converted, is_converted
 from actr3d.actr.kernel.noise import logistic_noise
 from actr3d.actr.kernel.parameters import Count, NotNegative, WithParameters, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
 from actr3d.errors import ChunkError, ParameterError
-from actr3d.registry import Registry
-
-T = TypeVar("T", bound=type[Any])
-
-ACTIVATION_PARTS: Registry[str] = Registry("part of an activation")
-"""The names that users see for the parts of an activation, by their name in explanations and traces."""
-
-
-def activation_part(title: str, name: str | None = None) -> Callable[[T], T]:
-    """Returns a decorator that registers the name that users see for what a class adds to activations.
-
-    Args:
-        title: The name that users see.
-        name: The name in explanations and traces; None for that of the class.
-
-    Raises:
-        ValueError: If there is a part of this name already.
-    """
-
-    def register(kind: T) -> T:
-        ACTIVATION_PARTS.add(name or kind.__name__, title, kind.__module__)
-        return kind
-
-    return register
 
 
 class ActivatedMemory(Protocol):

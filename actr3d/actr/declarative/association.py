@@ -6,7 +6,8 @@ import math
 from typing import Any
 
 from actr3d.actr.chunks.chunk import Chunk
-from actr3d.actr.declarative.activation import BY_PROFILE, ActivatedMemory, ByProfile, DMBaseLevel, MemorySubModule, activation_part
+from actr3d.actr.declarative.activation import BY_PROFILE, ActivatedMemory, ByProfile, DMBaseLevel, MemorySubModule
+from actr3d.actr.declarative.activation_parts import activation_part
 from actr3d.actr.declarative.spreading import countable
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.parameters import Count, NotNegative, named_parameters

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from typing import Any, Protocol
 
 from actr3d.actr.chunks.chunk import Slot, as_text
-from actr3d.actr.declarative.activation import activation_part
+from actr3d.actr.declarative.activation_parts import activation_part
 from actr3d.actr.kernel.parameters import Extended, WithParameters, named_parameters
 from actr3d.actr.kernel.profile import PYTHON_ACTR, Profile
 from actr3d.errors import ParameterError

@@ -9,7 +9,8 @@ from typing import Any
 
 from actr3d.actr.chunks.chunk import Chunk, as_text
 from actr3d.actr.chunks.pattern import Pattern
-from actr3d.actr.declarative.activation import ActivatedMemory, MemorySubModule, activation_part
+from actr3d.actr.declarative.activation import ActivatedMemory, MemorySubModule
+from actr3d.actr.declarative.activation_parts import activation_part
 from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.parameters import named_parameters
