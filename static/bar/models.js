@@ -7,7 +7,7 @@ import { AGAIN, call, connect, say, sessionOf, showModel, showRecording, sinceNo
 import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
-import { travel } from "../timeline/seek.js";
+import { present, travel } from "../timeline/seek.js";
 import { followWindows, passOn } from "../windows.js";
 
 /** The model files of the folder: {path, title, kind}. */
@@ -31,6 +31,7 @@ const NO_MODELS = "There is no model in the folder yet: make one in the tab Edit
 /** What there is to do while no model is shown. */
 export const toShowOne = computed(() => (models.value.length > 0 ? "No model is shown: choose one above." : folder.value ? NO_MODELS : "No model is shown."));
 
+const SAME = 1e-6; // times that are no farther apart are the same [s]
 const FIRST = ["aperture_passage.py", "doorway.py"];
 
 let asked = 0;
@@ -104,6 +105,7 @@ async function chooseMoment(run, time) {
     queueMicrotask(() => {
       end();
       if (!wanted()) return;
+      if (Math.abs(present.peek() - time) < SAME) return;
       const why = running.peek() ? "It goes on now: pause it, and go there" : isShared.peek() ? "Another page shows it, too: go there" : null;
       if (why) complain(`The link leads to ${time} s of this run. ${why} on the timeline.`);
       else travel(time);

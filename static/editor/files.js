@@ -5,6 +5,7 @@ import { asked, confirmed } from "../parts/dialog.js";
 import { offerRestore } from "../parts/restore.js";
 import { call, sinceNow } from "../server.js";
 import { complain, session } from "../store.js";
+import { focusText } from "./code.js";
 import { close, open, renamed, shown } from "./documents.js";
 import { TEMPLATES } from "./templates.js";
 
@@ -23,7 +24,7 @@ export async function makeNew() {
 /** Opens a new file, unless the user has chosen another one since; returns whether it is opened. */
 function showNew(file, last) {
   const isWanted = file !== null && shown.peek() === last;
-  if (isWanted) open(file.path);
+  if (isWanted) open(file.path).then(() => requestAnimationFrame(focusText)); // once it is visible
   return isWanted;
 }
 

@@ -120,7 +120,7 @@ command({ text: "Next view: with the body, free, from the side, from above, thro
 const reset = command({ text: "Reset view", key: "Shift+v", group: "3D view", work: resetView, ready: isShown, why: noView });
 const keep = command({ text: "Save the 3D view as a picture (PNG)", also: "export download screenshot", group: "3D view", work: keepPicture, ready: isShown, why: noView });
 const film = command({ text: "Make a video of the 3D view (WebM) …", also: "export film movie", group: "3D view", work: makeVideo, ready: () => isShown() && alive.value, why: () => (isShown() ? runStatus.value.text : noView()) });
-commandsOf(() => (isShown() ? Object.entries(VIEWS).map(([id, title]) => ({ text: `View: ${title}`, group: "3D view", work: () => (view.value = id) })) : []));
+commandsOf(() => (isShown() ? Object.entries(VIEWS).map(([id, title]) => ({ text: `View: ${title}`, also: id, group: "3D view", work: () => (view.value = id) })) : []));
 commandsOf(() => (session.value?.overlays ?? []).map(({ name, title }) => {
   const shown = overlay(name).value.value;
   return { text: `${shown ? "Hide" : "Show"} overlay: ${title}`, group: "3D view", work: () => overlay(name).set(!shown), ready: isShown, why: noView };

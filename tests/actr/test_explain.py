@@ -166,6 +166,19 @@ def test_the_first_failing_condition_is_named_with_what_was_expected_and_found()
         why.production("matchin")
 
 
+def test_a_comparison_with_an_unbound_variable_names_the_variable() -> None:
+    agent = agent_of("""
+from actr3d.actr import *
+class Agent(ACTR):
+    goal = Buffer()
+    def stop(goal='number:?n last:!?n'):
+        pass
+""")
+    agent.run(0)
+    (why,) = agent.explain().productions
+    assert [one.expected for one in why.conditions] == ["some value for ?n", "anything but ?n"]
+
+
 def test_a_retrieval_is_explained_with_every_candidate_and_why_it_won_or_lost() -> None:
     agent = agent_of(SIMPLE)
     agent.traced()

@@ -177,6 +177,12 @@ def test_a_link_leads_to_a_moment_of_a_run(pages: Pages, workbench: Served) -> N
     expect(page.locator(".status-line")).to_contain_text("The link is copied")
     link = page.evaluate("navigator.clipboard.readText()")
     assert re.fullmatch(rf"{workbench.url}/\?run=counting-[\w-]+&t=0\.05&copied=\d+", link)
+    other = page.context.new_page()
+    other.goto(link)  # the run is there
+    shows(other, "#time", r"0\.05 s")
+    other.wait_for_timeout(300)
+    expect(other.locator(".toast")).to_have_count(0)
+    other.close()
     page.click("#run")
     shows(page, "#status", "ended")
     ended = page.locator("#time").inner_text()

@@ -100,15 +100,16 @@ class ConditionTests:
             key = slot_named(self._bound[key[1:]])
         fact = self._known(self._state.slot(self._production, name, key))
         wanted = self._bound.get(value) if op in ("same", "differs") else value
-        expected = _expected(condition, wanted)
+        unbound = op in ("same", "differs") and value not in self._bound
+        expected = f"{'anything but ' if op == 'differs' else ''}?{value}" if unbound else _expected(condition, wanted)
         if is_unknown(fact.value) or (op in ("same", "differs") and value in self._open):
             if op == "bind":
                 self._open.add(value)
             return self._unknown(_text(condition), expected, fact.source)
         if isinstance(fact.value, Missing):
             return Failure(condition=_text(condition), expected=expected, found=self._nothing(name, key))
-        if op in ("same", "differs") and value not in self._bound:
-            return self._not_bound(condition, f"{'anything but ' if op == 'differs' else ''}?{value}", value)
+        if unbound:
+            return self._not_bound(condition, expected, value)
         self._fact = f"'{fact.value}'"
         if op == "bind":
             self._bound[value] = fact.value
