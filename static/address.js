@@ -1,5 +1,7 @@
 // The address of the page: which model, or which recorded run and time; in a window of its own, which panel.
 
+import { exactTime } from "./parts/units.js";
+
 /** Returns a part of the address: "model", "run", "t", "copied", "panel", "page", "session" or "theme"; null for none. */
 export function addressed(name) {
   return new URLSearchParams(location.search).get(name);
@@ -48,5 +50,5 @@ export function leaveMoment() {
 /** Returns the whole address of a moment of a recorded run, as the run is now: it may be changed before that moment later. */
 export function addressOf(run, time) {
   const now = Math.floor(Date.now() / 1000);
-  return `${location.origin}/?${new URLSearchParams({ run, t: String(Number(time.toFixed(6))), copied: String(now) })}`;
+  return `${location.origin}/?${new URLSearchParams({ run, t: String(exactTime(time)), copied: String(now) })}`;
 }

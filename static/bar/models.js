@@ -3,6 +3,7 @@
 import { computed, effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
+import { exactTime } from "../parts/units.js";
 import { AGAIN, call, connect, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
 import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
@@ -31,7 +32,6 @@ const NO_MODELS = "There is no model in the folder yet: make one in the tab Edit
 /** What there is to do while no model is shown. */
 export const toShowOne = computed(() => (models.value.length > 0 ? "No model is shown: choose one above." : folder.value ? NO_MODELS : "No model is shown."));
 
-const SAME = 1e-6; // times that are no farther apart are the same [s]
 const FIRST = ["aperture_passage.py", "doorway.py"];
 
 let asked = 0;
@@ -105,7 +105,7 @@ async function chooseMoment(run, time) {
     queueMicrotask(() => {
       end();
       if (!wanted()) return;
-      if (Math.abs(present.peek() - time) < SAME) return;
+      if (exactTime(present.peek()) === exactTime(time)) return;
       const why = running.peek() ? "It goes on now: pause it, and go there" : isShared.peek() ? "Another page shows it, too: go there" : null;
       if (why) complain(`The link leads to ${time} s of this run. ${why} on the timeline.`);
       else travel(time);

@@ -14,6 +14,7 @@ import { Why } from "../inspector/why.js";
 import { useAnswer } from "../parts/answer.js";
 import { valueText } from "../parts/chunk.js";
 import { Splitter } from "../parts/splitter.js";
+import { exactTime } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { running, state } from "../store.js";
 import { travel } from "../timeline/seek.js";
@@ -22,7 +23,7 @@ const below = remembered("reasons height", Math.round(Math.min(270, 0.27 * inner
 
 function Moment({ result }) {
   const [text, setText] = useState("");
-  useLayoutEffect(() => setText(at.value === null ? "" : String(Number(at.value.toFixed(6)))), [at.value]);
+  useLayoutEffect(() => setText(at.value === null ? "" : String(exactTime(at.value))), [at.value]);
   const wrong = text.trim() !== "" && !(Number(text) >= 0);
 
   function take(event) {

@@ -1,11 +1,9 @@
 // Curves as CSV.
 
 import { valueAt } from "./curve.js";
+import { exactTime } from "./units.js";
 
 const DIGITS = 12; // the significant digits of a value; further ones are the rounding of a computation
-
-/** Returns a time [s] in whole microseconds, as the run has it. */
-const rounded = (time) => Number(time.toFixed(6));
 
 /**
  * Returns curves as the text of a CSV file: a column of times, and one for each curve, with units. Where a curve has no value, the cell
@@ -17,12 +15,12 @@ export function csvText(all, until = 0) {
   const curves = all.map((curve) => ({ until, ...curve }));
   const quoted = (text) => `"${text.replaceAll('"', '""')}"`;
   const goesOn = ({ times, values, slope, until }) => slope !== undefined && (values.at(-1) ?? null) !== null && until > times.at(-1);
-  const moments = new Set(curves.flatMap((curve) => curve.times.map(rounded)));
-  for (const curve of curves.filter(goesOn)) moments.add(rounded(curve.until));
+  const moments = new Set(curves.flatMap((curve) => curve.times.map(exactTime)));
+  for (const curve of curves.filter(goesOn)) moments.add(exactTime(curve.until));
   const times = [...moments].sort((one, other) => one - other);
   const heads = ["time [s]", ...curves.map(({ name, unit }) => (unit ? `${name} [${unit}]` : name))];
   const columns = curves.map((curve) => {
-    const own = new Set(curve.times.map(rounded));
+    const own = new Set(curve.times.map(exactTime));
     const valueText = (value) => (value === null ? "" : Number(value.toPrecision(DIGITS)));
     return times.map((time) => (curve.slope === undefined && !own.has(time) ? "" : valueText(valueAt(curve, time))));
   });

@@ -1,4 +1,4 @@
-// The units of measured values, which are the endings of their names.
+// The units of measured values, which are the endings of their names; times in the unit of the run.
 
 /** [ending, unit, decimals, factor to that unit], longer endings before their own endings. */
 const UNITS = [
@@ -19,3 +19,6 @@ export function unitOf(name) {
   const [ending, unit, digits, factor = 1] = UNITS.find(([one]) => name.endsWith(one)) ?? ["", "", 4];
   return { label: name.slice(0, name.length - ending.length).replaceAll("_", " "), unit, digits, factor };
 }
+
+/** Returns a time [s] in whole microseconds, as the run has it. */
+export const exactTime = (time) => Math.round(time * 1e6) / 1e6;

@@ -7,6 +7,7 @@ import { rememberedByModel } from "../model_storage.js";
 import { isLeft, say } from "../server.js";
 import { alive, complain, hurried, running, session, state, way } from "../store.js";
 import { firstFrom, leastAndMost, rangeOf, replace } from "../parts/curve.js";
+import { exactTime } from "../parts/units.js";
 import { subjectOf, subjectsOf, withColours } from "./colours.js";
 import { lanes } from "./record.js";
 import { furthest } from "./seek.js";
@@ -211,7 +212,6 @@ let again = false;
 let newer = false; // whether the newest stretch was requested last, while the run is active
 
 const near = () => (session.peek()?.period || 0.01) / 2; // moments that are no farther apart count as the same [s]
-const exact = (time) => Math.round(time * 1e6) / 1e6; // a whole number of microseconds, as times of events are [s]
 
 function changed() {
   curvesVersion.value = curvesVersion.peek() + 1;
@@ -361,7 +361,7 @@ async function askOnce() {
   // Events may have been added at the newest moment itself, and curves that the page does not know.
   const stretch = (list.length > 0 ? next(list) : null) ?? (isNew || (events && counted !== count) ? { from: now, to: now, most: AT_ONCE, whole: false } : null);
   if (!stretch) return false;
-  Object.assign(stretch, { first: exact(Math.max(0, stretch.from - near())), last: exact(stretch.to + near()) });
+  Object.assign(stretch, { first: exactTime(Math.max(0, stretch.from - near())), last: exactTime(stretch.to + near()) });
   const seen = !events ? null : isNew ? 0 : ofEvents.peek().length;
   const answer = await say({ type: "curves", names: list, first: stretch.first, last: stretch.last, most: stretch.most, seen });
   if (of !== history || !history.startsWith(`${way.peek()} `)) return true;

@@ -1,6 +1,7 @@
 // Goes to another time of the run: one seek at a time, and the newest target wins.
 
 import { computed, signal } from "../vendor/preact.js";
+import { exactTime } from "../parts/units.js";
 import { order, say } from "../server.js";
 import { alive, session, shownRun, state } from "../store.js";
 
@@ -20,7 +21,7 @@ let said = null; // the latest time sent to the run [s]
 export function seek(time) {
   const period = session.peek()?.period || 0.01;
   // Ticks are whole microseconds; the end of a program need not be at one.
-  travel(Math.round((Math.round(time / period) * period) * 1e6) / 1e6, time);
+  travel(exactTime(Math.round(time / period) * period), time);
 }
 
 /** Goes on or back by a number of ticks. */

@@ -1,6 +1,7 @@
 // Makes a video of the 3D view, exact in the time of the run: for each picture the run goes to its moment, and the picture is taken when
 // the 3D view has drawn that moment, however long it takes.
 
+import { exactTime } from "../parts/units.js";
 import { order, say } from "../server.js";
 import { listeners, session, state, way } from "../store.js";
 import { furthest, sayThere } from "../timeline/seek.js";
@@ -29,7 +30,7 @@ function timeOf({ begin, end, speed }, number) {
   const period = session.peek().period || 0.01;
   const last = Math.floor(furthest.peek() / period + 1e-6);
   const ticks = Math.round(Math.min(end, begin + (number * speed) / RATE) / period);
-  return Math.round(Math.min(ticks, last) * period * 1e6) / 1e6;
+  return exactTime(Math.min(ticks, last) * period);
 }
 
 /** Returns the window of the 3D view, if it has drawn a scene. */
