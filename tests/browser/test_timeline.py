@@ -1193,3 +1193,24 @@ def test_times_of_an_hour_or_more_are_in_hours_minutes_and_seconds(blank: Page) 
     assert long == ["0:00:00", "0:15:00", "0:30:00", "0:45:00", "1:00:00", "1:15:00"]
     assert near == ["0:59:50", "0:59:52", "0:59:54", "0:59:56", "0:59:58", "1:00:00", "1:00:02"]
     assert short == ["0 s", "500 s", "1000 s", "1500 s", "2000 s", "2500 s", "3000 s"]
+
+
+def test_fit_shows_what_happened_without_a_quiet_end_and_again_all_of_the_run(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'until', time: 30 }))")
+    shows(page, "#status", "30|ended")
+    shown = "async () => (await part('timeline/view.js')).span.value.to"
+    becomes_true(page, "async () => (await part('run_status.js')).lastEvent() > 0.1")
+    last = page.evaluate("async () => (await part('run_status.js')).lastEvent()")
+    newest = page.evaluate("async () => (await part('timeline/seek.js')).furthest.value")
+    assert last < 0.5 * newest
+    until(page, lambda: page.evaluate(shown) > newest)
+    page.get_by_role("button", name="Fit").click()
+    assert last < page.evaluate(shown) < 1.3 * last
+    page.get_by_role("button", name="Fit").click()
+    assert page.evaluate(shown) > newest
+    page.get_by_role("button", name="Fit").click()
+    page.evaluate("async () => (await part('timeline/seek.js')).seek(0)")
+    shows(page, "#time", r"0\.00 s")
+    assert page.evaluate(shown) < 1.3 * last  # a click does not move the axis
