@@ -218,6 +218,15 @@ def test_a_completion_says_what_it_is(ask: Asked) -> None:
     assert "doorway" in said["text"]
 
 
+def test_after_a_buffer_its_own_methods_come_first_and_its_chunk_is_documented(ask: Asked) -> None:
+    text = COUNTING.replace("memory.request", "goal.|; memory.request", 1)
+    assert ask.labels(text)[:4] == ["clear", "isEmpty", "modify", "set"]
+    said = ask("document item", text, "chunk")
+    assert (said["title"], said["text"]) == ("chunk: Chunk | None", "The chunk that it holds; None if it is empty.")
+    busy = ask("document item", COUNTING.replace("memory.request", "memory.|; memory.request", 1), "busy")
+    assert busy["title"] == "self.busy = False"  # not how False is made
+
+
 # -- documentation
 
 
