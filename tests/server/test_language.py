@@ -521,7 +521,7 @@ def test_odd_texts_are_answered_or_refused(ask: Asked, text: str) -> None:
     assert "import" in ask.labels("impo|")
 
 
-def test_the_route_refuses_what_it_cannot_answer(desk: Desk, tmp_path: Path) -> None:
+def test_the_route_says_why_there_is_no_answer_and_refuses_what_is_no_question(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     app = make_app(tmp_path, GATE)
     app.state.language = LanguageServer(desk.workers, tmp_path)
 
@@ -531,7 +531,11 @@ def test_the_route_refuses_what_it_cannot_answer(desk: Desk, tmp_path: Path) -> 
         return answer.status, json.loads(answer.body)
 
     assert posted() == (200, {"text": "x = 1\n"})
-    assert posted(text="x =") == (409, {"error": "the text was not formatted: line 1: Expected an expression"})
+    assert posted(text="x =") == (200, {"unanswered": "the text was not formatted: line 1: Expected an expression"})
+    with monkeypatch.context() as now:
+        now.setattr(language_server, "ANSWER_TIME", 0.3)
+        slow = posted(ask="complete", text="(" * 150_000, at=150_000)
+    assert slow == (200, {"unanswered": "reading this text takes longer than 0.3 s"})
     for status, more in (
         (422, {"text": "x" * (LONGEST_TEXT + 1)}),
         (422, {"ask": "execute"}),
