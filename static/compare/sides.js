@@ -60,6 +60,7 @@ function parameterRows(runs, changed, units) {
 export function SideBySide({ runs, changed, units }) {
   const [one, other] = runs;
   const line = (name, of) => [name, of(one), of(other), of(one) !== of(other)];
+  const isOpen = runs.some(({ session }) => session); // then its file is larger than it will be
   const own = [
     line("model", (run) => run.model),
     line("seed", (run) => String(run.seed)),
@@ -69,7 +70,7 @@ export function SideBySide({ runs, changed, units }) {
     line("end", endedText),
     line("simulated time", (run) => `${run.time.toFixed(2)} s`),
     line("events", (run) => run.events.toLocaleString("en")),
-    line("size", (run) => sizeText(run.size)),
+    ["size", ...runs.map(({ size }) => sizeText(size)), !isOpen && sizeText(one.size) !== sizeText(other.size)],
   ];
   return html`<table class="sides" aria-label="Side by side">
     <thead><tr>

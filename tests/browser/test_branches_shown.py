@@ -111,6 +111,21 @@ def test_a_branch_has_the_same_name_everywhere_and_no_other_one_of_its_tree_has_
     ]
 
 
+SIDES = """async (sessions) => {
+  const [{ SideBySide }, { html, render }] = await Promise.all(["compare/sides.js", "vendor/preact.js"].map((name) => part(name)));
+  const run = (session, size) => ({ ...{ model: "walk.py", seed: 1, label: {}, made: 0, branched: null, time: 1, events: 5 }, session, size });
+  const runs = [run(sessions[0], 90_000), run(sessions[1], 50_000)];
+  const box = document.createElement("div");
+  render(html`<${SideBySide} runs=${runs} changed=${[{}, {}]} units=${{}} />`, box);
+  return [...box.querySelectorAll("tr.other")].map((row) => row.textContent);
+}"""
+
+
+def test_the_size_of_a_recording_that_is_still_written_is_no_difference_of_two_runs(blank: Page) -> None:
+    assert blank.evaluate(SIDES, [None, None]) == ["≠size90 kB50 kB"]
+    assert not [row for row in blank.evaluate(SIDES, ["1", None]) if "size" in row]
+
+
 SHOWN_SPAN = "async () => { const { from, to } = (await part('timeline/view.js')).span.value; return [from, to]; }"
 
 
