@@ -90,11 +90,13 @@ NAMES = """async () => {
   const [{ runs }, wording] = await Promise.all(["runs/list.js", "runs/wording.js"].map((name) => part(name)));
   const run = (id, origin, branched, kept, name = "") =>
     ({ id, origin, branched, kept, ancestors: [], copied: null, made: 0, model: "walk.py", label: name ? { name } : null });
-  const tree = [run("a", null, null, null), run("c", "a", 2, 7), run("b", "a", 2, 5), run("d", "a", 2, 9, "mine"), run("e", "a", 4, 9, "mine")];
+  const named = [run("d", "a", 2, 9, "mine"), run("e", "a", 4, 9, "mine")];
+  const tree = [run("a", null, null, null), run("c", "a", 2, 7), run("b", "a", 2, 5), ...named];
   const other = [run("f", null, null, null), run("g", "f", 2, 3)];
   runs.value = [...tree, ...other];
   const when = wording.whenText(0);
-  const texts = runs.value.map((one) => [wording.nameInTree(one), wording.nameOf(one), wording.beginningText(one), wording.beginningText(one, true)]);
+  const { nameInTree, nameOf, beginningText } = wording;
+  const texts = runs.value.map((one) => [nameInTree(one), nameOf(one), beginningText(one), beginningText(one, true)]);
   return texts.map((all) => all.map((text) => text.replace(when, "then")));
 }"""
 
@@ -113,7 +115,8 @@ def test_a_branch_has_the_same_name_everywhere_and_no_other_one_of_its_tree_has_
 
 SIDES = """async (sessions) => {
   const [{ SideBySide }, { html, render }] = await Promise.all(["compare/sides.js", "vendor/preact.js"].map((name) => part(name)));
-  const run = (session, size) => ({ ...{ model: "walk.py", seed: 1, label: {}, made: 0, branched: null, time: 1, events: 5 }, session, size });
+  const same = { model: "walk.py", seed: 1, label: {}, made: 0, branched: null, time: 1, events: 5 };
+  const run = (session, size) => ({ ...same, session, size });
   const runs = [run(sessions[0], 90_000), run(sessions[1], 50_000)];
   const box = document.createElement("div");
   render(html`<${SideBySide} runs=${runs} changed=${[{}, {}]} units=${{}} />`, box);

@@ -521,7 +521,9 @@ def test_odd_texts_are_answered_or_refused(ask: Asked, text: str) -> None:
     assert "import" in ask.labels("impo|")
 
 
-def test_the_route_says_why_there_is_no_answer_and_refuses_what_is_no_question(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_route_says_why_there_is_no_answer_and_refuses_what_is_no_question(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     app = make_app(tmp_path, GATE)
     app.state.language = LanguageServer(desk.workers, tmp_path)
 

@@ -230,6 +230,7 @@ def test_a_production_inside_another_method_is_found_while_its_text_is_written()
     text = f"{head}        def second(goal='b'):\n            goal.clear()\n"
     message = "production 'first': 'second' is inside it, and therefore no production; it needs the indentation of 'first'"
     assert [(problem.line, problem.message) for problem in misplaced_in(text)] == [(5, message)]
-    for other in ("        def second(goal): pass\n", "        def second(much='b'): pass\n", "    def second(goal='b'):\n        goal.clear()\n"):
+    beside = "    def second(goal='b'):\n        goal.clear()\n"
+    for other in ("        def second(goal): pass\n", "        def second(much='b'): pass\n", beside):
         assert list(misplaced_in(head + other)) == []
     assert list(misplaced_in("class A:\n")) == []

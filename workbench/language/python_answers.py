@@ -200,7 +200,7 @@ def _item(one: jedi.Completion, owners: tuple[str, ...]) -> Item:
     return Item(label=one.name_with_symbols, type=KINDS.get(one.type, "variable"), boost=boost)
 
 
-def _declared(one: Any) -> Any:
+def _declared(one: jedi.BaseName) -> jedi.BaseName:
     """Returns the annotation of an attribute in the body of its class, if there is one, which says more than an assignment in a method."""
     method = one.parent() if one.type == "statement" else None
     owner = method.parent() if method is not None and method.type == "function" else None
