@@ -41,7 +41,7 @@ function near(factor) {
 /** Shows the run up to its last event: it may go on without any. A body moves on, and branches have events of their own. */
 function fit() {
   const isAll = hasScene.peek() || running.peek() || reach.peek() > furthest.peek();
-  fitTo(isAll ? reach.peek() : (lastEvent() ?? reach.peek()), reach.peek());
+  fitTo((!isAll && lastEvent()) || reach.peek(), reach.peek());
 }
 
 /** Registers a command of the timeline. */

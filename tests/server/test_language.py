@@ -127,7 +127,7 @@ class Pole(Feature):
             COUNTING.replace("    retrieval = ", "    production_ti|\n    retrieval = "),
             ["production_match_delay", "production_threshold", "production_time"],
         ),
-        (COUNTING.replace("goal.clear()", "goal.|"), ["chunk", "clear", "isEmpty", "modify", "set"]),
+        (COUNTING.replace("goal.clear()", "goal.|"), ["clear", "isEmpty", "modify", "set", "chunk"]),
         (COUNTING.replace("goal.clear()", "retr|"), ["retrieval"]),
         (COUNTING.replace("print(now)", "print(no|)"), ["now"]),
         (DOORWAY.replace('eye.request("view")', 'eye.request("|")'), ["accelerometer", "anatomy", "bounding_box"]),
