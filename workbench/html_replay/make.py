@@ -75,7 +75,8 @@ def _read(folder: Path, name: str) -> str:
 
 
 def _scripts(folder: Path) -> str:
-    return "\n".join(_read(folder, name) for name in ("space.js", "solids.js", "shades.js", "camera.js", "drawing.js", "events.js", "player.js"))
+    names = ("space.js", "solids.js", "shades.js", "camera.js", "drawing.js", "events.js", "player.js")
+    return "\n".join(_read(folder, name) for name in names)
 
 
 def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
