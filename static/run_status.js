@@ -39,12 +39,18 @@ function withReason({ status, reason }) {
   return reason ? `${status}: ${reason}` : status;
 }
 
+/** Returns the time of the newest event [s], apart from the end of the run; null before the first. */
+export function lastEvent() {
+  const [last = null] = events.value.list.findLast(([, , kind]) => kind !== "stop") ?? [];
+  return last === null ? null : last / 1e6;
+}
+
 /** Time may pass before a run ends in which nothing happens, such as that in which a memory knows what was retrieved recently. */
 function endedLine(facts) {
   const { period = 0.01 } = session.value;
-  const [last = null] = events.value.list.findLast(([, , kind]) => kind !== "stop") ?? [];
-  const isQuiet = last !== null && facts.furthest - last / 1e6 > 2 * period;
-  return `${withReason(facts)}${isQuiet ? `; the last event was at ${Number((last / 1e6).toFixed(3))} s` : ""}`;
+  const last = lastEvent();
+  const isQuiet = last !== null && facts.furthest - last > 2 * period;
+  return `${withReason(facts)}${isQuiet ? `; the last event was at ${Number(last.toFixed(3))} s` : ""}`;
 }
 
 /** A run that has ended by itself may be stopped too: then it can no longer answer questions. */

@@ -8,6 +8,8 @@ from fastapi import APIRouter, Request
 from fastapi.responses import Response
 from pydantic import Field
 
+from actr3d.values import to_json
+from workbench.language.answers import LanguageError
 from workbench.language.language_server import LONGEST_TEXT, LanguageServer
 from workbench.page_commands import PageMessage
 from workbench.routes import FilePath
@@ -29,7 +31,14 @@ class AskAboutText(PageMessage):
 
 @router.post("/language")
 async def language(request: Request, body: AskAboutText) -> Response:
-    """Answers a question about a text, by reading it: neither the text nor the files beside it are executed."""
+    """Answers a question about a text, by reading it: neither the text nor the files beside it are executed.
+
+    A question without an answer is usual while someone writes, for example if reading takes too long: then `unanswered` says why.
+    """
     request.app.state.sessions.folder.locate(body.path)
     server: LanguageServer = request.app.state.language
-    return Response(await server.ask(body.model_dump_json().encode()), media_type="application/json")
+    try:
+        answer = await server.ask(body.model_dump_json().encode())
+    except LanguageError as error:
+        answer = to_json({"unanswered": str(error)}).encode()
+    return Response(answer, media_type="application/json")

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
-from actr3d.actr.kernel.source_code import last_name, syntax_tree
+from actr3d.actr.kernel.source_code import last_name, productions_inside, syntax_tree
 from actr3d.actr.loading.source_text import compile_source, read_source
 from actr3d.actr.loading.sweep import parameters as first_lines
 from actr3d.errors import ConfigurationError, ModelFileError, alternatives
@@ -142,6 +142,15 @@ def undefined_in(source: str) -> Iterator[Problem]:
     """Yields a warning for each name that nothing defines; apart from `problems_of`, as only who checks a text wants them."""
     for line, message in undefined_names(syntax_tree(source)):
         yield Problem(level="warning", message=escape_surrogates(message), line=line)
+
+
+def misplaced_in(source: str) -> Iterator[Problem]:
+    """Yields a warning for each production inside another method, as the agent gives it when it begins."""
+    for kind in (node for node in syntax_tree(source).body if isinstance(node, ast.ClassDef)):
+        parts = {part.name for part in _parts(kind)}
+        for method in (node for node in kind.body if isinstance(node, ast.FunctionDef)):
+            for line, message in productions_inside(method, parts.__contains__):
+                yield Problem(level="warning", message=escape_surrogates(message), line=line)
 
 
 def _of_first_lines(source: str) -> Iterator[Parameter]:

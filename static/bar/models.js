@@ -3,7 +3,7 @@
 import { computed, effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
-import { exactTime } from "../parts/units.js";
+import { exactTime, timeText } from "../parts/units.js";
 import { AGAIN, call, connect, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
 import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
@@ -106,8 +106,8 @@ async function chooseMoment(run, time) {
       end();
       if (!wanted()) return;
       if (exactTime(present.peek()) === exactTime(time)) return;
-      const why = running.peek() ? "It goes on now: pause it, and go there" : isShared.peek() ? "Another page shows it, too: go there" : null;
-      if (why) complain(`The link leads to ${time} s of this run. ${why} on the timeline.`);
+      const why = running.peek() ? "It goes on now." : isShared.peek() ? "Another page shows it, too." : null;
+      if (why) complain(`The link leads to ${timeText(time)} of this run. ${why}`, "info", { text: "Go there", work: () => travel(time) });
       else travel(time);
     });
   });

@@ -2,6 +2,7 @@
 
 import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
+import { timeText } from "../parts/units.js";
 import { runs } from "../runs/list.js";
 import { whenInFull } from "../runs/wording.js";
 import { session, state } from "../store.js";
@@ -52,7 +53,7 @@ export function RecordingBanner() {
         <span class="path" title=${model}><bdi>${model}</bdi></span>
         <span class="when" title=${when}>${when}</span>
         <span title=${branched ? "It differs from the recording that was opened, or goes beyond it; this is recorded as a branch." : "Running it shows again what happened."}>
-          ${branched ? "Recorded as a branch" : `${(state.value?.furthest ?? 0).toFixed(2)} s recorded`}
+          ${branched ? "Recorded as a branch" : `${timeText(state.value?.furthest ?? 0)} recorded`}
         </span>
       </div>
     </div>

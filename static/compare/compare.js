@@ -4,7 +4,7 @@ import { html, signal, useEffect, useLayoutEffect, useRef, useSignal } from "../
 import { Icon } from "../parts/icon.js";
 import { call } from "../server.js";
 import { shownRecording } from "../store.js";
-import { beginningText } from "../runs/wording.js";
+import { beginningText, ownName } from "../runs/wording.js";
 import { Curves, SIDE_COLOURS } from "./curves.js";
 import { Difference } from "./difference.js";
 import { Changes, SideBySide } from "./sides.js";
@@ -37,7 +37,7 @@ function Head({ runs }) {
     ${runs.map(
       (run, n) => html`<span key=${n} class="compare-run" title=${run.id}>
         <svg width="14" height="14" aria-hidden="true"><rect width="14" height="14" rx="3" fill="var(--${SIDE_COLOURS[n]})" /></svg>
-        <b>${run.label.name || run.model}</b> <span class="number">${beginningText(run)}</span>${run.id === shownRecording.value ? html` <b class="mark">present</b>` : null}
+        <b>${ownName(run) || run.model}</b> <span class="number">${beginningText(run)}</span>${run.id === shownRecording.value ? html` <b class="mark">present</b>` : null}
       </span>`,
     )}
   </div>`;

@@ -100,7 +100,7 @@ function Overlaid({ curve, runs, samples, cursor, span }) {
     () =>
       both.flatMap((of, n) =>
         of?.values.some((value) => value !== null)
-          ? [{ name: `${SIDES[n]}: ${beginningText(runs[n], runs[n].label.name)}`, unit: curve.unit, shape: curve.shape, times: of.times, values: of.values, slope: of.slope ?? undefined, until: runs[n].time, colour: SIDE_COLOURS[n], dash: DASHES[n] }]
+          ? [{ name: `${SIDES[n]}: ${beginningText(runs[n], true)}`, unit: curve.unit, shape: curve.shape, times: of.times, values: of.values, slope: of.slope ?? undefined, until: runs[n].time, colour: SIDE_COLOURS[n], dash: DASHES[n] }]
           : [],
       ),
     [...both],

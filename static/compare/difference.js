@@ -4,6 +4,7 @@ import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { eventText, eventTimeText, eventValues } from "../inspector/event_text.js";
 import { valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
+import { timeText } from "../parts/units.js";
 import { GROUPS } from "../trace_kinds.js";
 
 const KINDS = [["all events", []], ...GROUPS.filter(({ kinds }) => kinds.length > 0).map(({ text, kinds }) => [text, kinds])];
@@ -53,8 +54,8 @@ function headline({ same_events: same, whole, difference }) {
   const [one, other] = difference.events;
   if (same === 0 && (!one || !other)) return `Only the ${one ? "first" : "second"} run has such events.`;
   if (!one || !other) return `${first} the same; then the ${one ? "second" : "first"} run has no more.`;
-  if (same === 0) return `The traces differ from the first event on, at ${difference.time.toFixed(3)} s.`;
-  return `${first} the same; the traces first differ at ${difference.time.toFixed(3)} s.`;
+  if (same === 0) return `The traces differ from the first event on, at ${timeText(difference.time, 3)}.`;
+  return `${first} the same; the traces first differ at ${timeText(difference.time, 3)}.`;
 }
 
 function What({ difference }) {

@@ -2,9 +2,10 @@
 
 import { html } from "../vendor/preact.js";
 import { valueText } from "../parts/chunk.js";
+import { timeText } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { runs as recordings } from "../runs/list.js";
-import { endedText, labelOf, measureText, originText, sizeText, whenText } from "../runs/wording.js";
+import { endedText, labelOf, measureText, originText, ownName, sizeText, whenText } from "../runs/wording.js";
 
 const onlyOthers = remembered("compare only differences", false);
 
@@ -41,7 +42,7 @@ function courseText(value, changes) {
   if (!changes?.length) return begun;
   const [time, last] = changes.at(-1);
   const more = changes.length > 1 ? ` (changed ${changes.length} times)` : "";
-  return `${begun} → ${valueText(last)} at ${time.toFixed(2)} s${more}`;
+  return `${begun} → ${valueText(last)} at ${timeText(time)}${more}`;
 }
 
 /** Returns the rows of the parameters, and of other values that were changed. */
@@ -59,16 +60,17 @@ function parameterRows(runs, changed, units) {
 export function SideBySide({ runs, changed, units }) {
   const [one, other] = runs;
   const line = (name, of) => [name, of(one), of(other), of(one) !== of(other)];
+  const isOpen = runs.some(({ session }) => session); // then its file is larger than it will be
   const own = [
     line("model", (run) => run.model),
     line("seed", (run) => String(run.seed)),
-    line("name", (run) => run.label.name || "–"),
+    line("name", (run) => ownName(run) || "–"),
     line("began", (run) => whenText(run.made)),
     line("branch", (run) => originText(run, recordings.value)),
     line("end", endedText),
     line("simulated time", (run) => `${run.time.toFixed(2)} s`),
     line("events", (run) => run.events.toLocaleString("en")),
-    line("size", (run) => sizeText(run.size)),
+    ["size", ...runs.map(({ size }) => sizeText(size)), !isOpen && sizeText(one.size) !== sizeText(other.size)],
   ];
   return html`<table class="sides" aria-label="Side by side">
     <thead><tr>

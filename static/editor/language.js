@@ -20,8 +20,14 @@ export function askAbout(state, ask, at = 0, name = "") {
   if (state.doc.length > LONGEST_READ) return Promise.reject(new Error(`The text is longer than ${LONGEST_READ.toLocaleString("en")} characters: it is not read for help.`));
   const turn = {};
   newest.set(ask, turn);
-  const answer = asking.then(() => (newest.get(ask) === turn ? call("POST", "/api/language", { ask, path, text: state.doc.toString(), at, name }) : null));
+  const answer = asking.then(() => (newest.get(ask) === turn ? answerTo({ ask, path, text: state.doc.toString(), at, name }) : null));
   asking = answer.catch(() => {});
+  return answer;
+}
+
+async function answerTo(question) {
+  const answer = await call("POST", "/api/language", question);
+  if (answer?.unanswered) throw new Error(answer.unanswered);
   return answer;
 }
 

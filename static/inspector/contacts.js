@@ -2,7 +2,7 @@
 
 import { contacts as contactCurves } from "../timeline/curves.js";
 import { firstWhere } from "../timeline/search.js";
-import { eventAt } from "./event_filter.js";
+import { eventAt, placeToRead } from "./event_filter.js";
 
 /** Returns contacts as events, in order: the start of each, the body, the force and the duration. */
 export function contactEvents() {
@@ -25,12 +25,12 @@ export class Mixed {
   /** Returns the number of the event or contact in a row. */
   numberAt(row) {
     const contact = this.places.indexOf(row);
-    return contact >= 0 ? -1 - contact : this.numbers[row - this.places.filter((place) => place < row).length];
+    return contact >= 0 ? -1 - contact : this.numbers[placeToRead(this.numbers, row - this.places.filter((place) => place < row).length)];
   }
 
   /** Returns the row of the nth event. */
   rowOf(n) {
-    return this.places.reduce((row, place) => (place <= row ? row + 1 : row), n);
+    return this.places.reduce((row, place) => (place <= row ? row + 1 : row), placeToRead(this.numbers, n));
   }
 
   /** Returns the row of a contact. */

@@ -42,6 +42,20 @@ export function useEventFilter(takes, key) {
   return filtered.update(events.value);
 }
 
+/** Returns whether the nth of some events, by their numbers, is a change by hand, and the one before it is its effect, which is recorded first. */
+function isAfterEffect(numbers, n) {
+  if (!(n > 0) || n >= numbers.length || numbers[n - 1] !== numbers[n] - 1) return false;
+  const [[before, source], [time, , kind, data]] = [eventAt(numbers[n - 1]), eventAt(numbers[n])];
+  if (kind !== "command" || before !== time) return false;
+  const { values = [], named = {} } = data.data ?? {};
+  return [...values, ...Object.values(named)].includes(source);
+}
+
+/** Returns the place at which the nth of some events is read, by their numbers: a change by hand before its effect. */
+export function placeToRead(numbers, n) {
+  return isAfterEffect(numbers, n) ? n - 1 : isAfterEffect(numbers, n + 1) ? n + 1 : n;
+}
+
 /** Returns an event by its number. */
 export function eventAt(number) {
   const { list, first } = events.peek();

@@ -14,7 +14,7 @@ import { Why } from "../inspector/why.js";
 import { useAnswer } from "../parts/answer.js";
 import { valueText } from "../parts/chunk.js";
 import { Splitter } from "../parts/splitter.js";
-import { exactTime } from "../parts/units.js";
+import { exactTime, timeText } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { running, state } from "../store.js";
 import { travel } from "../timeline/seek.js";
@@ -81,7 +81,7 @@ function Reasons() {
         )}
       </div>
       <span class="stretch"></span>
-      ${old && shown !== "conflict" ? html`<span class="quiet" role="status">as it was at ${time.toFixed(3)} s</span>` : null}
+      ${old && shown !== "conflict" ? html`<span class="quiet" role="status">as it was at ${timeText(time, 3)}</span>` : null}
       <${Moment} result=${result} />
     </div>
     <div class="reasons-body ${shown}" role="tabpanel" id="reasons-panel" aria-labelledby="reasons-${shown}">

@@ -12,6 +12,7 @@ import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
 import { pictureName, saveFile, SHARPNESS } from "../parts/picture.js";
 import { optimistic } from "../parts/optimistic_value.js";
+import { timeText } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { rememberedByModel } from "../model_storage.js";
 import { frameBudget } from "../frame_budget.js";
@@ -55,7 +56,7 @@ function ViewBar() {
         ${Object.entries(VIEWS).map(([id, title]) => html`<option key=${id} value=${id}>${title}</option>`)}
       </select>
       <button aria-label="Reset view" title=${buttonTitle(reset)} onClick=${resetView}><${Icon} name="restart" /></button>
-      ${canMove() ? html`<${Button} aria-label="Move, push …" disabled=${Boolean(noChange.value)} title=${noChange.value || "Move or push a body or an object of the scene"} onClick=${moveOrPush}><span class="in-words">Move, push …</span><${Icon} name="move" /><//>` : null}
+      ${canMove() ? html`<${Button} aria-label=${moving.text} disabled=${!moving.ready()} title=${noChange.value || "Move or push a body or an object of the scene"} onClick=${moveOrPush}><span class="in-words">${moving.text}</span><${Icon} name="move" /><//>` : null}
       <button aria-expanded=${open.value} aria-label="Overlays" title="Overlays: what is drawn over the scene" onClick=${() => (open.value = !open.value)} onKeyDown=${hideByEscape}><span class="in-words">Overlays</span><${Icon} name="layers" /></button>
       <button aria-label="Save the 3D view as a picture" title=${buttonTitle(keep)} onClick=${keepPicture}><${Icon} name="download" /></button>
       <${Button} aria-label="Make a video of the 3D view" title=${film.ready() ? buttonTitle(film) : film.why()} disabled=${!film.ready()} onClick=${makeVideo}><${Icon} name="film" /><//>
@@ -125,6 +126,7 @@ commandsOf(() => (session.value?.overlays ?? []).map(({ name, title }) => {
   const shown = overlay(name).value.value;
   return { text: `${shown ? "Hide" : "Show"} overlay: ${title}`, group: "3D view", work: () => overlay(name).set(!shown), ready: isShown, why: noView };
 }));
+const moving = command({ text: "Move, push …", also: "change by hand body object place", group: "3D view", work: moveOrPush, ready: () => canMove() && !noChange.value, why: () => noChange.value || "There is nothing in a scene that can be moved." });
 const openScene = command({ text: "Open the 3D view in a window of its own", group: "Page", work: () => openWindow("scene"), ready: isShown, why: noView });
 noteKey("double click", "Look at the thing that is clicked", "3D view");
 noteKey("W A S D Q E", "Move the camera, where it is free", "3D view");
@@ -144,7 +146,7 @@ function Lag({ frame }) {
       shown.value = null;
     };
   }, [running.value]);
-  return shown.value === null ? null : html`<p class="scene-lag number" title="The run goes faster than this machine can draw it">3D view of ${shown.value.toFixed(1)} s</p>`;
+  return shown.value === null ? null : html`<p class="scene-lag number" title="The run goes faster than this machine can draw it">3D view of ${timeText(shown.value, 1)}</p>`;
 }
 
 /** Returns why there is no picture: [text, whether there will be one]; null if there is one. `drawn` is reported by the frame. */

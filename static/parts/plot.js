@@ -7,7 +7,8 @@ import { csvText } from "./csv.js";
 import { Icon } from "./icon.js";
 import { saveFile, savePicture } from "./picture.js";
 import { CanvasSurface, scaled } from "./surface.js";
-import { numberText, timeText } from "./ticks.js";
+import { numberText } from "./ticks.js";
+import { timeText } from "./units.js";
 
 const LEFT = 46; // the width of the scale [px]
 const RIGHT = 32; // half of the last label of the axis is there [px]
@@ -99,7 +100,7 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
           </span>`;
         })}
       </span>
-      <span class="plot-time number quiet">${at === null ? "" : timeText(at, 0.01)}</span>
+      <span class="plot-time number quiet">${at === null ? "" : timeText(at)}</span>
       <button class="bare" title="Save the plot as a PNG" onClick=${() => save("png")}><${Icon} name="download" />PNG</button>
       <button class="bare" title="Save the plot as an SVG" onClick=${() => save("svg")}><${Icon} name="download" />SVG</button>
       <button class="bare" title="Save the values as CSV" onClick=${() => save("csv")}><${Icon} name="download" />CSV</button>

@@ -1,6 +1,7 @@
 // The ticks of an axis, and their labels.
 
 const STEPS = [1, 2, 5, 10];
+const LONG_STEPS = [15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 10_800, 21_600, 43_200, 86_400]; // [s]
 
 /** Returns the round step that covers a span with at most `most` steps. */
 export function stepFor(span, most) {
@@ -8,6 +9,14 @@ export function stepFor(span, most) {
   const rough = span / Math.max(1, most);
   const power = 10 ** Math.floor(Math.log10(rough));
   return power * STEPS.find((step) => step * power >= rough * (1 - 1e-9));
+}
+
+/** Returns the round step of an axis of time [s], as `stepFor`; on one of an hour or more, also quarters of a minute, an hour and so on. */
+export function timeStep({ from, to }, most) {
+  const step = stepFor(to - from, most);
+  if (to < 3600 || step <= 10) return step;
+  const rough = (to - from) / most;
+  return LONG_STEPS.find((one) => one >= rough * (1 - 1e-9)) ?? 86_400 * Math.max(1, Math.ceil(stepFor((to - from) / 86_400, most)));
 }
 
 /** Returns the multiples of a step from one number to another, as exactly as possible. */
@@ -19,7 +28,7 @@ export function ticks(from, to, step) {
 }
 
 /** Returns the number of decimals for multiples of a step. */
-function digitsOf(step) {
+export function digitsOf(step) {
   return Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
 }
 
@@ -32,11 +41,6 @@ export function roundRange(least, most) {
   }
   const step = stepFor(most - least, 8);
   return [Math.floor(least / step + 1e-6) * step, Math.ceil(most / step - 1e-6) * step];
-}
-
-/** Returns a time as text with the decimals for a step, and its unit. */
-export function timeText(time, step = 0.01) {
-  return `${time.toFixed(digitsOf(step))} s`;
 }
 
 /** Returns a value of a curve as text with at most four significant digits. */

@@ -20,5 +20,20 @@ export function unitOf(name) {
   return { label: name.slice(0, name.length - ending.length).replaceAll("_", " "), unit, digits, factor };
 }
 
+const HOUR = 3600; // [s]
+
+/** Returns a time [s] as people read it: seconds with their unit; from an hour on, hours, minutes and seconds: `1:15:12.30`. Tables and
+ * files have seconds.
+ *
+ * @param digits The number of decimals.
+ * @param longest The longest of several times that are to look alike [s]. */
+export function timeText(time, digits = 2, longest = time) {
+  if (longest < HOUR) return `${time.toFixed(digits)} s`;
+  const whole = Number(time.toFixed(digits));
+  const [hours, minutes] = [Math.floor(whole / HOUR), Math.floor((whole % HOUR) / 60)];
+  const two = (text) => (text.split(".")[0].length < 2 ? `0${text}` : text);
+  return `${hours}:${two(String(minutes))}:${two((whole - HOUR * hours - 60 * minutes).toFixed(digits))}`;
+}
+
 /** Returns a time [s] in whole microseconds, as the run has it. */
 export const exactTime = (time) => Math.round(time * 1e6) / 1e6;

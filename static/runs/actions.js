@@ -107,7 +107,7 @@ export async function deleteRuns(all) {
   const list = all.filter((run) => !run.session);
   const open = all.filter((run) => run.session);
   if (open.length > 0) {
-    const names = open.map((run) => `${run.model || run.id}, ${whenText(run.made)}`).join("; ");
+    const names = open.map(nameOf).join("; ");
     complain(`Not deleted: an open run still writes ${names}. Show and restart that run, then delete it.`);
   }
   if (list.length === 0) return;
@@ -123,7 +123,7 @@ export async function deleteRuns(all) {
       deleted.push({ run, trash });
     } catch (error) {
       if (error.status === 404) forgetRun(run.id);
-      else refused.push(`${run.model}: ${error.message}`);
+      else refused.push(`${nameOf(run)}: ${error.message}`);
     }
   }
   busy.value = null;

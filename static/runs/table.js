@@ -3,7 +3,7 @@
 import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
 import { remembered } from "../local_storage.js";
 import { alive, session, shownRecording, state } from "../store.js";
-import { agoText, branchText, differentText, endedText, firstMeasure, originText, outcomeText, resultText, sizeText, whenInFull, whenText } from "./wording.js";
+import { agoText, branchText, differentText, endedText, firstMeasure, nameOf, originText, outcomeText, ownName, resultText, sizeText, whenInFull, whenText } from "./wording.js";
 
 const ROW = 44; // [px]; style.css has the same
 const AROUND = 6; // the number of rows drawn beyond the visible ones
@@ -62,7 +62,8 @@ function Row({ run, list, number, now, toggle, open }) {
   const isChosen = chosen.value.has(run.id);
   const own = run.id === shownRecording.value;
   const different = differentText(run);
-  const { name = "", tags = [] } = run.label ?? {};
+  const name = ownName(run);
+  const { tags = [] } = run.label ?? {};
   return html`<tr
     class="${isChosen ? "chosen" : ""} ${own ? "present" : ""}"
     aria-selected=${isChosen}
@@ -72,7 +73,7 @@ function Row({ run, list, number, now, toggle, open }) {
     onDblClick=${() => open(run)}
   >
     <td class="pick">
-      <input type="checkbox" checked=${isChosen} aria-label="Choose ${run.model || run.id} of ${whenText(run.made)}" onClick=${(event) => { event.stopPropagation(); toggle(run.id, event, true); }} />
+      <input type="checkbox" checked=${isChosen} aria-label="Choose ${nameOf(run)}" onClick=${(event) => { event.stopPropagation(); toggle(run.id, event, true); }} />
     </td>
     <td class="when" title=${whenInFull(run.made)}><span class="number">${whenText(run.made)}</span><small>${agoText(run.made, now)}</small></td>
     <td class="model" title=${[name, run.model || run.id, tags.join(", "), different, `seed ${run.seed}`].filter(Boolean).join("\n")}>

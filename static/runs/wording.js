@@ -1,8 +1,10 @@
 // Recordings as text: date, parameters, results.
 
 import { valueText } from "../parts/chunk.js";
-import { unitOf } from "../parts/units.js";
-import { isOrphan } from "./list.js";
+import { timeText, unitOf } from "../parts/units.js";
+import { computed } from "../vendor/preact.js";
+import { isOrphan, runs } from "./list.js";
+import { numbersOf } from "./tree.js";
 
 const ENDED = {
   stop: "the model called stop()",
@@ -32,19 +34,43 @@ export function whenInFull(made) {
   return FULL.format(new Date(1000 * made));
 }
 
-/** Returns the name of a recording: what the user has called it, else its model, when it began, and where it is a branch. */
-export function nameOf(run) {
-  return run.label?.name || [run.model || run.id, whenText(run.made), branchText(run)].filter(Boolean).join(" ");
+/** Returns the name that a user has given a recording, else where it is a branch; recordings of one tree may have the same. */
+const plainText = (run) => run.label?.name || placeText(run);
+
+const placeText = ({ branched }) => (branched === null ? "" : `at ${timeText(branched)}`);
+
+const numbers = computed(() => numbersOf(runs.value ?? [], plainText));
+
+/** Returns the name of a recording with its number if another one of its tree has the same: `at 0.12 s`, `at 0.12 s (2)`. */
+function numbered(run) {
+  const number = numbers.value.get(run.id) ?? 1;
+  return number > 1 ? `${plainText(run)} (${number})` : plainText(run);
 }
 
-/** Returns when a run began, or another text instead, and where it is a branch: branches begin with their run. */
-export function beginningText(run, instead = "") {
-  return [instead || whenText(run.made), branchText(run)].filter(Boolean).join(", ");
+/** Returns the name that a user has given a recording, different from those of its branches; an empty text if there is none. */
+export function ownName(run) {
+  return run.label?.name ? numbered(run) : "";
+}
+
+/** Returns the name of a recording among its branches: what the user has called it, else where it is a branch, or when it began. */
+export function nameInTree(run) {
+  return numbered(run) || whenText(run.made);
+}
+
+/** Returns the name of a recording: what the user has called it, else its model, when it began, and where it is a branch. */
+export function nameOf(run) {
+  return ownName(run) || [run.model || run.id, whenText(run.made), branchText(run)].filter(Boolean).join(" ");
+}
+
+/** Returns when a run began, or its own name instead if that is wanted, and where it is a branch: branches begin with their run. */
+export function beginningText(run, named = false) {
+  return [(named && ownName(run)) || whenText(run.made), branchText(run)].filter(Boolean).join(", ");
 }
 
 /** Returns where a branch leaves its run, which began at the same time; an empty text if it is none. */
 export function branchText(run) {
-  return run.branched === null ? "" : `branch at ${run.branched.toFixed(2)} s`;
+  if (run.branched === null) return "";
+  return `branch ${run.label?.name ? placeText(run) : numbered(run)}`;
 }
 
 /** Returns when, and of which run in a list of recordings, a recording is a branch; a dash if it is none. */
@@ -52,7 +78,8 @@ export function originText(run, list) {
   if (run.branched === null) return "–";
   const listed = list?.find(({ id }) => id === run.id) ?? run;
   const origin = list?.find(({ id }) => id === listed.origin);
-  return `at ${run.branched.toFixed(2)} s${origin ? ` of ${nameOf(origin)}` : isOrphan(listed) ? " of a recording that was deleted" : ""}`;
+  const from = origin ? ` of ${nameOf(origin)}` : isOrphan(listed) ? " of a recording that was deleted" : "";
+  return `${placeText(run)}${from}`;
 }
 
 /** Returns how long ago something was, as text. */
@@ -130,6 +157,6 @@ export function measureText(name, value) {
 
 /** Returns all text that a search includes. */
 export function textOf(run) {
-  const own = [run.id, run.model, `seed ${run.seed}`, outcomeText(run), endedText(run), branchText(run), whenText(run.made), run.label?.name ?? "", run.label?.note ?? "", ...(run.label?.tags ?? [])];
+  const own = [run.id, run.model, `seed ${run.seed}`, outcomeText(run), endedText(run), branchText(run), whenText(run.made), ownName(run), run.label?.note ?? "", ...(run.label?.tags ?? [])];
   return [...own, ...Object.entries(run.parameters).map(([name, value]) => `${name} ${valueText(value)}`)].join("  ").toLowerCase();
 }

@@ -3,7 +3,7 @@
 import { effect, html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
 import { fetching } from "../earlier_events.js";
 import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
-import { timeText } from "../parts/ticks.js";
+import { timeText } from "../parts/units.js";
 import { events, running, session, state, way } from "../store.js";
 import { dark } from "../theme.js";
 import { reach } from "./branches.js";

@@ -4,6 +4,7 @@ import { html, signal } from "../vendor/preact.js";
 import { command } from "../commands.js";
 import { dialog } from "../parts/dialog.js";
 import { Problem } from "../parts/problem.js";
+import { timeText } from "../parts/units.js";
 import { runStatus } from "../run_status.js";
 import { alive } from "../store.js";
 import { furthest, present, seek } from "./seek.js";
@@ -17,7 +18,7 @@ function wrong() {
   const time = Number(text.value);
   if (text.value.trim() === "" || !(time >= 0)) return `Time: must be a number of seconds, such as 1.5 (got '${text.value}')`;
   const end = furthest.peek();
-  return time > end + 0.005 ? `Time: the run has only reached ${end.toFixed(2)} s; «Run until …» goes on to a later time (got ${time})` : null;
+  return time > end + 0.005 ? `Time: the run has only reached ${timeText(end)}; «Run until …» goes on to a later time (got ${time})` : null;
 }
 
 function Body() {

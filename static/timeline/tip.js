@@ -2,7 +2,8 @@
 
 import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { valueAt } from "../parts/curve.js";
-import { numberText, timeText } from "../parts/ticks.js";
+import { numberText } from "../parts/ticks.js";
+import { timeText } from "../parts/units.js";
 import { bandText } from "./lanes.js";
 import { furthest } from "./seek.js";
 
@@ -17,10 +18,10 @@ export function found(row, time, secondsPerPixel) {
 }
 
 function Times({ band }) {
-  if (band.mark) return html`<p class="number quiet">at ${timeText(band.from, 0.001)}</p>`;
-  const to = band.to === null ? "the newest moment" : timeText(band.to, 0.001);
+  if (band.mark) return html`<p class="number quiet">at ${timeText(band.from, 3)}</p>`;
+  const to = band.to === null ? "the newest moment" : timeText(band.to, 3);
   const length = band.to === null ? "" : `, ${((band.to - band.from) * 1000).toFixed(0)} ms`;
-  return html`<p class="number quiet">${timeText(band.from, 0.001)} to ${to}${length}${band.end ? `, ${band.end}` : ""}</p>`;
+  return html`<p class="number quiet">${timeText(band.from, 3)} to ${to}${length}${band.end ? `, ${band.end}` : ""}</p>`;
 }
 
 function OfBand({ row, band }) {

@@ -8,9 +8,9 @@ import { Button } from "../parts/button.js";
 import { dialog } from "../parts/dialog.js";
 import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
-import { runStatus } from "../run_status.js";
+import { lastEvent, runStatus } from "../run_status.js";
 import { order } from "../server.js";
-import { alive, running, session } from "../store.js";
+import { alive, hasScene, running, session } from "../store.js";
 import { reach } from "./branches.js";
 import { CurveChoice } from "./choice.js";
 import { chosen as plotted, names, plot } from "./curves.js";
@@ -19,7 +19,7 @@ import { filter, groupsThere, grow, hidden } from "./rows.js";
 import { FEW } from "./pointer.js";
 import { furthest, goTicks, inThePast, present, seek, wanted } from "./seek.js";
 import { savePictures } from "./pictures.js";
-import { fit, mode, zoom } from "./view.js";
+import { fitTo, mode, zoom } from "./view.js";
 import { openWindow } from "../windows.js";
 
 const STEP = 1.6; // the factor of a zoom button
@@ -38,6 +38,12 @@ function near(factor) {
   zoom(factor, present.peek(), present.peek(), reach.peek());
 }
 
+/** Shows the run up to its last event: it may go on without any. A body moves on, and branches have events of their own. */
+function fit() {
+  const isAll = hasScene.peek() || running.peek() || reach.peek() > furthest.peek();
+  fitTo((!isAll && lastEvent()) || reach.peek(), reach.peek());
+}
+
 /** Registers a command of the timeline. */
 function registered(text, key, work, ready, why = () => runStatus.value.text) {
   return command({ text, key, group: "Timeline", work, ready, why });
@@ -54,7 +60,7 @@ const zoomIn = registered("Zoom in", "z", () => near(1 / STEP));
 const zoomOut = registered("Zoom out", "Shift+z", () => near(STEP));
 registered("Make the plots taller", "h", () => grow(1), () => names.value.length > 0, noCurves);
 registered("Make the plots lower", "Shift+h", () => grow(-1), () => names.value.length > 0, noCurves);
-const showAll = registered("Show all of the run", "f", fit);
+const showAll = registered("Fit to what happened in the run; again: to all of it", "f", fit);
 const curves = registered("Choose the curves that are plotted", null, chooseCurves, () => names.value.length > 0 || running.value, noCurves);
 const keep = command({
   text: "Save the timeline or a plot as a picture, or its values as CSV",

@@ -10,7 +10,7 @@ const AHEAD = 0.1; // the part of the width that stays free after the newest mom
 
 /** The first and last visible time [s]. */
 export const span = signal({ from: 0, to: 1 });
-/** "fit": the whole run; "follow": the present stays in view; "free": the user's choice. */
+/** "fit": the whole run, or what happened in it; "follow": the present stays in view; "free": the user's choice. */
 export const mode = signal("fit");
 
 /** Returns the length of an axis for a whole run [s]: it grows in steps, so that its contents do not move all the time;
@@ -28,7 +28,8 @@ function show(from, to) {
 /** Moves the view to the run's time; while the run is active, before the present reaches the edge. */
 export function settle(present, furthest, running) {
   const { from, to } = span.peek();
-  if (mode.value === "fit") show(0, fitEnd(furthest, running ? 1 : MIN_SPAN)); // otherwise a starting run would move it at once
+  if (quietEnd?.at !== furthest) quietEnd = null;
+  if (mode.value === "fit") show(0, fitEnd(quietEnd?.from ?? furthest, running ? 1 : MIN_SPAN)); // otherwise a starting run would move it at once
   else if (mode.value === "follow") {
     const width = to - from;
     if (present > to - (running ? AHEAD * width : 0)) show(present - (1 - AHEAD) * width, present + AHEAD * width);
@@ -36,8 +37,21 @@ export function settle(present, furthest, running) {
   }
 }
 
-export function fit() {
+/** The end of the run in which nothing happens, if it is left out: {from, at} [s]; null if all is shown. */
+let quietEnd = null;
+
+/** Shows all of the run. */
+function fit() {
+  quietEnd = null;
   mode.value = "fit";
+}
+
+/** Shows what happened, up to a time [s]; if that is shown already, all of the run up to its newest time. */
+export function fitTo(happened, furthest) {
+  const isShown = mode.peek() === "fit" && quietEnd !== null;
+  fit();
+  if (happened < furthest && !isShown) quietEnd = { from: happened, at: furthest };
+  show(0, fitEnd(quietEnd?.from ?? furthest));
 }
 
 // Another model is shown as a whole at first.

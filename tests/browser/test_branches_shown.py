@@ -31,7 +31,7 @@ def change_the_past(page: Page) -> None:
 
 
 TREES = """async () => {
-  const { treeOf, sameUntil } = await part("timeline/branches.js");
+  const { treeOf, sameUntil } = await part("runs/tree.js");
   const run = (id, origin = null, branched = null, ancestors = []) => ({ id, origin, branched, ancestors, kept: null, made: 0 });
   const all = [run("a"), run("b", "a", 3), run("c", "b", 5, [["a", 3]]), run("d", "c", 2, [["b", 5], ["a", 3]]), run("other")];
   return ["", "b", "c", "a", "ab"].map((gone) => {
@@ -45,7 +45,7 @@ def test_a_branch_below_a_deleted_recording_follows_the_nearest_one_that_it_come
     trees = [["0a 1b 2c 3d", 2], ["0a 1c 2d", 2], ["0a 1b 2d", 2], ["0b 1c 2d", 2], ["0c 1d", 2]]
     assert page.evaluate(TREES) == trees
     siblings = """async () => {
-      const { treeOf, sameUntil } = await part("timeline/branches.js");
+      const { treeOf, sameUntil } = await part("runs/tree.js");
       const run = (id, at) => ({ id, origin: "gone", branched: at, ancestors: [], kept: null, made: 0 });
       const both = [run("e", 4), run("f", 2)];
       return [treeOf(both, "e").map(({ run, depth }) => depth + run.id), sameUntil(both, "e", "f")];
@@ -53,7 +53,7 @@ def test_a_branch_below_a_deleted_recording_follows_the_nearest_one_that_it_come
     assert page.evaluate(siblings) == [["0f", "0e"], 2]
     renamed = """async () => {
       const [{ treeOf }, { runs, total, withPresentNames }, { originText }] = await Promise.all(
-        ["timeline/branches.js", "runs/list.js", "runs/wording.js"].map((name) => part(name)),
+        ["runs/tree.js", "runs/list.js", "runs/wording.js"].map((name) => part(name)),
       );
       const same = { ancestors: [], kept: null, made: 0 };
       const run = (id, named, origin = null, branched = null) => ({ ...same, id, named, origin, branched, model: id });
@@ -70,20 +70,63 @@ def test_a_branch_below_a_deleted_recording_follows_the_nearest_one_that_it_come
     told = [["at 3.00 s of new", "at 2.00 s"], ["at 3.00 s of new", "at 2.00 s of a recording that was deleted"]]
     assert page.evaluate(renamed) == [["0new", "1b"], ["0c"], *told]  # while the list is read, the others may be in the rest of it
     reused = """async () => {
-      const [{ treeOf }, { withPresentNames }] = [await part("timeline/branches.js"), await part("runs/list.js")];
+      const [{ treeOf }, { withPresentNames }] = [await part("runs/tree.js"), await part("runs/list.js")];
       const run = (id, named, origin, branched) => ({ id, named, origin, branched, ancestors: [], kept: null, copied: null, made: 0 });
       const known = withPresentNames([run("a", "b", null, null), run("c", "c", "a", 3)]);
       return treeOf(known, "c").map(({ run, depth }) => depth + run.id);
     }"""
     assert page.evaluate(reused) == ["0c"]  # the recording «a» from which it comes was deleted, and another one is called so now
     copies = """async () => {
-      const { treeOf, sameUntil } = await part("timeline/branches.js");
+      const { treeOf, sameUntil } = await part("runs/tree.js");
       const run = (id, branched, kept, copied) => ({ id, origin: branched && "r", branched, ancestors: [], kept, copied, made: 0 });
       const all = [run("r", null, null, null), run("r1", 8, 1, ["r", 8]), run("b1", 3, null, null), run("c1", 5, 2, ["b1", 3])];
       all[2].origin = "c1";
       return [treeOf(all, "r").map(({ run, depth }) => depth + run.id), sameUntil(all, "r1", "c1")];
     }"""
     assert page.evaluate(copies) == [["0r", "1c1", "2b1", "1r1"], 5]  # r1 is a copy of the run r, c1 one of its branch b1
+
+
+NAMES = """async () => {
+  const [{ runs }, wording] = await Promise.all(["runs/list.js", "runs/wording.js"].map((name) => part(name)));
+  const run = (id, origin, branched, kept, name = "") =>
+    ({ id, origin, branched, kept, ancestors: [], copied: null, made: 0, model: "walk.py", label: name ? { name } : null });
+  const named = [run("d", "a", 2, 9, "mine"), run("e", "a", 4, 9, "mine")];
+  const tree = [run("a", null, null, null), run("c", "a", 2, 7), run("b", "a", 2, 5), ...named];
+  const other = [run("f", null, null, null), run("g", "f", 2, 3)];
+  runs.value = [...tree, ...other];
+  const when = wording.whenText(0);
+  const { nameInTree, nameOf, beginningText } = wording;
+  const texts = runs.value.map((one) => [nameInTree(one), nameOf(one), beginningText(one), beginningText(one, true)]);
+  return texts.map((all) => all.map((text) => text.replace(when, "then")));
+}"""
+
+
+def test_a_branch_has_the_same_name_everywhere_and_no_other_one_of_its_tree_has_it(blank: Page) -> None:
+    assert blank.evaluate(NAMES) == [
+        ["then", "walk.py then", "then", "then"],
+        ["at 2.00 s (2)", "walk.py then branch at 2.00 s (2)", "then, branch at 2.00 s (2)", "then, branch at 2.00 s (2)"],
+        ["at 2.00 s", "walk.py then branch at 2.00 s", "then, branch at 2.00 s", "then, branch at 2.00 s"],
+        ["mine", "mine", "then, branch at 2.00 s", "mine, branch at 2.00 s"],
+        ["mine (2)", "mine (2)", "then, branch at 4.00 s", "mine (2), branch at 4.00 s"],
+        ["then", "walk.py then", "then", "then"],
+        ["at 2.00 s", "walk.py then branch at 2.00 s", "then, branch at 2.00 s", "then, branch at 2.00 s"],
+    ]
+
+
+SIDES = """async (sessions) => {
+  const [{ SideBySide }, { html, render }] = await Promise.all(["compare/sides.js", "vendor/preact.js"].map((name) => part(name)));
+  const same = { model: "walk.py", seed: 1, label: {}, made: 0, branched: null, time: 1, events: 5 };
+  const run = (session, size) => ({ ...same, session, size });
+  const runs = [run(sessions[0], 90_000), run(sessions[1], 50_000)];
+  const box = document.createElement("div");
+  render(html`<${SideBySide} runs=${runs} changed=${[{}, {}]} units=${{}} />`, box);
+  return [...box.querySelectorAll("tr.other")].map((row) => row.textContent);
+}"""
+
+
+def test_the_size_of_a_recording_that_is_still_written_is_no_difference_of_two_runs(blank: Page) -> None:
+    assert blank.evaluate(SIDES, [None, None]) == ["≠size90 kB50 kB"]
+    assert not [row for row in blank.evaluate(SIDES, ["1", None]) if "size" in row]
 
 
 SHOWN_SPAN = "async () => { const { from, to } = (await part('timeline/view.js')).span.value; return [from, to]; }"
@@ -229,3 +272,11 @@ def test_branches_from_one_moment_have_names_of_their_own_and_say_what_was_chang
     buttons = page.get_by_role("region", name="Branches").locator(".branch-actions button")
     said = buttons.evaluate_all("all => all.map((one) => one.ariaLabel)")
     assert len(said) == len(set(said)) == 7
+    open_tab(page, "Runs")
+    expect(page.locator("tr[data-run]", has_text="branch at 0.12 s (2)")).to_have_count(1)
+    page.get_by_role("button", name="Compare at 0.12 s (2)").click()
+    expect(page.locator(".compare-runs")).to_contain_text("branch at 0.12 s (2)")
+    page.get_by_role("button", name="Close").click()
+    page.get_by_role("button", name="Delete at 0.12 s (2)").click()
+    expect(page.get_by_role("dialog")).to_contain_text(re.compile(r"Delete the recording «counting\.py .* branch at 0\.12 s \(2\)»[?]"))
+    page.get_by_role("dialog").get_by_role("button", name="Cancel").click()

@@ -488,3 +488,29 @@ def test_a_program_with_its_own_simulation_is_changed_by_hand_in_its_panels_and_
     page.keyboard.press("Control+z")
     shows(page, "#status", r"undone at 0\.05 s$")
     until(page, lambda: len(commands(page)) == 2)
+
+
+def test_in_the_trace_a_change_by_hand_is_read_before_its_effect(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="productions")
+    shows(page, "#status", "at its start")
+    say(page, type="step", ticks=12)
+    shows(page, "#time", r"0\.12 s")
+    page.get_by_label("Filter the trace").fill("goal")
+    page.locator("details.menu summary").click()
+    page.get_by_role("button", name="All", exact=True).evaluate("one => one.click()")
+    page.keyboard.press("Escape")
+    say(page, type="command", word="set_buffer", named={"buffer": "goal", "chunk": "task:rest"})
+    say(page, type="command", word="clear_buffer", named={"buffer": "goal"})
+    rows = page.locator("#events tbody tr, [id^=event-]")
+    expect(rows.last).to_contain_text("nothing")
+    assert rows.locator(".what span").all_inner_texts()[-4:] == [
+        "set buffer goal task:count number:2 last:5 -> task:rest",
+        "task:rest",
+        "clear buffer goal task:rest -> empty",
+        "nothing",
+    ]
+    numbers = rows.evaluate_all("all => all.slice(-2).map(({ id }) => id)")
+    rows.last.click()
+    shows(page, "#time", r"0\.12 s")
+    expect(rows.last).to_have_attribute("aria-selected", "true")
+    assert numbers == rows.evaluate_all("all => all.slice(-2).map(({ id }) => id)")

@@ -39,7 +39,7 @@ def opened(pages: Callable[..., Page], workbench: Served) -> Callable[[str], Pag
 
     def open_text(text: str) -> Page:
         (workbench.folder / "written.py").write_text(text, encoding="utf-8")
-        page = pages("counting.py", refusals=True)
+        page = pages("counting.py")
         shows(page, "#status", "at its start")
         open_tab(page, "Editor")
         page.get_by_label("File", exact=True).select_option("written.py")

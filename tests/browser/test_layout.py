@@ -188,8 +188,12 @@ def test_a_link_leads_to_a_moment_of_a_run(pages: Pages, workbench: Served) -> N
     ended = page.locator("#time").inner_text()
     other = page.context.new_page()
     other.goto(link)  # the run itself, for it is still open; it is not moved under the other page
-    expect(other.get_by_text("Another page shows it, too: go there on the timeline.").first).to_be_visible()
+    toast = other.locator(".toast.info")
+    expect(toast).to_contain_text("The link leads to 0.05 s of this run. Another page shows it, too.")
     expect(page.locator("#time")).to_have_text(ended)
+    toast.get_by_role("button", name="Go there").click()
+    shows(other, "#time", r"0\.05 s")
+    shows(page, "#time", r"0\.05 s")
     other.close()
     page.goto(link)
     shows(page, "#time", r"0\.05 s")

@@ -293,3 +293,13 @@ def test_a_command_that_opens_a_tab_moves_the_focus_to_its_panel(pages: Callable
     search(page, "go to a line")
     page.keyboard.press("Enter")
     expect(page.locator(".cm-panel input")).to_be_focused()
+
+
+def test_the_palette_finds_what_a_button_of_the_scene_is_called(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    search(page, "Move, push")
+    expect(page.get_by_role("listbox", name="Found").get_by_role("option").first).to_contain_text("Move, push …")
+    page.keyboard.press("Enter")
+    dialog = page.get_by_role("dialog", name="Change by hand")
+    expect(dialog.get_by_role("button", name="Push …")).to_be_visible()
+    page.keyboard.press("Escape")

@@ -24,6 +24,7 @@ from tests.browser.test_access import problems_of
 from tests.helpers.page import PATIENCE, drawn, until
 from tests.helpers.workbench_server import served
 from tests.server.test_html_replay import ZOO, Waiting
+from workbench.backdrop import Shades
 from workbench.html_replay import make
 from workbench.html_replay.shapes import Shapes
 
@@ -174,6 +175,28 @@ def test_the_triangles_of_each_kind_of_shape_are_where_it_is(browser: Browser) -
             assert solid["clear"] == (parts["colour"][3] < 255)
 
 
+def test_shadows_on_the_ground_are_those_of_the_workbench(browser: Browser) -> None:
+    model = mujoco.MjModel.from_xml_string(ZOO)
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    told = Shapes(model)
+    expected = sorted(Shades(model, 0.0).quads(data))
+    folder = Path(make.__file__).parent
+    names = ("space.js", "solids.js", "shades.js")
+    scripts = "".join((folder / name).read_text(encoding="utf-8").replace('"use strict";', "") for name in names)
+    poses = np.concatenate((data.xpos[told.bodies], data.xquat[told.bodies]), axis=1).tolist()
+    with browser.new_page() as page:
+        page.add_script_tag(content=scripts)
+        found: list[list[float]] = sorted(page.evaluate(SHADES, [told.parts, told.meshes, poses]))
+    assert len(found) == len(expected) > 4
+    for one, other in zip(found, expected, strict=True):
+        assert [*one[:2], *one[6:]] == pytest.approx([*other[:2], *other[6:]], abs=0.01)
+
+
+SHADES = """([shapes, meshes, poses]) => {
+    const known = meshes.map(({ places, faces }) => ({ places: unpacked(places, Float32Array), faces: unpacked(faces, Uint32Array) }));
+    return shadesOf(shapes.map((parts, n) => ({ boxes: parts.map((part) => boxOf(part, known)), pose: poseMatrix(poses[n]) })), 0);
+}"""
 JOINED = """([parts, meshes]) => {
     const known = meshes.map(({ places, faces }) => ({ places: unpacked(places, Float32Array), faces: unpacked(faces, Uint32Array) }));
     const { places, faces, facing, clear } = joined(parts, known);

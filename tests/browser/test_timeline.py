@@ -1174,3 +1174,43 @@ def test_plots_are_resized_and_name_every_curve_with_its_value_at_the_playhead(p
     page.reload()
     until(page, lambda: page.evaluate("async () => (await part('timeline/curves.js')).plots.value.length > 0"))
     assert page.evaluate(PLOT_ROW)["height"] == 132
+
+
+TIMES = """async () => {
+  const [{ timeText }, { timeStep, ticks, digitsOf }] = [await part("parts/units.js"), await part("parts/ticks.js")];
+  const axis = (span) => {
+    const step = timeStep(span, 6);
+    return ticks(span.from, span.to, step).map((time) => timeText(time, digitsOf(step), span.to));
+  };
+  const times = [0, 12.345, 3599.99, 3600, 4512.3, 3659.999, 86_461.5];
+  return [times.map((time) => timeText(time)), axis({ from: 0, to: 5000 }), axis({ from: 3590, to: 3602 }), axis({ from: 0, to: 3000 })];
+}"""
+
+
+def test_times_of_an_hour_or_more_are_in_hours_minutes_and_seconds(blank: Page) -> None:
+    texts, long, near, short = blank.evaluate(TIMES)
+    assert texts == ["0.00 s", "12.35 s", "3599.99 s", "1:00:00.00", "1:15:12.30", "1:01:00.00", "24:01:01.50"]
+    assert long == ["0:00:00", "0:15:00", "0:30:00", "0:45:00", "1:00:00", "1:15:00"]
+    assert near == ["0:59:50", "0:59:52", "0:59:54", "0:59:56", "0:59:58", "1:00:00", "1:00:02"]
+    assert short == ["0 s", "500 s", "1000 s", "1500 s", "2000 s", "2500 s", "3000 s"]
+
+
+def test_fit_shows_what_happened_without_a_quiet_end_and_again_all_of_the_run(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'until', time: 30 }))")
+    shows(page, "#status", "30|ended")
+    shown = "async () => (await part('timeline/view.js')).span.value.to"
+    becomes_true(page, "async () => (await part('run_status.js')).lastEvent() > 0.1")
+    last = page.evaluate("async () => (await part('run_status.js')).lastEvent()")
+    newest = page.evaluate("async () => (await part('timeline/seek.js')).furthest.value")
+    assert last < 0.5 * newest
+    until(page, lambda: page.evaluate(shown) > newest)
+    page.get_by_role("button", name="Fit").click()
+    assert last < page.evaluate(shown) < 1.3 * last
+    page.get_by_role("button", name="Fit").click()
+    assert page.evaluate(shown) > newest
+    page.get_by_role("button", name="Fit").click()
+    page.evaluate("async () => (await part('timeline/seek.js')).seek(0)")
+    shows(page, "#time", r"0\.00 s")
+    assert page.evaluate(shown) < 1.3 * last  # a click does not move the axis

@@ -28,6 +28,7 @@ from workbench.html_replay.make import write_replay
 from workbench.readers import Readers, ReadingError
 from workbench.worker import state_history
 
+MODELS = Path(__file__).parents[2] / "models"
 EVIL = "</script><img src=x onerror=alert(1)><!--"
 PRINTS = f"from actr3d.actr import *\nprint('''{EVIL}''')\n"
 
@@ -108,8 +109,37 @@ def test_a_branch_says_so_and_its_changes_are_in_words(tmp_path: Path) -> None:
     write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
     told = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))
     assert (told["title"], told["branched"]) == ("door.py · seed 1 · branch at 2.00 s", 2.0)
-    texts = ["aperture name: aperture width: 1.2", "walk walker 0.5", "pause", "pass_doorway begun"]
+    texts = ["aperture 120 cm", "walk walker 0.5", "pause", "pass_doorway begun"]
     assert [row[3] for row in told["events"]["rows"]] == texts
+
+
+def test_changes_by_hand_have_the_words_of_the_timeline(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, (MODELS / "doorway.py").read_text(encoding="utf-8"), record=True)
+    talk.say("step", ticks=2)
+    talk.until("paused", tick=2)
+    for word, values, named in (
+        ("aperture", [0.9], {}),
+        ("aperture", [], {"width": 0.755}),
+        ("move", [], {"object": "walker", "x": 1.0, "y": 0.5}),
+        ("set_buffer", [], {"buffer": "walker.goal", "chunk": "task:rest"}),
+        ("set_buffer", [], {"buffer": "walker.goal", "chunk": "task:walk"}),
+        ("clear_buffer", [], {"buffer": "walker.goal"}),
+        ("forbid_once", [], {"system": "walker", "production": "turn"}),
+    ):
+        talk.say("command", word=word, values=values, named=named)
+    talk.say("step", ticks=1)
+    talk.until("paused", tick=3)
+    write_replay(recording(desk, talk), tmp_path / "replay.html")
+    rows = inside((tmp_path / "replay.html").read_text(encoding="utf-8"))["events"]["rows"]
+    assert [row[3] for row in rows if row[2] == "command"] == [
+        "aperture 50 -> 90 cm",
+        "aperture 90 -> 75.5 cm",
+        "move walker to (1, 0.5) m",
+        "set buffer walker.goal approach -> task:rest",
+        "set buffer walker.goal task:rest -> task:walk",
+        "clear buffer walker.goal task:walk -> empty",
+        "forbid once turn",
+    ]
 
 
 def test_an_event_of_an_unregistered_kind_is_shown_with_its_data(tmp_path: Path) -> None:

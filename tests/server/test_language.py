@@ -127,7 +127,7 @@ class Pole(Feature):
             COUNTING.replace("    retrieval = ", "    production_ti|\n    retrieval = "),
             ["production_match_delay", "production_threshold", "production_time"],
         ),
-        (COUNTING.replace("goal.clear()", "goal.|"), ["chunk", "clear", "isEmpty", "modify", "set"]),
+        (COUNTING.replace("goal.clear()", "goal.|"), ["clear", "isEmpty", "modify", "set", "chunk"]),
         (COUNTING.replace("goal.clear()", "retr|"), ["retrieval"]),
         (COUNTING.replace("print(now)", "print(no|)"), ["now"]),
         (DOORWAY.replace('eye.request("view")', 'eye.request("|")'), ["accelerometer", "anatomy", "bounding_box"]),
@@ -216,6 +216,15 @@ def test_a_completion_says_what_it_is(ask: Asked) -> None:
     said = ask("document item", "from actr3d.world import Ap|", "Aperture")
     assert said["title"].startswith("Aperture(name")
     assert "doorway" in said["text"]
+
+
+def test_after_a_buffer_its_own_methods_come_first_and_its_chunk_is_documented(ask: Asked) -> None:
+    text = COUNTING.replace("memory.request", "goal.|; memory.request", 1)
+    assert ask.labels(text)[:4] == ["clear", "isEmpty", "modify", "set"]
+    said = ask("document item", text, "chunk")
+    assert (said["title"], said["text"]) == ("chunk: Chunk | None", "The chunk that it holds; None if it is empty.")
+    busy = ask("document item", COUNTING.replace("memory.request", "memory.|; memory.request", 1), "busy")
+    assert busy["title"] == "self.busy = False"  # not how False is made
 
 
 # -- documentation
@@ -512,7 +521,9 @@ def test_odd_texts_are_answered_or_refused(ask: Asked, text: str) -> None:
     assert "import" in ask.labels("impo|")
 
 
-def test_the_route_refuses_what_it_cannot_answer(desk: Desk, tmp_path: Path) -> None:
+def test_the_route_says_why_there_is_no_answer_and_refuses_what_is_no_question(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     app = make_app(tmp_path, GATE)
     app.state.language = LanguageServer(desk.workers, tmp_path)
 
@@ -522,7 +533,11 @@ def test_the_route_refuses_what_it_cannot_answer(desk: Desk, tmp_path: Path) -> 
         return answer.status, json.loads(answer.body)
 
     assert posted() == (200, {"text": "x = 1\n"})
-    assert posted(text="x =") == (409, {"error": "the text was not formatted: line 1: Expected an expression"})
+    assert posted(text="x =") == (200, {"unanswered": "the text was not formatted: line 1: Expected an expression"})
+    with monkeypatch.context() as now:
+        now.setattr(language_server, "ANSWER_TIME", 0.3)
+        slow = posted(ask="complete", text="(" * 150_000, at=150_000)
+    assert slow == (200, {"unanswered": "reading this text takes longer than 0.3 s"})
     for status, more in (
         (422, {"text": "x" * (LONGEST_TEXT + 1)}),
         (422, {"ask": "execute"}),

@@ -13,7 +13,7 @@ from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.errors import ConfigurationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.runner.model_factory import Blueprint
-from workbench.loader import listing_of, problems_of, undefined_in
+from workbench.loader import listing_of, misplaced_in, problems_of, undefined_in
 
 MODELS = Path(__file__).parents[2] / "models"
 MODEL = '''"""Walks.
@@ -105,7 +105,7 @@ def test_every_model_is_listed_without_complaint() -> None:
     for path in sorted(MODELS.rglob("*.py")):
         text = path.read_text(encoding="utf-8")
         listing = listing_of(text, path.name)
-        assert (listing.problems, list(undefined_in(text))) == ((), [])
+        assert (listing.problems, [*undefined_in(text), *misplaced_in(text)]) == ((), [])
         assert listing.title
 
 
@@ -223,3 +223,14 @@ def test_names_that_nothing_defines_are_found_where_a_text_is_executed_first(tex
         assert not any("nothing defines" in message for _, message in problems)
     else:
         assert problems == found
+
+
+def test_a_production_inside_another_method_is_found_while_its_text_is_written() -> None:
+    head = "class Agent(ACTR):\n    goal = Buffer()\n    def first(goal='a'):\n        goal.set('b')\n"
+    text = f"{head}        def second(goal='b'):\n            goal.clear()\n"
+    message = "production 'first': 'second' is inside it, and therefore no production; it needs the indentation of 'first'"
+    assert [(problem.line, problem.message) for problem in misplaced_in(text)] == [(5, message)]
+    beside = "    def second(goal='b'):\n        goal.clear()\n"
+    for other in ("        def second(goal): pass\n", "        def second(much='b'): pass\n", beside):
+        assert list(misplaced_in(head + other)) == []
+    assert list(misplaced_in("class A:\n")) == []

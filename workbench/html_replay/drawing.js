@@ -25,6 +25,17 @@ void main() {
   seen = vec4(mix(ground, line, strong), far);
 }`;
 
+const SHADE_VERTEX = `#version 300 es
+in vec2 place; uniform mat4 view; uniform float height; uniform vec4 around; uniform vec3 form; out vec2 at;
+void main() {
+  at = place * (form.xy + form.z);
+  vec2 turned = vec2(around.z * at.x - around.w * at.y, around.w * at.x + around.z * at.y);
+  gl_Position = view * vec4(around.xy + turned, height, 1.0);
+}`;
+const SHADE_FRAGMENT = `#version 300 es
+precision highp float; in vec2 at; uniform vec3 form; uniform float dark; out vec4 seen;
+void main() { seen = vec4(0.0, 0.0, 0.0, dark * (1.0 - smoothstep(0.0, 1.0, length(max(abs(at) - form.xy, 0.0)) / form.z))); }`;
+
 const parts = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
 
 class Drawing {
@@ -35,6 +46,8 @@ class Drawing {
     if (!this.gl) throw new Error("this browser has no WebGL 2, which the 3D scene needs");
     this.shaded = this.program(SHAPE_VERTEX, SHAPE_FRAGMENT);
     this.grounded = this.program(GROUND_VERTEX, GROUND_FRAGMENT);
+    this.darkened = this.program(SHADE_VERTEX, SHADE_FRAGMENT);
+    this.darkSquare = this.array(this.darkened, { place: [new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]), 2, this.gl.FLOAT, false] });
     this.square = this.array(this.grounded, { place: [new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]), 2, this.gl.FLOAT, false] });
     this.scenes = scenes.map((scene) => this.drawable(scene));
     this.begin = this.scenes[0].times[0];
@@ -49,9 +62,10 @@ class Drawing {
   drawable(scene) {
     const meshes = scene.meshes.map(({ places, faces }) => ({ places: unpacked(places, Float32Array), faces: unpacked(faces, Uint32Array) }));
     const shapes = scene.shapes.map((parts) => this.shape(joined(parts, meshes)));
+    const boxes = scene.shapes.map((parts) => parts.map((part) => boxOf(part, meshes)));
     const [times, poses] = [scene.times, scene.poses].map((numbers) => unpacked(numbers, Float32Array));
     const first = shapes.length ? [...times].map((_, frame) => (frame * shapes.length + scene.stage.follow) * 7) : [];
-    return { scene, times, poses, shapes, camera: new Camera(scene.stage, first.map((at) => [poses[at], poses[at + 1]])) };
+    return { scene, times, poses, shapes, boxes, camera: new Camera(scene.stage, first.map((at) => [poses[at], poses[at + 1]])) };
   }
 
   // Sets the scene of a time: that of the simulation which has begun last.
@@ -130,6 +144,7 @@ class Drawing {
     const { eye, target, view } = this.camera.seen(this.pose(this.scene.stage.follow, time), wide / high);
     this.target = target;
     this.drawGround(view, colours);
+    this.drawShades(view, colours, time);
     gl.useProgram(this.shaded);
     const place = (name) => gl.getUniformLocation(this.shaded, name);
     gl.uniformMatrix4fv(place("view"), false, view);
@@ -155,6 +170,27 @@ class Drawing {
       gl.uniform1f(place("height"), height);
       gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
     }
+  }
+
+  // Draws the shadows on the highest ground; they hide nothing.
+  drawShades(view, colours, time) {
+    if (!this.scene.grounds.length) return;
+    const gl = this.gl, place = (name) => gl.getUniformLocation(this.darkened, name), ground = this.scene.grounds.at(-1);
+    gl.useProgram(this.darkened);
+    gl.uniformMatrix4fv(place("view"), false, view);
+    gl.uniform1f(place("height"), ground);
+    gl.bindVertexArray(this.darkSquare);
+    gl.depthMask(false);
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(-2, -2);
+    for (const [x, y, c, s, a, b, soft, dark] of shadesOf(this.boxes.map((boxes, n) => ({ boxes, pose: poseMatrix(this.pose(n, time)) })), ground)) {
+      gl.uniform4f(place("around"), x, y, c, s);
+      gl.uniform3f(place("form"), a, b, soft);
+      gl.uniform1f(place("dark"), dark * colours.shade);
+      gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    }
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    gl.depthMask(true);
   }
 
   listen() {

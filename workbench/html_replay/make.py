@@ -21,7 +21,9 @@ from actr3d.values import to_json
 from workbench.curves import stride
 from workbench.files import ModelFolder
 from workbench.geom_colours import dress
+from workbench.html_replay.change_texts import ChangeTexts, widths_in
 from workbench.html_replay.shapes import Shapes, grounds_of, packed, poses_of
+from workbench.loader import listing_of
 from workbench.palette import palette
 from workbench.program_time import timed_events
 from workbench.recorded_simulations import RecordedSimulation, simulations_of
@@ -53,8 +55,10 @@ def write_replay(path: Path, to: Path, *, models: str | None = None) -> None:
         OSError: If the file cannot be written.
     """
     with Recorded(path) as recorded:
-        facts, (events, agents) = _facts(recorded, models), _events(recorded)
-        found = [one for one in simulations_of(recorded) if one.mj_model.ngeom > 0]
+        facts = _facts(recorded, models)
+        simulations = simulations_of(recorded)
+        events, agents = _events(recorded, _changes(recorded, simulations))
+        found = [one for one in simulations if one.mj_model.ngeom > 0]
         scenes = [_scene(one, list(agents[one.number]), len(found)) for one in found]
         content = {**facts, "palette": palette(), "events": events, "scenes": scenes}
     # No text from a model can close the HTML element that contains it.
@@ -71,7 +75,8 @@ def _read(folder: Path, name: str) -> str:
 
 
 def _scripts(folder: Path) -> str:
-    return "\n".join(_read(folder, name) for name in ("space.js", "solids.js", "camera.js", "drawing.js", "events.js", "player.js"))
+    names = ("space.js", "solids.js", "shades.js", "camera.js", "drawing.js", "events.js", "player.js")
+    return "\n".join(_read(folder, name) for name in names)
 
 
 def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
@@ -92,7 +97,15 @@ def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
     }
 
 
-def _events(recorded: Recorded) -> tuple[dict[str, Any], Mapping[int, Iterable[str]]]:
+def _changes(recorded: Recorded, simulations: Iterable[RecordedSimulation]) -> ChangeTexts:
+    facts = recorded.facts
+    listing = listing_of(facts.get("sources", {}).get(facts.get("file", ""), ""))
+    walls = [(one.number, one.mj_model, one.facts["world"].get("walls", {})) for one in simulations]
+    widths = {(number, name): width for number, model, gaps in walls for name, width in widths_in(model, gaps)}
+    return ChangeTexts(listing, facts.get("parameters", {}), widths, value_text=_value, chunk_text=_chunk)
+
+
+def _events(recorded: Recorded, changes: ChangeTexts) -> tuple[dict[str, Any], Mapping[int, Iterable[str]]]:
     """Returns the events as rows, the number of events left out, and the result separately; and the names of the agents of each run, by
     its number, in the order of their first events, which is the model's."""
     rows: list[tuple[float, str, str, str]] = []
@@ -100,7 +113,8 @@ def _events(recorded: Recorded) -> tuple[dict[str, Any], Mapping[int, Iterable[s
     result: dict[str, Any] | None = None
     for event in timed_events(recorded):
         if len(rows) < MAX_EVENTS:
-            rows.append((event.time, event.source, event.kind, _text(event)))
+            changes.take(event)
+            rows.append((event.time, event.source, event.kind, _text(event, changes)))
         agents[event.run][_agent(event)] = None
         if event.kind == "result":
             result = dict(event.data)
@@ -120,7 +134,7 @@ def _plain(values: Mapping[str, Any]) -> dict[str, str]:
     return {str(name): _value(value) for name, value in values.items()}
 
 
-def _text(event: TraceEvent) -> str:
+def _text(event: TraceEvent, changes: ChangeTexts) -> str:
     """Returns the content of an event as one line."""
     data, kind = event.data, KINDS.get(event.kind)
     if kind is not None and kind.text:
@@ -128,7 +142,7 @@ def _text(event: TraceEvent) -> str:
     elif event.kind in ("buffer", "add"):
         text = _chunk(data.get("chunk"))
     elif event.kind == "command":
-        text = _command(data)
+        text = changes.text(event)
     else:
         text = "  ".join(f"{name}={_value(value)}" for name, value in data.items())
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
@@ -140,14 +154,6 @@ def _chunk(slots: Any) -> str:
         return "empty" if slots is None else str(slots)
     named = cast("Mapping[str, Any]", slots)
     return " ".join(_word(value) if name.isdecimal() else f"{name}:{_word(value)}" for name, value in named.items())
-
-
-def _command(data: Mapping[str, Any]) -> str:
-    """Returns a command with its body and its values: `aperture name: aperture width: 1.2`."""
-    given = cast("dict[str, Any]", data.get("data") or {})
-    named = cast("dict[str, Any]", given.get("named") or {})
-    values = [*map(_value, cast("list[Any]", given.get("values") or [])), *(f"{name}: {_value(value)}" for name, value in named.items())]
-    return " ".join([str(data.get("command")), *([str(given["body"])] if given.get("body") else []), *values])
 
 
 def _value(value: Any) -> str:

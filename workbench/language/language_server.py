@@ -26,8 +26,6 @@ LONGEST_TEXT = 200_000
 class TooManyQuestionsError(LanguageError):
     """Too many questions wait already."""
 
-    status = 503
-
 
 class LanguageServer(Receiver):
     """Answers questions about texts, by a process of its own with limits of time and memory.

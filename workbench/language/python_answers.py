@@ -193,14 +193,25 @@ def _before(explicit: ExplicitText, line: int, column: int) -> str:
 
 
 def _item(one: jedi.Completion, owners: tuple[str, ...]) -> Item:
-    """Returns a completion; attributes of an object's own class come before those that it inherits."""
-    is_own = bool(owners) and (one.full_name or "").startswith(owners)
-    boost = -2 if one.name.startswith("_") else 2 if one.type == "param" else 1 if is_own else -1 if one.type == "keyword" else 0
+    """Returns a completion; methods of an object's own class come before its other attributes, and these before those that it inherits."""
+    own = bool(owners) and (one.full_name or "").startswith(owners)
+    own_rank = 2 if own and one.type == "function" else 1 if own else 0
+    boost = -2 if one.name.startswith("_") else 2 if one.type == "param" else -1 if one.type == "keyword" else own_rank
     return Item(label=one.name_with_symbols, type=KINDS.get(one.type, "variable"), boost=boost)
 
 
-def _documentation(one: jedi.BaseName) -> Documentation:
-    signatures = [signature.to_string() for signature in one.get_signatures()]
+def _declared(one: jedi.BaseName) -> jedi.BaseName:
+    """Returns the annotation of an attribute in the body of its class, if there is one, which says more than an assignment in a method."""
+    method = one.parent() if one.type == "statement" else None
+    owner = method.parent() if method is not None and method.type == "function" else None
+    fields = owner.defined_names() if owner is not None and owner.type == "class" else []
+    return next((field for field in fields if field.name == one.name and field.type == "statement"), one)
+
+
+def _documentation(name: jedi.BaseName) -> Documentation:
+    one = _declared(name)
+    # What is called to make the value of a variable says nothing about the variable.
+    signatures = [signature.to_string() for signature in one.get_signatures()] if one.type in ("function", "class") else []
     title = "\n".join(signatures[:3]) or (one.description.removeprefix("param ") if one.type not in ("module", "keyword") else one.name)
     text = _text_of_parameter(one) if one.type == "param" else one.docstring(raw=True)
     return Documentation(title=title[:LONGEST_DOCUMENTATION], text=(text or _field_text(one))[:LONGEST_DOCUMENTATION])

@@ -20,6 +20,7 @@ class Buffer(Model):
     """Holds at most one chunk; its slots are read by `buffer[slot]` and matched by productions."""
 
     chunk: Chunk | None
+    """The chunk that it holds; None if it is empty."""
     _slots: frozenset[str] = frozenset()
     """Slots that a library adds to its chunks: productions may test them although the model's text never sets them."""
 

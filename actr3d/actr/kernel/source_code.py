@@ -227,3 +227,21 @@ def _names_defined_by(node: ast.AST) -> Iterator[str]:
             yield from node.names
         case _:
             pass
+
+
+def productions_inside(node: ast.FunctionDef, is_part: Callable[[str], bool]) -> Iterator[tuple[int, str]]:
+    """Yields the line and a message for each function inside a method that looks like a production and is not used by the method.
+
+    Args:
+        node: The method.
+        is_part: Returns whether the agent has a part of a name.
+    """
+    inside = [part for statement in node.body for part in ast.walk(statement)]
+    read = {part.id for part in inside if isinstance(part, ast.Name)}
+    for part in inside:
+        if not isinstance(part, ast.FunctionDef) or part.name in read:
+            continue
+        names = [one.arg for one in part.args.args]
+        if names and all(map(is_part, names)) and len(part.args.defaults) == len(names):
+            what = f"'{part.name}' is inside it, and therefore no production; it needs the indentation of '{node.name}'"
+            yield part.lineno, f"production '{node.name}': {what}"

@@ -16,7 +16,7 @@ from actr3d.actr.declarative.memory import Memory
 from actr3d.actr.declarative.partial_matching import Partial
 from actr3d.actr.kernel.buffer import Buffer
 from actr3d.actr.kernel.model import MethodWrapper, Model
-from actr3d.actr.kernel.source_code import function_node, names_defined_in, source_of, syntax_tree
+from actr3d.actr.kernel.source_code import function_node, names_defined_in, productions_inside, source_of, syntax_tree
 from actr3d.actr.lint.slot_inference import slots_held
 from actr3d.actr.lint.slot_names import GIVERS, READERS, SURE, misspelling_of, slots_in, text_of, vocabulary
 from actr3d.actr.modules.imaginal import ImaginalModule
@@ -64,16 +64,8 @@ def _check_names(production: Production, known: set[str], where: str) -> None:
 
 def _check_inner(production: Production, node: ast.FunctionDef) -> None:
     """Finds productions that are defined inside another one, which does not call them."""
-    inside = [part for statement in node.body for part in ast.walk(statement)]
-    read = {part.id for part in inside if isinstance(part, ast.Name)}
-    for part in inside:
-        if not isinstance(part, ast.FunctionDef) or part.name in read:
-            continue
-        names = [one.arg for one in part.args.args]
-        matched = [name for name in names if isinstance(production.context.get(name), Model)]
-        if names and matched == names and len(part.args.defaults) == len(names):
-            what = f"'{part.name}' is inside it, and therefore no production; it needs the indentation of '{production.name}'"
-            warn_at(f"production '{production.name}': {what}", production.original_func, part.lineno)
+    for line, message in productions_inside(node, lambda name: isinstance(production.context.get(name), Model)):
+        warn_at(message, production.original_func, line)
 
 
 @lru_cache(maxsize=16)
