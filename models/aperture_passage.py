@@ -2,12 +2,14 @@
 
 People turn their shoulders to pass an aperture that is narrower than 1.30 times their shoulder width. From a distance, they judge
 that they can pass without turning if it is wider than 1.16 times that width (Warren & Whang 1987, JEP:HPP 13). What counts is the
-ratio of the aperture to the body. The walker does not know the size of its own body at first: it learns it.
+ratio of the aperture to the body. The walker does not know the size of its own body at first: it learns it. In the experiments with
+people it knows it (`body = "known"`), as adults do.
 
 The work is two planning units (SGOMS). `pass_doorway` has the unit tasks *learn*, *judge*, *approach* and *leave*; `squeeze`, with the
 unit task *turn*, interrupts it before a narrow doorway:
 
-1. *Learn*: the walker turns its shoulders to each side several times. Its width in each posture is stored in declarative memory.
+1. *Learn*: the walker turns its shoulders to each side several times. Its width in each posture is stored in declarative memory. A
+   walker that knows its body recalls its least width instead.
 2. *Judge*: is there an opening that is wide enough to pass without turning? If not, the walker remembers how narrow it can make
    itself, and looks for an opening of that size. If there is none, it declines.
 3. *Approach*: it walks. Its eyes, a parallel system with productions of 10 ms, look for obstacles ahead.
@@ -140,6 +142,9 @@ class Parameters(Configuration):
     task: Literal["walk", "judge"] = "walk"
     """What the walker does: walks through the doorway, or only judges whether it could pass without turning."""
 
+    body: Literal["learned", "known"] = "learned"
+    """Whether the walker first learns how wide it is in each posture, or knows it from the start."""
+
     bar: Annotated[float, Ge(0.1), Le(2)] | None = None
     """The length of a bar that the walker holds crosswise in front of it [m]; None: empty hands."""
 
@@ -214,6 +219,13 @@ class Shoulders(Model):
 
     groups = "torso", "head", "left_shoulder", "right_shoulder"
     posture = "rotate_torso"
+    turned_left = f"torso_yaw:{TORSO} head_yaw:-{TORSO} left_shoulder_yaw:{CLAVICLE} right_shoulder_yaw:{CLAVICLE}"
+    turned_right = f"torso_yaw:-{TORSO} head_yaw:{TORSO} left_shoulder_yaw:-{CLAVICLE} right_shoulder_yaw:-{CLAVICLE}"
+
+    def know(self):
+        """Knows the width of the body when it is turned as far as possible, to either side."""
+        for turned in (self.turned_left, self.turned_right):
+            self.parent.motor.know(self.posture, turned)
 
     def turn(self, part, rate):
         """Turns them to a fraction of their greatest turn, to the chosen side, at a rate [degrees/s]."""
@@ -243,6 +255,8 @@ class WholeBody(Shoulders):
 
     groups = "stance", "head", "eye"
     posture = "stance_yaw"
+    turned_left = f"stance_yaw:{SIDEWAYS} head_yaw:-{NECK} eye_yaw:{NECK - SIDEWAYS}"
+    turned_right = f"stance_yaw:-{SIDEWAYS} head_yaw:{NECK} eye_yaw:{SIDEWAYS - NECK}"
 
     def turn(self, part, rate):
         motor, angle, back = self.parent.motor, self.side * part, NECK / SIDEWAYS
@@ -413,15 +427,27 @@ class Walker(SGOMS):
     near = Arrival()
     pace = Pace()
     pass_doorway = Ordered("learn", "judge", "approach", "leave")
+    pass_with_known_body = Ordered("recall", "judge", "approach", "leave")
     squeeze = Situated(turn="way:narrow", until="way:clear")
 
     def init():
         vision.distance_noise = noise
         shoulders.side = 1
         b_context.set("way:open")
-        b_plan_unit.set("planning_unit:pass_doorway")
+        if knows_body:
+            shoulders.know()
+        b_plan_unit.set("planning_unit:" + ("pass_with_known_body" if knows_body else "pass_doorway"))
 
-    # -- learning the width of the body
+    # -- recalling the width of the body, or learning it
+
+    def recall(b_unit_task="unit_task:recall state:start", motor="busy:False"):
+        b_unit_task.modify(state="recalling")
+        DM.request(f"posture:{shoulders.posture} end:done extreme:maximum")
+
+    def recalled(b_unit_task="unit_task:recall state:recalling", b_DM="posture:? width:?width"):
+        self.narrowest = float(width)
+        b_unit_task.modify(state="finished")
+        b_DM.clear()
 
     def swing_out(b_unit_task="unit_task:learn state:start", motor="busy:False"):
         b_method.set("method:swing left:4")
@@ -618,7 +644,7 @@ def agent_of(parameters: Parameters) -> Walker:
     """Returns the agent in that body."""
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
-    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise, "only_judges": p.task == "judge", "judged": None}
+    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise, "only_judges": p.task == "judge", "judged": None, "knows_body": p.body == "known"}
     if p.variant == "descriptive":
         agent = Descriptive(margin=0.30 if p.margin is None else p.margin, shoulder_width=width, **given)
     else:
@@ -633,7 +659,7 @@ def predictive(parameters: Parameters) -> Simulation:
     import predictive_walker
 
     p = parameters
-    common = ("aperture", "task", "bar", "start_aside", "start_heading")
+    common = ("aperture", "task", "body", "bar", "start_aside", "start_heading")
     own = ("contact_cost", "perceptual_noise", "memory_noise", "memories", "impact", "units", "gait")
     values = {name: getattr(p, name) for name in (*common, *own) if getattr(p, name) is not None}
     values |= {"shoulder_width": p.shoulder_width or WIDTHS[p.group], "speed": p.speed or SPEEDS[p.group, p.condition]}

@@ -194,6 +194,9 @@ class Parameters(Configuration):
     task: Literal["walk", "judge"] = "walk"
     """What the walker does: walks through the doorway, or only judges whether it could pass without turning."""
 
+    body: Literal["learned", "known"] = "learned"
+    """Whether the walker first turns once to learn how wide it is in each posture, or knows it from the start."""
+
     bar: Annotated[float, Ge(0.1), Le(2)] | None = None
     """The length of a bar that the walker holds crosswise in front of it [m]; None: empty hands."""
 
@@ -428,7 +431,10 @@ class Person(ACTR):
         self.taken, self.nearest, self.patient_until = 0.0, inf, 0.0
         self.met, self.shares = False, None
         self.costs = {}
-        b_goal.set("do:feel")
+        b_goal.set("do:look" if knows_body else "do:feel")
+        if knows_body:
+            for turn in TURNS[1:]:  # it feels how wide it is now
+                motor.know("torso_yaw", {f"{part}_yaw": self.side * share * turn for part, share in SHARES.items()})
 
     # -- the body schema
 
@@ -680,7 +686,7 @@ def person(parameters: Parameters, name: str = "walker") -> Person:
     """Returns an agent."""
     p = parameters
     given = {field: getattr(p, field) for field in ("contact_cost", "memory_noise", "memories", "impact", "units")}
-    task = {"always": p.turn, "only_judges": p.task == "judge", "noise": p.perceptual_noise}
+    task = {"always": p.turn, "only_judges": p.task == "judge", "noise": p.perceptual_noise, "knows_body": p.body == "known"}
     remembered = {"walks": p.gait, "hands": "empty" if p.bar is None else "bar"}
     who = "" if p.scene != "two people" else f"{name} "
     body = {"shoulders": p.shoulder_width, "who": who, "usual": p.speed}

@@ -25,7 +25,7 @@ from actr3d.motor.schema import BodySchema
 from actr3d.world.actuators.motion import MOST_TURNS
 from actr3d.world.command_registry import checked_name, number
 from actr3d.world.sensors.anatomy import BodyPlan
-from actr3d.world.sensors.proprioception import Proprioception
+from actr3d.world.sensors.proprioception import Proprioception, SizeInPosture
 
 HUGE = 1e9
 """All parameters are less than this."""
@@ -114,6 +114,7 @@ class Motor(WithParameters, Port):
         self._ended: list[tuple[Movement, str]] = []
         self._asked = False
         self._wanted: list[str] = []
+        self._known: list[tuple[str, dict[str, float]]] = []
         self._further: Sequence[str] = ()
         self._positions: tuple[float, ...] = ()
         self._sizes: tuple[float, ...] = ()
@@ -322,6 +323,44 @@ class Motor(WithParameters, Port):
             raise WorldError(f"feel: name: must be a name for the posture (got {name!r})")
         self._command(partial(self._want, name), "feel", name=name)
 
+    def know(self, movement: str, posture: Any) -> None:
+        """Knows how large the body is in a posture, as if it had felt it at the end of a movement: stores it in declarative memory.
+
+        Adults know their bodies before an experiment begins. So does an agent that calls this in `init`, without a movement: the size is
+        computed from the body, with the noise of feeling it. `busy` is True until it is stored, at the end of the next tick.
+
+        Args:
+            movement: The name of the movement that could have led there.
+            posture: Joints with angles [degrees], or positions [m], as for `assume`. Other joints are as they are. The slot `extreme` says
+                whether the first of them, in the order of the body, is at an extreme of all known postures.
+
+        Raises:
+            ChunkError: If it is not a posture.
+            WorldError: If it names no joint of the body, a value is invalid, or a joint cannot be there.
+        """
+        if not isinstance(movement, str) or not movement.strip():  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
+            raise WorldError(f"know: movement: must be the name of a movement (got {movement!r})")
+        known = Chunk(posture, self.sch.bound)
+        self._command(partial(self._compute_size, movement, known), "know", movement=movement, posture=known)
+
+    def _compute_size(self, movement: str, posture: Chunk, site: CallSite | None) -> None:
+        limbs = self._felt().limbs
+        positions = self._positions_of(posture, "know")
+        for joint, at in positions.items():
+            if not limbs.inside(joint, at):
+                raise WorldError(f"know: {limbs.plan.name}: '{joint}' cannot be at {at / limbs.unit[joint]:g}")
+        self._accept()
+        self._known.append((movement, positions))
+        self._show_busy()
+        self._inquire("size_in", (positions,))
+
+    def _store_known(self, size: SizeInPosture) -> None:
+        """Stores a known posture with its size."""
+        movement, positions = self._known.pop(0)
+        schema = self._felt()
+        self._keep(schema.known(movement, positions, {name: self._felt_size(schema, getattr(size, name)) for name in SIZES}))
+        self._show_busy()
+
     def _want(self, name: str, site: CallSite | None) -> None:
         self._accept()
         self._wanted.append(name)
@@ -347,11 +386,19 @@ class Motor(WithParameters, Port):
         self._turn_joints(name, targets, pace, usual, to is None and named.to is None, site)
 
     def _assume(self, posture: Chunk, pace: float, usual: bool, site: CallSite | None) -> None:
+        self._turn_joints("assume", self._positions_of(posture, "assume"), pace, usual, False, site)
+
+    def _positions_of(self, posture: Chunk, call: str) -> dict[str, float]:
+        """Returns the positions of the joints in a posture [rad] or [m], in the order of the body.
+
+        Raises:
+            WorldError: If it names no joint of the body, or a value is not a number.
+        """
         limbs = self._felt().limbs
-        ways = {joint: number(posture[joint], f"assume: {joint}") * limbs.unit[joint] for joint in limbs.order if joint in posture}
-        if not ways:
-            raise WorldError(f"assume: '{posture}' names no joint of {limbs.plan.name}; it has {', '.join(limbs.order) or 'none'}")
-        self._turn_joints("assume", ways, pace, usual, False, site)
+        positions = {joint: number(posture[joint], f"{call}: {joint}") * limbs.unit[joint] for joint in limbs.order if joint in posture}
+        if not positions:
+            raise WorldError(f"{call}: '{posture}' names no joint of {limbs.plan.name}; it has {', '.join(limbs.order) or 'none'}")
+        return positions
 
     def _turn_joints(self, name: str, ways: Mapping[str, float], pace: float, usual: bool, to_limit: bool, site: CallSite | None) -> None:
         """Turns joints to positions [rad] or [m], together: one movement for each muscle group.
@@ -407,12 +454,14 @@ class Motor(WithParameters, Port):
 
     def _receive(self, request: Request, answer: Any) -> None:
         if request.word == "anatomy":
-            self._know(answer)
+            self._know_parts(answer)
+        elif request.word == "size_in":
+            self._store_known(answer)
         else:
             self._asked = False
             self._feel(answer)
 
-    def _know(self, plan: BodyPlan) -> None:
+    def _know_parts(self, plan: BodyPlan) -> None:
         """Stores what the body consists of."""
         limbs = self._limbs = Limbs(plan)
         for group in limbs.groups:
@@ -585,7 +634,7 @@ class Motor(WithParameters, Port):
             self._become(limbs.shown_as[joint], schema.at[joint])
         self._sizes = _sizes_of(reading)
         for name, size in zip(SIZES, self._sizes, strict=True):
-            self._become(name, schema.size(size + (draw(0, self.size_noise) if self.size_noise else 0.0)))
+            self._become(name, self._felt_size(schema, size))
         self._further = schema.extremes(new)
 
     def _remember(self, limbs: Limbs, ended: list[tuple[Movement, str]]) -> None:
@@ -612,10 +661,18 @@ class Motor(WithParameters, Port):
         assert schema is not None
         posture = schema.posture(name, end, joint, {name: getattr(self, name) for name in SIZES})
         schema.note(self._further)
+        self._keep(posture)
+
+    def _keep(self, posture: dict[str, Any]) -> None:
+        """Puts a posture into the buffer and into declarative memory."""
         if self._memory is not None:
             collect(self._memory, Chunk(posture))
         if self._buffer is not None:
             self._buffer.set(posture)
+
+    def _felt_size(self, schema: BodySchema, length: float) -> float:
+        """Returns how long a length feels [m]: with noise, on the grid."""
+        return schema.size(length + (self.random.gauss(0, self.size_noise) if self.size_noise else 0.0))
 
     # -- attributes and trace
 
@@ -628,7 +685,7 @@ class Motor(WithParameters, Port):
             if BASE_GROUP in limbs.groups:
                 self._become("walking", "walk" in self._under_way)
                 self._become("turning", "turn" in self._under_way)
-        self._become("busy", bool(self._under_way or self._waiting))
+        self._become("busy", bool(self._under_way or self._waiting or self._known))
 
     def _become(self, name: str, value: Any) -> None:
         """Sets an attribute if its value changes."""

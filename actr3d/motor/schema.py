@@ -97,6 +97,26 @@ class BodySchema:
         """Returns a length on the grid [m]."""
         return on_grid(length, self._size_grid)
 
+    def known(self, name: str, positions: Mapping[str, float], box: dict[str, Any]) -> dict[str, Any]:
+        """Returns a posture that the agent knows as a chunk, as if a movement of its first joint had ended there.
+
+        Args:
+            name: The movement.
+            positions: By joint, its position there [rad] or [m]; the other joints are as they are now.
+            box: As for `posture`.
+        """
+        for joint, at in positions.items():
+            self.minimum[joint], self.maximum[joint] = min(self.minimum[joint], at), max(self.maximum[joint], at)
+        felt, on_the_grid = self.felt, self.at
+        self.felt = {**felt, **positions}
+        self.at = {**on_the_grid, **{joint: self.shown(joint, at) for joint, at in positions.items()}}
+        try:
+            chunk = self.posture(name, "done", next(iter(positions)), box)
+            self.note(positions)
+        finally:
+            self.felt, self.at = felt, on_the_grid
+        return chunk
+
     def posture(self, name: str, end: str, joint: str | None, box: dict[str, Any]) -> dict[str, Any]:
         """Returns the present posture as a chunk.
 

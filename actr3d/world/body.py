@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar, cast
@@ -356,6 +356,28 @@ class Body:
         """
         self.physics.refresh_positions()
         return self.bounds.box(*self.frame(frame), self.contacts.held())
+
+    def bounding_box_in(self, positions: Mapping[str, float], frame: str = "body") -> BoundingBox:
+        """Returns the box that `bounding_box` would return in another posture. The world stays as it is.
+
+        Args:
+            positions: By joint, its position there [rad] or [m]; the other joints are as they are now. Objects that the hands
+                have grasped stay where they are; a `Load` is part of the body.
+            frame: See `bounding_box`.
+
+        Raises:
+            WorldError: If there is no such joint or frame.
+        """
+        places = [self.joint(name).q for name in positions]
+        qpos = self.physics.mj_data.qpos
+        before = qpos.copy()
+        qpos[places] = list(positions.values())
+        self.physics.changed()
+        try:
+            return self.bounding_box(frame)
+        finally:
+            qpos[:] = before
+            self.physics.changed()
 
     def frame(self, name: str) -> Frame:
         """Returns a frame at the positions of the last refresh.

@@ -289,3 +289,105 @@ def test_productions_command_bound_values_and_match_busy_and_postures() -> None:
     assert motor.parent.goal[0] == "done"
     assert float(motor.parent.goal[1]) == motor.width < 0.4
     assert motor.torso_yaw_angle == 60
+
+
+# -- postures that are known without a movement
+
+
+def known(motor: Any, simulation: Simulation, posture: Any, movement: str = "rotate_torso") -> list[dict[str, Any]]:
+    motor.know(movement, posture)
+    assert motor.busy
+    until(simulation, lambda: not motor.busy)
+    return postures(motor, f"posture:{movement} end:done")
+
+
+def test_a_known_posture_is_the_one_that_a_movement_leads_to() -> None:
+    simulation, motor = moving(extreme_step=None)
+    swing(simulation, motor, 60)
+    (felt,) = postures(motor, "posture:rotate_torso end:done")
+    other, knowing = moving(extreme_step=None)
+    (chunk,) = known(knowing, other, {joint: felt[joint] for joint in NAMED})
+    sizes = "width", "depth", "height", "middle"
+    assert {slot: chunk[slot] for slot in chunk if slot not in sizes} == {slot: felt[slot] for slot in felt if slot not in sizes}
+    assert [float(chunk[size]) for size in sizes] == near([float(felt[size]) for size in sizes], abs=0.002)
+
+
+def test_a_known_posture_moves_nothing_and_is_no_reading_of_the_present() -> None:
+    (knowing, motor), (other, plain) = moving(), moving()
+    width = motor.width
+    known(motor, knowing, {"torso_yaw": 60})
+    while other.time < knowing.time:
+        other.step()
+    assert knowing.world.state_bytes() == other.world.state_bytes()
+    assert motor.width == plain.width == width
+    assert motor.torso_yaw_angle == 0
+
+
+def test_known_postures_are_the_range_of_a_joint() -> None:
+    simulation, motor = moving()
+    known(motor, simulation, {"torso_yaw": 40})
+    known(motor, simulation, {"torso_yaw": -40})
+    known(motor, simulation, {"torso_yaw": 20})
+    extremes = {float(chunk["torso_yaw"]): chunk["extreme"] for chunk in postures(motor, "posture:rotate_torso")}
+    assert extremes == {40: "maximum", -40: "minimum", 20: "none"}
+    assert math.degrees(motor.joint("torso_yaw").maximum) == near(40)
+    motor.rotate_torso(35)
+    until(simulation, lambda: not motor.busy)
+    assert not postures(motor, "posture:rotate_torso end:passing"), "no extreme is new"
+
+
+def test_known_sizes_have_the_noise_of_felt_ones() -> None:
+    widths: set[float] = set()
+    for seed in range(4):
+        simulation, motor = moving(size_noise=0.02, seed=seed)
+        (chunk,) = known(motor, simulation, {"torso_yaw": 60})
+        widths.add(float(chunk["width"]))
+    assert len(widths) > 1
+
+
+def test_a_posture_that_the_body_cannot_have_is_not_known() -> None:
+    _, motor = moving()
+    for call, message in (
+        (lambda: motor.know("turn", {"torso_yaw": 400}), "'torso_yaw' cannot be at 400"),
+        (lambda: motor.know("turn", "wrist:3"), "names no joint of"),
+        (lambda: motor.know("turn", {"torso_yaw": "far"}), "know: torso_yaw: must be a number"),
+        (lambda: motor.know("", {"torso_yaw": 4}), "know: movement: must be the name of a movement"),
+    ):
+        with pytest.raises(WorldError, match=message):
+            call()
+    assert not motor.busy
+
+
+KNOWING = """
+from actr3d.actr import *
+from actr3d.motor import Motor
+from actr3d.simulation import Simulation
+from actr3d.world import Floor, Mannequin, Scene
+
+
+class Knowing(ACTR):
+    goal = Buffer()
+    memory = Memory(Buffer())
+    motor = Motor(memory=memory)
+
+    def init():
+        motor.know("rotate_torso", "torso_yaw:60")
+        goal.set("task:wait")
+
+    def begin(goal="task:wait", motor="busy:False"):
+        motor.rotate_torso(30)
+        goal.clear()
+
+
+simulation = Simulation(Scene(parts=(Floor(), Mannequin(name="walker"))), {"walker": Knowing})
+"""
+
+
+def test_an_agent_knows_a_posture_from_the_start_also_after_going_back() -> None:
+    simulation = load_text(KNOWING).simulation
+    simulation.step(30)
+    before, state = postures(motor_of(simulation)), simulation.world.state_bytes()
+    assert {chunk["end"] for chunk in before} == {"felt", "done"}, "the turn by 30 degrees gives no new extreme on its way"
+    simulation.seek(0.01)
+    simulation.seek(simulation.time + 0.29)
+    assert (postures(motor_of(simulation)), simulation.world.state_bytes()) == (before, state)

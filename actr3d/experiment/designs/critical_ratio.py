@@ -5,7 +5,7 @@ from typing import Any
 
 from actr3d.experiment.design import Design, Measured, design
 from actr3d.experiment.designs.passability_judgement import aperture_of
-from actr3d.experiment.designs.warren_whang_1987 import GROUPS
+from actr3d.experiment.designs.warren_whang_1987 import GROUPS, KNOWS_ITS_BODY
 
 CRITICAL = 1.30
 """The ratio of aperture to shoulder width below which people turn. Source: Warren & Whang (1987)."""
@@ -21,7 +21,7 @@ def critical_ratio() -> Design:
         model="aperture_passage.py",
         factors={"ratio": (CRITICAL,)},
         groups={"small": replace(GROUPS["small"], participants=20)},
-        settings={"variant": "predictive"},
+        settings={"variant": "predictive", **KNOWS_ITS_BODY},
         derive=aperture_of,
         results=decision,
         measures=[Measured(name="turned", meaning="Whether the walker chose to turn its shoulders.")],

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from actr3d.experiment.design import Design, Group, Normal, design
+from actr3d.experiment.designs.warren_whang_1987 import KNOWS_ITS_BODY
 
 SHORT = 0.8
 """The length of the short bar, in shoulder widths: it does not stand out. Source: chosen; the length is not at hand."""
@@ -25,6 +26,7 @@ def higuchi_2012() -> Design:
         model="aperture_passage.py",
         factors={"bar_ratio": (SHORT, 1.5, 2.5), "ratio": (0.9, 1.0, 1.1)},
         groups={"adults": Group(participants=8, parameters={"shoulder_width": Normal(mean=0.428, sd=0.035, low=0.3, high=0.6)})},
+        settings=KNOWS_ITS_BODY,
         derive=bar_and_aperture,
         trials=10,
     )

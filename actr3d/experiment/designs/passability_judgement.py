@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from actr3d.experiment.design import Design, Measured, design
-from actr3d.experiment.designs.warren_whang_1987 import GROUPS
+from actr3d.experiment.designs.warren_whang_1987 import GROUPS, KNOWS_ITS_BODY
 
 RATIOS = tuple(round(0.9 + 0.04 * n, 2) for n in range(14))
 """The apertures in shoulder widths. Source: chosen, around the boundary that people judge, about 1.16 (docs/human-data.md)."""
@@ -31,7 +31,7 @@ def passability_judgement() -> Design:
         model="aperture_passage.py",
         factors={"ratio": RATIOS},
         groups=GROUPS,
-        settings={"task": "judge"},
+        settings={"task": "judge", **KNOWS_ITS_BODY},
         derive=aperture_of,
         results=judgement,
         measures=[

@@ -6,6 +6,8 @@ APERTURES = (0.35, 0.40, 0.45, 0.50, 0.55, 0.60, 0.65, 0.70)
 """The widths of the doorways [m]. Source: Warren & Whang (1987)."""
 WIDTHS = {"small": (0.404, 0.020), "large": (0.484, 0.007)}
 """The mean and standard deviation of shoulder widths [m]. Source: Warren & Whang (1987)."""
+KNOWS_ITS_BODY = {"body": "known"}
+"""Walkers know how wide they are in each posture, as people do, and need not learn it in each trial."""
 GROUPS = {
     name: Group(participants=5, parameters={"group": name, "shoulder_width": Normal(mean=mean, sd=sd, low=0.3, high=0.7)})
     for name, (mean, sd) in WIDTHS.items()
@@ -20,4 +22,6 @@ def warren_whang_1987() -> Design:
     The speeds are the means of the groups. The number of trials is that of the original ACT-R 3D's simulation.
     """
     factors = {"aperture": APERTURES, "condition": ("normal", "fast")}
-    return Design(model="aperture_passage.py", factors=factors, groups=GROUPS, trials=60, human="warren_whang_1987")
+    return Design(
+        model="aperture_passage.py", factors=factors, groups=GROUPS, settings=KNOWS_ITS_BODY, trials=60, human="warren_whang_1987"
+    )

@@ -2,6 +2,7 @@
 
 from actr3d.experiment.design import Design, Group, Normal, design
 from actr3d.experiment.designs.passability_judgement import aperture_of
+from actr3d.experiment.designs.warren_whang_1987 import KNOWS_ITS_BODY
 
 RATIOS = (0.9, 1.1, 1.3, 1.5, 1.7, 1.9, 2.1)
 """The apertures in shoulder widths. Source: the range of Wilmut & Barnett (2010), in steps of 0.2."""
@@ -18,6 +19,7 @@ def wilmut_ratios() -> Design:
         model="aperture_passage.py",
         factors={"ratio": RATIOS},
         groups={"adults": Group(participants=12, parameters={"shoulder_width": width})},
+        settings=KNOWS_ITS_BODY,
         derive=aperture_of,
         trials=5,
     )

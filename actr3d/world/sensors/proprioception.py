@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from actr3d.errors import WorldError
 from actr3d.values import NOT_TRACED
 from actr3d.world.body import Body, sensor
+from actr3d.world.command_registry import number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,6 +62,33 @@ def bounding_box(body: Body, frame: str = "body") -> Size:
     """Senses width, depth and height of the body with what it holds, upright and along its heading, or in the frame of a part."""
     depth, width, height = body.bounding_box(frame).size
     return Size(width=width, depth=depth, height=height)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizeInPosture(Size):
+    """Size of the body in a posture."""
+
+    middle: float
+    """As in `Proprioception` [m]."""
+
+
+@sensor
+def size_in(body: Body, positions: Mapping[str, float] | None = None) -> SizeInPosture:
+    """Computes how large the body would be, with what it holds, in another posture.
+
+    Args:
+        body: The body.
+        positions: By joint, its position there [rad] or [m]; the other joints are as they are now; None for all of them.
+
+    Raises:
+        WorldError: If there is no such joint, or a position is not a number.
+    """
+    given: Mapping[str, float] = {} if positions is None else positions
+    if not isinstance(given, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
+        raise WorldError(f"size_in: positions: must be positions by joint (got {positions!r})")
+    box = body.bounding_box_in({joint: number(at, f"size_in: {joint}") for joint, at in given.items()})
+    depth, width, height = box.size
+    return SizeInPosture(width=width, depth=depth, height=height, middle=(box.lower[1] + box.upper[1]) / 2)
 
 
 @sensor
