@@ -344,37 +344,34 @@ class Body:
 
     # -- geometry
 
-    def bounding_box(self, frame: str = "world") -> BoundingBox:
-        """Returns the smallest box around all of the body and what it holds, exactly, in its present posture.
+    def bounding_box(self, frame: str = "world", positions: Mapping[str, float] | None = None) -> BoundingBox:
+        """Returns the smallest box around all of the body and what it holds, exactly, in its present posture or another one.
 
         Args:
             frame: `"world"`; `"body"`: at the base, along its heading, upright; or the name of one of its parts or
                 sites, or of any site or body in the world.
+            positions: By joint, its position in the other posture [rad] or [m]; the other joints are as they are. The world stays as it is,
+                and objects that the hands have grasped stay where they are; a `Load` is part of the body.
 
         Raises:
-            WorldError: If there is no such frame.
+            WorldError: If there is no such frame or joint.
         """
+        if positions:
+            with self._posed(positions):
+                return self.bounding_box(frame)
         self.physics.refresh_positions()
         return self.bounds.box(*self.frame(frame), self.contacts.held())
 
-    def bounding_box_in(self, positions: Mapping[str, float], frame: str = "body") -> BoundingBox:
-        """Returns the box that `bounding_box` would return in another posture. The world stays as it is.
-
-        Args:
-            positions: By joint, its position there [rad] or [m]; the other joints are as they are now. Objects that the hands
-                have grasped stay where they are; a `Load` is part of the body.
-            frame: See `bounding_box`.
-
-        Raises:
-            WorldError: If there is no such joint or frame.
-        """
+    @contextmanager
+    def _posed(self, positions: Mapping[str, float]) -> Generator[None]:
+        """Has joints at other positions [rad] or [m] during the block."""
         places = [self.joint(name).q for name in positions]
         qpos = self.physics.mj_data.qpos
         before = qpos.copy()
         qpos[places] = list(positions.values())
         self.physics.changed()
         try:
-            return self.bounding_box(frame)
+            yield
         finally:
             qpos[:] = before
             self.physics.changed()

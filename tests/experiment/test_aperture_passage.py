@@ -66,6 +66,26 @@ def test_people_turn_below_the_critical_ratio_the_more_the_narrower(model: Any, 
     assert wide == pytest.approx(0, abs=0.1)
 
 
+def extremes(simulation: Simulation) -> dict[str, float]:
+    """Returns the least width that a walker remembers of either side [m]."""
+    chunks = simulation.agents["walker"].DM.find_matching_chunks("end:done extreme:? width:?")
+    sides = ("minimum", "maximum")
+    return {side: min(float(chunk["width"]) for chunk in chunks if chunk["extreme"] == side) for side in sides}
+
+
+@pytest.mark.parametrize(("variant", "group"), [("descriptive", "small"), ("replication", "large")])
+def test_a_walker_that_knows_its_body_sets_out_at_once_with_the_widths_that_another_learns(model: Any, variant: str, group: str) -> None:
+    given: dict[str, Any] = {"variant": variant, "group": group, "aperture": 0.6, "noise": 0.0}
+    learning, knowing = built(model, body="learned", **given), built(model, body="known", **given)
+    for simulation in (learning, knowing):
+        simulation.run()
+        assert simulation.agents["walker"].narrowest == pytest.approx(extremes(simulation)["maximum"], abs=0.002)
+    assert extremes(knowing) == pytest.approx(extremes(learning), abs=0.002)
+    assert knowing.time < learning.time - 3
+    assert knowing.result().outcome == learning.result().outcome == "passed"
+    assert knowing.result().wall_angle_deg == pytest.approx(learning.result().wall_angle_deg, abs=8)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("aperture", [0.4, 0.45])
 def test_hips_that_turn_leave_the_margin_where_it_is_narrow_and_wide_shoulders_turn_more(model: Any, aperture: float) -> None:

@@ -192,12 +192,12 @@ def test_the_box_in_another_posture_is_that_of_a_body_in_it_and_changes_nothing(
     (other, turned), joints = posed(1, Load(size=(1.2, 0.04))), [*body.joints.values()]
     positions = {joint.name: turned.joints[joint.name].position for joint in joints}
     before = world.state().mj_state.tobytes()
-    there = body.bounding_box_in(positions)
+    there = body.bounding_box("body", positions)
     assert world.state().mj_state.tobytes() == before
     assert there.size == near(turned.bounding_box("body").size, abs=1e-9)
     assert body.get("size_in", positions).width == near(there.width)
     assert other.state().mj_state.tobytes() != before
     with pytest.raises(Actr3dError, match="tors"):
-        body.bounding_box_in({"tors": 0.1})
+        body.bounding_box("body", {"tors": 0.1})
     with pytest.raises(Actr3dError, match="positions by joint"):
         body.get("size_in", 3)

@@ -86,7 +86,7 @@ def size_in(body: Body, positions: Mapping[str, float] | None = None) -> SizeInP
     given: Mapping[str, float] = {} if positions is None else positions
     if not isinstance(given, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
         raise WorldError(f"size_in: positions: must be positions by joint (got {positions!r})")
-    box = body.bounding_box_in({joint: number(at, f"size_in: {joint}") for joint, at in given.items()})
+    box = body.bounding_box("body", {joint: number(at, f"size_in: {joint}") for joint, at in given.items()})
     depth, width, height = box.size
     return SizeInPosture(width=width, depth=depth, height=height, middle=(box.lower[1] + box.upper[1]) / 2)
 
