@@ -4,6 +4,7 @@
 import { commandsOf } from "../commands.js";
 import { compareRuns } from "../compare/compare.js";
 import { remembered } from "../local_storage.js";
+import { isThere } from "../needs.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { deleteRuns, openRun } from "../runs/actions.js";
@@ -79,7 +80,8 @@ export function sameUntil(list, one, other) {
   return moment === Infinity ? null : moment;
 }
 
-const tree = computed(() => treeOf(runs.value ?? [], shown.value));
+/** Those of the present run; none without a models folder, from which they would be opened. */
+const tree = computed(() => (isThere("models folder") ? treeOf(runs.value ?? [], shown.value) : []));
 
 /** Returns the newest time of a run of the tree [s]; of the one that is shown, the list may not have it yet. */
 function endOf(run) {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -293,3 +294,39 @@ def test_a_command_that_opens_a_tab_moves_the_focus_to_its_panel(pages: Callable
     search(page, "go to a line")
     page.keyboard.press("Enter")
     expect(page.locator(".cm-panel input")).to_be_focused()
+
+
+def test_in_a_notebook_no_command_or_key_of_a_models_folder_exists(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("doorway.py")
+    shows(page, "#status", "at its start")
+    page.click("#step")
+    shows(page, "#time", "0.01 s")
+    session = page.evaluate("async () => (await part('store.js')).session.value.id")
+    page.goto(f"{page.url.partition('?')[0]}?session={session}")
+    shows(page, "#time", "0.01 s")
+    search(page, "step by one tick")
+    expect(options(page).first).to_have_text("Step by one tickRun→")
+    page.keyboard.press("Enter")
+    shows(page, "#time", "0.02 s")
+    for words, wrong in (
+        ("new model", "New model"),
+        ("model doorway", "Model: "),
+        ("recording", "[Rr]ecording"),
+        ("open", "Open (run|About|Editor|Experiments|Parameters|Runs)|their list"),
+        ("experiment", "xperiment"),
+        ("snippet", "snippet"),
+        ("save text", "Save the text"),
+        ("restart", "Restart|Stop"),
+        ("set speed", "Set speed"),
+        ("link", "link"),
+    ):
+        search(page, words)
+        page.wait_for_load_state("networkidle")  # what is listed when the palette is opened is there
+        assert not re.search(wrong, "\n".join(options(page).all_text_contents())), words
+        page.keyboard.press("Escape")
+    page.locator("body").press("Shift+R")
+    page.locator("body").press("?")
+    keys = page.get_by_role("dialog", name="Help")
+    expect(keys).to_contain_text("Step by one tick")
+    expect(keys).not_to_contain_text(re.compile("Editor|Restart|Stop the model|Parameters|chosen runs"))
+    shows(page, "#time", "0.02 s")
