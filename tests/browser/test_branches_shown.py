@@ -229,3 +229,42 @@ def test_branches_from_one_moment_have_names_of_their_own_and_say_what_was_chang
     buttons = page.get_by_role("region", name="Branches").locator(".branch-actions button")
     said = buttons.evaluate_all("all => all.map((one) => one.ariaLabel)")
     assert len(said) == len(set(said)) == 7
+
+
+NAMED = "document.activeElement.ariaLabel || document.activeElement.textContent.trim()"
+
+
+def reached(page: Page, name: str) -> list[str]:
+    """Goes to a button by the Tab key, from the timeline; returns the names of the elements before it, the nearest first."""
+    page.locator("#timeline").focus()
+    passed: list[str] = []
+    for _ in range(20):
+        now = page.evaluate(NAMED)
+        if now == name:
+            return passed
+        passed.insert(0, now)
+        page.keyboard.press("Tab")
+    raise AssertionError(f"the button {name!r} is not reached")
+
+
+def test_a_button_that_its_own_press_removes_gives_the_focus_back(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    offer = """async () => (await part("store.js")).complain("It is in the trash folder.", "info", { text: "Restore", work: () => {} })"""
+
+    def removes(button: str, notice: str, others: int) -> None:
+        """Presses it; the buttons before it in the notice are removed, too."""
+        passed = reached(page, button)
+        page.keyboard.press("Enter")
+        expect(page.locator(notice)).to_have_count(0)
+        until(page, lambda: page.evaluate(NAMED) == passed[others])
+
+    for button, others in (("Restore", 0), ("Close", 2)):
+        page.evaluate(offer)
+        removes(button, ".toast", others)
+    page.evaluate(offer)
+    reached(page, "Show")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("tabpanel", name="Messages")).to_be_focused()
+    page.get_by_role("tab", name="Buffers").click()
+    change_the_past(page)
+    removes("Dismiss", ".branched", 1)
