@@ -147,7 +147,10 @@ function Editor() {
     if (other && !wanted.value) open(of);
   }, [of, id]);
   useLayoutEffect(() => {
-    if (document && !compares) showText(place.current, document);
+    if (document && !compares) {
+      showText(place.current, document);
+      if (place.current.closest("[role=tabpanel]:focus")) focusText(); // a command has opened the tab before the text was read
+    }
     return leaveText;
   }, [document, compares]);
   useLayoutEffect(() => {

@@ -330,3 +330,22 @@ def test_in_a_notebook_no_command_or_key_of_a_models_folder_exists(pages: Callab
     expect(keys).to_contain_text("Step by one tick")
     expect(keys).not_to_contain_text(re.compile("Editor|Restart|Stop the model|Parameters|chosen runs"))
     shows(page, "#time", "0.02 s")
+
+
+def test_the_command_that_opens_the_editor_puts_the_cursor_into_the_text(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="buffers")
+    shows(page, "#status", "at its start")
+    page.get_by_role("tab", name="Buffers").focus()
+    search(page, "open editor")  # before its text was read
+    page.keyboard.press("Enter")
+    text = page.locator(".cm-content")
+    expect(text).to_be_focused()
+    page.keyboard.press("Escape")
+    page.keyboard.press("Tab")
+    expect(text).not_to_be_focused()
+    page.get_by_role("tab", name="Buffers").click()
+    page.keyboard.press("8")
+    expect(text).to_be_focused()
+    search(page, "open console")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("tabpanel", name="Console")).to_be_focused()
