@@ -130,7 +130,7 @@ def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[st
     expect(dialog).to_have_text(re.compile("Rename the variable word in 3 places"))
     page.keyboard.type("for")
     page.keyboard.press("Enter")
-    expect(dialog).to_have_text(re.compile("'for' is not a name for a variable"))
+    expect(dialog).to_have_text(re.compile("'for' is not a name"))
     page.keyboard.type("asked")
     page.keyboard.press("Enter")
     for line in ('word:?asked"):', 'memory.request("word:?asked")', "print( asked )"):
