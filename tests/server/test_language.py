@@ -118,6 +118,7 @@ class Pole(Feature):
     ("text", "first"),
     [
         (COUNTING.replace("goal.clear()", "goal.modify(|)"), ["task=", "number=", "last="]),
+        (COUNTING.replace("goal.clear()", "goal.modify(task=1)\n        goal.modify(number=abs(2), |)"), ["task=", "last="]),
         (COUNTING.replace("number:?now last", "nu| last"), ["number"]),
         (COUNTING.replace("task:count number:?now last:!?now", "task:|"), ["start", "count"]),
         (COUNTING.replace("number:?now last:!?now", "number:?|"), ["?now", "?next", "?after"]),
