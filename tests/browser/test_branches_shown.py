@@ -268,3 +268,28 @@ def test_a_button_that_its_own_press_removes_gives_the_focus_back(page: Page) ->
     page.get_by_role("tab", name="Buffers").click()
     change_the_past(page)
     removes("Dismiss", ".branched", 1)
+
+
+def test_before_a_run_is_deleted_the_page_says_that_its_branches_stay(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    ask = """async (ids) => {
+      const { runs } = await part("runs/list.js");
+      const { deleteRuns } = await part("runs/actions.js");
+      const run = (id, origin = null) => ({
+        id, origin, branched: origin && 1, session: null, label: { name: id }, model: "doorway.py", made: 0,
+      });
+      runs.value = [run("a"), run("b", "a"), run("c", "a"), run("d", "c")];
+      deleteRuns(runs.value.filter(({ id }) => ids.includes(id)));
+    }"""
+    for ids, text in (
+        ("a", "trash. Its 2 branches stay."),
+        ("c", "trash. Its branch stays."),
+        ("ab", "trash. Their branch stays."),
+        ("d", "trash."),
+    ):
+        page.evaluate(ask, ids)
+        dialog = page.get_by_role("dialog")
+        expect(dialog).to_contain_text("to the trash folder")
+        expect(dialog.locator("p")).to_have_text(re.compile(rf"{re.escape(text)}$"))
+        dialog.get_by_role("button", name="Cancel").click()
+        expect(dialog).to_have_count(0)
