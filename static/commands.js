@@ -1,5 +1,7 @@
 // The commands of the page, each registered once: the palette lists them, keys run them, the help and the titles of buttons name them.
 
+import { isThere } from "./needs.js";
+
 const known = [];
 const sources = [];
 
@@ -15,10 +17,11 @@ const sources = [];
  * @property {() => string} why If it cannot be run: the reason, as a sentence, or "" if there is nothing to add.
  */
 
-/** Registers a command, and returns it. */
-export function command({ text, about = () => "", also = "", group, key = null, work, ready = () => true, why = () => "" }) {
-  const made = { text, about, also, group, key, work, ready, why };
-  known.push(made);
+/** Registers a command, and returns it. It does not exist on a page without what it `needs` (needs.js): then nothing can run it. */
+export function command({ text, about = () => "", also = "", group, key = null, work, ready = () => true, why = () => "", needs = null }) {
+  const exists = isThere(needs);
+  const made = { text, about, also, group, key, work, ready: exists ? ready : () => false, why };
+  if (exists) known.push(made);
   return made;
 }
 
@@ -26,9 +29,10 @@ export function command({ text, about = () => "", also = "", group, key = null, 
  *
  * @param list Returns them for the words of a search, each time they are asked for.
  * @param read Reads what they are about, when the palette is opened.
+ * @param needs Without this they do not exist, as in `command`.
  */
-export function commandsOf(list, read = () => {}) {
-  sources.push({ list, read });
+export function commandsOf(list, { read = () => {}, needs = null } = {}) {
+  if (isThere(needs)) sources.push({ list, read });
 }
 
 /** Reads what the commands are about that depend on what is shown. */

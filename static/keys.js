@@ -1,15 +1,16 @@
 // The keys of the page: those of its commands, and those that work in some part of it only.
 
 import { commandOf, permanent, run } from "./commands.js";
+import { isThere } from "./needs.js";
 
 const notes = [];
 
 /** The groups of keys, in the order in which they are shown. */
 export const KEY_GROUPS = ["Run", "Timeline", "3D view", "Panels", "Page", "Editor"];
 
-/** Lists a key that only works in some part of the page, which handles it itself. */
-export function noteKey(key, text, group) {
-  notes.push({ key, text, group });
+/** Lists a key that only works in some part of the page, which handles it itself; not on a page without what it needs (needs.js). */
+export function noteKey(key, text, group, needs = null) {
+  if (isThere(needs)) notes.push({ key, text, group });
 }
 
 /** Returns the keys of a group with their texts. */

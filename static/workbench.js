@@ -11,6 +11,7 @@ import "./changes/undo.js";
 import { command, run } from "./commands.js";
 import { Comparison } from "./compare/compare.js";
 import { noteKey } from "./keys.js";
+import { isThere } from "./needs.js";
 import { AREAS, hasWorld, isCollapsed, layoutCommands, maximised, panelsWidth, swapped, timelineHeight } from "./layout.js";
 import { goToTab, openTab } from "./open_tab.js";
 import { CommandPalette } from "./palette/palette.js";
@@ -31,8 +32,7 @@ const MIN_SCENE = 320; // [px]
 /** What a window can show alone. */
 const VIEWS = { ...Object.fromEntries(PANELS.map(({ id, title, View }) => [id, { title, View }])), scene: { title: "3D view", View: Scene }, timeline: { title: "Timeline", View: Timeline } };
 
-/** The tabs: in a notebook, without those of a models folder. */
-const TABS = PANELS.filter(({ id }) => embedded === null || !["about", "parameters", "editor", "experiments", "runs"].includes(id));
+const TABS = PANELS.filter(({ needs = null }) => isThere(needs));
 
 const onePanel = () => "This window shows one panel.";
 TABS.forEach(({ id, title }, n) => command({ text: `Open ${title}`, key: n < 10 ? String((n + 1) % 10) : null, group: "Tab", work: () => goToTab(id), ready: () => alone === null, why: onePanel }));
@@ -41,7 +41,7 @@ noteKey("1 … 9, 0", "Open a tab", "Panels");
 noteKey("w", "Why, of a line of the firing trace", "Panels");
 noteKey("b", "Breakpoint, in the list of productions", "Panels");
 noteKey("Enter", "Go to a line of the trace; open a run", "Panels");
-noteKey("Delete", "Delete the chosen runs", "Panels");
+noteKey("Delete", "Delete the chosen runs", "Panels", "models folder");
 
 /** A strip at the edge of the page, in the place of a part that is collapsed. */
 function Strip({ area }) {

@@ -1,6 +1,7 @@
 // Where a run continues differently: its previous future is kept as a branch, or the user is asked whether it may be lost.
 
 import { html, signal, useEffect } from "../vendor/preact.js";
+import { Button } from "../parts/button.js";
 import { confirmed } from "../parts/dialog.js";
 import { timeText } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
@@ -43,7 +44,7 @@ function Notice({ which, title, children }) {
   }, [which]);
   return html`<span class="former branched" role="status" title=${title}>
     <span>${children}</span>
-    <button class="bare" aria-label="Dismiss" title="Dismiss; the recording stays in Runs" onClick=${() => (closed.value = [...closed.value, which])}>✕</button>
+    <${Button} class="bare" aria-label="Dismiss" title="Dismiss; the recording stays in Runs" onClick=${() => (closed.value = [...closed.value, which])}>✕<//>
   </span>`;
 }
 

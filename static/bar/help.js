@@ -6,7 +6,7 @@ import { KEY_GROUPS, keysOf, keyText } from "../keys.js";
 import { dialog } from "../parts/dialog.js";
 
 function showHelp() {
-  const groups = KEY_GROUPS.map(
+  const groups = KEY_GROUPS.filter((group) => keysOf(group).length > 0).map(
     (group) => html`<section key=${group}>
       <h3 id="keys-${group}">${group}</h3>
       <table aria-labelledby="keys-${group}"><tbody>${keysOf(group).map(({ key, text }) => html`<tr key=${text}><td><kbd>${keyText(key)}</kbd></td><td>${text}</td></tr>`)}</tbody></table>

@@ -182,7 +182,7 @@ effect(() => {
   else if (isOther) goToAddress("run", recorded);
 });
 
-commandsOf(() => models.value.map(({ path, title }) => ({ text: `Model: ${path}`, group: title, work: () => choose(path) })));
+commandsOf(() => models.value.map(({ path, title }) => ({ text: `Model: ${path}`, group: title, work: () => choose(path) })), { needs: "models folder" });
 
 /** Shows what the address names, or the model shown last, when the page is opened; if the workbench does not answer, as soon as it does. */
 export async function begin() {

@@ -22,7 +22,7 @@ async function copyLink() {
 }
 
 const noLink = () => (session.value ? "This run is not recorded, so no link leads to it." : runStatus.value.text);
-const sharing = command({ text: "Copy a link to this moment of the run", also: "share address URL", group: "Run", work: copyLink, ready: () => shownRecording.value !== null, why: noLink });
+const sharing = command({ text: "Copy a link to this moment of the run", also: "share address URL", group: "Run", work: copyLink, ready: () => shownRecording.value !== null, why: noLink, needs: "models folder" });
 
 export function Share() {
   const ready = sharing.ready();

@@ -6,6 +6,7 @@ import { keyText, buttonTitle } from "../keys.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { optimistic } from "../parts/optimistic_value.js";
+import { isThere } from "../needs.js";
 import { order, say } from "../server.js";
 import { chooseRecording } from "./models.js";
 import { isOver, isRestarting, runStatus } from "../run_status.js";
@@ -45,19 +46,17 @@ const BUTTONS = [
   { id: "back", text: "Step back by one tick", key: "ArrowLeft", what: { type: "back" }, say: orderThere },
   { id: "step", text: "Step by one tick", key: "ArrowRight", what: { type: "step" }, say: orderThere },
   { id: "cycle", text: "Step until the next production fires", key: "c", what: { type: "cycle" }, say: orderThere },
-  { id: "restart", text: "Restart with the same seed", key: "r", what: { type: "restart" } },
-  { id: "new-seed", icon: "seed", text: "Restart with a new seed", key: "Shift+r", what: { type: "restart", new_seed: true } },
-  { id: "stop", text: "Stop the model, whatever it does", key: "Mod+.", what: { type: "stop" } },
+  { id: "restart", text: "Restart with the same seed", key: "r", what: { type: "restart" }, needs: "models folder" },
+  { id: "new-seed", icon: "seed", text: "Restart with a new seed", key: "Shift+r", what: { type: "restart", new_seed: true }, needs: "models folder" },
+  { id: "stop", text: "Stop the model, whatever it does", key: "Mod+.", what: { type: "stop" }, needs: "models folder" },
 ];
 
-/** The buttons that start or end a run: in a notebook, its cells do that. */
-const OF_MODELS = ["restart", "new-seed", "stop"];
-const shownButtons = BUTTONS.filter(({ id }) => embedded === null || !OF_MODELS.includes(id));
+const shownButtons = BUTTONS.filter(({ needs = null }) => isThere(needs));
 
 /** Whether a button is disabled; its key is then disabled too. */
 function isIdle(id) {
   const { alive, loading } = session.value ?? {};
-  if (!session.value || runStatus.value.is === "restarted" || (embedded !== null && OF_MODELS.includes(id))) return true;
+  if (!session.value || runStatus.value.is === "restarted") return true;
   if (id === "run") return embedded === null ? loading && !isRestarting.value : !alive;
   if (id === "stop") return !alive && !loading;
   if (id === "back") return !alive || !state.value?.time;
@@ -73,12 +72,12 @@ function registeredSpeed(text, key, by, limit) {
 }
 
 /** Registers a command of the run, with the id of its button. */
-function registered(id, text, key, work) {
-  return command({ text, key, group: "Run", work, ready: () => !isIdle(id), why: () => (id === "back" && alive.value ? "The run is at its start." : runStatus.value.text) });
+function registered(id, text, key, work, needs = null) {
+  return command({ text, key, group: "Run", work, ready: () => !isIdle(id), why: () => (id === "back" && alive.value ? "The run is at its start." : runStatus.value.text), needs });
 }
 
 const toggling = registered("run", "Run or pause; in the past, continue from here", " ", toggle);
-const byButton = new Map(BUTTONS.map(({ id, text, key, what, say = order }) => [id, registered(id, text, key, () => say(what))]));
+const byButton = new Map(BUTTONS.map(({ id, text, key, what, say = order, needs }) => [id, registered(id, text, key, () => say(what), needs)]));
 const until = registered("until", "Run until …", "u", runUntil);
 const faster = registeredSpeed("Faster", "+", 1, SPEEDS.length - 1);
 const slower = registeredSpeed("Slower", "-", -1, 0);

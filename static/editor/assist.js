@@ -24,7 +24,8 @@ const LONG = 500; // how long one waits for completions before the page shows th
 
 // -- completions
 
-/** Returns what is around a position: `code`, the `head` of a function, `text` of chunks or patterns, or `other` text and comments. */
+/** Returns what is around a position: `code`, the `head` of a function, a `call` of what a part can do, such as `goal.modify(`, `text` of chunks or
+ * patterns, or `other` text and comments. */
 function around(state, at) {
   let node = syntaxTree(state).resolveInner(at, -1);
   if (node.name === "Comment") return "other";
@@ -32,13 +33,13 @@ function around(state, at) {
   for (; node; node = node.parent) {
     if (node.name === "FormatReplacement") return "code";
     if (/String/.test(node.name)) inText = true;
-    if (/^(ParamList|ArgList)$/.test(node.name)) return inText ? "text" : node.name === "ParamList" ? "head" : "code";
+    if (/^(ParamList|ArgList)$/.test(node.name)) return inText ? "text" : node.name === "ParamList" ? "head" : node.prevSibling?.name === "MemberExpression" ? "call" : "code";
     if (/^(Body|Script)$/.test(node.name)) break;
   }
   return inText ? "other" : "code";
 }
 
-const TYPED = { code: /[\w.]$/, head: /[\w.(, ]$/, text: /[\w?!.:"' ]$/ };
+const TYPED = { code: /[\w.]$/, head: /[\w.(, ]$/, call: /[\w.(, ]$/, text: /[\w?!.:"' ]$/ };
 
 async function complete(context) {
   const { state, pos, explicit } = context;
@@ -47,7 +48,9 @@ async function complete(context) {
   const answer = await shownAsReading(context, helpWith(state, "complete", pos));
   const word = context.matchBefore(/\w+$/);
   let items = answer?.items ?? [];
-  if (place === "head" && !word && !explicit) items = items.filter(({ apply }) => apply); // only the parts of the agent
+  const unasked = !word && !explicit;
+  if (place === "head" && unasked) items = items.filter(({ apply }) => apply); // only the parts of the agent
+  if (place === "call" && unasked && context.matchBefore(/[(, ]$/)) items = items.filter(({ label, detail }) => detail && label.endsWith("=")); // only slots
   const options = [...items.map((item) => option(item, state, pos)), ...(place === "code" && isLineStart(state, pos) ? completionsOf() : [])];
   if (options.length > 0) return { from: answer?.start ?? word?.from ?? pos, options, validFor: /^\??\w*$/ };
   // After null, CodeMirror would not ask again for what has been typed meanwhile; after options that are valid no more, it does.

@@ -93,7 +93,7 @@ const EXTENSIONS = [
   EditorState.phrases.of(PHRASES),
   EditorView.lineWrapping,
   codeTheme,
-  EditorView.contentAttributes.of({ tabindex: "0" }), // what can be scrolled can be reached
+  EditorView.contentAttributes.of({ tabindex: "0", "data-focus": "" }), // what can be scrolled can be reached; a command that opens the tab leads here
   EditorView.clickAddsSelectionRange.of((event) => event.altKey), // Ctrl and click goes to a definition
   EditorView.domEventHandlers({
     mousedown(event, view) {

@@ -11,7 +11,7 @@ function show(id) {
   showExperiment(id);
 }
 
-command({ text: "New experiment …", group: "Run", work: () => show("new") });
+command({ text: "New experiment …", group: "Run", work: () => show("new"), needs: "models folder" });
 
 const ACTIONS = [
   ["Stop", canStop, stopExperiment],
@@ -26,5 +26,5 @@ commandsOf(
       const actions = ACTIONS.filter(([, can]) => can(one)).map(([text, , work]) => ({ text: `${text} the experiment ${name}`, group: one.id, work: () => (show(one.id), work(one)) }));
       return [{ text: `Experiment: ${name}`, group: one.id, work: () => show(one.id) }, ...actions];
     }),
-  listExperiments,
+  { read: listExperiments, needs: "models folder" },
 );

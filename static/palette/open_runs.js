@@ -20,5 +20,5 @@ commandsOf(
       group: "Open runs",
       work: () => showSession(one),
     })),
-  read,
+  { read, needs: "models folder" },
 );

@@ -23,7 +23,7 @@ function read() {
 
 commandsOf(
   () => (runs.value ?? []).slice(0, MAX_RECORDINGS).map((run) => ({ text: `Recording: ${nameOf(run)}`, group: run.id, work: () => openRun(run), ready: () => !run.problem, why: () => run.problem })),
-  read,
+  { read, needs: "models folder" },
 );
 
 /** Shows a run in the list, where the progress of its action is shown, too. */
@@ -32,16 +32,19 @@ function show({ id }) {
   chosen.value = new Set([id]);
 }
 
-commandsOf(() => {
-  const run = presentRun();
-  if (!run) return [];
-  const of = (text, work, more = {}) => ({ text: `${text} the present run`, group: "Runs", work, ...more });
-  const others = [...chosen.value].filter((id) => id !== run.id);
-  return [
-    of("Name (name, note, tags)", () => labelRun(run)),
-    of("Replay", () => (show(run), replayRun(run))),
-    of("Compare the chosen recording with", () => compareRuns(others[0], run.id), { ready: () => others.length === 1, why: () => "Choose one other recording in the tab Runs." }),
-    ...formatsOf(run).map(([format, text]) => of(`Download ${text} of`, () => (show(run), download(run, format, text)))),
-    of("Delete", () => deleteRuns([run])),
-  ];
-});
+commandsOf(
+  () => {
+    const run = presentRun();
+    if (!run) return [];
+    const of = (text, work, more = {}) => ({ text: `${text} the present run`, group: "Runs", work, ...more });
+    const others = [...chosen.value].filter((id) => id !== run.id);
+    return [
+      of("Name (name, note, tags)", () => labelRun(run)),
+      of("Replay", () => (show(run), replayRun(run))),
+      of("Compare the chosen recording with", () => compareRuns(others[0], run.id), { ready: () => others.length === 1, why: () => "Choose one other recording in the tab Runs." }),
+      ...formatsOf(run).map(([format, text]) => of(`Download ${text} of`, () => (show(run), download(run, format, text)))),
+      of("Delete", () => deleteRuns([run])),
+    ];
+  },
+  { needs: "models folder" },
+);

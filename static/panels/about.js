@@ -64,4 +64,4 @@ function Description({ answer: { title, nodes, cut, readable } }) {
     ${cut ? html`<p class="quiet">The description is longer; its file has all of it.</p>` : null}`;
 }
 
-export const panel = { id: "about", title: "About", order: 1, View: About };
+export const panel = { id: "about", title: "About", order: 1, View: About, needs: "models folder" };

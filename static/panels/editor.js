@@ -19,6 +19,7 @@ import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { session } from "../store.js";
 
+const needs = "models folder";
 const AGAIN = 3000; // how often it checks whether the file has changed on disk [ms]
 
 /** The text whose two versions are compared. */
@@ -41,31 +42,33 @@ async function runShown() {
 Object.assign(keys, { run: runShown, save: saveShown });
 const hasText = () => Boolean(shownDocument());
 const noText = () => "No file is open in the editor.";
-command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText, why: noText });
-command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText, why: noText });
-noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor");
+command({ text: "Save the text", key: "Mod+s", group: "Editor", work: saveShown, ready: hasText, why: noText, needs });
+command({ text: "Save the text, and run it", key: "Mod+Enter", group: "Editor", work: runShown, ready: hasText, why: noText, needs });
+noteKey("Escape+Tab", "One after the other: leave the text, where Tab alone indents", "Editor", needs);
 
 const onShown = (work) => () => shownDocument() && work(shownDocument());
 Object.assign(keys, { define: onShown(define), rename: onShown(renameName), format: onShown(format) });
-for (const { key, text } of ACTIONS) noteKey(key, text.replace(" …", ""), "Editor");
-commandsOf(() =>
-  [
-    ...ACTIONS,
-    ...INSERTIONS.map(({ text, work }) => ({ text: `Insert a snippet: ${text}`, work })),
-    { text: "New model …", work: makeNew, ready: () => true },
-    { text: "Duplicate the file …", work: () => duplicate(shown.value.path) },
-    { text: "Check: load the text, and list what is wrong", work: () => checkByLoading(shownDocument()) },
-    { text: "Rename the file …", work: () => rename(shown.value.path) },
-    { text: "Delete the file …", work: () => remove(shown.value.path, shownDocument().dirty.value) },
-  ].map(({ key = null, text, work, ready = hasText }) => {
-    const inText = () => {
-      goToTab("editor");
-      requestAnimationFrame(work); // once the text is visible
-    };
-    return { text, key, group: "Editor", work: inText, ready, why: noText };
-  }),
+for (const { key, text } of ACTIONS) noteKey(key, text.replace(" …", ""), "Editor", needs);
+commandsOf(
+  () =>
+    [
+      ...ACTIONS,
+      ...INSERTIONS.map(({ text, work }) => ({ text: `Insert a snippet: ${text}`, work })),
+      { text: "New model …", work: makeNew, ready: () => true },
+      { text: "Duplicate the file …", work: () => duplicate(shown.value.path) },
+      { text: "Check: load the text, and list what is wrong", work: () => checkByLoading(shownDocument()) },
+      { text: "Rename the file …", work: () => rename(shown.value.path) },
+      { text: "Delete the file …", work: () => remove(shown.value.path, shownDocument().dirty.value) },
+    ].map(({ key = null, text, work, ready = hasText }) => {
+      const inText = () => {
+        goToTab("editor");
+        requestAnimationFrame(work); // once the text is visible
+      };
+      return { text, key, group: "Editor", work: inText, ready, why: noText };
+    }),
+  { needs },
 );
-noteKey("Mod+Click", "Go to the definition", "Editor");
+noteKey("Mod+Click", "Go to the definition", "Editor", needs);
 
 /** Applies the user's choice between two versions. */
 async function choose(document, which) {
@@ -144,7 +147,10 @@ function Editor() {
     if (other && !wanted.value) open(of);
   }, [of, id]);
   useLayoutEffect(() => {
-    if (document && !compares) showText(place.current, document);
+    if (document && !compares) {
+      showText(place.current, document);
+      if (place.current.closest("[role=tabpanel]:focus")) focusText(); // a command has opened the tab before the text was read
+    }
     return leaveText;
   }, [document, compares]);
   useLayoutEffect(() => {
@@ -171,5 +177,6 @@ export const panel = {
   title: "Editor",
   order: 7,
   View: Editor,
+  needs,
   badge: () => (unsaved().length > 0 ? { text: "", title: "unsaved" } : null),
 };

@@ -71,4 +71,4 @@ function Experiments() {
   return html`<div class="experiments" ref=${place}>${view}</div>`;
 }
 
-export const panel = { id: "experiments", title: "Experiments", order: 8.5, View: Experiments };
+export const panel = { id: "experiments", title: "Experiments", order: 8.5, View: Experiments, needs: "models folder" };

@@ -62,7 +62,7 @@ function Message({ notice }) {
   return html`<li class=${`${level} ${isPresent(notice) ? "" : "earlier"}`}>
     ${file ? html`<${Place} file=${file} line=${line} />` : null}
     <span class="text">${text}</span>
-    ${action ? html` <button class="link action" onClick=${() => takeAction(notice)}>${action.text}</button>` : null}
+    ${action ? html` <${Button} class="link action" onClick=${() => takeAction(notice)}>${action.text}<//>` : null}
     ${hasMore({ message: text, detail }) ? html`<details><summary>Traceback</summary><${Traceback} text=${detail} /></details>` : null}
   </li>`;
 }

@@ -138,7 +138,7 @@ function press(event) {
   event.currentTarget.querySelector("[value=run]").click();
 }
 
-noteKey("Mod+Enter", "Run with the values of the form, in the tab Parameters", "Panels");
+noteKey("Mod+Enter", "Run with the values of the form, in the tab Parameters", "Panels", "models folder");
 
 function reset() {
   drafts.value = Object.fromEntries(known().map((parameter) => [parameter.name, written(parameter.default)]));
@@ -266,7 +266,7 @@ commandsOf(
       return [{ text: `Set ${parameter.name}`, about, group: "Parameters", work: () => show(parameter) }, ...(given ? [setting] : [])];
     });
   },
-  () => session.peek() && follow(session.peek()), // if they are not known
+  { read: () => session.peek() && follow(session.peek()), needs: "models folder" }, // if they are not known
 );
 
 export const panel = {
@@ -274,5 +274,6 @@ export const panel = {
   title: "Parameters",
   order: 6,
   View: Parameters,
+  needs: "models folder",
   badge: () => (isStale() || waiting().length ? { text: "", title: "not in effect yet" } : null),
 };

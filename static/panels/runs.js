@@ -11,9 +11,9 @@ import { followRuns, listRuns, loading, problem, runs as list, total, warning } 
 import { chosen, sorted, Table } from "../runs/table.js";
 import { textOf } from "../runs/wording.js";
 
-command({ text: "Compare, name or delete recordings: open their list", group: "Panels", work: () => goToTab("runs") });
+command({ text: "Compare, name or delete recordings: open their list", group: "Panels", work: () => goToTab("runs"), needs: "models folder" });
 
-command({ text: "Open a recording file …", group: "Run", work: chooseFiles });
+command({ text: "Open a recording file …", group: "Run", work: chooseFiles, needs: "models folder" });
 
 /** Returns the recordings that contain every word of a search. */
 function found(all, search) {
@@ -89,4 +89,4 @@ function countText(shown, known, read) {
   return shown === known ? `${known}` : `${shown} of ${known}`;
 }
 
-export const panel = { id: "runs", title: "Runs", order: 8, View: Runs };
+export const panel = { id: "runs", title: "Runs", order: 8, View: Runs, needs: "models folder" };

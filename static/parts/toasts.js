@@ -2,7 +2,8 @@
 
 import { html, signal, useEffect } from "../vendor/preact.js";
 import { isAhead, isPresent, isSettled, notices, settle, takeAction } from "../store.js";
-import { openTab } from "../open_tab.js";
+import { goToTab, openTab } from "../open_tab.js";
+import { Button } from "./button.js";
 import { Place } from "./place.js";
 
 const SHOWN = 8000; // [ms]
@@ -26,7 +27,7 @@ export function Toasts() {
 
   function read() {
     toast.value = null;
-    openTab.value = "messages";
+    goToTab("messages");
   }
 
   function act() {
@@ -38,9 +39,9 @@ export function Toasts() {
     ${list.includes(shown) && isPresent(shown) && openTab.value !== "messages"
       ? html`<div class="toast ${shown.level}">
           <span>${shown.file ? html`<${Place} file=${shown.file} line=${shown.line} /> ` : null}${shown.text}</span>
-          ${shown.action ? html`<button onClick=${act}>${shown.action.text}</button>` : null}
-          <button class="bare" onClick=${read}>Show</button>
-          <button class="bare" aria-label="Close" onClick=${() => (toast.value = null)}>✕</button>
+          ${shown.action ? html`<${Button} onClick=${act}>${shown.action.text}<//>` : null}
+          <${Button} class="bare" onClick=${read}>Show<//>
+          <${Button} class="bare" aria-label="Close" onClick=${() => (toast.value = null)}>✕<//>
         </div>`
       : null}
   </div>`;

@@ -7,7 +7,7 @@ import { confirmed } from "../parts/dialog.js";
 import { offerRestore } from "../parts/restore.js";
 import { call, sendFile, sinceNow } from "../server.js";
 import { complain, session } from "../store.js";
-import { forgetRun, listRuns } from "./list.js";
+import { forgetRun, listRuns, runs } from "./list.js";
 import { chosen } from "./table.js";
 import { withTrust } from "./trust.js";
 import { nameOf, sizeText, whenText } from "./wording.js";
@@ -102,6 +102,14 @@ export function cancelReplay(id) {
   cancels.get(id)?.abort();
 }
 
+/** Returns that the branches of recordings which are deleted stay; an empty text if they have none. */
+function branchesText(list) {
+  const ids = new Set(list.map(({ id }) => id));
+  const { length } = (runs.peek() ?? []).filter(({ id, origin }) => ids.has(origin) && !ids.has(id));
+  if (length === 0) return "";
+  return ` ${list.length === 1 ? "Its" : "Their"} ${length === 1 ? "branch stays" : `${length} branches stay`}.`;
+}
+
 /** Deletes recordings, after asking; except those that a run is still writing. */
 export async function deleteRuns(all) {
   const list = all.filter((run) => !run.session);
@@ -112,7 +120,8 @@ export async function deleteRuns(all) {
   }
   if (list.length === 0) return;
   const one = list.length === 1 ? `the recording «${nameOf(list[0])}»` : counted(list.length, "recording");
-  if (!(await confirmed(`Delete ${one}?`, `${list.length === 1 ? "It goes" : "They go"} to the trash folder .workbench/trash.`, "Delete"))) return;
+  const where = `${list.length === 1 ? "It goes" : "They go"} to the trash folder .workbench/trash.${branchesText(list)}`;
+  if (!(await confirmed(`Delete ${one}?`, where, "Delete"))) return;
   const refused = [];
   const deleted = [];
   for (const [n, run] of list.entries()) {

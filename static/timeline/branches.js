@@ -4,6 +4,7 @@
 import { commandsOf } from "../commands.js";
 import { compareRuns } from "../compare/compare.js";
 import { remembered } from "../local_storage.js";
+import { isThere } from "../needs.js";
 import { Button } from "../parts/button.js";
 import { Icon } from "../parts/icon.js";
 import { timeText } from "../parts/units.js";
@@ -26,7 +27,8 @@ const MAX_CHARACTERS = 300; // of the change that a tooltip shows
 
 const open = remembered("branches open", true);
 
-const tree = computed(() => treeOf(runs.value ?? [], shown.value));
+/** Those of the present run; none without a models folder, from which they would be opened. */
+const tree = computed(() => (isThere("models folder") ? treeOf(runs.value ?? [], shown.value) : []));
 
 /** Returns the newest time of a run of the tree [s]; of the one that is shown, the list may not have it yet. */
 function endOf(run) {

@@ -31,6 +31,7 @@ IN_THEME = """(theme) => (document.documentElement.dataset.theme ?? theme) === t
 
 TABS = ("[role=tablist]", "[role=tabpanel]")
 DIALOG = ("dialog[open]",)
+THEMES: tuple[Any, ...] = ("dark", "light")
 
 
 def problems_of(page: Page, *parts: str) -> list[str]:
@@ -44,12 +45,42 @@ def problems_of(page: Page, *parts: str) -> list[str]:
     if page.evaluate("() => !('axe' in window)"):
         page.evaluate(AXE)
     found: list[str] = []
-    themes: tuple[Any, ...] = ("dark", "light")
-    for theme in themes:
+    for theme in THEMES:
         page.emulate_media(color_scheme=theme)
         page.wait_for_function(IN_THEME, arg=theme)
         found += [f"{theme}: {problem}" for problem in page.evaluate(LOOK)]
     return [*found, *page.evaluate(RUN_AXE, list(parts))]
+
+
+TEXTS_AHEAD = """async () => {
+  const context = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+  const veil = getComputedStyle(document.querySelector(".timeline-veil"));
+  const { seriesColour, COLOUR_COUNT } = await part("parts/curve.js");
+  const probe = document.querySelector(".timeline-veil").appendChild(document.createElement("i"));
+  function colourNamed(name) {
+    probe.style.color = `var(--${name})`;
+    return getComputedStyle(probe).color;
+  }
+  function luminance(layers) {
+    context.clearRect(0, 0, 1, 1);
+    for (const [colour, alpha] of layers) {
+      context.globalAlpha = alpha;
+      context.fillStyle = colour;
+      context.fillRect(0, 0, 1, 1);
+    }
+    const linear = (part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
+    const [r, g, b] = [...context.getImageData(0, 0, 1, 1).data].map((part) => linear(part / 255));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  }
+  const over = [veil.backgroundColor, Number(veil.opacity)];
+  const panel = [colourNamed("panel"), 1];
+  const bands = [[panel], ...Array.from({ length: COLOUR_COUNT }, (_, n) => [panel, [colourNamed(seriesColour(n)), 0.26]])];
+  return Math.min(...bands.map((back) => {
+    const [dark, light] = [luminance([...back, over]), luminance([[colourNamed("text"), 1], over])].sort((one, other) => one - other);
+    return (light + 0.05) / (dark + 0.05);
+  }));
+}"""
+"""Returns the smallest contrast of a text on the timeline or on one of its bands, under what covers the time after the present moment."""
 
 
 RETURNED = """    return Simulation(scene, {"walker": agent})
@@ -107,6 +138,24 @@ def test_all_can_be_read_named_and_reached(pages: Callable[..., Page], workbench
         page.keyboard.press("Escape")
         expect(page.get_by_role("dialog")).to_have_count(0)
     assert problems == []
+
+
+def test_what_comes_after_the_present_moment_can_be_read_in_both_themes(pages: Callable[..., Page]) -> None:
+    page = pages("doorway.py", tab="productions")
+    shows(page, "#status", "at its start")
+    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'until', time: 2 }))")
+    shows(page, "#time", r"t = 2\.00 s")
+    page.evaluate("async () => void (await (await part('timeline/seek.js')).seek(0.3))")
+    shows(page, "#time", r"t = 0\.30 s")
+    expect(page.locator("#events .fire.ahead").first).to_be_visible()
+    for theme in THEMES:
+        page.emulate_media(color_scheme=theme)
+        page.wait_for_function(IN_THEME, arg=theme)
+        assert page.evaluate(LOOK) == [], theme
+        assert page.evaluate(TEXTS_AHEAD) >= 4.5, theme
+    colour = "(line) => [getComputedStyle(line).color, getComputedStyle(line).fontStyle]"
+    ahead, before = (page.locator(f"#events tr.fire{one} .what b").first for one in (".ahead", ":not(.ahead)"))
+    assert ahead.evaluate(colour) != before.evaluate(colour)
 
 
 @pytest.mark.slow

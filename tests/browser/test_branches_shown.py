@@ -280,3 +280,67 @@ def test_branches_from_one_moment_have_names_of_their_own_and_say_what_was_chang
     page.get_by_role("button", name="Delete at 0.12 s (2)").click()
     expect(page.get_by_role("dialog")).to_contain_text(re.compile(r"Delete the recording «counting\.py .* branch at 0\.12 s \(2\)»[?]"))
     page.get_by_role("dialog").get_by_role("button", name="Cancel").click()
+
+
+NAMED = "document.activeElement.ariaLabel || document.activeElement.textContent.trim()"
+
+
+def reached(page: Page, name: str) -> list[str]:
+    """Goes to a button by the Tab key, from the timeline; returns the names of the elements before it, the nearest first."""
+    page.locator("#timeline").focus()
+    passed: list[str] = []
+    for _ in range(20):
+        now = page.evaluate(NAMED)
+        if now == name:
+            return passed
+        passed.insert(0, now)
+        page.keyboard.press("Tab")
+    raise AssertionError(f"the button {name!r} is not reached")
+
+
+def test_a_button_that_its_own_press_removes_gives_the_focus_back(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    offer = """async () => (await part("store.js")).complain("It is in the trash folder.", "info", { text: "Restore", work: () => {} })"""
+
+    def removes(button: str, notice: str, others: int) -> None:
+        """Presses it; the buttons before it in the notice are removed, too."""
+        passed = reached(page, button)
+        page.keyboard.press("Enter")
+        expect(page.locator(notice)).to_have_count(0)
+        until(page, lambda: page.evaluate(NAMED) == passed[others])
+
+    for button, others in (("Restore", 0), ("Close", 2)):
+        page.evaluate(offer)
+        removes(button, ".toast", others)
+    page.evaluate(offer)
+    reached(page, "Show")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("tabpanel", name="Messages")).to_be_focused()
+    page.get_by_role("tab", name="Buffers").click()
+    change_the_past(page)
+    removes("Dismiss", ".branched", 1)
+
+
+def test_before_a_run_is_deleted_the_page_says_that_its_branches_stay(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    ask = """async (ids) => {
+      const { runs } = await part("runs/list.js");
+      const { deleteRuns } = await part("runs/actions.js");
+      const run = (id, origin = null) => ({
+        id, origin, branched: origin && 1, session: null, label: { name: id }, model: "doorway.py", made: 0,
+      });
+      runs.value = [run("a"), run("b", "a"), run("c", "a"), run("d", "c")];
+      deleteRuns(runs.value.filter(({ id }) => ids.includes(id)));
+    }"""
+    for ids, text in (
+        ("a", "trash. Its 2 branches stay."),
+        ("c", "trash. Its branch stays."),
+        ("ab", "trash. Their branch stays."),
+        ("d", "trash."),
+    ):
+        page.evaluate(ask, ids)
+        dialog = page.get_by_role("dialog")
+        expect(dialog).to_contain_text("to the trash folder")
+        expect(dialog.locator("p")).to_have_text(re.compile(rf"{re.escape(text)}$"))
+        dialog.get_by_role("button", name="Cancel").click()
+        expect(dialog).to_have_count(0)

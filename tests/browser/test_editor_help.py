@@ -120,6 +120,25 @@ def test_help_while_writing(opened: Callable[[str], Page]) -> None:
     has_line(page, "from actr3d.actr import *from actr3d.world import Floor")
 
 
+def test_in_a_call_that_changes_a_chunk_its_slots_are_offered_while_writing(opened: Callable[[str], Page]) -> None:
+    page = opened(SHORT)
+    options = page.locator(".cm-tooltip-autocomplete li")
+    at_end_of(page, "print(word)")
+    page.keyboard.type("\ngoal.modify(")
+    expect(options).to_have_text(["task=slot, goal", "word=slot, goal", "meaning=slot, memory"])
+    page.wait_for_timeout(100)  # CodeMirror ignores a key that comes too soon after its list
+    page.keyboard.press("Enter")
+    has_line(page, "goal.modify(task=)")
+    page.keyboard.type("1, ")
+    expect(options.first).to_have_text("word=slot, goal")
+    page.keyboard.press("Escape")
+    page.keyboard.press("End")
+    page.keyboard.type("\nmemory.add(")
+    expect(page.locator(".documentation")).to_contain_text("add(")
+    expect(options).to_have_count(0)  # nothing but its signature
+    page.keyboard.type('"word:x"')
+
+
 def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[str], Page]) -> None:
     page = opened(SHORT.replace("print(word)", "print( word )"))
     at_end_of(page, "print( word )")
@@ -130,7 +149,7 @@ def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[st
     expect(dialog).to_have_text(re.compile("Rename the variable word in 3 places"))
     page.keyboard.type("for")
     page.keyboard.press("Enter")
-    expect(dialog).to_have_text(re.compile("'for' is not a name for a variable"))
+    expect(dialog).to_have_text(re.compile("'for' is not a name"))
     page.keyboard.type("asked")
     page.keyboard.press("Enter")
     for line in ('word:?asked"):', 'memory.request("word:?asked")', "print( asked )"):

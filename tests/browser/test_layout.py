@@ -247,3 +247,25 @@ def test_a_link_to_a_moment_leads_to_its_branch_once_the_run_was_changed_before_
     page.goto(f"{link.partition('?')[0]}?model=counting.py&t=1")
     expect(page.get_by_text("Only the address of a recorded run can have a time t").first).to_be_visible()
     expect(page).to_have_url(re.compile(r"\?model=counting\.py$"))
+
+
+def test_on_a_low_page_the_timeline_leaves_the_panels_a_usable_height(pages: Pages, workbench: Served) -> None:
+    page = pages("doorway.py", width=853, height=533, tab="experiments")
+    shows(page, "#status", "at its start")
+    panel = page.locator(".tab-panel")
+    rows = page.locator(".timeline-rows")
+    until(page, lambda: panel.evaluate("one => one.clientHeight") >= 200)
+    assert rows.evaluate("one => one.clientHeight") >= 60
+    page.evaluate("async () => { (await part('layout.js')).timelineHeight.value = 400; }")  # as from a higher page
+    until(page, lambda: panel.evaluate("one => one.clientHeight") >= 150)
+    page.evaluate("async () => { localStorage.clear(); }")
+    page.click("#step")
+    shows(page, "#time", r"0\.01 s")
+    recording = page.evaluate("async () => (await part('store.js')).shownRecording.value")
+    page.click("#restart")
+    shows(page, "#time", r"0\.00 s")
+    page.goto(f"{page.url.partition('?')[0]}?run={recording}")
+    expect(page.locator(".recording-banner")).to_contain_text("s recorded")
+    page.get_by_role("tab", name="Memory").click()
+    until(page, lambda: panel.evaluate("one => one.clientHeight") >= 150)
+    assert rows.evaluate("one => one.clientHeight") >= 20

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -303,3 +304,58 @@ def test_the_palette_finds_what_a_button_of_the_scene_is_called(page: Page) -> N
     dialog = page.get_by_role("dialog", name="Change by hand")
     expect(dialog.get_by_role("button", name="Push …")).to_be_visible()
     page.keyboard.press("Escape")
+
+
+def test_in_a_notebook_no_command_or_key_of_a_models_folder_exists(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("doorway.py")
+    shows(page, "#status", "at its start")
+    page.click("#step")
+    shows(page, "#time", "0.01 s")
+    session = page.evaluate("async () => (await part('store.js')).session.value.id")
+    page.goto(f"{page.url.partition('?')[0]}?session={session}")
+    shows(page, "#time", "0.01 s")
+    search(page, "step by one tick")
+    expect(options(page).first).to_have_text("Step by one tickRun→")
+    page.keyboard.press("Enter")
+    shows(page, "#time", "0.02 s")
+    for words, wrong in (
+        ("new model", "New model"),
+        ("model doorway", "Model: "),
+        ("recording", "[Rr]ecording"),
+        ("open", "Open (run|About|Editor|Experiments|Parameters|Runs)|their list"),
+        ("experiment", "xperiment"),
+        ("snippet", "snippet"),
+        ("save text", "Save the text"),
+        ("restart", "Restart|Stop"),
+        ("set speed", "Set speed"),
+        ("link", "link"),
+    ):
+        search(page, words)
+        page.wait_for_load_state("networkidle")  # what is listed when the palette is opened is there
+        assert not re.search(wrong, "\n".join(options(page).all_text_contents())), words
+        page.keyboard.press("Escape")
+    page.locator("body").press("Shift+R")
+    page.locator("body").press("?")
+    keys = page.get_by_role("dialog", name="Help")
+    expect(keys).to_contain_text("Step by one tick")
+    expect(keys).not_to_contain_text(re.compile("Editor|Restart|Stop the model|Parameters|chosen runs"))
+    shows(page, "#time", "0.02 s")
+
+
+def test_the_command_that_opens_the_editor_puts_the_cursor_into_the_text(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="buffers")
+    shows(page, "#status", "at its start")
+    page.get_by_role("tab", name="Buffers").focus()
+    search(page, "open editor")  # before its text was read
+    page.keyboard.press("Enter")
+    text = page.locator(".cm-content")
+    expect(text).to_be_focused()
+    page.keyboard.press("Escape")
+    page.keyboard.press("Tab")
+    expect(text).not_to_be_focused()
+    page.get_by_role("tab", name="Buffers").click()
+    page.keyboard.press("8")
+    expect(text).to_be_focused()
+    search(page, "open console")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("tabpanel", name="Console")).to_be_focused()

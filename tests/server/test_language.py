@@ -118,6 +118,7 @@ class Pole(Feature):
     ("text", "first"),
     [
         (COUNTING.replace("goal.clear()", "goal.modify(|)"), ["task=", "number=", "last="]),
+        (COUNTING.replace("goal.clear()", "goal.modify(task=1)\n        goal.modify(number=abs(2), |)"), ["task=", "last="]),
         (COUNTING.replace("number:?now last", "nu| last"), ["number"]),
         (COUNTING.replace("task:count number:?now last:!?now", "task:|"), ["start", "count"]),
         (COUNTING.replace("number:?now last:!?now", "number:?|"), ["?now", "?next", "?after"]),
@@ -342,7 +343,8 @@ def test_renaming(ask: Asked, text: str, name: str, changed: int) -> None:
         (COUNTING.replace("goal.clear()", "go|al.clear()"), "memory", "there is a part 'memory' already"),
         (COUNTING.replace("task:count", "ta|sk:count", 1), "last", "there is a slot 'last' already"),
         (COUNTING.replace("print(now)", "print(n|ow)", 1), "next", "there is a variable 'next' already"),
-        (COUNTING.replace("print(now)", "print(n|ow)", 1), "for", "'for' is not a name for a variable"),
+        (COUNTING.replace("print(now)", "print(n|ow)", 1), "for", "'for' is not a name"),
+        (COUNTING.replace("model.run()", "mo|del.run()"), "My Agent", "'My Agent' is not a name$"),
         (COUNTING.replace("Memory(ret", "Mem|ory(ret"), "Store", "is defined in actr3d.actr.declarative.memory"),
         (COUNTING.replace("task:count", "task:co|unt", 1), "x", "there is no name here"),
         ("|", "x", "there is no name here"),

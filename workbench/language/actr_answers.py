@@ -93,7 +93,9 @@ def complete_name(model: ModelText, at: int, attributes: Attributes) -> tuple[li
         return [Item(label=part.name, type="variable", detail=part.kind, apply=f'{part.name}="${{}}"', boost=OWN) for part in parts], True
     if name.called[-1:] == ("modify",) and len(name.called) > 1:
         about = ChunkText(kind="chunk", part=name.called[-2], agent=name.agent, method=name.method, text="", start=at)
-        slots = distinct(item for item in _slots(model, about, at, attributes) if item.label.isidentifier())
+        begin = max(one.start for one in model.names if one.text == "modify" and one.start < name.start)
+        given = {one.text for one in model.names if one.keyword and one.called == name.called and begin < one.start < name.start}
+        slots = distinct(item for item in _slots(model, about, at, attributes) if item.label.isidentifier() and item.label not in given)
         return [Item(label=f"{item.label}=", type=item.type, detail=item.detail, boost=item.boost, text=item.text) for item in slots], False
     conditions = _conditions(model, name, attributes)
     return [

@@ -117,7 +117,7 @@ class Assistant:
         if not new:  # the page asks what will be renamed
             return found
         if not allowed:
-            raise LanguageError(f"'{new}' is not a name for a {found.what}")
+            raise LanguageError(f"'{new}' is not a name")
         if new != found.name and self._is_taken(model, found, at, new):
             raise LanguageError(f"there is a {found.what} '{new}' already")
         return found

@@ -1,0 +1,13 @@
+// What commands, keys, panels and buttons may need around the page: without it they do not exist.
+
+import { addressed } from "./address.js";
+
+/** Whether this page has it. A notebook has no models folder: no files with an editor, no recordings and experiments; and its cells start and
+ * end the runs. */
+const THERE = { "models folder": addressed("session") === null };
+
+/** Returns whether this page has what something needs; null if it needs nothing. */
+export function isThere(need) {
+  if (need !== null && !(need in THERE)) throw new Error(`needs: must be one of ${Object.keys(THERE).join(", ")} (got ${need})`);
+  return need === null || THERE[need];
+}
