@@ -327,7 +327,7 @@ def test_before_a_run_is_deleted_the_page_says_that_its_branches_stay(page: Page
       const { runs } = await part("runs/list.js");
       const { deleteRuns } = await part("runs/actions.js");
       const run = (id, origin = null) => ({
-        id, origin, branched: origin && 1, session: null, label: { name: id }, model: "doorway.py", made: 0,
+        id, origin, ancestors: [], branched: origin && 1, copied: null, session: null, label: { name: id }, model: "doorway.py", made: 0,
       });
       runs.value = [run("a"), run("b", "a"), run("c", "a"), run("d", "c")];
       deleteRuns(runs.value.filter(({ id }) => ids.includes(id)));
