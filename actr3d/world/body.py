@@ -21,7 +21,7 @@ from actr3d.world.bounding_box import BoundingBox, Bounds
 from actr3d.world.command_registry import CommandRegistry, checked_function, checked_name, number
 from actr3d.world.contacts import BodyContacts, Touch
 from actr3d.world.frames import WORLD_FRAME, Frame, upright_frame
-from actr3d.world.gait import OWN, GaitCycle
+from actr3d.world.gait import OWN, GaitCycle, standing
 from actr3d.world.grasp import Hand, Held
 from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import MotionCommands
@@ -106,6 +106,8 @@ class Body:
         self.base = Base(physics, self.root, self.anatomy.prefix)
         stepping = OWN if self.anatomy.gait is not None else ()
         every = self._joints()
+        self._every = {joint.name: joint for joint in every}
+        """All joints by name."""
         self.joints: dict[str, Joint] = {joint.name: joint for joint in every if joint.name not in stepping}
         """By name, the joints that the agent can feel and move: those that only gait moves are left out."""
         for movement in self.anatomy.movements:
@@ -364,11 +366,13 @@ class Body:
 
     @contextmanager
     def _posed(self, positions: Mapping[str, float]) -> Generator[None]:
-        """Has joints at other positions [rad] or [m] during the block."""
-        places = [self.joint(name).q for name in positions]
+        """Has joints at other positions [rad] or [m] during the block, and the legs as they are when it stands so."""
+        for name in positions:
+            self.joint(name)
+        there = positions if self.anatomy.gait is None else {**positions, **standing(positions)}
         qpos = self.physics.mj_data.qpos
         before = qpos.copy()
-        qpos[places] = list(positions.values())
+        qpos[[self._every[name].q for name in there]] = list(there.values())
         self.physics.changed()
         try:
             yield

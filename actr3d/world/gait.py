@@ -23,6 +23,8 @@ from actr3d.world.kernel import ROLES, stride_changes
 Row = NDArray[np.float64]
 
 SIDES = ("left", "right")
+STANCE = "stance_yaw"
+"""The joint that turns the hips against the walking direction."""
 SWAY, BOB = "stance_sway", "stance_bob"
 """The joints of the whole upper body relative to the walking direction: to the left, and up [m]."""
 LEG = ("thigh_yaw", "thigh_pitch", "thigh_roll", "shank_pitch", "foot_pitch")
@@ -179,7 +181,7 @@ class GaitCycle:
         if walks or self._size:
             wander = self._stride(speed, duration)
         direction = (math.atan2(left, forward) if walks else 0.0) - stance
-        turn = max(-ASIDE, min(ASIDE, direction))
+        turn = feet_along_the_way(direction)
         arms = max(0.0, math.cos(stance + torso)) ** 2
         pattern = _STANDING if self._pattern is None else self._pattern[1]
         size = self._size * self._size * (3 - 2 * self._size)
@@ -247,6 +249,18 @@ class GaitCycle:
         self._phase, self._steps, self._size, added, speed = state
         self._added = np.array(added, dtype=np.float64)
         self._pattern = None if speed is None else (speed, _pattern(self._gait, self._legs, speed))
+
+
+def feet_along_the_way(direction: float) -> float:
+    """Returns the turn of the thighs that keeps the feet along a direction [rad], given relative to the hips."""
+    return max(-ASIDE, min(ASIDE, direction))
+
+
+def standing(positions: Mapping[str, float]) -> dict[str, float]:
+    """Returns the positions of the joints that only gait moves, as far as they follow from those of others in a body that stands [rad]."""
+    if STANCE not in positions:
+        return {}
+    return dict.fromkeys((f"{side}_thigh_yaw" for side in SIDES), feet_along_the_way(-positions[STANCE]))
 
 
 def _pattern(gait: Gait, legs: LegPlan, speed: float) -> Row:

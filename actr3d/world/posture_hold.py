@@ -14,7 +14,7 @@ from actr3d.errors import WorldError
 from actr3d.world.actuated_dofs import ActuatedDofs, Row
 from actr3d.world.base import Base
 from actr3d.world.contacts import BodyContacts
-from actr3d.world.gait import GaitCycle
+from actr3d.world.gait import STANCE, GaitCycle
 from actr3d.world.joints import Joint
 from actr3d.world.physics import Physics
 
@@ -99,7 +99,7 @@ class PostureHold:
         self._base = base
         self._contacts = contacts
         self._gait = gait
-        self._trunk = [self._dofs.joints.get(joint) for joint in ("stance_yaw", "torso_yaw")]
+        self._trunk = [self._dofs.joints.get(joint) for joint in (STANCE, "torso_yaw")]
         self._rows = dofs.base
         self.commanded: Row = np.zeros(len(dofs.q))
         """The commanded speeds of base and joints, in the rows of `ActuatedDofs`."""

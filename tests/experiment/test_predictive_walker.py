@@ -244,10 +244,11 @@ def test_it_remembers_room_in_metres_or_in_shoulder_widths(model: Any) -> None:
         assert {float(chunk["room"]) for chunk in remembered} <= rooms
 
 
-def test_a_walker_that_knows_its_body_knows_the_width_of_each_turn_that_another_one_feels(model: Any) -> None:
+@pytest.mark.parametrize("bar", [None, 0.6])
+def test_a_walker_that_knows_its_body_knows_the_width_of_each_turn_that_another_one_feels(model: Any, bar: float | None) -> None:
     widths: list[list[float]] = []
     for body in ("learned", "known"):
-        simulation = model.build(model.Parameters(body=body, perceptual_noise=0.0, bar=0.6, gait=False))
+        simulation = model.build(model.Parameters(body=body, perceptual_noise=0.0, bar=bar))
         walker = simulation.agents["walker"]
         while not walker.b_door:
             simulation.step()
@@ -255,6 +256,7 @@ def test_a_walker_that_knows_its_body_knows_the_width_of_each_turn_that_another_
         felt = {float(chunk["torso_yaw"]): float(chunk["width"]) for chunk in walker.DM.find_matching_chunks("torso_yaw:? width:?")}
         widths.append([felt[min(felt, key=lambda at, wanted=wanted: abs(at - wanted))] for wanted in torso])
         assert (simulation.time < 0.5) == (body == "known")
+    assert (widths[1][0], widths[1][-1]) == pytest.approx((widths[0][0], widths[0][-1]), abs=0.002)
     assert widths[1] == pytest.approx(widths[0], abs=0.02)  # what was felt on the way is not exactly that turn
 
 

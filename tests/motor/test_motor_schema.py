@@ -13,7 +13,7 @@ from actr3d.actr.loading import load_text
 from actr3d.errors import WorldError
 from actr3d.motor import BodyPart
 from actr3d.simulation import Simulation
-from actr3d.world import Floor, Load, Mannequin, Scene
+from actr3d.world import Floor, Gait, Load, Mannequin, Scene
 from tests.helpers.motor_bodies import motor_of, moving, until
 from tests.helpers.small_agents import near
 
@@ -301,12 +301,15 @@ def known(motor: Any, simulation: Simulation, posture: Any, movement: str = "rot
     return postures(motor, f"posture:{movement} end:done")
 
 
-def test_a_known_posture_is_the_one_that_a_movement_leads_to() -> None:
-    simulation, motor = moving(extreme_step=None)
-    swing(simulation, motor, 60)
+@pytest.mark.parametrize("gait", [None, Gait()], ids=["glides", "walks"])
+def test_a_known_posture_is_the_one_that_a_movement_leads_to(gait: Gait | None) -> None:
+    body = Mannequin(name="walker", sideways=True, gait=gait)
+    simulation, motor = moving(body=body, extreme_step=None)
+    motor.rotate("stance", "yaw", 36)
+    swing(simulation, motor, 44)
     (felt,) = postures(motor, "posture:rotate_torso end:done")
-    other, knowing = moving(extreme_step=None)
-    (chunk,) = known(knowing, other, {joint: felt[joint] for joint in NAMED})
+    other, knowing = moving(body=body, extreme_step=None)
+    (chunk,) = known(knowing, other, {joint: felt[joint] for joint in ("stance_yaw", *NAMED)})
     sizes = "width", "depth", "height", "middle"
     assert {slot: chunk[slot] for slot in chunk if slot not in sizes} == {slot: felt[slot] for slot in felt if slot not in sizes}
     assert [float(chunk[size]) for size in sizes] == near([float(felt[size]) for size in sizes], abs=0.002)
