@@ -685,6 +685,7 @@ def test_a_report_replaces_an_earlier_one_and_no_file_of_a_user(tmp_path: Path) 
     assert mine.exists()
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("inner", [".", "figures"])
 def test_the_folder_in_which_the_shell_is_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inner: str) -> None:
     folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
