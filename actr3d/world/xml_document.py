@@ -6,7 +6,6 @@ import posixpath
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
-from xml.sax.saxutils import quoteattr
 
 from actr3d.errors import WorldError
 from actr3d.world.asset_folder import AssetFolder
@@ -16,6 +15,8 @@ MAX_ELEMENTS = 100_000
 
 MAX_DEPTH = 200
 """Greatest nesting depth of elements. MuJoCo's own reader stops at 500."""
+
+ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"})
 
 
 @dataclass
@@ -136,8 +137,13 @@ def _included(element: Element, folder: AssetFolder, inside: tuple[str, ...], co
     return root
 
 
+def _quoted(value: str) -> str:
+    """Returns the value of an attribute in quotation marks. The function for it in `xml.sax.saxutils` would load all of `http`."""
+    return f'"{value.translate(ESCAPES)}"'
+
+
 def _write(element: Element, lines: list[str], origins: list[str]) -> None:
-    attributes = "".join(f" {name}={quoteattr(value)}" for name, value in element.attributes.items())
+    attributes = "".join(f" {name}={_quoted(value)}" for name, value in element.attributes.items())
     lines.append(f"<{element.tag}{attributes}{'' if element.children else '/'}>")
     origins.append(element.where)
     for child in element.children:

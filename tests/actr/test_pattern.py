@@ -232,9 +232,26 @@ def test_as_python_actr_does(pattern: str, contents: dict[Any, Any]) -> None:
     assert Pattern(pattern).match(Chunk(contents)) == PeerPattern(pattern).match(Chunk(contents))
 
 
-@settings(max_examples=200, deadline=None)
-@given(st.lists(st.tuples(PATTERNS, PATTERNS), min_size=1, max_size=8), st.lists(st.tuples(CONTENTS, CONTENTS), min_size=1, max_size=4))
+RULES = st.lists(st.tuples(PATTERNS, PATTERNS), min_size=1, max_size=8)
+STATES = st.lists(st.tuples(CONTENTS, CONTENTS), min_size=1, max_size=4)
+
+
+@settings(max_examples=60, deadline=None)
+@given(RULES, STATES)
 def test_the_matcher_finds_what_single_patterns_find(rules: list[tuple[str, str]], states: list[tuple[Any, Any]]) -> None:
+    compare_with_single_patterns(rules, states)
+
+
+@pytest.mark.slow
+@settings(max_examples=400, deadline=None)
+@given(RULES, STATES)
+def test_the_matcher_finds_in_many_more_cases_what_single_patterns_find(
+    rules: list[tuple[str, str]], states: list[tuple[Any, Any]]
+) -> None:
+    compare_with_single_patterns(rules, states)
+
+
+def compare_with_single_patterns(rules: list[tuple[str, str]], states: list[tuple[Any, Any]]) -> None:
     agent: Any = ACTR()
     agent.goal, agent.other = Buffer(), Buffer()
     context: dict[str, Any] = {"goal": agent.goal, "other": agent.other, "self": agent}

@@ -89,6 +89,7 @@ def test_another_seed_changes_noisy_models_only(name: str) -> None:
     assert same == (name not in NOISY), f"{name}: it must be in NOISY, if another seed changes what it does, and only then"
 
 
+@pytest.mark.daily(35)
 @pytest.mark.parametrize("until", ["0.01", "0.12", "3"])
 @pytest.mark.parametrize("name", NAMES)
 def test_can_be_ended_early(name: str, until: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -251,6 +251,7 @@ PARTS = "        print(word)\n\n    retrieval = Buffer()\n    memory = Memory(re
 MOTOR = "    facts = Buffer()\n    motor = Motor()\n    memory = Memory(facts)\n"
 
 
+@pytest.mark.daily(3)
 @pytest.mark.parametrize(
     ("text", "line", "keys", "piece", "expected"),
     [

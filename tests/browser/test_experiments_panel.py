@@ -396,6 +396,7 @@ def test_the_keyboard_goes_on_where_the_view_changes(two_finished: tuple[Page, l
     expect(back).to_be_focused()
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(("chosen", "paper"), [("light", "rgb(255, 255, 255)"), ("dark", "rgb(20, 24, 31)")])
 def test_a_report_has_the_theme_that_was_chosen_on_the_page(pages: Callable[..., Page], chosen: str, paper: str) -> None:
     other = "dark" if chosen == "light" else "light"

@@ -319,6 +319,7 @@ def test_old_code_is_not_used_after_any_file_has_changed(tmp_path: Path) -> None
     assert jit.sources_digest(copy) != before
 
 
+@pytest.mark.daily(3)
 @pytest.mark.parametrize(("shape", "size"), [("cylinder", 2), ("capsule", 2), ("ellipsoid", 3), ("box", 3), ("sphere", 1)])
 def test_of_two_things_that_coincide_the_same_one_is_seen_everywhere(shape: str, size: int) -> None:
     random = np.random.default_rng(1)

@@ -59,7 +59,7 @@ def random_scene(seed: int) -> tuple[Any, Any]:
     return compiled("".join(things), assets, eye)
 
 
-@pytest.mark.daily(20)
+@pytest.mark.daily(10)
 @pytest.mark.parametrize("seed", range(40))
 def test_edges_are_where_rays_find_them(seed: int) -> None:
     mj_model, mj_data = random_scene(seed)

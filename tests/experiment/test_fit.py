@@ -577,8 +577,8 @@ def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:
     assert surface.minimum()[0] == pytest.approx(0.4, abs=0.02)
 
 
-@pytest.mark.daily(2)
-@pytest.mark.parametrize(("data", "parameters"), [(2, 1), (3, 1), (4, 2), (12, 2)])
+@pytest.mark.daily(1)
+@pytest.mark.parametrize(("data", "parameters"), [(4, 2), (2, 1), (3, 1), (12, 2)])
 def test_intervals_have_the_true_value_as_often_as_they_say(data: int, parameters: int) -> None:
     """A straight line through the origin, or with an offset, with normal errors whose variance the fit does not know."""
     rng, runs, inside = np.random.default_rng(7), 300, 0

@@ -199,7 +199,7 @@ def test_a_client_that_leaves_ends_no_process_of_another(tmp_path: Path) -> None
     text = waiting_experiment(tmp_path, begun, enough)
     with ThreadPoolExecutor(1) as pool:
         batch = pool.submit(run_batch, text, [0], 60, cluster_versions(), "one")
-        while not begun.exists() and not batch.done():
+        while not (begun.exists() and begun.read_text()) and not batch.done():
             time.sleep(0.02)
         end_processes("another")
         enough.touch()
@@ -215,7 +215,7 @@ def test_a_trial_whose_client_leaves_does_not_begin_again(tmp_path: Path) -> Non
     text = waiting_experiment(tmp_path, begun, tmp_path / "never")
     with ThreadPoolExecutor(1) as pool:
         batch = pool.submit(run_batch, text, [0], 60, cluster_versions(), "leaving")
-        while not begun.exists() and not batch.done():
+        while not (begun.exists() and begun.read_text()) and not batch.done():
             time.sleep(0.02)
         end_processes("leaving")
         with pytest.raises(ExperimentError, match="the experiment was stopped"):

@@ -678,7 +678,7 @@ def test_a_trial_is_recorded_and_replayed(tmp_path: Path, capsys: pytest.Capture
 
 
 def test_nothing_of_a_trial_stays_alive() -> None:
-    specification = specify("warren_whang_1987").specification
+    specification = specify("warren_whang_1987", values={"speed": 3.0}).specification  # short walks
 
     def alive() -> int:
         gc.collect()

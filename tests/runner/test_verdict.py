@@ -48,6 +48,7 @@ def record(path: Path, first: str = "pass", last: str = "pass") -> None:
     assert main(["run", str(file), "--seed", "1", "--record", str(path)]) == 0
 
 
+@pytest.mark.daily(5)
 @pytest.mark.parametrize(
     ("does", "how"),
     [
