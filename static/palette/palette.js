@@ -13,6 +13,7 @@ import "./recordings.js";
 
 const MAX_RECENT = 6;
 const MAX_ENTRIES = 60; // entries shown
+const OWN = 4; // how much better it is if all words are in the text of a command, without its group
 const WEAK = 0.6; // what fits worse than this share of the best is left out
 
 const shown = signal(0); // which opening of the palette is shown; 0 if none
@@ -47,7 +48,9 @@ function found() {
   const hits = all
     .flatMap((of) => {
       const hit = match(words, `${textOf(of)} ${of.group} ${of.also ?? ""}`);
-      return hit === null ? [] : [{ of, heading: "Commands", places: hit.places, score: hit.score + rank(of) }];
+      if (hit === null) return [];
+      const own = match(words, textOf(of)) === null ? 0 : OWN;
+      return [{ of, heading: "Commands", places: hit.places, score: hit.score + own + rank(of) }];
     })
     .sort((one, other) => other.of.ready() - one.of.ready() || other.score - one.score);
   const best = Math.max(...hits.map(({ score }) => score));
