@@ -361,7 +361,7 @@ def test_a_form_stays_open_while_the_page_asks_whether_what_lies_ahead_may_be_lo
     page.keyboard.press("Control+k")
     expect(page.get_by_role("combobox", name="Search commands")).to_be_focused()
     page.keyboard.insert_text("set parameter")  # also found: «Set width» of the group Parameters
-    expect(page.get_by_role("option").first).to_contain_text("Set parameter")
+    expect(page.locator("#palette-0")).to_contain_text("Set parameter")
     page.keyboard.press("Enter")
     form = page.get_by_role("dialog", name="Set parameter")
     expect(form.locator("small code")).to_have_text("walker.memory.latency")
