@@ -41,7 +41,7 @@ What to expect
 - An aperture of 0.6 m is passed without a turn, but with a turn by the `large` group.
 - An aperture of 0.25 m is declined.
 
-The run begins with some seconds of learning. At its end the tab *Buffers* shows the measures of the passage, computed from the simulated
+The run begins with some seconds of learning, unless the walker knows its body. At its end the tab *Buffers* shows the measures of the passage, computed from the simulated
 world.
 
 What to try
@@ -53,6 +53,7 @@ What to try
 - `variant = "replication", aperture = 0.7`: the original model turns even here.
 - `margin = 0, noise = 0.05`: a careless walker with poor eyes.
 - `bar = 0.6, aperture = 0.6`: a walker with a bar in both hands.
+- `body = "known", aperture = 0.45`: sets out at once.
 - `start_aside = 0.3`: a start that is not in line with the doorway. This walker cannot steer: it walks into the wall. The
   `predictive` one can.
 - Or move the slider of the aperture while the walker is on its way.

@@ -423,7 +423,7 @@ def _opened(
     _check_versions(store.specification, any_version=any_version)
     there, now = store.specification, experiment.specification
     if different := experiment.differences(there):
-        same = f"choose another --out, or continue it unchanged: actr3d experiment {folder} --resume"
+        same = f"choose another --out, or continue it unchanged: actr3d experiment {folder} --resume{' --any-version' * any_version}"
         raise ExperimentError(f"'{folder}' is another experiment: {'; '.join(different)}; {same}")
     # The files may be at another place now, and other files that the model reads beside them.
     return Experiment(replace(there, design=now.design, model=now.model)), store, True

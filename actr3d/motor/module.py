@@ -327,16 +327,17 @@ class Motor(WithParameters, Port):
         """Knows how large the body is in a posture, as if it had felt it at the end of a movement: stores it in declarative memory.
 
         Adults know their bodies before an experiment begins. So does an agent that calls this in `init`, without a movement: the size is
-        computed from the body, with the noise of feeling it. `busy` is True until it is stored, at the end of the next tick.
+        computed from the body as it stands, with the noise of feeling it. `busy` is True until it is stored, at the end of the next tick.
 
         Args:
             movement: The name of the movement that could have led there.
-            posture: Joints with angles [degrees], or positions [m], as for `assume`. Other joints are as they are. The slot `extreme` says
+            posture: Joints with angles [degrees], or positions [m], and nothing else. Other joints are as they are. The slot `extreme` says
                 whether the first of them, in the order of the body, is at an extreme of all known postures.
 
         Raises:
             ChunkError: If it is not a posture.
-            WorldError: If it names no joint of the body, a value is invalid, or a joint cannot be there.
+            WorldError: If it names something else, or nothing, a value is invalid, a joint cannot be there, or a hand has grasped an
+                object.
         """
         if not isinstance(movement, str) or not movement.strip():  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
             raise WorldError(f"know: movement: must be the name of a movement (got {movement!r})")
@@ -345,6 +346,8 @@ class Motor(WithParameters, Port):
 
     def _compute_size(self, movement: str, posture: Chunk, site: CallSite | None) -> None:
         limbs = self._felt().limbs
+        for slot in posture:
+            checked_name(slot, limbs.joints, limbs.plan.name, "joint")
         positions = self._positions_of(posture, "know")
         for joint, at in positions.items():
             if not limbs.inside(joint, at):

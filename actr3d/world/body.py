@@ -21,7 +21,7 @@ from actr3d.world.bounding_box import BoundingBox, Bounds
 from actr3d.world.command_registry import CommandRegistry, checked_function, checked_name, number
 from actr3d.world.contacts import BodyContacts, Touch
 from actr3d.world.frames import WORLD_FRAME, Frame, upright_frame
-from actr3d.world.gait import OWN, GaitCycle, standing
+from actr3d.world.gait import OWN, STANCE, GaitCycle, standing
 from actr3d.world.grasp import Hand, Held
 from actr3d.world.joints import Joint
 from actr3d.world.motion_commands import MotionCommands
@@ -352,11 +352,12 @@ class Body:
         Args:
             frame: `"world"`; `"body"`: at the base, along its heading, upright; or the name of one of its parts or
                 sites, or of any site or body in the world.
-            positions: By joint, its position in the other posture [rad] or [m]; the other joints are as they are. The world stays as it is,
-                and objects that the hands have grasped stay where they are; a `Load` is part of the body.
+            positions: By joint, its position in the other posture [rad] or [m]; the other joints are as they are, and it stands. Nothing
+                moves in the world, and forces are left out: a `Load` goes with the part that carries it, and does not hold the arms back.
 
         Raises:
-            WorldError: If there is no such frame or joint.
+            WorldError: If there is no such frame or joint; or if the hands have grasped an object, whose place in another posture is not
+                known.
         """
         if positions:
             with self._posed(positions):
@@ -367,9 +368,12 @@ class Body:
     @contextmanager
     def _posed(self, positions: Mapping[str, float]) -> Generator[None]:
         """Has joints at other positions [rad] or [m] during the block, and the legs as they are when it stands so."""
-        for name in positions:
-            self.joint(name)
-        there = positions if self.anatomy.gait is None else {**positions, **standing(positions)}
+        if self.contacts.held():
+            raise WorldError(f"{self.name}: its size in another posture is not known while it holds an object")
+        there = {name: joint.position - self.hold.added_by_gait(name) for name, joint in self.joints.items() if self.hold.gait_moves(name)}
+        there |= {name: at for name, at in positions.items() if self.joint(name)}
+        if self.anatomy.gait is not None:
+            there |= standing(there[STANCE] if STANCE in there else self._every[STANCE].position)
         qpos = self.physics.mj_data.qpos
         before = qpos.copy()
         qpos[[self._every[name].q for name in there]] = list(there.values())

@@ -256,11 +256,10 @@ def feet_along_the_way(direction: float) -> float:
     return max(-ASIDE, min(ASIDE, direction))
 
 
-def standing(positions: Mapping[str, float]) -> dict[str, float]:
-    """Returns the positions of the joints that only gait moves, as far as they follow from those of others in a body that stands [rad]."""
-    if STANCE not in positions:
-        return {}
-    return dict.fromkeys((f"{side}_thigh_yaw" for side in SIDES), feet_along_the_way(-positions[STANCE]))
+def standing(stance: float) -> dict[str, float]:
+    """Returns the positions of the joints that only gait moves, of a body that stands with its hips turned by an angle [rad] [m]."""
+    thighs = dict.fromkeys((f"{side}_thigh_yaw" for side in SIDES), feet_along_the_way(-stance))
+    return dict.fromkeys(OWN, 0.0) | thighs
 
 
 def _pattern(gait: Gait, legs: LegPlan, speed: float) -> Row:

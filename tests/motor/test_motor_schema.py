@@ -13,7 +13,7 @@ from actr3d.actr.loading import load_text
 from actr3d.errors import WorldError
 from actr3d.motor import BodyPart
 from actr3d.simulation import Simulation
-from actr3d.world import Floor, Gait, Load, Mannequin, Scene
+from actr3d.world import Floor, Gait, Load, Mannequin, Scene, SimpleObject
 from tests.helpers.motor_bodies import motor_of, moving, until
 from tests.helpers.small_agents import near
 
@@ -352,13 +352,42 @@ def test_a_posture_that_the_body_cannot_have_is_not_known() -> None:
     _, motor = moving()
     for call, message in (
         (lambda: motor.know("turn", {"torso_yaw": 400}), "'torso_yaw' cannot be at 400"),
-        (lambda: motor.know("turn", "wrist:3"), "names no joint of"),
+        (lambda: motor.know("turn", {"torso_yaw": 10, "tors": 5}), "walker has no joint 'tors'"),
+        (lambda: motor.know("turn", {}), "names no joint of"),
         (lambda: motor.know("turn", {"torso_yaw": "far"}), "know: torso_yaw: must be a number"),
         (lambda: motor.know("", {"torso_yaw": 4}), "know: movement: must be the name of a movement"),
     ):
         with pytest.raises(WorldError, match=message):
             call()
     assert not motor.busy
+
+
+def test_a_posture_is_known_as_it_is_standing_also_while_the_body_walks() -> None:
+    body = Mannequin(name="walker", sideways=True, gait=Gait())
+    widths: set[float] = set()
+    for ticks in (0, 120, 145, 170):
+        simulation, motor = moving(body=body)
+        if ticks:
+            motor.walk(1.3)
+            simulation.step(ticks)
+        motor.know("stance_yaw", {"stance_yaw": 80, "torso_yaw": 0, "pelvis_yaw": 0})
+        simulation.step(2)
+        widths.add(float(postures(motor, "posture:stance_yaw end:done")[0]["width"]))
+    assert max(widths) - min(widths) <= 0.003
+
+
+def test_the_size_in_a_posture_is_not_known_while_a_hand_holds_an_object() -> None:
+    cup = SimpleObject(name="cup", size=(0.06, 0.06, 0.3), position=(0.0, -0.26, 0.7), mass=0.2)
+    simulation = Simulation(Scene(parts=(Mannequin(name="walker"), cup)), {})
+    body = simulation.world.bodies["walker"]
+    body.set("grasp", "cup")
+    with pytest.raises(WorldError, match="not known while it holds an object"):
+        body.get("size_in", {"torso_yaw": 0.3})
+    assert body.get("size_in").width > 0, "as it is"
+    body.set("release")
+    assert body.get("size_in", {"torso_yaw": 0.3}).width > 0
+    with pytest.raises(WorldError, match="size_in: torso_yaw: must be"):
+        body.get("size_in", {"torso_yaw": 1e308})
 
 
 KNOWING = """

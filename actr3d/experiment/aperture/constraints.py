@@ -344,7 +344,8 @@ class Findings:
             for level, of in sorted(sides.items())
         }
         scale, unit = (100, "cm") if self.by == "aperture" else (1, "A/S")
-        text = f"{touched} of {len(passable)} touched, {passed} passed; mean margin of agents that turned "
+        which = " that begin in line, without a bar wider than the body," if len(self.plain) < len(self.passings) else ""
+        text = f"{touched} of {len(passable)}{which} touched, {passed} passed; mean margin of agents that turned "
         text += ", ".join(f"{_sides(left, right)} at {scale * level:.3g}" for level, (left, right) in means.items())
         text += f" {unit}" if means else "none"
         met = touched == 0 and passed == len(passable) and bool(means)

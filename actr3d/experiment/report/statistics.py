@@ -77,7 +77,9 @@ def cell_means(rows: Any, measure: str, by: Sequence[str]) -> Any:
         low, high = bootstrap_interval(values)
         sd = float(np.std(values, ddof=1)) if len(values) > 1 else float("nan")
         place = dict(zip(by, key, strict=True))
-        found.append({**place, "mean": float(values.mean()), "sd": sd, "low": low, "high": high, "n": len(values)})
+        found.append(
+            {**place, "mean": float(values.mean()) if len(values) else float("nan"), "sd": sd, "low": low, "high": high, "n": len(values)}
+        )
         found[-1]["trials"] = int(cell["trials"].sum())
     return in_order(pandas().DataFrame(found, columns=[*by, "mean", "sd", "low", "high", "n", "trials"]), by, rows)
 

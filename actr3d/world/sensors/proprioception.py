@@ -10,6 +10,7 @@ from actr3d.errors import WorldError
 from actr3d.values import NOT_TRACED
 from actr3d.world.body import Body, sensor
 from actr3d.world.command_registry import number
+from actr3d.world.joints import AT_LIMIT, Joint
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,21 +75,27 @@ class SizeInPosture(Size):
 
 @sensor
 def size_in(body: Body, positions: Mapping[str, float] | None = None) -> SizeInPosture:
-    """Computes how large the body would be, with what it holds, in another posture.
+    """Computes how large the body would be in another posture, standing, with the `Load` that it carries.
 
     Args:
         body: The body.
         positions: By joint, its position there [rad] or [m]; the other joints are as they are now; None for all of them.
 
     Raises:
-        WorldError: If there is no such joint, or a position is not a number.
+        WorldError: If there is no such joint, a position is not a number or beyond a limit, or a hand has grasped an object.
     """
     given: Mapping[str, float] = {} if positions is None else positions
     if not isinstance(given, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance] # an agent's code may give anything
         raise WorldError(f"size_in: positions: must be positions by joint (got {positions!r})")
-    box = body.bounding_box("body", {joint: number(at, f"size_in: {joint}") for joint, at in given.items()})
+    there = {joint: number(at, f"size_in: {joint}", *_within(body.joint(joint))) for joint, at in given.items()}
+    box = body.bounding_box("body", there)
     depth, width, height = box.size
     return SizeInPosture(width=width, depth=depth, height=height, middle=(box.lower[1] + box.upper[1]) / 2)
+
+
+def _within(joint: Joint) -> tuple[float, float]:
+    """Returns the least and the greatest position that a joint can have [rad] or [m]."""
+    return joint.lower - AT_LIMIT, joint.upper + AT_LIMIT
 
 
 @sensor
