@@ -113,6 +113,21 @@ def test_a_branch_has_the_same_name_everywhere_and_no_other_one_of_its_tree_has_
     ]
 
 
+SETTINGS = """async () => {
+  const { differentText, settingsOf, textOf } = await part("runs/wording.js");
+  const parameters = { aperture: 0.25, speed: 1, seen: true };
+  const run = { id: "a", parameters, different: ["aperture"], made: 0, result: {}, branched: null };
+  const all = [{}, { aperture: 0.27, door: 0.5, seen: null }].map((changed) => ({ ...run, changed }));
+  return [all.map(differentText), settingsOf(all[1]).length, all.map((one) => textOf(one).includes("aperture 0.25 → 0.27"))];
+}"""
+
+
+def test_a_list_of_runs_shows_and_finds_values_that_were_changed_by_hand(blank: Page) -> None:
+    texts, settings, found = blank.evaluate(SETTINGS)
+    assert texts == ["aperture 0.25", "aperture 0.25 → 0.27, seen true → none, door – → 0.5"]
+    assert (settings, found) == (4, [False, True])
+
+
 SIDES = """async (sessions) => {
   const [{ SideBySide }, { html, render }] = await Promise.all(["compare/sides.js", "vendor/preact.js"].map((name) => part(name)));
   const same = { model: "walk.py", seed: 1, label: {}, made: 0, branched: null, time: 1, events: 5 };
