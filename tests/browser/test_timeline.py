@@ -1195,6 +1195,27 @@ def test_times_of_an_hour_or_more_are_in_hours_minutes_and_seconds(blank: Page) 
     assert short == ["0 s", "500 s", "1000 s", "1500 s", "2000 s", "2500 s", "3000 s"]
 
 
+READ = """async (texts) => {
+  const { timeOfText } = await part("parts/units.js");
+  return texts.map(timeOfText).map((time) => (Number.isNaN(time) ? null : time));
+}"""
+
+
+def test_a_time_is_read_in_the_forms_in_which_it_is_shown(blank: Page) -> None:
+    times = {
+        "1.5": 1.5,
+        " 12.35 s ": 12.35,
+        "1:15:12.3": 4512.3,
+        "24:01:01.50": 86_461.5,
+        "0:59:59": 3599,
+        "5:07": 307,
+        "1e3": 1000,
+        "-1": -1,
+    }
+    assert blank.evaluate(READ, list(times)) == list(times.values())
+    assert blank.evaluate(READ, wrong := ["", "soon", "1:75:00", "1:5:00", "1:2:3:4", ":10", "1:00:60"]) == [None] * len(wrong)
+
+
 def test_fit_shows_what_happened_without_a_quiet_end_and_again_all_of_the_run(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")
