@@ -1216,6 +1216,22 @@ def test_a_time_is_read_in_the_forms_in_which_it_is_shown(blank: Page) -> None:
     assert blank.evaluate(READ, wrong := ["", "soon", "1:75:00", "1:5:00", "1:2:3:4", ":10", "1:00:60"]) == [None] * len(wrong)
 
 
+TIP = """async (to) => {
+  const [{ Tip }, { span }, { html, render }] = await Promise.all(["timeline/tip.js", "timeline/view.js", "vendor/preact.js"].map((name) => part(name)));
+  const before = span.value;
+  span.value = { from: 0, to };
+  const box = document.createElement("div");
+  const band = { mark: true, from: 2700, to: 2700 };
+  render(html`<${Tip} at=${{ x: 0, y: 0, band, row: { lane: { label: "goal" } } }} />`, box);
+  span.value = before;
+  return box.querySelector(".number").textContent;
+}"""
+
+
+def test_a_tooltip_of_the_timeline_has_times_in_the_form_of_the_axis(blank: Page) -> None:
+    assert [blank.evaluate(TIP, to) for to in (3000, 7200)] == ["at 2700.000 s", "at 0:45:00.000"]
+
+
 def test_fit_shows_what_happened_without_a_quiet_end_and_again_all_of_the_run(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")
