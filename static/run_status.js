@@ -3,6 +3,7 @@
 
 import { computed } from "./vendor/preact.js";
 import { toShowOne } from "./bar/models.js";
+import { timeText } from "./parts/units.js";
 import { alive as stated, connected, events, opening, restarted, session, state } from "./store.js";
 import { embedded } from "./windows.js";
 
@@ -50,7 +51,7 @@ function endedLine(facts) {
   const { period = 0.01 } = session.value;
   const last = lastEvent();
   const isQuiet = last !== null && facts.furthest - last > 2 * period;
-  return `${withReason(facts)}${isQuiet ? `; the last event was at ${Number(last.toFixed(3))} s` : ""}`;
+  return `${withReason(facts)}${isQuiet ? `; the last event was at ${timeText(last)}` : ""}`;
 }
 
 /** A run that has ended by itself may be stopped too: then it can no longer answer questions. */

@@ -10,6 +10,22 @@ from actr3d.change import CHANGES
 from actr3d.parameter_schema import Parameter
 
 
+def value_changed_by(parameters: Iterable[Parameter], data: Mapping[str, Any]) -> tuple[str, Any] | None:
+    """Returns the name of the parameter or aperture that a recorded command changes, and its new value; None if it changes none.
+
+    Args:
+        parameters: The parameters of the model.
+        data: The command, as in a recording.
+    """
+    from actr3d.simulation import Command  # takes long to import; the server needs only the names in this module
+
+    one = Command.from_data(0, data)
+    set_by = parameter_set_by(parameters, one.word, one.values, one.named, one.body)
+    if set_by is not None:
+        return set_by[0].name, set_by[1]
+    return (str(one.named.get("name", one.word)), one.values[0]) if one.word == "aperture" and one.values else None
+
+
 def parameter_set_by(
     parameters: Iterable[Parameter], word: str, values: Sequence[Any], named: Mapping[str, Any], body: str | None
 ) -> tuple[Parameter, Any] | None:

@@ -15,7 +15,7 @@ from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
 from actr3d.recording.schema import is_of_simulation
 from actr3d.trace import TraceEvent
-from workbench.live_parameters import parameter_set_by
+from workbench.live_parameters import value_changed_by
 from workbench.loader import listing_of
 from workbench.program_time import timed_events, user_commands
 from workbench.recording_index import UNREADABLE
@@ -84,15 +84,10 @@ def _units(recorded: Recorded, parameters: Iterable[Parameter]) -> dict[str, str
 
 def _changed(recorded: Recorded, parameters: Sequence[Parameter]) -> dict[str, list[list[Any]]]:
     """Returns the parameters and apertures that users changed during the run, as pairs of time [s] and new value."""
-    from actr3d.simulation import Command  # takes long to import; the server needs only the names in this module
-
     found: dict[str, list[list[Any]]] = {}
-    for time, one in ((time, Command.from_data(0, data)) for time, data in user_commands(recorded)):
-        set_by = parameter_set_by(parameters, one.word, one.values, one.named, one.body)
-        if set_by is not None:
-            found.setdefault(set_by[0].name, []).append([time, set_by[1]])
-        elif one.word == "aperture" and one.values:
-            found.setdefault(str(one.named.get("name", one.word)), []).append([time, one.values[0]])
+    for time, data in user_commands(recorded):
+        if (change := value_changed_by(parameters, data)) is not None:
+            found.setdefault(change[0], []).append([time, change[1]])
     return found
 
 

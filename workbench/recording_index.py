@@ -16,8 +16,10 @@ from actr3d.errors import RecordingError
 from actr3d.parameter_schema import Parameter
 from actr3d.recording import Recorded
 from actr3d.runner.facts import NAMED, REACHED
+from actr3d.runner.program_changes import of_user
 from actr3d.values import to_json
 from workbench.files import ModelFolder
+from workbench.live_parameters import value_changed_by
 from workbench.loader import listing_of
 from workbench.program_time import user_commands
 from workbench.retention import begun, copied_from, size_of, written
@@ -47,6 +49,8 @@ class Summary:
     parameters: dict[str, Any] = field(default_factory=dict[str, Any])
     different: tuple[str, ...] = ()
     """The parameters that differ from the defaults in the model's text."""
+    changed: dict[str, Any] = field(default_factory=dict[str, Any])
+    """The parameters and apertures that users changed during the run, with their last values."""
     branched: float | None = None
     """For a branch: the time at which the past of its run was changed [s]."""
     origin: str | None = None
@@ -127,6 +131,7 @@ def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
     ]  # the result is recorded at the very end
     parameters = dict(facts.get("parameters", {}))
     file = str(facts.get("file", ""))
+    source = facts.get("sources", {}).get(file, "")
     named = str(facts.get(NAMED, path.stem))
     copied = copied_from(named)
     return Summary(
@@ -136,7 +141,8 @@ def _read(recorded: Recorded, size: int, models: ModelFolder) -> Summary:
         kind=str(facts["kind"]),
         seed=facts.get("program_seed", facts.get("seed")),
         parameters=parameters,
-        different=_different(parameters, facts.get("sources", {}).get(file, "")),
+        different=_different(parameters, source),
+        changed=_changed(recorded, source),
         branched=facts.get("branched"),
         origin=facts.get("origin"),
         ancestors=tuple((str(name), float(time)) for name, time in facts.get("ancestors", ())),
@@ -159,6 +165,12 @@ def _change(recorded: Recorded, branched: float | None) -> dict[str, Any] | None
     if branched is None:
         return None
     return next((data for time, data in user_commands(recorded) if microseconds(time) >= microseconds(branched)), None)
+
+
+def _changed(recorded: Recorded, source: str) -> dict[str, Any]:
+    """Returns the last values of the parameters and apertures that users changed during the run."""
+    commands = recorded.commands() if recorded.facts["kind"] != "program" else of_user(recorded.commands())
+    return dict(filter(None, (value_changed_by(_parameters(source).values(), command.data) for command in commands)))
 
 
 def _duration(recorded: Recorded, last: list[Event]) -> float:

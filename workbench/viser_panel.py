@@ -10,6 +10,7 @@ from workbench.overlays import OVERLAYS, ViewSettings
 from workbench.page_commands.changes import SimulationCommand
 from workbench.page_commands.running import Back, Pause, Run, Step
 from workbench.page_commands.session import ShowOverlay
+from workbench.time_text import time_text
 from workbench.worker.messages import State
 
 WORDS: dict[str, Callable[[], Any]] = {"run": Run, "pause": Pause, "step": Step, "back": Back}
@@ -54,7 +55,7 @@ class Panel:
     def show(self, state: State) -> None:
         """Shows the state of the run."""
         pace = "" if state.measured is None else f" · {state.measured:.1f}x"
-        text = f"**t = {state.time:.2f} s** · {state.status}{pace}"
+        text = f"**t = {time_text(state.time, 2)}** · {state.status}{pace}"
         if self._time.content != text:
             self._time.content = text
         for name, width in state.apertures.items():

@@ -9,8 +9,8 @@ import { alive, state } from "../store.js";
 import { goToTime } from "../timeline/go_to_time.js";
 
 export function Clock() {
-  const { time, measured } = state.value ?? {};
-  const text = time === undefined ? "–" : `t = ${timeText(time)}`;
+  const { time, furthest, measured } = state.value ?? {};
+  const text = time === undefined ? "–" : `t = ${timeText(time, 2, furthest)}`;
   return html`<div class="clock">
     <${Button} id="time" class="bare" disabled=${!alive.value} title=${buttonTitle(goToTime)} aria-label="Time of the run: ${text}. Go to a time" onClick=${() => run(goToTime)}>${text}<//>
     <output id="measured" aria-label="Measured speed">${measured ? `${measured.toFixed(measured < 1 ? 2 : measured < 100 ? 1 : 0)} x` : ""}</output>

@@ -3,6 +3,7 @@
 import { html, signal, useId } from "../vendor/preact.js";
 import { commandsOf } from "../commands.js";
 import { dialog } from "../parts/dialog.js";
+import { TIMES, timeOfText } from "../parts/units.js";
 import { agentsOf, nameIn } from "../inspector/agents.js";
 import { breakpoints, toggleBreakpoint } from "../inspector/breakpoints.js";
 import { isLeft } from "../server.js";
@@ -30,8 +31,8 @@ function productionNames() {
 
 /** Returns the problem with an entry, such as an invalid time or a missing name; an empty text if it can be sent. */
 function missing() {
-  const text = time.value.trim();
-  if (kind.value === "time" && (text === "" || !(Number(text) >= 0) || Number(text) >= 1e9)) return "enter a number of seconds, such as 1.5";
+  const wanted = timeOfText(time.value);
+  if (kind.value === "time" && !(wanted >= 0 && wanted < 1e9)) return `enter a time, such as ${TIMES}`;
   if (kind.value === "production" && !production.value) return "enter the name of a production";
   return kind.value === "buffer" && !buffer.value ? "enter the name of a buffer" : "";
 }
@@ -41,7 +42,7 @@ commandsOf(() => productionNames().map((name) => ({ text: `${breakpoints.value.i
 function wanted() {
   switch (kind.value) {
     case "time":
-      return { type: "until", time: Number(time.value) };
+      return { type: "until", time: timeOfText(time.value) };
     case "production":
       return { type: "until", production: production.value };
     case "buffer":

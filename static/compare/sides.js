@@ -1,11 +1,10 @@
 // The settings and results of two runs in two columns, and the difference of their models' texts.
 
 import { html } from "../vendor/preact.js";
-import { valueText } from "../parts/chunk.js";
 import { timeText } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { runs as recordings } from "../runs/list.js";
-import { endedText, labelOf, measureText, originText, ownName, sizeText, whenText } from "../runs/wording.js";
+import { courseText, endedText, labelOf, measureText, originText, ownName, sizeText, whenText } from "../runs/wording.js";
 
 const onlyOthers = remembered("compare only differences", false);
 
@@ -37,19 +36,18 @@ function Part({ title, rows, none }) {
 }
 
 /** Returns the initial value of a setting, and the values to which a user changed it during the run. */
-function courseText(value, changes) {
-  const begun = value === undefined ? "–" : valueText(value);
-  if (!changes?.length) return begun;
+function changesText(value, changes) {
+  if (!changes?.length) return courseText(value);
   const [time, last] = changes.at(-1);
   const more = changes.length > 1 ? ` (changed ${changes.length} times)` : "";
-  return `${begun} → ${valueText(last)} at ${timeText(time)}${more}`;
+  return `${courseText(value, last)} at ${timeText(time)}${more}`;
 }
 
 /** Returns the rows of the parameters, and of other values that were changed. */
 function parameterRows(runs, changed, units) {
   const names = [...new Set([...namesOf(runs, "parameters"), ...changed.flatMap(Object.keys)])];
   return names.map((name) => {
-    const [one, other] = runs.map((run, n) => courseText(run.parameters?.[name], changed[n][name]));
+    const [one, other] = runs.map((run, n) => changesText(run.parameters?.[name], changed[n][name]));
     return [units[name] ? `${name} [${units[name]}]` : name, one, other, one !== other];
   });
 }

@@ -35,5 +35,17 @@ export function timeText(time, digits = 2, longest = time) {
   return `${hours}:${two(String(minutes))}:${two((whole - HOUR * hours - 60 * minutes).toFixed(digits))}`;
 }
 
+/** Returns the time [s] of a text as `timeText` writes it: a number of seconds, or hours, minutes and seconds, of which the hours may be
+ * left out; NaN for any other text. */
+export function timeOfText(text) {
+  const plain = text.trim().replace(/ ?s$/, "");
+  const [, hours = 0, minutes, rest] = plain.match(/^(?:(\d+):(?=\d\d:))?([0-5]?\d):([0-5]\d(?:\.\d*)?)$/) ?? [];
+  if (minutes !== undefined) return HOUR * Number(hours) + 60 * Number(minutes) + Number(rest);
+  return plain === "" ? NaN : Number(plain);
+}
+
+/** An example of what `timeOfText` reads. */
+export const TIMES = "1.5 or 1:15:12.3";
+
 /** Returns a time [s] in whole microseconds, as the run has it. */
 export const exactTime = (time) => Math.round(time * 1e6) / 1e6;

@@ -2,7 +2,6 @@
 
 import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { Button } from "../parts/button.js";
-import { valueText } from "../parts/chunk.js";
 import { Icon } from "../parts/icon.js";
 import { remembered } from "../local_storage.js";
 import { shownRecording } from "../store.js";
@@ -11,7 +10,7 @@ import { busy, cancelReplay, deleteRuns, openRun, replayRun, replays } from "./a
 import { download, Downloads, formatsOf } from "./downloads.js";
 import { labelRun } from "./label.js";
 import { runs } from "./list.js";
-import { endedText, labelOf, measureText, originText, outcomeText, whenInFull } from "./wording.js";
+import { endedText, isDifferent, labelOf, measureText, originText, outcomeText, settingsOf, whenInFull } from "./wording.js";
 
 function DownloadLinks({ run }) {
   const get = (event, format, text) => (event.preventDefault(), download(run, format, text));
@@ -55,16 +54,18 @@ function Facts({ run }) {
     ["events", run.events.toLocaleString("en")],
     ["file", run.id],
   ];
+  const settings = settingsOf(run);
   return html`<div class="facts">
     <table aria-label="Result"><tbody>
       ${Object.entries(run.result ?? {}).map(([name, value]) => html`<tr key=${name}><th scope="row">${labelOf(name)}</th><td class="number">${measureText(name, value)}</td></tr>`)}
       ${rows.map(([name, value]) => html`<tr key=${name}><th scope="row">${name}</th><td>${value}</td></tr>`)}
     </tbody></table>
     <table aria-label="Parameters"><tbody>
-      ${Object.keys(run.parameters).length === 0 ? html`<tr><td class="empty">no parameters</td></tr>` : null}
-      ${Object.entries(run.parameters).map(([name, value]) => {
-        const other = run.different.includes(name);
-        return html`<tr key=${name} class=${other ? "other" : ""}><th scope="row" title=${other ? "Not the default" : ""}>${name}</th><td class="mono">${valueText(value)}</td></tr>`;
+      ${settings.length === 0 ? html`<tr><td class="empty">no parameters</td></tr>` : null}
+      ${settings.map(([name, text]) => {
+        const other = isDifferent(run, name);
+        const why = !other ? "" : name in run.changed ? "Changed by hand during the run" : "Not the default";
+        return html`<tr key=${name} class=${other ? "other" : ""}><th scope="row" title=${why}>${name}</th><td class="mono">${text}</td></tr>`;
       })}
     </tbody></table>
   </div>`;

@@ -95,9 +95,24 @@ export function sizeText(bytes) {
   return bytes < 1e9 ? `${(bytes / 1e6).toFixed(1)} MB` : `${(bytes / 1e9).toFixed(1)} GB`;
 }
 
-/** Returns the parameters that differ from the defaults in one line. */
+/** Returns the initial value of a setting, and the last one if a user changed it during the run: `0.25 → 0.27`. */
+export function courseText(begun, last) {
+  return `${begun === undefined ? "–" : valueText(begun)}${last === undefined ? "" : ` → ${valueText(last)}`}`;
+}
+
+/** Returns the settings of a run as [name, text]: its parameters, and other values that a user changed during it. */
+export function settingsOf({ parameters, changed }) {
+  return Object.keys({ ...parameters, ...changed }).map((name) => [name, courseText(parameters[name], changed[name])]);
+}
+
+/** Whether a setting is not the default, or was changed during the run. */
+export function isDifferent(run, name) {
+  return run.different.includes(name) || name in run.changed;
+}
+
+/** Returns the settings that differ from the defaults in one line. */
 export function differentText(run) {
-  return run.different.map((name) => `${name} ${valueText(run.parameters[name])}`).join(", ");
+  return settingsOf(run).filter(([name]) => isDifferent(run, name)).map(([name, text]) => `${name} ${text}`).join(", ");
 }
 
 /** Whether a recording was closed before its run was over. */
@@ -158,5 +173,5 @@ export function measureText(name, value) {
 /** Returns all text that a search includes. */
 export function textOf(run) {
   const own = [run.id, run.model, `seed ${run.seed}`, outcomeText(run), endedText(run), branchText(run), whenText(run.made), ownName(run), run.label?.note ?? "", ...(run.label?.tags ?? [])];
-  return [...own, ...Object.entries(run.parameters).map(([name, value]) => `${name} ${valueText(value)}`)].join("  ").toLowerCase();
+  return [...own, ...settingsOf(run).map(([name, text]) => `${name} ${text}`)].join("  ").toLowerCase();
 }

@@ -87,8 +87,9 @@ export function cameraPose(view, stage, body, aspect, covered = NOTHING) {
     return { target: anchor, back, distance: following(stage, plus(stage.start, stage.middle), back, edges), flat: false };
   }
   const flat = view !== "free";
-  // From above and from the side, ahead is to the right, because most windows are wide.
-  const back = { free: behind(ahead, 10, 25), top: unit([0.001 * ahead[1], -0.001 * ahead[0], 1]), side: [ahead[1], -ahead[0], 0] }[view];
+  // From above and from the side, the axis of the world that is nearest to ahead is to the right, because most windows are wide.
+  const axis = Math.abs(ahead[0]) >= Math.abs(ahead[1]) ? [Math.sign(ahead[0]), 0] : [0, Math.sign(ahead[1])];
+  const back = { free: behind(ahead, 10, 25), top: unit([0.001 * axis[1], -0.001 * axis[0], 1]), side: [axis[1], -axis[0], 0] }[view];
   const { target, distance } = fitted(stage.corners, back, edges, flat);
   return { target: plus(target, anchor), back, distance, flat };
 }

@@ -4,7 +4,7 @@ import { html, signal } from "../vendor/preact.js";
 import { command } from "../commands.js";
 import { dialog } from "../parts/dialog.js";
 import { Problem } from "../parts/problem.js";
-import { timeText } from "../parts/units.js";
+import { TIMES, timeOfText, timeText } from "../parts/units.js";
 import { runStatus } from "../run_status.js";
 import { alive } from "../store.js";
 import { furthest, present, seek } from "./seek.js";
@@ -15,29 +15,29 @@ const problem = signal(null);
 
 /** Returns the problem with the text; null if there is none. */
 function wrong() {
-  const time = Number(text.value);
-  if (text.value.trim() === "" || !(time >= 0)) return `Time: must be a number of seconds, such as 1.5 (got '${text.value}')`;
+  const time = timeOfText(text.value);
+  if (!(time >= 0)) return `Time: must be a time, such as ${TIMES} (got '${text.value}')`;
   const end = furthest.peek();
-  return time > end + 0.005 ? `Time: the run has only reached ${timeText(end)}; «Run until …» goes on to a later time (got ${time})` : null;
+  return time > end + 0.005 ? `Time: the run has only reached ${timeText(end)}; «Run until …» goes on to a later time (got ${text.value})` : null;
 }
 
 function Body() {
   return html`<label class="field">
-      Time, from 0 to ${furthest.value.toFixed(2)} [s]
+      Time, from 0 to ${timeText(furthest.value)}
       <input autofocus inputmode="decimal" spellcheck=${false} aria-invalid=${Boolean(problem.value)} value=${text.value} onInput=${(event) => (text.value = event.currentTarget.value)} />
     </label>
     <${Problem} text=${problem.value} />`;
 }
 
 async function ask() {
-  text.value = present.peek().toFixed(2);
+  text.value = timeText(present.peek()).replace(" s", "");
   problem.value = null;
   const check = () => {
     problem.value = wrong();
     return problem.value === null;
   };
   const actions = [{ text: "Cancel", value: null }, { text: "Go there", value: true, kind: "primary" }];
-  if (await dialog({ title: "Go to a time", body: html`<${Body} />`, actions, check })) seek(Number(text.value));
+  if (await dialog({ title: "Go to a time", body: html`<${Body} />`, actions, check })) seek(timeOfText(text.value));
 }
 
 /** The command that opens it. */

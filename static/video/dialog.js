@@ -4,7 +4,7 @@ import { html, signal } from "../vendor/preact.js";
 import { dialog } from "../parts/dialog.js";
 import { pictureName, saveFile } from "../parts/picture.js";
 import { Problem } from "../parts/problem.js";
-import { timeText } from "../parts/units.js";
+import { TIMES, timeOfText, timeText } from "../parts/units.js";
 import { session } from "../store.js";
 import { furthest } from "../timeline/seek.js";
 import { encoderFor } from "./encoder.js";
@@ -24,8 +24,8 @@ export function problemsOf(texts, reached) {
   const wrong = {};
   for (const name of ["begin", "end"]) {
     const text = texts[name].trim();
-    const time = Number(text);
-    if (text === "" || !Number.isFinite(time)) wrong[name] = `must be a number of seconds (got '${text}')`;
+    const time = timeOfText(text);
+    if (!Number.isFinite(time)) wrong[name] = `must be a time, such as ${TIMES} (got '${text}')`;
     else if (time < 0 || time > reached + 1e-7) wrong[name] = `must be from 0 to ${entry(reached)} s, which the run has reached (got ${text})`;
   }
   if (wrong.begin || wrong.end) return wrong;
@@ -37,7 +37,7 @@ export function problemsOf(texts, reached) {
 }
 
 function stretchOf({ begin, end, speed }) {
-  return { begin: Number(begin), end: Number(end), speed: Number(speed) };
+  return { begin: timeOfText(begin), end: timeOfText(end), speed: Number(speed) };
 }
 
 /** Shows a text instead, and waits until it is closed. */

@@ -23,7 +23,7 @@ def say(page: Page, **command: Any) -> None:
 def change_the_past(page: Page) -> None:
     """Runs the doorway to 1 s, goes back to 0.5 s, and changes the width there."""
     say(page, type="until", time=1.0)
-    shows(page, "#status", r"at 1\.0 s")
+    shows(page, "#status", r"at 1 s")
     say(page, type="seek", time=0.5)
     shows(page, "#time", r"0\.50 s")
     say(page, type="command", word="aperture", values=[0.9])
@@ -111,6 +111,21 @@ def test_a_branch_has_the_same_name_everywhere_and_no_other_one_of_its_tree_has_
         ["then", "walk.py then", "then", "then"],
         ["at 2.00 s", "walk.py then branch at 2.00 s", "then, branch at 2.00 s", "then, branch at 2.00 s"],
     ]
+
+
+SETTINGS = """async () => {
+  const { differentText, settingsOf, textOf } = await part("runs/wording.js");
+  const parameters = { aperture: 0.25, speed: 1, seen: true };
+  const run = { id: "a", parameters, different: ["aperture"], made: 0, result: {}, branched: null };
+  const all = [{}, { aperture: 0.27, door: 0.5, seen: null }].map((changed) => ({ ...run, changed }));
+  return [all.map(differentText), settingsOf(all[1]).length, all.map((one) => textOf(one).includes("aperture 0.25 → 0.27"))];
+}"""
+
+
+def test_a_list_of_runs_shows_and_finds_values_that_were_changed_by_hand(blank: Page) -> None:
+    texts, settings, found = blank.evaluate(SETTINGS)
+    assert texts == ["aperture 0.25", "aperture 0.25 → 0.27, seen true → none, door – → 0.5"]
+    assert (settings, found) == (4, [False, True])
 
 
 SIDES = """async (sessions) => {
@@ -214,7 +229,7 @@ def test_a_recording_that_is_changed_is_not_said_to_have_a_branch(pages: Callabl
     page = pages()
     shows(page, "#status", "at its start")
     say(page, type="until", time=1.0)
-    shows(page, "#status", r"at 1\.0 s")
+    shows(page, "#status", r"at 1 s")
     name = page.evaluate("async () => (await part('store.js')).session.value.recording")
     for one in workbench.get("/api/sessions").json()["sessions"]:
         workbench.post(f"/api/sessions/{one['id']}/close")

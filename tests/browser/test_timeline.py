@@ -1195,6 +1195,43 @@ def test_times_of_an_hour_or_more_are_in_hours_minutes_and_seconds(blank: Page) 
     assert short == ["0 s", "500 s", "1000 s", "1500 s", "2000 s", "2500 s", "3000 s"]
 
 
+READ = """async (texts) => {
+  const { timeOfText } = await part("parts/units.js");
+  return texts.map(timeOfText).map((time) => (Number.isNaN(time) ? null : time));
+}"""
+
+
+def test_a_time_is_read_in_the_forms_in_which_it_is_shown(blank: Page) -> None:
+    times = {
+        "1.5": 1.5,
+        " 12.35 s ": 12.35,
+        "1:15:12.3": 4512.3,
+        "24:01:01.50": 86_461.5,
+        "0:59:59": 3599,
+        "5:07": 307,
+        "1e3": 1000,
+        "-1": -1,
+    }
+    assert blank.evaluate(READ, list(times)) == list(times.values())
+    assert blank.evaluate(READ, wrong := ["", "soon", "1:75:00", "1:5:00", "1:2:3:4", ":10", "1:00:60"]) == [None] * len(wrong)
+
+
+TIP = """async (to) => {
+  const [{ Tip }, { span }, { html, render }] = await Promise.all(["timeline/tip.js", "timeline/view.js", "vendor/preact.js"].map((name) => part(name)));
+  const before = span.value;
+  span.value = { from: 0, to };
+  const box = document.createElement("div");
+  const band = { mark: true, from: 2700, to: 2700 };
+  render(html`<${Tip} at=${{ x: 0, y: 0, band, row: { lane: { label: "goal" } } }} />`, box);
+  span.value = before;
+  return box.querySelector(".number").textContent;
+}"""
+
+
+def test_a_tooltip_of_the_timeline_has_times_in_the_form_of_the_axis(blank: Page) -> None:
+    assert [blank.evaluate(TIP, to) for to in (3000, 7200)] == ["at 2700.000 s", "at 0:45:00.000"]
+
+
 def test_fit_shows_what_happened_without_a_quiet_end_and_again_all_of_the_run(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")

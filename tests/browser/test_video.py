@@ -76,7 +76,7 @@ def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[...,
     expect(last).to_have_value("0.60")
     expect(dialog).to_contain_text("19 pictures, 0.63 s of video")
     for start, end, speed, wrong in (
-        ("", "0.6", "1", "must be a number of seconds"),
+        ("", "0.6", "1", "must be a time, such as 1.5 or 1:15:12.3"),
         ("0.5", "0.5", "1", "must be later than the first time, 0.5 s"),
         ("0", "0.7", "1", "must be from 0 to 0.60 s, which the run has reached"),
     ):

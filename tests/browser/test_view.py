@@ -64,7 +64,7 @@ class Standing:
             }""",
             [view, self.stage, body, ASPECT, self.covered.tolist()],
         )
-        self.back = np.array(self.told["back"])
+        self.back = np.array(self.told["back"], dtype=float)
         self.position = np.array(self.told["target"]) + self.told["distance"] * self.back
 
     def at(self, place: Any) -> tuple[float, float]:
@@ -119,6 +119,15 @@ def test_from_above_and_from_the_side_all_is_in_the_picture_and_ahead_is_to_the_
         assert seen.at((0, 7, 0))[0] > seen.at((0, 0, 0))[0] + 0.5
         seen.see(view, 30.0)
         assert seen.inside((30, 0, 1))
+
+
+def test_from_above_and_from_the_side_the_axes_of_the_world_are_not_turned(blank: Page) -> None:
+    seen = Standing(blank, Wall(name="pillar", start=(5.4, 2.0), end=(5.6, 2.0)))  # not straight ahead
+    for view in ("top", "side"):
+        seen.see(view)
+        assert seen.at((5, 0, 0))[1] == pytest.approx(seen.at((0, 0, 0))[1])
+        assert seen.at((5, 0, 0))[0] > seen.at((0, 0, 0))[0]
+    assert seen.back == pytest.approx((0, -1, 0))
 
 
 def test_what_is_far_away_does_not_make_all_small(blank: Page) -> None:

@@ -59,6 +59,15 @@ def test_a_list_shows_the_result_and_values_that_differ_from_the_defaults(desk: 
         assert summary.time == pytest.approx(sum(1 for state in recorded.states() if state.tick) / 100)
 
 
+def test_a_list_shows_the_last_values_that_a_user_gave_by_hand(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.25})
+    for aperture in (0.26, 0.27):
+        talk.say("command", word="aperture", values=[aperture])
+    desk.do(talk.session.stop())
+    _, (summary,) = desk.listed(tmp_path)
+    assert (summary.parameters["aperture"], summary.changed) == (0.25, {"aperture": 0.27})
+
+
 FAILING = """from actr3d.actr import *
 from actr3d.simulation import Simulation
 from actr3d.world import Floor, Mannequin, Scene

@@ -9,6 +9,7 @@ import pytest
 
 from tests.helpers.sessions import Desk, RefusedError
 from tests.helpers.workbench_server import MODELS
+from workbench.time_text import time_text
 
 DOORWAY = (MODELS / "doorway.py").read_text(encoding="utf-8")
 COUNTING = (MODELS / "counting.py").read_text(encoding="utf-8")
@@ -157,6 +158,25 @@ def test_a_slot_whose_name_is_computed_is_let_through(desk: Desk, tmp_path: Path
     talk = desk.begin(tmp_path, SLOTS.format(name="Computes", chunk="'state:begin ' + ' '.join(f'{a}{b}:1' for a, b in [('al', 'pha')])"))
     talk.say("until", buffer="goal", pattern="alpha:1")
     talk.wait(lambda: talk.state["reason"] == "goal matches 'alpha:1'")
+
+
+IDLE = """from actr3d.actr import *
+
+class Idle(ACTR):
+    goal = Buffer()
+
+Idle().run(8000)
+"""
+
+
+def test_from_an_hour_on_times_are_in_hours_minutes_and_seconds(desk: Desk, tmp_path: Path) -> None:
+    assert [time_text(time) for time in (0.5, 2.0, 3599.9, 3600.0, 4512.3)] == ["0.5 s", "2 s", "3599.9 s", "1:00:00", "1:15:12.30"]
+    assert [time_text(time, 2) for time in (0.5, 3600.0)] == ["0.50 s", "1:00:00.00"]
+    talk = desk.begin(tmp_path, IDLE)
+    talk.say("until", time=4512.3)
+    talk.wait(lambda: talk.state["reason"] == "at 1:15:12.30")
+    with pytest.raises(RefusedError, match=r"it is 1:15:12\.30 already"):
+        talk.say("until", time=7)
 
 
 def test_what_a_run_goes_on_for_is_shown_while_it_goes_on(desk: Desk, tmp_path: Path) -> None:

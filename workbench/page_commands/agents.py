@@ -11,6 +11,7 @@ from pydantic import Field
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import ParameterError
 from workbench.page_commands.command import Name, Question, Seconds, page_command, unknown
+from workbench.time_text import time_text
 
 if TYPE_CHECKING:
     from actr3d.actr.kernel.model import Model
@@ -60,12 +61,12 @@ class Explain(Question):
         """
         time = run.clock if self.at is None else round(self.at * MICROSECONDS)
         if time > run.clock:
-            raise ParameterError(f"explain(at): {self.at:g} s lies ahead; it is {seconds(run.clock):g} s now")
+            raise ParameterError(f"explain(at): {time_text(self.at or 0)} lies ahead; it is {time_text(seconds(run.clock))} now")
         own = run.own_time(name, time)
         if own is None:
             if self.agent is None:
                 return None
-            raise ParameterError(f"explain(at): '{name}' did not exist at {seconds(time):g} s")
+            raise ParameterError(f"explain(at): '{name}' did not exist at {time_text(seconds(time))}")
         found = agent.explain(None if self.at is None else seconds(own))
 
         def of_run(own: float) -> float:

@@ -9,6 +9,7 @@ from pydantic import Field
 from actr3d.clock import MICROSECONDS, seconds
 from actr3d.errors import Actr3dError
 from workbench.page_commands.command import Name, PageCommand, Seconds, page_command
+from workbench.time_text import time_text
 
 if TYPE_CHECKING:
     from workbench.worker.run_controller import RunController
@@ -53,10 +54,10 @@ class Until(PageCommand):
         check_slots(self.pattern or "", sources, names.modules if is_fed else (), start.folder)
         goal = None if self.time is None else round(self.time * MICROSECONDS)
         if goal is not None and goal <= run.clock:
-            raise Actr3dError(f"it is {seconds(run.clock):g} s already; a click on the timeline goes back")
+            raise Actr3dError(f"it is {time_text(seconds(run.clock))} already; a click on the timeline goes back")
         controller.go(
             goal=goal,
-            goal_reason=f"at {self.time} s",
+            goal_reason="" if self.time is None else f"at {time_text(self.time)}",
             production=self.production,
             buffer=buffer,
             called=self.buffer or "",

@@ -14,6 +14,7 @@ from actr3d.recording import Recording
 from actr3d.trace import Trace, TraceEvent
 from workbench.chunk_curves import SUFFIX, ChunkCurves
 from workbench.event_curves import EventCurves
+from workbench.time_text import time_text
 from workbench.worker.known_run import KnownRun
 from workbench.worker.names import Names, Top
 from workbench.worker.shown import Shown
@@ -248,4 +249,4 @@ class ControlledRun(ABC):
 
 def nothing_to_undo(time: int) -> SimulationError:
     """Returns the error for `undo` at a time [us] up to which nothing was changed by hand."""
-    return SimulationError(f"undo: nothing was changed by hand up to {seconds(time):g} s")
+    return SimulationError(f"undo: nothing was changed by hand up to {time_text(seconds(time))}")

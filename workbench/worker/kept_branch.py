@@ -9,6 +9,7 @@ from actr3d.errors import Actr3dError, SimulationError
 from actr3d.recording import Recording
 from actr3d.runner.facts import NAMED
 from workbench.retention import new_branch, superfluous_branches
+from workbench.time_text import time_text
 from workbench.worker.messages import Branched
 from workbench.worker.run_controller import RunController
 
@@ -43,7 +44,7 @@ class KeptBranch:
             self._branch = self._copy(recording, drop=drop)
 
     def _copy(self, recording: Recording | None, *, drop: bool) -> Path | None:
-        ahead = f"what lies ahead, from {self._at:g} to {self._until:g} s,"
+        ahead = f"what lies ahead, from {time_text(self._at)} to {time_text(self._until)},"
         if self._is_gone or recording is None or self._start.record is None:
             if drop:
                 return None
@@ -91,4 +92,4 @@ class KeptBranch:
             self._controller.channel.post(Branched(recording=self._branch.stem, at=self._at, until=self._until))
         is_kept = self._branch is not None or (self._repeated is not None and not self._is_gone)  # pages say so in a notice
         lost = "" if is_kept else "; the rest was lost"
-        self._controller.goes_another_way(events, f"{what} at {self._at:.2f} s{lost if self._ahead else ''}", ahead=self._ahead)
+        self._controller.goes_another_way(events, f"{what} at {time_text(self._at, 2)}{lost if self._ahead else ''}", ahead=self._ahead)

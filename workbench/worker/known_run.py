@@ -18,6 +18,7 @@ from actr3d.trace import TraceEvent
 from workbench.event_curves import EventCurves
 from workbench.event_log import MAX_EVENTS
 from workbench.program_time import events_both_ways
+from workbench.time_text import time_text
 from workbench.worker.messages import Notice, notice
 from workbench.worker.truncation import event_json
 
@@ -119,7 +120,7 @@ def difference_notice(now: float, event: TraceEvent | None) -> Notice:
         else f"it has the event '{event.kind}' of '{event.source}', which the recording does not have"
     )
     text = (
-        f"from {when:g} s on this run differs from its recording, perhaps because versions or files differ: {does}. "
+        f"from {time_text(when)} on this run differs from its recording, perhaps because versions or files differ: {does}. "
         "What is shown from there on is what happens now; «Replay» in the tab Runs compares everything."
     )
     return notice("error", text)

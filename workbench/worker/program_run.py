@@ -35,6 +35,7 @@ from workbench.curves import joined
 from workbench.loader import ModelListing
 from workbench.made_simulations import makes_simulations
 from workbench.program_time import RunTimes
+from workbench.time_text import time_text
 from workbench.worker.change_menu import change_menu
 from workbench.worker.controlled_run import ControlledRun, nothing_to_undo
 from workbench.worker.error_report import UNFORESEEN, describe_error, notice_of
@@ -669,7 +670,7 @@ class ProgramRun(ControlledRun):
 
     def go_to(self, time: int) -> None:
         if time > self._furthest:
-            raise SimulationError(f"the run has only reached {seconds(self._furthest):g} s; continue it instead")
+            raise SimulationError(f"the run has only reached {time_text(seconds(self._furthest))}; continue it instead")
         over = self._controller.status in ENDED
         self._rush = time
         self._controller.status = "running"

@@ -11,6 +11,7 @@ from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.declarative.chunk_query import search_for
 from actr3d.clock import seconds
 from actr3d.trace import TraceEvent
+from workbench.time_text import time_text
 
 Contact = tuple[str, str, str]
 """A body, its part, and the other object."""
@@ -56,7 +57,7 @@ class Watch:
     @property
     def pending(self) -> str:
         """A text that names the condition at which the run will stop."""
-        parts = [] if self.goal is None else [f"{seconds(self.goal):g} s"]
+        parts = [] if self.goal is None else [time_text(seconds(self.goal))]
         if self.production is not None:
             parts.append(f"{self.production} fires")
         if self.buffer is not None:
