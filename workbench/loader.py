@@ -18,6 +18,7 @@ from actr3d.parameter_schema import Parameter, default_of, parameters_in
 from actr3d.runner.build_check import build_of, has_build, problem_of_build
 from actr3d.values import escape_surrogates
 from workbench.files import MAX_FILE_SIZE, MAX_FILES, file_stamp
+from workbench.language.misspelt_words import misspelt_words
 from workbench.undefined_names import undefined_names
 
 
@@ -151,6 +152,12 @@ def misplaced_in(source: str) -> Iterator[Problem]:
         for method in (node for node in kind.body if isinstance(node, ast.FunctionDef)):
             for line, message in productions_inside(method, parts.__contains__):
                 yield Problem(level="warning", message=escape_surrogates(message), line=line)
+
+
+def misspelt_in(source: str) -> Iterator[Problem]:
+    """Yields a warning for each misspelt word of the library: features and their slots in patterns, and commands to bodies."""
+    for line, message in misspelt_words(source):
+        yield Problem(level="warning", message=escape_surrogates(message), line=line)
 
 
 def _of_first_lines(source: str) -> Iterator[Parameter]:

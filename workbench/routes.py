@@ -16,7 +16,7 @@ from actr3d.values import escape_surrogates
 from workbench.about import about_of
 from workbench.built_manual import manual, manual_page, no_manual
 from workbench.files import ModelFile
-from workbench.loader import listing_of, misplaced_in, outline_of, undefined_in
+from workbench.loader import listing_of, misplaced_in, misspelt_in, outline_of, undefined_in
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions
@@ -182,6 +182,8 @@ async def check(request: Request, body: Check) -> dict[str, Any]:
     else:
         problems += [asdict(problem) for problem in await asyncio.to_thread(lambda: list(misplaced_in(body.text)))]
     problems += [asdict(problem) for problem in await asyncio.to_thread(lambda: list(undefined_in(body.text)))]
+    words = [asdict(problem) for problem in await asyncio.to_thread(lambda: list(misspelt_in(body.text)))]
+    problems += [problem for problem in words if problem not in problems]  # loading warns of patterns, too
     return {"problems": problems, "listing": asdict(listing)}
 
 

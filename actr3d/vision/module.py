@@ -17,7 +17,7 @@ from actr3d.clock import MICROSECONDS
 from actr3d.errors import ParameterError, VisionError
 from actr3d.vision.detectors import DETECTORS
 from actr3d.vision.encoding import PROGRAMMING, Emma, saccade_time
-from actr3d.vision.feature import off_sight
+from actr3d.vision.feature import off_sight, slot_names
 from actr3d.vision.feature_cache import FeatureCache
 from actr3d.vision.noise import blurred
 from actr3d.vision.request_parser import Query, read_request
@@ -385,6 +385,9 @@ class Vision(WithParameters, Searching):
         trace = self.sch.trace
         if trace is not None and trace.all:
             trace.emit(self.sch.now_us, self._path, "sight", data if slots is None else {**data, "chunk": slots})
+
+    def _kinds(self) -> dict[str, tuple[str, ...]]:
+        return {name: slot_names(one.finds) for name, one in self._detectors.items()}
 
     def _latest_searches(self) -> list[tuple[int, Mapping[str, Any], str]]:
         return [(search.seen, search.to_data(), search.outcome) for search in self.searches]

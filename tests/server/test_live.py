@@ -295,6 +295,16 @@ def test_a_check_names_what_nothing_defines_whether_it_loads_the_text_or_not(loa
     assert {"level": "warning", "message": "nothing defines 'Mem'; did you mean 'Memory'?", "line": 3} in problems
 
 
+@pytest.mark.parametrize("load", [False, True])
+def test_a_check_names_a_misspelt_slot_of_a_feature_once_whether_it_loads_the_text_or_not(load: bool, server: Served) -> None:
+    head = "from actr3d.actr import *\nfrom actr3d.vision import Vision\nclass Agent(ACTR):\n"
+    head += "    visual = Buffer()\n    vision = Vision(visual)\n"
+    text = f"{head}    def p(visual='feature:obstacle leftmos:?left'): self.stop()\nAgent().run(1)\n"
+    (problem,) = server.post("/api/check", {"path": "checked.py", "text": text, "load": load}).json()["problems"]
+    message = "production 'p': no chunk of the feature 'obstacle' has a slot 'leftmos'; did you mean 'leftmost'?"
+    assert problem == {"level": "warning", "message": message, "line": 6}
+
+
 HOSTILE = [
     "../../etc/passwd",
     "..%2f..%2fetc%2fpasswd",

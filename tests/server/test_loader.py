@@ -13,7 +13,7 @@ from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.errors import ConfigurationError
 from actr3d.parameter_schema import LiveCommand
 from actr3d.runner.model_factory import Blueprint
-from workbench.loader import listing_of, misplaced_in, problems_of, undefined_in
+from workbench.loader import listing_of, misplaced_in, misspelt_in, problems_of, undefined_in
 
 MODELS = Path(__file__).parents[2] / "models"
 MODEL = '''"""Walks.
@@ -105,7 +105,7 @@ def test_every_model_is_listed_without_complaint() -> None:
     for path in sorted(MODELS.rglob("*.py")):
         text = path.read_text(encoding="utf-8")
         listing = listing_of(text, path.name)
-        assert (listing.problems, [*undefined_in(text), *misplaced_in(text)]) == ((), [])
+        assert (listing.problems, [*undefined_in(text), *misplaced_in(text), *misspelt_in(text)]) == ((), [])
         assert listing.title
 
 
@@ -234,3 +234,71 @@ def test_a_production_inside_another_method_is_found_while_its_text_is_written()
     for other in ("        def second(goal): pass\n", "        def second(much='b'): pass\n", beside):
         assert list(misplaced_in(head + other)) == []
     assert list(misplaced_in("class A:\n")) == []
+
+
+SEEING = """from actr3d.actr import *
+from actr3d.vision import Feature, Vision, detector
+
+class Pole(Feature):
+    thickness: float
+
+class Walker(ACTR):
+    goal = Buffer()
+    visual = Buffer()
+    vision = Vision(visual)
+    body = BodyPort()
+"""
+FAR = "no chunk of the feature 'obstacle' has a slot 'distanse'; did you mean 'distance'?"
+SIDE = "no chunk of the feature 'obstacle' has a slot 'leftmos'; did you mean 'leftmost'?"
+THICK = "no chunk of the feature 'pole' has a slot 'thicknes'; did you mean 'thickness'?"
+FOUND = "nothing finds a feature 'obstacel'; did you mean 'obstacle'?"
+TURN = "no body has a command 'trun'; did you mean 'turn'?"
+
+
+@pytest.mark.parametrize(
+    ("method", "found"),
+    [
+        ("def p(visual='feature:obstacle leftmos:?left'): pass", [(12, f"production 'p': {SIDE}")]),
+        (
+            "def p(goal='a',\n        visual=['feature:obstacle', 'leftmos:?x distanse:!3']): pass",
+            [(13, f"production 'p': {SIDE}"), (13, f"production 'p': {FAR}")],
+        ),
+        ("def p(visual='feature:pole thicknes:?t'): pass", [(12, f"production 'p': {THICK}")]),
+        ("def p(visual='feature:obstacel'): pass", [(12, f"production 'p': {FOUND}")]),
+        ("def p(goal='a'):\n        vision.request('feature:obstacel width:>2', distance='<3')", [(13, FOUND)]),
+        ("def look(self):\n        self.vision.request('feature:obstacel')", [(13, FOUND)]),
+        ("def p(goal='a'):\n        body.set('trun', 30)", [(13, TURN)]),
+        (
+            "eyes = Eyes()\nclass Eyes(ProductionSystem):\n    def p(visual='feature:obstacle leftmos:?l'): pass",
+            [(14, f"production 'p': {SIDE}")],
+        ),
+    ],
+)
+def test_misspelt_words_of_the_library_are_found_while_a_text_is_written(method: str, found: list[tuple[int, str]]) -> None:
+    assert [(problem.line, problem.message) for problem in misspelt_in(f"{SEEING}    {method}\n")] == found
+
+
+@pytest.mark.parametrize(
+    "method",
+    [
+        "def p(visual='feature:pole thickness:?t distance:?d motion:!?t'): pass",
+        "def p(visual='feature:!obstacle leftmost:?l ?l:1'): pass",
+        "def p(visual='feature:', goal='leftmos:?l'): pass",
+        "def p(visual=f'feature:obstacel{1}'): pass",
+        "def p(visual=None, vision='busy:False'): pass",
+        "def p(visual='obstacel leftmos'): pass",
+        "def p(goal='a'):\n        visual.set('feature:obstacel leftmos:1')\n    def q(visual='feature:obstacel leftmos:?l'): pass",
+        "def p(goal='a'):\n        body.set('turn', 30)\n        body.set(trun)\n        goal.set('trun')",
+        "reading = BodyPort(visual)\n    def p(visual='feature:obstacle leftmos:?l'): pass",
+        "def p(goal='a'):\n        body.set('trun', 30)\n@actuator\ndef trun(body, angle): pass",
+        "def helper(self, visual): visual.request('feature:obstacel')\n    def p(",
+    ],
+)
+def test_words_that_may_be_meant_are_not_called_misspelt(method: str) -> None:
+    assert list(misspelt_in(f"{SEEING}    {method}\n")) == []
+
+
+def test_only_the_vision_of_embodied_agents_finds_features() -> None:
+    text = f"{SEEING}    def p(visual='feature:obstacle leftmos:?left'): pass\n"
+    assert len([*misspelt_in(text)]) == 1
+    assert list(misspelt_in(text.replace("Feature, Vision, detector", "Feature"))) == []

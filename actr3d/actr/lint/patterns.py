@@ -7,6 +7,9 @@ from typing import Any, cast
 
 from actr3d.actr.chunks.pattern import MISSING, Condition
 from actr3d.actr.kernel.buffer import UNKNOWN, Buffer, plain_value
+from actr3d.actr.kernel.source_code import function_node
+from actr3d.actr.kernel.tree import TreeNode, top_of
+from actr3d.actr.lint.found_kinds import KIND, kinds_in, wrong_names
 from actr3d.actr.lint.slot_inference import all_slots, slots_held
 from actr3d.actr.lint.slot_names import SURE, vocabulary
 from actr3d.actr.procedural.production import Production
@@ -43,18 +46,44 @@ def check_variables(production: Production) -> None:
 
 def check_slots(production: Production) -> None:
     """Warns about slots that are never set, about missing attributes of objects, and about states that never occur."""
+    settled = {name: _check_kinds(production, name) for name in production.pattern_specs}
     for condition in production.conditions:
         key = condition.key
         if condition.op in ("empty", "call") or (isinstance(key, str) and key[:1] == "?"):
             continue
         target = production.context[condition.name or "self"]
         if isinstance(target, Buffer):
-            _check_slot(production, key)
+            if key not in settled.get(condition.name or "", ()):
+                _check_slot(production, key)
         elif isinstance(key, str):
             missing, hint = _missing_attribute(target, key)
             if hint:
                 _warn_likely(production, f"'{condition.name}' has no attribute '{missing}'{hint}")
             _check_state(production, condition, target)
+
+
+def _check_kinds(production: Production, name: str) -> set[str]:
+    """Warns, at the line of a pattern, about misspelt features and slots of features, if modules put features into its buffer.
+
+    Returns:
+        The slots of these features, and those that the warnings are about.
+    """
+    target = production.context.get(name)
+    kinds = kinds_in(target, top_of(cast("TreeNode", production.system))) if isinstance(target, Buffer) else {}
+    if not kinds:
+        return set()
+    tests = [(one.key, one.op, one.value) for one in production.conditions if one.name == name]
+    wrong = wrong_names(tests, kinds, vocabulary(production.original_func).written | slots_held([target]))
+    for what in wrong.values():
+        warn_at(f"production '{production.name}': {what}", production.original_func, _line_of(production, name))
+    return {KIND, *wrong}.union(*kinds.values())
+
+
+def _line_of(production: Production, name: str) -> int | None:
+    """Returns the line of the pattern for a buffer, if the production's source is available."""
+    node = function_node(production.original_func)
+    named = zip(node.args.args, node.args.defaults, strict=False) if node is not None else ()
+    return next((pattern.lineno for parameter, pattern in named if parameter.arg == name), None)
 
 
 def _check_slot(production: Production, key: int | str) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 from actr3d.actr.kernel.source_code import source_of, syntax_tree
 
 _NAMED = re.compile(r"(?:^|\s)(\w+):(?:\S|$)")
+_WORD = re.compile(r"[\w.-]+")
 _COMPUTED = "\0"
 """Marks a computed value in an f-string's text."""
 SURE = 0.74
@@ -39,8 +40,12 @@ class Vocabulary:
         """The keywords of `modify`."""
         self.mentioned: set[str] = set()
         """Everything else that may name a slot: keyword arguments, attributes, names, and texts of one word."""
+        self.written: set[str] = set()
+        """Every word that can become a slot or a value of a chunk: those of the texts outside patterns, requests and docstrings, keyword
+        arguments, and names and attributes that are assigned."""
         self.together: list[set[str]] = []
         """Sets of slots that occur in one text."""
+        self._alone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
         self._walk(tree, self.given)
 
     @property
@@ -62,12 +67,16 @@ class Vocabulary:
                 self.together.append(names)
             if texts is not self.matched and text.isidentifier():
                 self.mentioned.add(text)
-        elif isinstance(node, ast.Name):
-            self.mentioned.add(node.id)
-        elif isinstance(node, ast.Attribute):
-            self.mentioned.add(node.attr)
+            if texts is self.given and id(node) not in self._alone:
+                self.written.update(_WORD.findall(text))
+        elif isinstance(node, (ast.Name, ast.Attribute)):
+            name = node.id if isinstance(node, ast.Name) else node.attr
+            self.mentioned.add(name)
+            if isinstance(node.ctx, ast.Store):
+                self.written.add(name)
         elif isinstance(node, ast.keyword) and node.arg:
             self.mentioned.add(node.arg)
+            self.written.add(node.arg)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             self._call(node, node.func, texts)
             return
@@ -85,6 +94,10 @@ class Vocabulary:
         for keyword in node.keywords:
             if func.attr == "modify" and keyword.arg:
                 self.modified.add(keyword.arg)
+                self.written.add(keyword.arg)
+                self._walk(keyword.value, texts)
+            elif func.attr in READERS and keyword.arg:
+                self.mentioned.add(keyword.arg)
                 self._walk(keyword.value, texts)
             else:
                 self._walk(keyword, texts)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from traceback import walk_tb
 from typing import Any, NamedTuple
@@ -175,7 +175,16 @@ class Port(Model):
 
 
 class Searching(Port):
-    """A module that searches for things, and whose searches can be explained."""
+    """A module that searches for things, and whose searches can be explained.
+
+    It puts what it finds into its buffer; the slot `feature` of the chunk names the kind of thing.
+    """
+
+    _buffer: Any
+
+    def _kinds(self) -> Mapping[str, Collection[str]]:
+        """Returns the kinds of things that it can find, with the slots that their chunks can have besides `feature`."""
+        return {}
 
     def _latest_searches(self) -> list[tuple[int, Mapping[str, Any], str]]:
         """Returns the last top-down and bottom-up search: the time of the view [us], what was in it, and the outcome."""
@@ -185,6 +194,13 @@ class Searching(Port):
 def latest_searches(module: Searching) -> list[tuple[int, Mapping[str, Any], str]]:
     """Returns the last top-down and bottom-up search of a module: the time of its view [us], what was in it, and the outcome."""
     return module._latest_searches()  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
+
+
+def kinds_put_into(buffer: object, module: Searching) -> Mapping[str, Collection[str]]:
+    """Returns the kinds of things that a module can put into a buffer, with their slots; none if its buffer is another."""
+    if module._buffer is not buffer:  # pyright: ignore[reportPrivateUsage] # productions see every public name of a model
+        return {}
+    return module._kinds()  # pyright: ignore[reportPrivateUsage] # the same
 
 
 class BodyPort(Port):
