@@ -249,6 +249,9 @@ def test_a_link_to_a_moment_leads_to_its_branch_once_the_run_was_changed_before_
     expect(page).to_have_url(re.compile(r"\?model=counting\.py$"))
 
 
+SAY = """async (message) => void (await (await part("server.js")).say(message))"""
+
+
 def test_on_a_low_page_the_timeline_leaves_the_panels_a_usable_height(pages: Pages, workbench: Served) -> None:
     page = pages("doorway.py", width=853, height=533, tab="experiments")
     shows(page, "#status", "at its start")
@@ -256,6 +259,17 @@ def test_on_a_low_page_the_timeline_leaves_the_panels_a_usable_height(pages: Pag
     rows = page.locator(".timeline-rows")
     until(page, lambda: panel.evaluate("one => one.clientHeight") >= 200)
     assert rows.evaluate("one => one.clientHeight") >= 60
+    page.click("#step")
+    shows(page, "#time", r"0\.01 s")
+    for width in (0.5, 0.7, 0.9):  # each leaves a branch
+        page.evaluate(SAY, {"type": "command", "word": "aperture", "values": [width]})
+        shows(page, "#status", "changed at 0")
+        page.click("#step")
+        shows(page, "#time", r"0\.02 s")
+        page.evaluate(SAY, {"type": "seek", "time": 0.01})
+        shows(page, "#time", r"0\.01 s")
+    expect(page.locator(".branches li")).to_have_count(3)
+    until(page, lambda: rows.evaluate("one => one.clientHeight") >= 60)  # the branches scroll first
     page.evaluate("async () => { (await part('layout.js')).timelineHeight.value = 400; }")  # as from a higher page
     until(page, lambda: panel.evaluate("one => one.clientHeight") >= 150)
     page.evaluate("async () => { localStorage.clear(); }")

@@ -1217,7 +1217,8 @@ def test_a_time_is_read_in_the_forms_in_which_it_is_shown(blank: Page) -> None:
 
 
 TIP = """async (to) => {
-  const [{ Tip }, { span }, { html, render }] = await Promise.all(["timeline/tip.js", "timeline/view.js", "vendor/preact.js"].map((name) => part(name)));
+  const names = ["timeline/tip.js", "timeline/view.js", "vendor/preact.js"];
+  const [{ Tip }, { span }, { html, render }] = await Promise.all(names.map((name) => part(name)));
   const before = span.value;
   span.value = { from: 0, to };
   const box = document.createElement("div");
