@@ -302,3 +302,9 @@ def test_only_the_vision_of_embodied_agents_finds_features() -> None:
     text = f"{SEEING}    def p(visual='feature:obstacle leftmos:?left'): pass\n"
     assert len([*misspelt_in(text)]) == 1
     assert list(misspelt_in(text.replace("Feature, Vision, detector", "Feature"))) == []
+
+
+def test_a_text_with_very_many_classes_is_not_searched_for_misspelt_words() -> None:
+    text = f"{SEEING}    def p(visual='feature:obstacle leftmos:?left'): pass\n"
+    assert len([*misspelt_in(text + "class Other: pass\n" * 50)]) == 1
+    assert list(misspelt_in(text + "class Other: pass\n" * 5000)) == []

@@ -17,6 +17,9 @@ from workbench.language.model_text import ModelText, Part
 
 _KIND = re.compile(r"(?:^|\s)feature:(\w+)(?=\s|$)")
 
+MAX_CLASSES = 100
+"""Texts with more classes are not checked: the time to find the parts that each class sees grows faster than their number."""
+
 
 def misspelt_words(text: str) -> Iterator[tuple[int, str]]:
     """Yields the line of each misspelt word and a message: for patterns, the same as the agent gives when it begins."""
@@ -24,7 +27,7 @@ def misspelt_words(text: str) -> Iterator[tuple[int, str]]:
     kinds = _kinds(tree) if _has_vision(tree) else {}
     defined = {node.name for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
     commands = _commands() if "BodyPort" in text and "BodyPort" not in defined else ()
-    if not kinds and not commands:
+    if not (kinds or commands) or sum(isinstance(node, ast.ClassDef) for node in ast.walk(tree)) > MAX_CLASSES:
         return
     model, own = ModelText(text), Vocabulary(tree).written
     for agent, method in _methods(tree.body):
