@@ -107,7 +107,7 @@ def test_what_is_not_recorded_is_lost_only_where_that_is_allowed(desk: Desk, tmp
     talk = desk.begin(tmp_path, PUSHED)
     there(talk, 40)
     talk.say("seek", time=0.1)
-    with pytest.raises(RefusedError, match=r"is not recorded: what lies ahead, from 0.1 to 0.4 s, would be lost"):
+    with pytest.raises(RefusedError, match=r"is not recorded: what lies ahead, from 0.1 s to 0.4 s, would be lost"):
         talk.say("command", word="aperture", values=[0.3])
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.4
     talk.say("command", word="aperture", values=[0.3], drop=True)
@@ -122,7 +122,7 @@ def test_what_cannot_be_kept_is_not_lost(desk: Desk, tmp_path: Path) -> None:
     talk.say("seek", time=0.1)
     where = folder(talk)
     aside = where.rename(where.with_name("aside"))  # no file can be made there
-    with pytest.raises(RefusedError, match=r"nothing was changed, because what lies ahead, from 0.1 to 0.4 s, cannot be kept"):
+    with pytest.raises(RefusedError, match=r"nothing was changed, because what lies ahead, from 0.1 s to 0.4 s, cannot be kept"):
         talk.say("command", word="aperture", values=[0.3])
     aside.rename(where)
     assert talk.say("curves", names=["walker x"])["times"][-1] == 0.4
@@ -138,7 +138,7 @@ def test_on_a_full_disk_nothing_is_changed_and_the_known_part_of_the_run_can_sti
     assert worker is not None
     limits = resource.prlimit(worker.pid, resource.RLIMIT_FSIZE)
     resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, (1, limits[1]))  # no file can grow, as on a full disk
-    with pytest.raises(RefusedError, match=r"nothing was changed, because what lies ahead, from 0.1 to 0.4 s, cannot be kept"):
+    with pytest.raises(RefusedError, match=r"nothing was changed, because what lies ahead, from 0.1 s to 0.4 s, cannot be kept"):
         talk.say("command", word="aperture", values=[0.3])
     talk.say("until", time=0.4)
     assert talk.until("paused", time=0.4)["furthest"] == 0.4
