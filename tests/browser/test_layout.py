@@ -274,7 +274,7 @@ def test_on_a_low_page_the_timeline_leaves_the_panels_a_usable_height(pages: Pag
     until(page, lambda: panel.evaluate("one => one.clientHeight") >= 150)
     page.evaluate("async () => { localStorage.clear(); }")
     page.click("#step")
-    shows(page, "#time", r"0\.01 s")
+    shows(page, "#time", r"0\.02 s")
     recording = page.evaluate("async () => (await part('store.js')).shownRecording.value")
     page.click("#restart")
     shows(page, "#time", r"0\.00 s")
