@@ -41,8 +41,8 @@ What to expect
 - An aperture of 0.6 m is passed without a turn, but with a turn by the `large` group.
 - An aperture of 0.25 m is declined.
 
-The run begins with some seconds of learning, unless the walker knows its body. At its end the tab *Buffers* shows the measures of the passage, computed from the simulated
-world.
+The run begins with some seconds of learning, unless the walker knows its body. At its end the tab *Buffers* shows the measures of the
+passage, computed from the simulated world.
 
 What to try
 -----------
@@ -645,7 +645,8 @@ def agent_of(parameters: Parameters) -> Walker:
     """Returns the agent in that body."""
     p = parameters
     width = p.shoulder_width or WIDTHS[p.group]
-    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise, "only_judges": p.task == "judge", "judged": None, "knows_body": p.body == "known"}
+    given = {"usual": SPEEDS[p.group, p.condition], "noise": p.noise, "only_judges": p.task == "judge", "judged": None}
+    given["knows_body"] = p.body == "known"
     if p.variant == "descriptive":
         agent = Descriptive(margin=0.30 if p.margin is None else p.margin, shoulder_width=width, **given)
     else:

@@ -36,6 +36,12 @@ class BoundingBox(NamedTuple):
         return (b[0] - a[0], b[1] - a[1], b[2] - a[2])
 
     @property
+    def centre(self) -> Point:
+        """Its middle in the frame [m]."""
+        a, b = self.lower, self.upper
+        return ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2)
+
+    @property
     def depth(self) -> float:
         """Along the frame's x [m]."""
         return self.upper[0] - self.lower[0]

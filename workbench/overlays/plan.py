@@ -65,5 +65,5 @@ def _drawn(plan: Plan, body: Body) -> dict[str, Any]:
     joints = [(body.joints[name], float(value)) for name, value in plan.posture.items() if name in body.joints]
     targets = [[int(joint.q), value if kinds[joint.number] == mjtJoint.mjJNT_SLIDE else math.radians(value)] for joint, value in joints]
     box = body.bounding_box()
-    place = ((box.lower[0] + box.upper[0]) / 2, (box.lower[1] + box.upper[1]) / 2, box.upper[2] + ABOVE)
+    place = (*box.centre[:2], box.upper[2] + ABOVE)
     return {"targets": targets, "text": plan.text, "place": [float(value) for value in place]}

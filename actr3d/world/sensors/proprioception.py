@@ -90,7 +90,7 @@ def size_in(body: Body, positions: Mapping[str, float] | None = None) -> SizeInP
     there = {joint: number(at, f"size_in: {joint}", *_within(body.joint(joint))) for joint, at in given.items()}
     box = body.bounding_box("body", there)
     depth, width, height = box.size
-    return SizeInPosture(width=width, depth=depth, height=height, middle=(box.lower[1] + box.upper[1]) / 2)
+    return SizeInPosture(width=width, depth=depth, height=height, middle=box.centre[1])
 
 
 def _within(joint: Joint) -> tuple[float, float]:
@@ -113,5 +113,5 @@ def proprioception(body: Body) -> Proprioception:
         width=width,
         depth=depth,
         height=height,
-        middle=(box.lower[1] + box.upper[1]) / 2,
+        middle=box.centre[1],
     )
