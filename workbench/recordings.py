@@ -77,8 +77,8 @@ class Recordings:
 
     def _names(self) -> set[str]:
         """Returns the names of all recordings, including those in the trash."""
-        suffix = ".sqlite"
-        return {name.removesuffix(suffix) for name in (*os.listdir(self._folder), *names_in_trash(self._root)) if name.endswith(suffix)}
+        there = (*(path.name for path in self._folder.iterdir()), *names_in_trash(self._root))
+        return {name.removesuffix(".sqlite") for name in there if name.endswith(".sqlite")}
 
     def tidy(self, keeping: Keeping) -> None:
         """Deletes the oldest recordings that no user has named or labelled, if the limits are exceeded; none while labels are missing.
