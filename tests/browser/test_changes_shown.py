@@ -562,7 +562,7 @@ def test_the_timeline_and_the_html_replay_have_the_same_words_for_each_registere
         for turn in (1, 2):
             for word, kind in CHANGES.items():
                 fields = parameters_of(kind)
-                samples = {one.name: 0.12345 * turn if one.takes == "number" else f"some_{one.name}" for one in fields}
+                samples: dict[str, Any] = {one.name: 0.12345 * turn if one.takes == "number" else f"some_{one.name}" for one in fields}
                 trace.emit(0, "some_buffer", "buffer", {"chunk": {"0": "count", "next": 3.123456, "part": None} if turn == 1 else None})
                 give(word, **samples)
                 give(word, *samples.values())
