@@ -169,8 +169,9 @@ def _change(recorded: Recorded, branched: float | None) -> dict[str, Any] | None
 
 def _changed(recorded: Recorded, source: str) -> dict[str, Any]:
     """Returns the last values of the parameters and apertures that users changed during the run."""
-    commands = recorded.commands() if recorded.facts["kind"] != "program" else of_user(recorded.commands())
-    return dict(filter(None, (value_changed_by(_parameters(source).values(), command.data) for command in commands)))
+    commands = list(recorded.commands() if recorded.facts["kind"] != "program" else of_user(recorded.commands()))
+    parameters = _parameters(source).values() if commands else ()
+    return dict(filter(None, (value_changed_by(parameters, command.data) for command in commands)))
 
 
 def _duration(recorded: Recorded, last: list[Event]) -> float:

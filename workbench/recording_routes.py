@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from io import FileIO
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -23,6 +23,7 @@ from workbench.listing import MAX_LISTED
 from workbench.open_file import OpenFile
 from workbench.page_commands import Name, PageMessage
 from workbench.recording_index import Summary
+from workbench.recordings import Recordings
 from workbench.retention import erase, stands_alone
 from workbench.routes import Id, sessions_of
 from workbench.sessions import SessionError, Sessions
@@ -96,14 +97,15 @@ async def recordings(
 ) -> Response:
     """Lists recordings, newest first: the `total` number, and summaries from number `first` on.
 
-    `problem` says why a recording cannot be read, `session` which session is still writing it; `warning` why labels are missing.
+    `problem` says why a recording cannot be read, `session` which session is still writing it; `number` tells those of a tree apart that
+    are called the same; `warning` says why labels are missing.
     """
     sessions = sessions_of(request)
     total, found = await sessions.listing.some(first, most)
     writing = sessions.writing()
-    labels = await asyncio.to_thread(sessions.recordings.labels.all)
+    listed = await asyncio.to_thread(_listed, sessions.recordings, found, writing)
     problem = await asyncio.to_thread(lambda: sessions.recordings.labels.problem)
-    page = {"total": total, "recordings": [_listed(summary, writing, labels) for summary in found], "warning": problem}
+    page = {"total": total, "recordings": listed, "warning": problem}
     return Response(await asyncio.to_thread(to_json, page), media_type="application/json")
 
 
@@ -289,10 +291,18 @@ async def compare_recordings(request: Request, body: Pair) -> Response:
 
 async def _recording(sessions: Sessions, name: str) -> dict[str, Any]:
     """Returns the summary of a recording and the session that is writing it."""
-    labels = await asyncio.to_thread(sessions.recordings.labels.all)
-    return _listed(await sessions.listing.one(name), sessions.writing(), labels)
+    summary = await sessions.listing.one(name)
+    (listed,) = await asyncio.to_thread(_listed, sessions.recordings, [summary], sessions.writing())
+    return listed
 
 
-def _listed(summary: Summary, writing: Mapping[str, str], labels: Mapping[str, Label]) -> dict[str, Any]:
-    label = msgspec.structs.asdict(labels.get(summary.id, Label()))
-    return {**vars(summary), "session": writing.get(summary.id), "label": label}
+def _listed(recordings: Recordings, summaries: Sequence[Summary], writing: Mapping[str, str]) -> list[dict[str, Any]]:
+    """Returns summaries with the labels and numbers of the recordings, and the sessions that are writing them."""
+    labels = recordings.labels.all()
+    numbers = recordings.numbers.of(summaries, labels)
+
+    def listed(one: Summary) -> dict[str, Any]:
+        label = msgspec.structs.asdict(labels.get(one.id, Label()))
+        return {**vars(one), "session": writing.get(one.id), "label": label, "number": numbers.get(one.id, 1)}
+
+    return [listed(one) for one in summaries]

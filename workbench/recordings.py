@@ -13,9 +13,10 @@ from io import FileIO
 from pathlib import Path
 
 from actr3d.errors import Actr3dError, RecordingError
+from workbench.branch_numbers import BranchNumbers
 from workbench.labels import Labels
 from workbench.retention import Keeping, begun, companions, erase, is_open_elsewhere, stamp, superfluous, written
-from workbench.trash import OWN, move_to_trash
+from workbench.trash import OWN, move_to_trash, names_in_trash
 
 LEFTOVER = 86_400.0
 """The age from which an unfinished file is that of a process that was killed [s]."""
@@ -43,6 +44,8 @@ class Recordings:
         self._folder = root / OWN / "recordings"
         self.labels = Labels(self._folder)
         """What users have written about them."""
+        self.numbers = BranchNumbers(self._folder, self._names)
+        """The numbers of those that are called the same."""
         self.spare: Callable[[], Collection[Path]] = tuple
         """Returns the files of opened recordings whose runs do not differ from them: these are not listed."""
 
@@ -71,6 +74,11 @@ class Recordings:
         spare = self.spare()
         files = [path for path in self._folder.glob("*.sqlite") if path not in spare]
         return [path for path in files if _NAME.fullmatch(path.stem) and path.is_file() and not path.is_symlink()]
+
+    def _names(self) -> set[str]:
+        """Returns the names of all recordings, including those in the trash."""
+        there = (*(path.name for path in self._folder.iterdir()), *names_in_trash(self._root))
+        return {name.removesuffix(".sqlite") for name in there if name.endswith(".sqlite")}
 
     def tidy(self, keeping: Keeping) -> None:
         """Deletes the oldest recordings that no user has named or labelled, if the limits are exceeded; none while labels are missing.

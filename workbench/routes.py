@@ -16,7 +16,7 @@ from actr3d.values import escape_surrogates
 from workbench.about import about_of
 from workbench.built_manual import manual, manual_page, no_manual
 from workbench.files import ModelFile
-from workbench.loader import listing_of, misplaced_in, misspelt_in, outline_of, undefined_in
+from workbench.loader import ModelListing, Problem, listing_of, misplaced_in, misspelt_in, outline_of, undefined_in
 from workbench.page_commands import Name, PageMessage, PlainValue, Text
 from workbench.protocol import AnyCommand
 from workbench.sessions import Sessions
@@ -175,16 +175,19 @@ async def check(request: Request, body: Check) -> dict[str, Any]:
     """Checks a text and returns its problems with line numbers: those of compiling it and, with `load`, of loading it."""
     sessions = sessions_of(request)
     path = sessions.folder.locate(body.path)
-    listing = await asyncio.to_thread(listing_of, body.text, body.path)
+    listing, misplaced, others = await asyncio.to_thread(_read, body.text, body.path)
     problems = [asdict(problem) for problem in listing.problems]
     if body.load and not any(problem["level"] == "error" for problem in problems):
         problems = await sessions.check(path, body.text)
     else:
-        problems += [asdict(problem) for problem in await asyncio.to_thread(lambda: list(misplaced_in(body.text)))]
-    problems += [asdict(problem) for problem in await asyncio.to_thread(lambda: list(undefined_in(body.text)))]
-    words = [asdict(problem) for problem in await asyncio.to_thread(lambda: list(misspelt_in(body.text)))]
-    problems += [problem for problem in words if problem not in problems]  # loading warns of patterns, too
+        problems += map(asdict, misplaced)
+    problems += [problem for problem in map(asdict, others) if problem not in problems]  # loading warns of patterns, too
     return {"problems": problems, "listing": asdict(listing)}
+
+
+def _read(text: str, path: str) -> tuple[ModelListing, list[Problem], list[Problem]]:
+    """Returns what a text says of its model; the productions in wrong places, which loading finds as well; and its other problems."""
+    return listing_of(text, path), [*misplaced_in(text)], [*undefined_in(text), *misspelt_in(text)]
 
 
 def _file_and_listing(file: ModelFile) -> dict[str, Any]:

@@ -114,6 +114,11 @@ def restore_from_trash(root: Path, trash: str) -> Deleted:
     return deleted
 
 
+def names_in_trash(root: Path) -> list[str]:
+    """Returns the former names of the files and folders in the trash folder of a models folder."""
+    return [path.name.partition("-")[2] for path in (root / OWN / TRASH).glob("*/*")]
+
+
 def empty_trash(root: Path) -> None:
     """Deletes what has been in the trash folder of a models folder for more than `TRASH_DAYS`."""
     oldest = time.strftime(_STAMP, time.localtime(time.time() - TRASH_DAYS * 86_400))

@@ -90,7 +90,7 @@ function isWrong(of) {
 /** A name that can also be typed: before a program has started, no names are known. */
 function Name({ of, among, label, otherwise, first }) {
   const id = useId();
-  return html`<input aria-label=${label} autofocus=${first} list=${id} class="mono" spellcheck=${false} aria-invalid=${isWrong(of)} placeholder=${otherwise} value=${of.value} onInput=${(event) => (of.value = event.currentTarget.value)} />
+  return html`<input aria-label=${label} data-first=${first} list=${id} class="mono" spellcheck=${false} aria-invalid=${isWrong(of)} placeholder=${otherwise} value=${of.value} onInput=${(event) => (of.value = event.currentTarget.value)} />
     <datalist id=${id}>${among.map((name) => html`<option key=${name} value=${name} />`)}</datalist>`;
 }
 
@@ -99,7 +99,7 @@ function Body() {
   const stops = breakpoints.value;
   return html`
     <${Line} id="time" text=${texts.time}>
-      <input aria-label="Time [s]" aria-invalid=${isWrong(time)} autofocus=${kind.value === "time"} inputmode="decimal" size="8" value=${time.value} onInput=${(event) => (time.value = event.currentTarget.value)} /> s
+      <input aria-label="Time [s]" aria-invalid=${isWrong(time)} data-first=${kind.value === "time"} inputmode="decimal" size="8" value=${time.value} onInput=${(event) => (time.value = event.currentTarget.value)} /> s
     <//>
     <${Line} id="production" text=${texts.production}><${Name} of=${production} among=${productionNames()} label="Production" first=${kind.value === "production"} otherwise="its name" /><//>
     <${Line} id="buffer" text=${texts.buffer}>

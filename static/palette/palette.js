@@ -6,6 +6,7 @@ import { remembered } from "../local_storage.js";
 import { html, signal, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { match } from "./fuzzy.js";
 import { hasManual, noManual } from "../bar/models.js";
+import { showModal } from "../parts/dialog.js";
 import "./experiments.js";
 import { inManual, readManual } from "./manual_search.js";
 import "./open_runs.js";
@@ -108,7 +109,7 @@ function Palette({ opening }) {
   const at = Math.min(chosen.value, entries.length - 1);
   useLayoutEffect(() => {
     const own = box.current;
-    own.showModal();
+    showModal(own);
     return () => own.close(); // which returns the focus
   }, []);
   useEffect(() => {
@@ -133,7 +134,7 @@ function Palette({ opening }) {
     <input
       type="text"
       role="combobox"
-      autofocus
+      data-first
       spellcheck=${false}
       autocomplete="off"
       aria-label=${title}

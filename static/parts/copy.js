@@ -27,7 +27,7 @@ export async function copyText(text, otherwise = "Nothing was copied") {
 
 function offer(text) {
   const body = html`<p>The browser lets a page copy only if its address begins with https, or if the workbench runs on the same machine. Copy the selected text yourself.</p>
-    <textarea class="mono" aria-label="Text to copy" readonly autofocus rows="8" onFocus=${(event) => event.currentTarget.select()}>${text}</textarea>`;
+    <textarea class="mono" aria-label="Text to copy" readonly data-first rows="8" onFocus=${(event) => event.currentTarget.select()}>${text}</textarea>`;
   dialog({ title: "Copy the text", body });
 }
 

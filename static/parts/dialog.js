@@ -28,6 +28,13 @@ export function asked(title, label, value, action, more = {}) {
   return dialog({ title, ask: { label, value, ...more }, actions: [{ text: "Cancel", value: null }, { text: action, value: true, kind: "primary" }] });
 }
 
+/** Shows a `dialog` element above everything else, with the focus on its field that has `data-first`, if there is one. The browser's own
+ * `autofocus` is blocked where the page is in a frame of another one, such as a notebook. */
+export function showModal(box) {
+  box.showModal();
+  box.querySelector("[data-first=true]")?.focus();
+}
+
 /** The container of the dialogs. */
 export function Dialogs() {
   return open.value.map((shown) => html`<${Dialog} key=${shown.number} shown=${shown} />`);
@@ -41,7 +48,7 @@ function Dialog({ shown }) {
   // At once: the next key press is meant for the dialog.
   useLayoutEffect(() => {
     const own = box.current;
-    own.showModal();
+    showModal(own);
     const { activeElement } = document;
     if (activeElement.matches("input:not([type=radio], [type=checkbox])")) activeElement.select(); // typing replaces the selected text
     return () => own.close(); // which returns the focus, such as to a field of the dialog below
@@ -87,7 +94,7 @@ function Dialog({ shown }) {
     ${shown.ask
       ? html`<label class="field">
           ${shown.ask.label}
-          <input ref=${line} autofocus value=${shown.ask.value} spellcheck=${false} aria-invalid=${Boolean(shown.ask.problem)} aria-describedby="${id}-problem" />
+          <input ref=${line} data-first value=${shown.ask.value} spellcheck=${false} aria-invalid=${Boolean(shown.ask.problem)} aria-describedby="${id}-problem" />
         </label>
         <${Problem} id="${id}-problem" text=${shown.ask.problem} />`
       : null}

@@ -6,7 +6,7 @@ import { counted } from "../parts/count.js";
 import { confirmed } from "../parts/dialog.js";
 import { offerRestore } from "../parts/restore.js";
 import { call, sendFile, sinceNow } from "../server.js";
-import { complain, session } from "../store.js";
+import { complain, me, session } from "../store.js";
 import { forgetRun, listRuns, runs } from "./list.js";
 import { chosen } from "./table.js";
 import { withTrust } from "./trust.js";
@@ -110,6 +110,17 @@ function branchesText(list) {
   return ` ${list.length === 1 ? "Its" : "Their"} ${length === 1 ? "branch stays" : `${length} branches stay`}.`;
 }
 
+/** Returns that other pages show recordings which are deleted; an empty text if none does. Their sessions stay open. */
+async function pagesText(list) {
+  const ids = new Set(list.map(({ id }) => id));
+  const { sessions } = await call("GET", "/api/sessions").catch(() => ({ sessions: [] }));
+  const shown = sessions.filter(({ recorded, recording }) => ids.has(recorded) || ids.has(recording));
+  const pages = new Set(shown.flatMap(({ watching }) => watching).filter((name) => name !== me.peek())).size;
+  if (pages === 0) return "";
+  const [who, verbs] = pages === 1 ? ["Another page", ["shows", "goes"]] : [`${pages} other pages`, ["show", "go"]];
+  return ` ${who} ${verbs[0]} ${list.length === 1 ? "it" : "some of them"}, and ${verbs[1]} on showing ${list.length === 1 ? "it" : "them"}.`;
+}
+
 /** Deletes recordings, after asking; except those that a run is still writing. */
 export async function deleteRuns(all) {
   const list = all.filter((run) => !run.session);
@@ -120,7 +131,7 @@ export async function deleteRuns(all) {
   }
   if (list.length === 0) return;
   const one = list.length === 1 ? `the recording «${nameOf(list[0])}»` : counted(list.length, "recording");
-  const where = `${list.length === 1 ? "It goes" : "They go"} to the trash folder .workbench/trash.${branchesText(list)}`;
+  const where = `${list.length === 1 ? "It goes" : "They go"} to the trash folder .workbench/trash.${branchesText(list)}${await pagesText(list)}`;
   if (!(await confirmed(`Delete ${one}?`, where, "Delete"))) return;
   const refused = [];
   const deleted = [];

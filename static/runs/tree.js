@@ -35,16 +35,6 @@ function roots(list) {
   return (run) => lineOf(run).at(-1).id;
 }
 
-/** Returns the numbers of recordings of one name among those of their tree that have it, the oldest first, by their ids.
- *
- * @param textOf Returns the name of a recording. */
-export function numbersOf(list, textOf) {
-  const rootOf = roots(list);
-  const same = Map.groupBy(list, (run) => JSON.stringify([rootOf(run), textOf(run)]));
-  const since = ({ kept, made }) => kept ?? made;
-  return new Map([...same.values()].flatMap((all) => all.toSorted((one, other) => since(one) - since(other)).map(({ id }, n) => [id, n + 1])));
-}
-
 /** Returns the tree that a recording is in, as rows with their depth: a branch follows the nearest recording from which it comes; those that
  * come from one that was deleted are side by side. */
 export function treeOf(list, id) {

@@ -2,9 +2,7 @@
 
 import { valueText } from "../parts/chunk.js";
 import { timeText, unitOf } from "../parts/units.js";
-import { computed } from "../vendor/preact.js";
-import { isOrphan, runs } from "./list.js";
-import { numbersOf } from "./tree.js";
+import { isOrphan } from "./list.js";
 
 const ENDED = {
   stop: "the model called stop()",
@@ -39,13 +37,8 @@ const plainText = (run) => run.label?.name || placeText(run);
 
 const placeText = ({ branched }) => (branched === null ? "" : `at ${timeText(branched)}`);
 
-const numbers = computed(() => numbersOf(runs.value ?? [], plainText));
-
-/** Returns the name of a recording with its number if another one of its tree has the same: `at 0.12 s`, `at 0.12 s (2)`. */
-function numbered(run) {
-  const number = numbers.value.get(run.id) ?? 1;
-  return number > 1 ? `${plainText(run)} (${number})` : plainText(run);
-}
+/** Returns the name of a recording with the number that the server has given it, as others of its tree have the same: `at 0.12 s (2)`. */
+const numbered = (run) => (run.number > 1 ? `${plainText(run)} (${run.number})` : plainText(run));
 
 /** Returns the name that a user has given a recording, different from those of its branches; an empty text if there is none. */
 export function ownName(run) {

@@ -24,7 +24,7 @@ function wrong() {
 function Body() {
   return html`<label class="field">
       Time, from 0 to ${timeText(furthest.value)}
-      <input autofocus inputmode="decimal" spellcheck=${false} aria-invalid=${Boolean(problem.value)} value=${text.value} onInput=${(event) => (text.value = event.currentTarget.value)} />
+      <input data-first inputmode="decimal" spellcheck=${false} aria-invalid=${Boolean(problem.value)} value=${text.value} onInput=${(event) => (text.value = event.currentTarget.value)} />
     </label>
     <${Problem} text=${problem.value} />`;
 }

@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
 
+from actr3d.change import CHANGES
+from actr3d.parameter_schema import parameters_of
+from actr3d.recording import Recorded, Recording
+from actr3d.runner.facts import program_facts
+from actr3d.trace import Trace
 from tests.helpers.page import becomes_true, open_tab, shows, until
-from tests.helpers.workbench_server import Served
+from tests.helpers.workbench_server import MODELS, Served
+from tests.server.test_html_replay import inside
+from workbench.html_replay.make import write_replay
+from workbench.loader import listing_of
+from workbench.worker.change_menu import change_menu
 
 
 def say(page: Page, **command: Any) -> None:
@@ -516,3 +528,58 @@ def test_in_the_trace_a_change_by_hand_is_read_before_its_effect(pages: Callable
     shows(page, "#time", r"0\.12 s")
     expect(rows.last).to_have_attribute("aria-selected", "true")
     assert numbers == rows.evaluate_all("all => all.slice(-2).map(({ id }) => id)")
+
+
+TEXTS = """async ([changes, live, events]) => {
+  const [{ session }, { Former, commandText }, { batch }] = await Promise.all(
+    ["store.js", "timeline/commands.js", "vendor/preact.js"].map((name) => part(name)),
+  );
+  const former = new Former();
+  const texts = [];
+  batch(() => {
+    session.value = { changes, live, parameters: {}, openings: [] };
+    for (const event of events) {
+      if (event[2] === "buffer") former.hold(event[1], event[3].chunk);
+      if (event[2] !== "command") continue;
+      former.take(event);
+      texts.push(commandText(event).join(" ").trim());
+    }
+    session.value = null; // before the page asks the server about it
+  });
+  return texts;
+}"""
+
+
+def test_the_timeline_and_the_html_replay_have_the_same_words_for_each_registered_change(blank: Page, tmp_path: Path) -> None:
+    source = (MODELS / "doorway.py").read_text(encoding="utf-8")
+    trace = Trace("all")
+    with Recording(tmp_path / "run.sqlite", program_facts("doorway.py", source, 1, None)) as recorded:
+        trace.listen(recorded.event_alone)
+
+        def give(word: str, *values: Any, body: str | None = None, **named: Any) -> None:
+            trace.emit(0, "top", "command", {"command": word, "data": {"values": list(values), "named": named, "body": body}})
+
+        for turn in (1, 2):
+            for word, kind in CHANGES.items():
+                fields = parameters_of(kind)
+                samples: dict[str, Any] = {one.name: 0.12345 * turn if one.takes == "number" else f"some_{one.name}" for one in fields}
+                trace.emit(0, "some_buffer", "buffer", {"chunk": {"0": "count", "next": 3.123456, "part": None} if turn == 1 else None})
+                give(word, **samples)
+                give(word, *samples.values())
+                give(word, **{one.name: samples[one.name] for one in fields if one.required})
+                give(word, *samples.values(), body="walker")
+            give("move", "box", 1, 2.5, 0.5)
+            for value in (1.5, True, None, "high"):
+                give("parameter", "walker.speed", value)  # the parameter «speed» of the model
+                give("parameter", path="walker.memory.noise", value=value)
+            give("wave", turn, True, None, "high", hand="left", body="walker")
+            give("pause")
+    write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    written = [
+        text for _, _, kind, text in inside((tmp_path / "replay.html").read_text(encoding="utf-8"))["events"]["rows"] if kind == "command"
+    ]
+    assert "speed 1.5 -> true m/s" in written
+    with Recorded(tmp_path / "run.sqlite") as reading:
+        events = [[0, one.source, one.kind, dict(one.data)] for one in reading.events()]
+    live = [{"name": one.name, "unit": one.unit, **asdict(one.live)} for one in listing_of(source).parameters if one.live is not None]
+    assert blank.evaluate(TEXTS, [json.loads(change_menu(agents_only=False)), live, events]) == written

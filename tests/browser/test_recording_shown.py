@@ -514,3 +514,36 @@ def test_a_long_recording_shows_at_its_start_what_will_happen_there(pages: Pages
     page.get_by_role("region", name="Firing trace").press("Home")
     expect(rows.first).to_contain_text("line 0")
     expect(rows.first).to_have_class(re.compile("ahead"))
+
+
+@pytest.mark.slow
+def test_before_a_recording_is_deleted_that_another_page_shows_this_is_said_and_that_page_goes_on_showing_it(
+    pages: Pages, workbench: Served
+) -> None:
+    name = recorded(workbench, "counting.py")
+    page, other = pages("counting.py", tab="runs"), pages("counting.py")
+    shows(page, "#status", "at its start")
+    other.goto(f"{workbench.url}/?run={name}")
+    banner = other.locator(".recording-banner")
+    expect(banner).to_contain_text("recorded")
+    shows(other, "#time", "t = 0.00 s")
+
+    def ask(text: str, answer: str) -> None:
+        row(page, name).click()
+        page.get_by_role("button", name="Delete", exact=True).click()
+        asked = page.get_by_role("dialog")
+        expect(asked.locator("p")).to_have_text(text)
+        asked.get_by_role("button", name=answer).click()
+        expect(asked).to_have_count(0)
+
+    trash = "It goes to the trash folder .workbench/trash."
+    ask(f"{trash} Another page shows it, and goes on showing it.", "Delete")
+    expect(row(page, name)).to_have_count(0)
+    expect(banner.locator(".when")).to_have_text("deleted or renamed since it was opened")
+    other.get_by_role("button", name="Newest moment").click()
+    shows(other, "#status", "ended")
+    page.get_by_role("button", name="Restore").click()
+    expect(banner.locator(".when")).to_have_text(re.compile("^made "))
+    other.goto("about:blank")
+    until(page, lambda: all(not one["watching"] for one in workbench.get("/api/sessions").json()["sessions"] if one["recorded"]))
+    ask(trash, "Cancel")

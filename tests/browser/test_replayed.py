@@ -78,6 +78,23 @@ def test_a_narrow_page_has_room_for_the_scene_and_says_how_far_a_run_went_that_w
         assert (other, again) == (one + 1, [one, False])  # the second simulation has a wall more; the view is as it was chosen
 
 
+def test_the_clock_of_a_long_run_has_hours(browser: Browser, tmp_path: Path) -> None:
+    trace = Trace("all")
+    with Recording(tmp_path / "run.sqlite", program_facts("long.py", "", 1, None)) as recording:
+        trace.listen(recording.event_alone)
+        for time_us in (0, 4_512_300_000):
+            trace.emit(time_us, "top", "begin", {})
+    make.write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    with browser.new_context(offline=True) as context:
+        page = context.new_page()
+        page.goto((tmp_path / "replay.html").as_uri())
+        expect(page.locator("#outcome")).to_have_text("Shown up to 1:15:12.30: the run was not over at that time.")
+        expect(page.locator("#clock")).to_have_text("0:00:00.00")
+        page.evaluate("goTo(4000)")
+        expect(page.locator("#clock")).to_have_text("1:06:40.00")
+        expect(page.get_by_role("slider", name="Time")).to_have_attribute("aria-valuetext", "1:06:40.00")
+
+
 def test_all_of_it_can_be_read_named_and_reached_in_both_themes(browser: Browser, replay: Path) -> None:
     with browser.new_context(viewport={"width": 1200, "height": 800}) as context:
         page = context.new_page()

@@ -77,7 +77,7 @@ def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[...,
     expect(dialog).to_contain_text("19 pictures, 0.63 s of video")
     for start, end, speed, wrong in (
         ("", "0.6", "1", "must be a time, such as 1.5 or 1:15:12.3"),
-        ("0.5", "0.5", "1", "must be later than the first time, 0.5 s"),
+        ("0.5", "0.5", "1", "must be later than the first time, 0.50 s"),
         ("0", "0.7", "1", "must be from 0 to 0.60 s, which the run has reached"),
     ):
         first.fill(start)
@@ -88,6 +88,14 @@ def test_a_video_shows_a_stretch_of_the_run_in_its_own_time(pages: Callable[...,
     too_long = "async (texts) => (await part('video/dialog.js')).problemsOf(texts, 2000)"
     assert page.evaluate(too_long, {"begin": "0", "end": "600", "speed": "1"}) == {}
     assert "at most 10 minutes" in page.evaluate(too_long, {"begin": "0", "end": "600", "speed": "0.5"})["end"]
+
+    wrong = "async (texts) => (await part('video/dialog.js')).problemsOf(texts, 5000)"
+    assert page.evaluate(wrong, {"begin": "1:20:00", "end": "2:00:00", "speed": "1"})["end"] == (
+        "must be from 0 to 1:23:20.00, which the run has reached (got 2:00:00)"
+    )
+    assert page.evaluate(wrong, {"begin": "1:20:00", "end": "1:10:00", "speed": "1"})["end"] == (
+        "must be later than the first time, 1:20:00.00 (got 1:10:00)"
+    )
 
     first.fill("0.3")
     last.fill("0.6")

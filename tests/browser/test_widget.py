@@ -156,6 +156,8 @@ def test_a_page_that_is_late_is_shown_as_soon_as_it_is_there(browser: Browser) -
 @pytest.mark.scene
 def test_the_widget_follows_the_cells_and_says_what_to_do_where_it_cannot(browser: Browser, kernel: Kernel, notebook: str) -> None:
     page = opened(browser, f"{notebook}/dark")
+    said: list[str] = []
+    page.on("console", lambda message: said.append(message.text))
     frame = page.frame_locator("iframe").first
     time_of(frame, "t = 0.00 s")
     expect(frame.locator(".scene iframe")).to_be_visible()
@@ -170,6 +172,13 @@ def test_the_widget_follows_the_cells_and_says_what_to_do_where_it_cannot(browse
     expect(frame.get_by_role("tab", name="Buffers")).to_be_visible()
     assert frame.get_by_role("tab", name="Editor").count() == 0
     assert frame.locator("#restart, #stop, select.model").count() == 0
+    page.keyboard.press("Control+k")
+    expect(frame.get_by_role("combobox", name="Search commands")).to_be_focused()
+    page.keyboard.press("Escape")
+    page.keyboard.press("g")
+    expect(frame.get_by_role("dialog").get_by_role("textbox")).to_be_focused()
+    page.keyboard.press("Escape")
+    assert [text for text in said if "autofocus" in text] == []
     frame.get_by_role("button", name="Move, push").click()
     frame.get_by_role("dialog").get_by_role("button", name="Move …").click()
     expect(frame.get_by_role("dialog").get_by_role("option", name="walker")).to_have_count(1)

@@ -113,6 +113,13 @@ def test_a_branch_says_so_and_its_changes_are_in_words(tmp_path: Path) -> None:
     assert [row[3] for row in told["events"]["rows"]] == texts
 
 
+def test_times_from_an_hour_on_have_the_form_that_the_page_gives_them(tmp_path: Path) -> None:
+    with Recording(tmp_path / "run.sqlite", program_facts("long.py", "", 1, None)) as recorded:
+        recorded.fact("branched", 4512.3)
+    write_replay(tmp_path / "run.sqlite", tmp_path / "replay.html")
+    assert inside((tmp_path / "replay.html").read_text(encoding="utf-8"))["title"] == "long.py · seed 1 · branch at 1:15:12.30"
+
+
 def test_changes_by_hand_have_the_words_of_the_timeline(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, (MODELS / "doorway.py").read_text(encoding="utf-8"), record=True)
     talk.say("step", ticks=2)

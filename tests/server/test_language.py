@@ -157,6 +157,17 @@ def test_what_may_stand_at_a_place(ask: Asked, text: str, first: list[str]) -> N
     assert ask.labels(text)[: len(first)] == first
 
 
+@pytest.mark.parametrize(("method", "offered"), [("set", "walk"), ("request", "pose")])
+def test_what_a_body_is_given_is_one_word_and_no_chunk(ask: Asked, method: str, offered: str) -> None:
+    text = DOORWAY.replace('eye.request("view")', f'eye.{method}("|")')
+    items = {one["label"]: one["type"] for one in ask("complete", text)["items"]}
+    assert offered in items
+    assert set(items.values()) == {"function"}
+    assert ("jump" in items) is False
+    assert "jump" in ask.labels(text.replace('skin.request("pose")', f'skin.request("pose")\n        eye.{method}("jump")'))
+    assert ask.labels(text.replace('("|")', f'("{offered} |")')) == []
+
+
 def test_only_public_names_of_the_library_are_offered_to_import(ask: Asked) -> None:
     names = set(ask.labels("from actr3d.world import |"))
     assert {"Floor", "Mannequin", "Scene"} <= names

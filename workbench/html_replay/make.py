@@ -28,6 +28,8 @@ from workbench.palette import palette
 from workbench.program_time import timed_events
 from workbench.recorded_simulations import RecordedSimulation, simulations_of
 from workbench.scene_framing import SceneFraming
+from workbench.shipped import static
+from workbench.time_text import time_text
 
 RATE = 30
 """About this many frames per second of simulated time are stored; the page interpolates between them."""
@@ -75,8 +77,10 @@ def _read(folder: Path, name: str) -> str:
 
 
 def _scripts(folder: Path) -> str:
-    names = ("space.js", "solids.js", "shades.js", "camera.js", "drawing.js", "events.js", "player.js")
-    return "\n".join(_read(folder, name) for name in names)
+    """Returns the scripts of the file as one: its own, and a module of the page that imports nothing."""
+    own = [folder / f"{name}.js" for name in ("space", "solids", "shades", "camera", "drawing", "events", "player")]
+    texts = [path.read_text(encoding="utf-8") for path in (own[0], static() / "parts" / "units.js", *own[1:])]
+    return "\n".join(re.sub("^export ", "", text, flags=re.MULTILINE) for text in texts)
 
 
 def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
@@ -85,7 +89,7 @@ def _facts(recorded: Recorded, models: str | None) -> dict[str, Any]:
     model = Path(file).name if models is None else ModelFolder(Path(models)).shown(file)
     seed = facts.get("program_seed", facts.get("seed"))
     ended, branched = facts.get("ended"), facts.get("branched")
-    branch = "" if branched is None else f" · branch at {branched:.2f} s"
+    branch = "" if branched is None else f" · branch at {time_text(branched, 2)}"
     return {
         "title": f"{model or 'a run'} · seed {seed}{branch}",
         "model": model,
@@ -149,11 +153,11 @@ def _text(event: TraceEvent, changes: ChangeTexts) -> str:
 
 
 def _chunk(slots: Any) -> str:
-    """Returns a chunk in the notation of models."""
+    """Returns a chunk in the notation of models, with its values as the trace shows them."""
     if not isinstance(slots, Mapping):
         return "empty" if slots is None else str(slots)
     named = cast("Mapping[str, Any]", slots)
-    return " ".join(_word(value) if name.isdecimal() else f"{name}:{_word(value)}" for name, value in named.items())
+    return " ".join(_value(value) if name.isdecimal() else f"{name}:{_value(value)}" for name, value in named.items())
 
 
 def _value(value: Any) -> str:

@@ -20,7 +20,7 @@ table("parameters", data.parameters);
 table("result", data.events.result);
 const came = data.events.result && data.events.result.outcome;
 const ENDINGS = { stop: "the model called stop()", done: "no agent had anything left to do", end: "the program was over", exit: "the program ended itself", limits: "its time was over",
-  left: data.branched === null ? "it was left before its end" : `its past was changed at ${data.branched.toFixed(2)} s` };
+  left: data.branched === null ? "it was left before its end" : `its past was changed at ${timeText(data.branched)}` };
 
 let drawing = null;
 try {
@@ -39,19 +39,20 @@ const rows = data.events.rows;
 const end = Math.max(drawing ? drawing.end : 0, rows.length ? rows[rows.length - 1][0] : 0);
 const events = new Events(data.events, (time) => goTo(time));
 get("time").max = end;
-const over = data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : `Shown up to ${end.toFixed(2)} s: ${data.failed ? "the run failed" : "the run was not over"} at that time.`;
+const over = data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : `Shown up to ${timeText(end)}: ${data.failed ? "the run failed" : "the run was not over"} at that time.`;
 get("outcome").textContent = (came ? `Outcome: ${came}. ` : "") + over;
 
 function goTo(time) {
   now = Math.min(end, Math.max(0, time));
   get("time").value = now;
-  get("clock").textContent = `${now.toFixed(2)} s`;
+  get("time").setAttribute("aria-valuetext", timeText(now));
+  get("clock").textContent = timeText(now, 2, end);
   events.mark(now);
   if (!drawing) return;
   const early = Math.fround(now) < drawing.begin;
   get("canvas").hidden = early;
   get("empty").hidden = !early;
-  get("empty").textContent = `No scene is stored before ${drawing.begin.toFixed(2)} s.`;
+  get("empty").textContent = `No scene is stored before ${timeText(drawing.begin)}.`;
   drawing.draw(now);
 }
 

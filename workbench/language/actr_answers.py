@@ -53,6 +53,13 @@ def complete(model: ModelText, at: int, attributes: Attributes) -> Completion | 
     sign = _SIGN.search(value)
     assert sign is not None
     start = at - len(sign[2]) - ("?" in sign[1])
+    words = _words_of_part(model, text)
+    if words:
+        used = {
+            piece.text for one in _elsewhere(model.chunks_of(text.part, text.agent), at) if one.kind == text.kind for piece in one.pieces
+        }
+        own = [Item(label=word, type="function", boost=OWN) for word in used]
+        return Completion(start=start, items=distinct([*words, *own]) if word.start() == 0 else [])
     variables = _variables(model, text, at)
     if "?" in sign[1]:
         return Completion(start=start, items=variables)
@@ -225,14 +232,19 @@ def _words(model: ModelText, text: ChunkText, place: int) -> Iterator[Item]:
     """Yields the words of the library that may begin a text."""
     if place > 0:
         return
-    parts = model.parts_of(text.agent)
-    part = parts.get(text.part)
-    if part is not None and text.kind != "pattern":
-        for word in words_for(part.kind, "set" if text.kind == "chunk" else "request"):
-            yield Item(label=word.word, type="function", detail=f"({word.takes})" if word.takes else "", boost=OWN, text=word.text)
     if text.kind == "pattern":
-        for word in (word for one in parts.values() if text.part in one.given for word in answers_of(one.kind)):
+        parts = model.parts_of(text.agent).values()
+        for word in (word for one in parts if text.part in one.given for word in answers_of(one.kind)):
             yield Item(label=word.word, type="function", detail="sensed", boost=OTHER, text=word.text)
+
+
+def _words_of_part(model: ModelText, text: ChunkText) -> list[Item]:
+    """Returns the words that the library gives to a method of a part: the commands of a body, and what it senses; these are no chunks."""
+    part = model.parts_of(text.agent).get(text.part)
+    if part is None or text.kind == "pattern":
+        return []
+    words = words_for(part.kind, "set" if text.kind == "chunk" else "request")
+    return [Item(label=one.word, type="function", detail=f"({one.takes})" if one.takes else "", boost=OWN, text=one.text) for one in words]
 
 
 def _values(model: ModelText, text: ChunkText, slot: str, at: int, attributes: Attributes) -> Iterator[Item]:
