@@ -290,11 +290,17 @@ def test_a_figure_fills_in_although_its_means_take_long_and_stays_while_the_serv
     expect(page.locator(".tools .state")).to_have_text("stopped")
 
 
+def has_experiments(page: Page, *listed: dict[str, Any]) -> None:
+    """Answers the requests for the list of experiments from now on; the page reads it again at once, not only in some seconds."""
+    page.route("**/api/experiments", lambda route: route.fulfill(json={"total": len(listed), "experiments": listed}))
+    page.get_by_role("button", name="Read the list again").click()
+
+
 def test_an_experiment_that_cannot_be_read_says_why(pages: Callable[..., Page]) -> None:
     page = pages("counting.py", tab="experiments", refusals=True)
     one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "stopped", "done": 0, "total": 8, "failures": 0}
     one |= {"changed": {}, "model": "", "remaining": None, "work": []}
-    page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [one]}))
+    has_experiments(page, one)
     page.route("**/api/experiments/sums", lambda route: route.fulfill(status=409, json={"error": "facts.json is damaged"}))
     page.locator("tr[data-experiment=sums]").click()
     expect(page.get_by_role("alert")).to_have_text("The experiment cannot be read: facts.json is damaged")
@@ -313,7 +319,7 @@ def test_a_report_that_another_page_makes_is_shown_and_the_experiment_cannot_be_
     page = pages("counting.py", tab="experiments", refusals=True)
     one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "stopped", "done": 4, "total": 8, "failures": 0}
     one |= {"changed": {}, "model": "", "remaining": None, "work": ["its report is being made"]}
-    page.route("**/api/experiments", lambda route: route.fulfill(json={"experiments": [one]}))
+    has_experiments(page, one)
     page.locator("tr[data-experiment=sums]").click()
     expect(page.locator(".progress")).to_contain_text("its report is being made …")
     for name in ("Delete", "Make report"):
@@ -337,7 +343,7 @@ def two_finished(pages: Callable[..., Page]) -> tuple[Page, list[dict[str, Any]]
     one |= {"changed": {}, "model": "", "remaining": None, "columns": [], "work": []}
     both: list[dict[str, Any]] = [{**one, "id": name, "name": name, "work": []} for name in ("first", "second")]
     wanted: list[Route] = []
-    page.route("**/api/experiments", lambda route: route.fulfill(json={"total": 2, "experiments": both}))
+    has_experiments(page, *both)
     page.route(re.compile("/api/experiments/(first|second)$"), lambda route: route.fulfill(json=one | FACTS))
     rows = {"columns": columns, "first": 0, "total": 2, "rows": [{"trial": number, "participant": 1} for number in (1, 2)]}
     page.route("**/rows?*", lambda route: route.fulfill(json=rows))
@@ -403,7 +409,7 @@ def test_a_report_has_the_theme_that_was_chosen_on_the_page(pages: Callable[...,
     page = pages("counting.py", tab="experiments", theme=other)
     one: dict[str, Any] = {"id": "sums", "name": "sums", "made": 0, "state": "finished", "done": 2, "total": 2, "failures": 0}
     one |= {"changed": {}, "model": "", "remaining": None, "columns": [], "work": [], "report": 1}
-    page.route("**/api/experiments", lambda route: route.fulfill(json={"total": 1, "experiments": [one]}))
+    has_experiments(page, one)
     page.route("**/api/experiments/sums", lambda route: route.fulfill(json=one | FACTS))
     page.route("**/rows?*", lambda route: route.fulfill(json={"columns": [], "first": 0, "total": 0, "rows": []}))
     text = report_page("Sums", "", {}, [], {})

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+import shutil
+from collections.abc import Callable, Iterator
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -137,7 +138,16 @@ def test_a_panel_has_a_window_of_its_own_which_follows_the_page(pages: Pages) ->
     expect(window).to_have_title("Buffers · counting.py")
 
 
-def test_what_is_chosen_in_a_window_of_its_own_is_shown_by_the_page(pages: Pages) -> None:
+@pytest.fixture
+def second(workbench: Served) -> Iterator[str]:
+    """Another model without a body, whose runs cost little."""
+    path = workbench.folder / "second.py"
+    shutil.copy(workbench.folder / "counting.py", path)
+    yield path.name
+    path.unlink()
+
+
+def test_what_is_chosen_in_a_window_of_its_own_is_shown_by_the_page(second: str, pages: Pages) -> None:
     page = pages("counting.py", tab="editor")
     shows(page, "#status", "at its start")
     page.click("#run")
@@ -149,22 +159,22 @@ def test_what_is_chosen_in_a_window_of_its_own_is_shown_by_the_page(pages: Pages
         page.evaluate("async (theme) => { (await part('theme.js')).chosen.value = theme; }", theme)
         expect(window.locator("html")).to_have_attribute("data-theme", theme)
     file = window.get_by_label("File", exact=True)
-    expect(file.locator("option", has_text="doorway.py")).to_have_count(1)
+    expect(file.locator("option", has_text=second)).to_have_count(1)
     window.get_by_role("heading", name="Editor").click()
     window.keyboard.press("1")
-    file.select_option("doorway.py")
+    file.select_option(second)
     window.get_by_role("button", name=re.compile("^(Save and )?run$", re.I)).click()
-    expect(page.get_by_label("Model", exact=True)).to_have_value("doorway.py")
+    expect(page.get_by_label("Model", exact=True)).to_have_value(second)
     shows(page, "#status", "ended")
-    expect(window).to_have_title("Editor · doorway.py")
+    expect(window).to_have_title(f"Editor · {second}")
     recorded = window.evaluate("async () => (await part('store.js')).session.value.recording")
     window.evaluate("async () => { (await part('open_tab.js')).openTab.value = 'runs'; }")
     window.locator(f"[data-run='{recorded}']").dblclick()
-    expect(page.locator(".recording-banner")).to_contain_text("doorway.py")
+    expect(page.locator(".recording-banner")).to_contain_text(second)
     assert page.url.endswith(f"?run={recorded}")
-    expect(window).to_have_title("Runs · doorway.py")
+    expect(window).to_have_title(f"Runs · {second}")
     window.get_by_role("button", name="Editor", exact=True).click()
-    expect(window).to_have_title("Editor · doorway.py")
+    expect(window).to_have_title(f"Editor · {second}")
 
 
 def test_a_link_leads_to_a_moment_of_a_run(pages: Pages, workbench: Served) -> None:

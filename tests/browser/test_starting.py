@@ -41,7 +41,7 @@ def test_a_recording_is_shown_though_the_folder_has_no_models(pages: Callable[..
     name = recorded(workbench, "counting.py")
     page = pages("doorway.py", refusals=True)
     shows(page, "#status", "paused")
-    page.route("**/api/models", lambda route: route.fulfill(json=NO_MODELS))
+    answers(page, "/api/models", NO_MODELS)
     page.goto(f"{workbench.url}/?run={name}")
     expect(page.locator(".recording-banner")).to_contain_text(name)
     page.goto(f"{workbench.url}/?run=none")
