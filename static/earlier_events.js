@@ -1,45 +1,79 @@
-// Requests the earlier events of a long run while it is paused: a page that was opened late, or that opens a long recording, is sent only the
-// latest ones.
+// Requests events of a long run while it is paused: a page that was opened late, or that opens a long recording, is sent only the latest ones, and
+// it has not room for all. After a run has gone far back, it gets those around that moment.
 
 import { effect, signal } from "./vendor/preact.js";
 import { say } from "./server.js";
-import { addEarlier, alive, events, roomForEarlier, running, session, state, way } from "./store.js";
+import { addEarlier, alive, events, replaceEvents, roomForEarlier, running, session, state, way } from "./store.js";
 
 const AT_ONCE = 5000; // the number of events per request: more would delay commands
+const AROUND = 45_000; // the number of events on each side of a moment of which the page has none
 
 /** Whether they are being requested. */
 export const fetching = signal(false);
 
-/** Whether events are missing that the run has now, or the recording that it repeats, and the page has room for. */
-function isMissing() {
-  const { first } = events.value;
-  const repeats = session.value?.recorded !== null && session.value?.recording === null;
-  return alive.value && !running.value && first > 0 && (repeats || (state.value?.events ?? 0) >= first) && roomForEarlier() > 0;
+/** Returns the numbers of the events that the page lacks and has room for: {from, to}, and `instead`, whether they are shown in place of those
+ * that it has; null if it lacks none, or while the run goes on. */
+function lacking() {
+  const { list, first, elsewhere } = events.value;
+  if (!alive.value || running.value || state.value === null) return null;
+  const now = state.value.events;
+  const repeats = session.value?.recorded !== null && session.value?.recording === null; // the server has the events after this moment, too
+  const from = Math.max(0, first - roomForEarlier());
+  if (now < first ? !repeats || now < from : elsewhere && now > first + list.length) {
+    return { from: Math.max(0, now - AROUND), to: now + (repeats ? AROUND : 0), instead: true };
+  }
+  return from < first ? { from, to: first, instead: false } : null;
 }
 
-/** Requests all that there is room for, the latest first, and shows it at once, as the lanes and the trace are made again then; if the run goes
- * on before the end, what has come by then. */
-async function fetchEarlier() {
-  const mine = way.peek();
-  const { first } = events.peek();
-  const begin = Math.max(0, first - roomForEarlier());
+/** Requests events; returns fewer than asked for if the run has no more.
+ *
+ * @param known The list of events that the page has: null is returned if it has another one by then. */
+async function between(begin, end, known, mine) {
+  const answer = await say({ type: "events", first: begin, most: end - begin, ahead: true });
+  return mine === way.peek() && events.peek().list === known.list && events.peek().first === known.first ? answer.events : null;
+}
+
+/** Shows events in place of those that the page has, once all have come. */
+async function fetchInstead({ from, to }) {
+  const [known, mine] = [events.peek(), way.peek()];
   const found = [];
+  for (let begin = from; begin < to; begin += AT_ONCE) {
+    const some = await between(begin, Math.min(to, begin + AT_ONCE), known, mine);
+    if (some === null || running.peek()) return;
+    found.push(...some);
+    if (some.length < AT_ONCE) break;
+  }
+  replaceEvents(from, found);
+}
+
+/** Adds events before those that the page has, the latest first, and shows them at once, as the lanes and the trace are made again then; if the run
+ * goes on before the end, what has come by then. */
+async function fetchBefore({ from, to }) {
+  const [known, mine] = [events.peek(), way.peek()];
+  let found = [];
   try {
-    for (let end = first; end > begin && !running.peek(); end -= AT_ONCE) {
-      const from = Math.max(begin, end - AT_ONCE);
-      const answer = await say({ type: "events", first: from, most: end - from, ahead: true });
-      if (mine !== way.peek() || answer.events.length < end - from) return;
-      found.unshift(answer.events);
+    for (let end = to; end > from && !running.peek(); end -= AT_ONCE) {
+      const begin = Math.max(from, end - AT_ONCE);
+      const some = await between(begin, end, known, mine);
+      if (some === null) found = [];
+      if (some === null || some.length < end - begin) return;
+      found.unshift(some);
     }
   } finally {
-    if (found.length > 0 && mine === way.peek() && events.peek().first === first) addEarlier(found.flat());
+    if (found.length > 0 && mine === way.peek() && events.peek().first === known.first) addEarlier(found.flat());
   }
 }
 
+let asked = ""; // what was requested last: what did not come is not requested again and again
+
 effect(() => {
-  if (!isMissing() || fetching.peek()) return;
+  const wanted = lacking();
+  if (wanted === null || fetching.value) return;
+  const all = JSON.stringify([way.value, wanted, events.value.first]);
+  if (all === asked) return;
+  asked = all;
   fetching.value = true;
-  fetchEarlier()
+  (wanted.instead ? fetchInstead : fetchBefore)(wanted)
     .catch(() => {}) // another run is shown by now, or it has ended: the page says how many events it does not show
     .finally(() => (fetching.value = false));
 });

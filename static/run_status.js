@@ -40,8 +40,9 @@ function withReason({ status, reason }) {
   return reason ? `${status}: ${reason}` : status;
 }
 
-/** Returns the time of the newest event [s], apart from the end of the run; null before the first. */
+/** Returns the time of the newest event [s], apart from the end of the run; null before the first, or if the page does not have it. */
 export function lastEvent() {
+  if (events.value.elsewhere) return null;
   const [last = null] = events.value.list.findLast(([, , kind]) => kind !== "stop") ?? [];
   return last === null ? null : last / 1e6;
 }

@@ -16,7 +16,8 @@ export const me = signal("");
 export const state = signal(null);
 /** The events of the run in order, each [time in us, source, kind, data], where the time is that of the run's clock also for a program
  * that makes several runs; also those after the current moment of a run that went back. `first` is the number of the first, `missing`
- * how many were dropped before it. The list grows in place. */
+ * how many were dropped before it. The list grows in place. `elsewhere` says that it may end before the newest event that the server has sent:
+ * a page has not room for all events of a long run, and has those around the moment to which it went back. */
 export const events = signal({ list: [], first: 0, missing: 0 });
 /** The notices to the user: {number, level, text, file, line, detail, attempt, version}. */
 export const notices = signal([]);
@@ -80,19 +81,27 @@ export function roomForEarlier() {
   return 0.9 * MAX_EVENTS - events.value.list.length;
 }
 
+/** Shows other events of the run, from the number `first` on, in place of those of the list. */
+export function replaceEvents(first, list) {
+  events.value = { list, first, missing: first, cut: false, elsewhere: true };
+}
+
 /** Adds the events directly before those of the list, the latest of them if there is not room for all. */
 export function addEarlier(earlier) {
   const { list, first } = events.peek();
   const added = earlier.slice(Math.max(0, earlier.length - roomForEarlier())); // new ones have come since these were requested
-  events.value = { list: [...added, ...list], first: first - added.length, missing: first - added.length, cut: false };
+  events.value = { ...events.peek(), list: [...added, ...list], first: first - added.length, missing: first - added.length, cut: false };
 }
 
-function withEvents({ list, first, missing }, news) {
+function withEvents({ list, first, missing, elsewhere = false }, news) {
   if (news.cut !== undefined) list.length = Math.max(0, Math.min(list.length, news.cut - first));
-  if (news.missing || list.length === 0) {
-    list = [];
-    first = news.first;
-    missing = news.first;
+  if (news.list.length > 0) {
+    if (list.length === 0 || news.first !== first + list.length) {
+      list = [];
+      first = news.first;
+      missing = news.first;
+    }
+    elsewhere = false;
   }
   for (const event of news.list) list.push(event);
   if (list.length > MAX_EVENTS) {
@@ -101,7 +110,7 @@ function withEvents({ list, first, missing }, news) {
     list.splice(0, drop);
     first += drop;
   }
-  return { list, first, missing, cut: news.cut !== undefined };
+  return { list, first, missing, cut: news.cut !== undefined, elsewhere };
 }
 
 function addNotices(added) {

@@ -31,7 +31,8 @@ const LETTER = 7; // the width of a letter of a mark's text, rounded up [px]
  * @property {number} end The end of bands that are still open [s].
  * @property {{from: number, to: number}} [now] The position of the playhead's label [px]; absent without one.
  * @property {number} begin Earlier times are not known [s].
- * @property {boolean} fetching Whether they are being requested.
+ * @property {number} known Later times are not known [s].
+ * @property {boolean} fetching Whether events are being requested.
  */
 
 /** Returns the position of a time [px]. */
@@ -66,7 +67,9 @@ export function drawTimeline(surface, scene) {
       else drawLane(surface, row, y, scene);
     }
   });
-  if (scene.begin > span.from) drawUnknown(surface, scene);
+  if (scene.begin > span.from) drawUnknown(surface, scene, column, Math.min(width, placeOf(scene.begin, scene)), "earlier");
+  const last = Math.max(column, placeOf(scene.known, scene));
+  if (scene.known < scene.end && last < width) drawUnknown(surface, scene, last, Math.min(width, placeOf(scene.end, scene)), "later");
   surface.line([column - 0.5, AXIS, column - 0.5, height], "line");
   drawAxis(surface, scene);
 }
@@ -95,11 +98,13 @@ function drawAxis(surface, scene) {
   surface.line([0, AXIS - 0.5, width, AXIS - 0.5], "line");
 }
 
-function drawUnknown(surface, scene) {
-  const x = Math.min(scene.width, placeOf(scene.begin, scene));
-  surface.fill(scene.column, AXIS, x - scene.column, scene.height - AXIS, "line", 0.5);
-  const text = cut(scene.fetching ? "earlier events are being fetched …" : "earlier events are not kept on this page", x - scene.column - 8);
-  if (text) surface.text(text, x - 4, scene.height - 10, "text", { anchor: "end" });
+/** Covers a stretch of which the page has no events.
+ *
+ * @param {string} side Whether it is "earlier" or "later" than those that the page has. */
+function drawUnknown(surface, scene, from, to, side) {
+  surface.fill(from, AXIS, to - from, scene.height - AXIS, "line", 0.5);
+  const text = cut(`${side} events are ${scene.fetching ? "being fetched …" : "not kept on this page"}`, to - from - 8);
+  if (text) surface.text(text, ...(side === "earlier" ? [to - 4, scene.height - 10, "text", { anchor: "end" }] : [from + 4, scene.height - 10, "text"]));
 }
 
 function drawLane(surface, { lane, label, height }, y, scene) {

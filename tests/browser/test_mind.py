@@ -472,6 +472,39 @@ def test_a_long_trace_stays_in_hand(pages: Pages, workbench: Served) -> None:
     expect(page.get_by_role("button", name="To the present")).to_have_count(0)
 
 
+LONG = """from actr3d.actr import *
+
+class Speaker(ACTR):
+    goal = Buffer()
+
+    def init():
+        goal.set("speak")
+
+    def speak(goal="speak"):
+        for n in range(5_000):
+            print(f"line {n} at {self.now():.2f} s")
+
+Speaker().run(3)
+"""
+
+
+@pytest.mark.slow
+def test_a_page_that_has_only_the_end_of_a_long_run_shows_the_moment_to_which_it_goes_back(pages: Pages, workbench: Served) -> None:
+    page = opened(pages, workbench, "speaker.py", LONG)
+    page.click("#run")
+    shows(page, "#status", "ended")
+    page.reload()
+    open_tab(page, "Console")
+    expect(page.locator("#panel-console")).to_contain_text("line 4999 at 3.00 s")
+    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'seek', time: 0.12 }))")
+    shows(page, "#time", r"0\.12 s")
+    expect(page.locator("#panel-console")).to_contain_text("line 4999 at 0.10 s")
+    expect(page.locator("#panel-console")).not_to_contain_text("being fetched")
+    open_tab(page, "Productions")
+    expect(page.locator("#events tbody")).to_contain_text("line 4999 at 0.10 s")
+    expect(page.locator(".gap-note")).to_have_count(0)
+
+
 @pytest.mark.slow
 def test_a_busy_model_is_said_to_be_busy(pages: Pages, workbench: Served) -> None:
     page = opened(pages, workbench, "loops.py", LOOPS)

@@ -398,7 +398,8 @@ MARKED = """async (ends) => {
     let anchor = null;
     const surface = { fill() {}, line() {}, polygon() {}, within: (x, y, width, height, draw) => draw() };
     surface.text = (text, x, y, name, style = {}) => text === "can pass as it is" && (anchor = style.anchor ?? "start");
-    drawTimeline(surface, { width: 1000, height: 60, column: 100, scroll: 0, span: { from: 0, to: 10 }, layout, end, begin: 0 });
+    const seen = { begin: 0, known: Infinity };
+    drawTimeline(surface, { width: 1000, height: 60, column: 100, scroll: 0, span: { from: 0, to: 10 }, layout, end, ...seen });
     return anchor;
   });
 }"""
@@ -437,6 +438,42 @@ def test_a_page_that_has_only_the_last_events_fetches_the_earlier_ones_while_the
     assert found["whole"]["first"] == 0 < found["late"]["first"]
     assert found["late"]["fired"] != found["whole"]["fired"]
     assert found["again"] == found["whole"]
+
+
+SEEK = """async (time) => void (await (await part("server.js")).say({ type: "seek", time }))"""
+LATEST = """async (count) => {
+  const { events } = await part("store.js");
+  const { list, first } = events.value;
+  events.value = { list: list.slice(-count), first: first + list.length - count, missing: first + list.length - count, cut: false };
+  return first + list.length;
+}"""
+AROUND = """async () => {
+  const { events, state } = await part("store.js");
+  const { scene } = await part("timeline/canvas.js");
+  const { list, first } = events.value;
+  return { first, last: first + list.length, now: state.value.events, known: scene().known };
+}"""
+"""The numbers of the events that a page has, and of those up to the present moment; until when the timeline shows what is known."""
+
+
+def test_a_page_has_the_events_around_the_moment_to_which_a_long_run_went_back(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py", tab="productions")
+    page.get_by_role("button", name="Run", exact=True).click()
+    shows(page, "#status", "ended")
+    page.evaluate(SEEK, 0.05)
+    shows(page, "#time", r"0\.05 s")
+    count = page.evaluate(LATEST, 5)
+    until(page, lambda: page.evaluate(AROUND)["first"] == 0)
+    found = page.evaluate(AROUND)
+    assert 0 < found["last"] == found["now"] < count - 5
+    assert found["known"] <= 0.05
+    expect(page.locator("#events tbody")).to_contain_text("start_counting")
+    page.evaluate(SEEK, 0.15)  # later, but not where the page has events
+    shows(page, "#time", r"0\.15 s")
+    until(page, lambda: page.evaluate(AROUND)["last"] == page.evaluate(AROUND)["now"] > found["last"])
+    page.get_by_role("button", name="Newest moment").click()
+    until(page, lambda: page.evaluate(AROUND)["last"] == count)
+    assert page.evaluate(AROUND)["first"] == 0
 
 
 AXIS = """async ([end, width]) => {
