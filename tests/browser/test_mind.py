@@ -472,7 +472,7 @@ def test_a_long_trace_stays_in_hand(pages: Pages, workbench: Served) -> None:
     expect(page.get_by_role("button", name="To the present")).to_have_count(0)
 
 
-LONG = """from actr3d.actr import *
+SPEAKER = """from actr3d.actr import *
 
 class Speaker(ACTR):
     goal = Buffer()
@@ -490,7 +490,7 @@ Speaker().run(3)
 
 @pytest.mark.slow
 def test_a_page_that_has_only_the_end_of_a_long_run_shows_the_moment_to_which_it_goes_back(pages: Pages, workbench: Served) -> None:
-    page = opened(pages, workbench, "speaker.py", LONG)
+    page = opened(pages, workbench, "speaker.py", SPEAKER)
     page.click("#run")
     shows(page, "#status", "ended")
     page.reload()
