@@ -41,7 +41,7 @@ export function scene(whole = false) {
     now: whole ? null : labelOfNow(),
     fetching: fetching.peek(),
     begin: events.peek().missing > 0 || events.peek().first > 0 ? (lanes.begin ?? 0) : 0,
-    known: events.peek().elsewhere ? lanes.now / 1e6 : Infinity,
+    known: events.peek().elsewhere ? Math.max(lanes.now / 1e6, present.peek()) : Infinity,
   };
 }
 

@@ -103,8 +103,8 @@ function drawAxis(surface, scene) {
  * @param {string} side Whether it is "earlier" or "later" than those that the page has. */
 function drawUnknown(surface, scene, from, to, side) {
   surface.fill(from, AXIS, to - from, scene.height - AXIS, "line", 0.5);
-  const text = cut(`${side} events are ${scene.fetching ? "being fetched …" : "not kept on this page"}`, to - from - 8);
-  if (text) surface.text(text, ...(side === "earlier" ? [to - 4, scene.height - 10, "text", { anchor: "end" }] : [from + 4, scene.height - 10, "text"]));
+  const text = cut(`${side} events are ${scene.fetching ? "being fetched …" : "not kept on this page"}`, to - from - 12);
+  if (text) surface.text(text, ...(side === "earlier" ? [to - 4, scene.height - 10, "text", { anchor: "end" }] : [from + 8, scene.height - 10, "text"]));
 }
 
 function drawLane(surface, { lane, label, height }, y, scene) {
