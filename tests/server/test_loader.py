@@ -253,6 +253,9 @@ SIDE = "no chunk of the feature 'obstacle' has a slot 'leftmos'; did you mean 'l
 THICK = "no chunk of the feature 'pole' has a slot 'thicknes'; did you mean 'thickness'?"
 FOUND = "nothing finds a feature 'obstacel'; did you mean 'obstacle'?"
 TURN = "no body has a command 'trun'; did you mean 'turn'?"
+POSE = "no body has a sense 'poze'; did you mean 'pose'?"
+NEAR = "no request for the feature 'obstacle' takes 'distnce'; did you mean 'distance'?"
+WHERE = "no request for the feature 'obstacle' takes 'bearng'; did you mean 'bearing'?"
 
 
 @pytest.mark.parametrize(
@@ -268,6 +271,9 @@ TURN = "no body has a command 'trun'; did you mean 'turn'?"
         ("def p(goal='a'):\n        vision.request('feature:obstacel width:>2', distance='<3')", [(13, FOUND)]),
         ("def look(self):\n        self.vision.request('feature:obstacel')", [(13, FOUND)]),
         ("def p(goal='a'):\n        body.set('trun', 30)", [(13, TURN)]),
+        ("def p(goal='a'):\n        body.request('poze')\n        body.get('poze')", [(13, POSE), (14, POSE)]),
+        ("def p(goal='a'):\n        vision.request('feature:obstacle distnce:<2')", [(13, NEAR)]),
+        ("def p(goal='a'):\n        vision.request('feature:obstacle',\n            bearng=30)", [(14, WHERE)]),
         (
             "eyes = Eyes()\nclass Eyes(ProductionSystem):\n    def p(visual='feature:obstacle leftmos:?l'): pass",
             [(14, f"production 'p': {SIDE}")],
@@ -291,6 +297,10 @@ def test_misspelt_words_of_the_library_are_found_while_a_text_is_written(method:
         "def p(goal='a'):\n        body.set('turn', 30)\n        body.set(trun)\n        goal.set('trun')",
         "reading = BodyPort(visual)\n    def p(visual='feature:obstacle leftmos:?l'): pass",
         "def p(goal='a'):\n        body.set('trun', 30)\n@actuator\ndef trun(body, angle): pass",
+        "def p(goal='a'):\n        vision.request('feature:obstacle distance:<2', bearing=30, bottom_up=True)",
+        "def p(goal='a'):\n        body.request('pose')",
+        "def p(goal='a'):\n        body.request('poze')\n@sensor\ndef poze(body): pass",
+        "def p(goal='a'):\n        vision.request('feature:pole bearng:30')\n@detector\ndef poles(view, bearng=1): pass",
         "def helper(self, visual): visual.request('feature:obstacel')\n    def p(",
     ],
 )

@@ -1,5 +1,5 @@
-"""Finds misspelt words of the library in the text of a model: features and their slots in patterns, features that vision is asked for,
-and commands to bodies. The text is not executed.
+"""Finds misspelt words of the library in the text of a model: features and their slots in patterns and in requests to vision, and commands
+to bodies and their senses. The text is not executed.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from collections.abc import Collection, Iterator, Mapping
 
 from actr3d.actr.chunks.pattern import parse
 from actr3d.actr.kernel.source_code import last_name, syntax_tree
-from actr3d.actr.lint.found_kinds import Kinds, wrong_kind, wrong_names
-from actr3d.actr.lint.slot_names import READERS, SURE, Vocabulary, is_production
+from actr3d.actr.lint.found_kinds import KIND, Kinds, wrong_kind, wrong_names
+from actr3d.actr.lint.slot_names import READERS, SURE, Vocabulary, is_production, slots_in
 from actr3d.errors import PatternException, did_you_mean
 from workbench.language.model_text import ModelText, Part
 
@@ -26,10 +26,11 @@ def misspelt_words(text: str) -> Iterator[tuple[int, str]]:
     tree = syntax_tree(text)
     kinds = _kinds(tree) if _has_vision(tree) else {}
     defined = {node.name for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
-    commands = _commands() if "BodyPort" in text and "BodyPort" not in defined else ()
-    if not (kinds or commands) or sum(isinstance(node, ast.ClassDef) for node in ast.walk(tree)) > MAX_CLASSES:
+    has_body = "BodyPort" in text and "BodyPort" not in defined
+    if not (kinds or has_body) or sum(isinstance(node, ast.ClassDef) for node in ast.walk(tree)) > MAX_CLASSES:
         return
     model, own = ModelText(text), Vocabulary(tree).written
+    given = {*own, *(node.arg for node in ast.walk(tree) if isinstance(node, ast.arg))}
     for agent, method in _methods(tree.body):
         parts = model.parts_of(agent)
         if kinds and is_production(method):
@@ -39,14 +40,29 @@ def misspelt_words(text: str) -> Iterator[tuple[int, str]]:
             word = call.args[0].value if call.args and isinstance(call.args[0], ast.Constant) else None
             if not isinstance(word, str) or not isinstance(call.func, ast.Attribute):
                 continue
-            if part.kind == "Vision" and call.func.attr in READERS:
-                found = [wrong_kind(kind, kinds, own) for kind in _KIND.findall(word) if kinds]
-            elif part.kind == "BodyPort" and call.func.attr == "set" and word not in {*commands, *defined}:
-                hint = did_you_mean(word, commands, SURE)
-                found = [hint and f"no body has a command '{word}'{hint}"]
-            else:
-                continue
-            yield from ((call.args[0].lineno, wrong) for wrong in found if wrong)
+            line = call.args[0].lineno
+            if part.kind == "Vision" and kinds and call.func.attr in READERS:
+                yield from ((line, wrong) for kind in _KIND.findall(word) if (wrong := wrong_kind(kind, kinds, own)))
+                yield from _in_request(call, word, kinds, given)
+            elif part.kind == "BodyPort" and has_body and call.func.attr in ("set", "get", "request"):
+                known = _words_of_bodies(call.func.attr)
+                hint = "" if word in {*known, *defined} else did_you_mean(word, known, SURE)
+                if hint:
+                    yield line, f"no body has a {'command' if call.func.attr == 'set' else 'sense'} '{word}'{hint}"
+
+
+def _in_request(call: ast.Call, text: str, kinds: Kinds, given: Collection[str]) -> Iterator[tuple[int, str]]:
+    """Yields the line and what is wrong in the slots and parameters of a request for a feature; `given` are the text's own names."""
+    kind = next((kind for kind in _KIND.findall(text) if kind in kinds), None)
+    if kind is None:
+        return
+    known = {KIND, "bottom_up", *kinds[kind], *_conditions(kind)}
+    names = [(call.args[0].lineno, slot) for slot in slots_in(text)]
+    names += [(keyword.lineno, keyword.arg) for keyword in call.keywords if keyword.arg]
+    for line, name in names:
+        hint = "" if name in known or name in given else did_you_mean(name, known, SURE)
+        if hint:
+            yield line, f"no request for the feature '{kind}' takes '{name}'{hint}"
 
 
 def _in_patterns(method: ast.FunctionDef, parts: Mapping[str, Part], kinds: Kinds, own: Collection[str]) -> Iterator[tuple[int, str]]:
@@ -104,7 +120,13 @@ def _kinds(tree: ast.Module) -> dict[str, set[str]]:
     return kinds
 
 
-def _commands() -> tuple[str, ...]:
-    from workbench.language.library_words import commands  # only texts with bodies need it
+def _words_of_bodies(method: str) -> tuple[str, ...]:
+    from workbench.language.library_words import words_for  # only texts with bodies need it
 
-    return tuple(word.word for word in commands())
+    return tuple(word.word for word in words_for("BodyPort", method))
+
+
+def _conditions(kind: str) -> tuple[str, ...]:
+    from workbench.language.library_words import features  # only texts with vision need it
+
+    return tuple(name for word in features() if word.word == kind for name in word.conditions)
