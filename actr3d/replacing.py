@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import secrets
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -39,3 +40,19 @@ def replace_file(target: Path, data: bytes) -> None:
     """
     with replacing(target) as part:
         part.write_bytes(data)
+
+
+@contextmanager
+def locked(target: Path) -> Generator[None]:
+    """Lets no other process that calls this change a file during the block, unless the file system has no locks.
+
+    Args:
+        target: The file; it need not exist. The lock is a file beside it, which stays.
+
+    Raises:
+        OSError: If the file of the lock cannot be made.
+    """
+    with target.with_name(f".{target.name}.lock").open("wb") as lock:
+        with suppress(OSError):
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield

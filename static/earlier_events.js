@@ -25,21 +25,20 @@ function lacking() {
   return from < first ? { from, to: first, instead: false } : null;
 }
 
-/** Requests events; returns fewer than asked for if the run has no more.
- *
- * @param known The list of events that the page has: null is returned if it has another one by then. */
-async function between(begin, end, known, mine) {
-  const answer = await say({ type: "events", first: begin, most: end - begin, ahead: true });
-  return mine === way.peek() && events.peek().list === known.list && events.peek().first === known.first ? answer.events : null;
-}
+/** Returns what the page has now, to be compared with what it has when an answer comes. */
+const held = () => ({ way: way.peek(), list: events.peek().list, first: events.peek().first });
+const holds = (before) => Object.entries(held()).every(([name, value]) => value === before[name]);
+
+/** Requests events; returns fewer than asked for if the run has no more. */
+const between = async (begin, end) => (await say({ type: "events", first: begin, most: end - begin, ahead: true })).events;
 
 /** Shows events in place of those that the page has, once all have come. */
 async function fetchInstead({ from, to }) {
-  const [known, mine] = [events.peek(), way.peek()];
+  const before = held();
   const found = [];
   for (let begin = from; begin < to; begin += AT_ONCE) {
-    const some = await between(begin, Math.min(to, begin + AT_ONCE), known, mine);
-    if (some === null || running.peek()) return;
+    const some = await between(begin, Math.min(to, begin + AT_ONCE));
+    if (!holds(before) || running.peek()) return;
     found.push(...some);
     if (some.length < AT_ONCE) break;
   }
@@ -49,18 +48,17 @@ async function fetchInstead({ from, to }) {
 /** Adds events before those that the page has, the latest first, and shows them at once, as the lanes and the trace are made again then; if the run
  * goes on before the end, what has come by then. */
 async function fetchBefore({ from, to }) {
-  const [known, mine] = [events.peek(), way.peek()];
-  let found = [];
+  const before = held();
+  const found = [];
   try {
     for (let end = to; end > from && !running.peek(); end -= AT_ONCE) {
       const begin = Math.max(from, end - AT_ONCE);
-      const some = await between(begin, end, known, mine);
-      if (some === null) found = [];
-      if (some === null || some.length < end - begin) return;
+      const some = await between(begin, end);
+      if (!holds(before) || some.length < end - begin) return;
       found.unshift(some);
     }
   } finally {
-    if (found.length > 0 && mine === way.peek() && events.peek().first === known.first) addEarlier(found.flat());
+    if (found.length > 0 && holds(before)) addEarlier(found.flat());
   }
 }
 

@@ -6,16 +6,15 @@ and a recording that is restored from the trash has its number again.
 
 from __future__ import annotations
 
-import fcntl
 import json
-from collections.abc import Callable, Collection, Generator, Iterable, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Collection, Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from threading import Lock
 
 import msgspec
 
-from actr3d.replacing import replace_file
+from actr3d.replacing import locked, replace_file
 from workbench.labels import Label
 from workbench.recording_index import Summary
 from workbench.time_text import time_text
@@ -49,7 +48,7 @@ class BranchNumbers:
         called = {one.id: (_first_of_tree(one), name) for one in oldest_first if (name := _name(one, labels.get(one.id)))}
         numbers = self._read()
         if any(one not in numbers.get(tree, {}).get(name, ()) for one, (tree, name) in called.items()):
-            with suppress(OSError), self._changing():  # without the file, they are given again for each list
+            with suppress(OSError), self._lock, locked(self._file):  # without the file, they are given again for each list
                 numbers = _given(self._read(), called)
                 self._write(numbers)
             numbers = _given(numbers, called)
@@ -66,14 +65,6 @@ class BranchNumbers:
         there = self._there()
         left = {tree: names for tree, names in numbers.items() if any(one in there for given in names.values() for one in given)}
         replace_file(self._file, json.dumps(left, indent=1).encode())
-
-    @contextmanager
-    def _changing(self) -> Generator[None]:
-        """Locks the numbers, also against other servers on the same folder, unless the file system has no locks."""
-        with self._lock, self._file.with_name(f".{FILE}.lock").open("wb") as lock:
-            with suppress(OSError):
-                fcntl.flock(lock, fcntl.LOCK_EX)
-            yield
 
 
 def _given(numbers: _Numbers, called: Mapping[str, tuple[str, str]]) -> _Numbers:

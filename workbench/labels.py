@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import logging
 import secrets
 import time
-from collections.abc import Generator, Iterable, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -16,7 +15,7 @@ from typing import Any
 import msgspec
 
 from actr3d.errors import Actr3dError
-from actr3d.replacing import replace_file
+from actr3d.replacing import locked, replace_file
 
 FILE = "labels.json"
 ASIDE = "labels-damaged-{}.json"
@@ -99,7 +98,7 @@ class Labels:
             LabelError: If a field that changes no longer has the value in `known`.
             OSError: If the file cannot be written.
         """
-        with self._changing():
+        with self._lock, locked(self._file):
             labels = self._to_change()
             now = labels.get(recording, Label())
             for field, new in changes.items():
@@ -112,19 +111,11 @@ class Labels:
 
     def forget(self, recordings: Iterable[str]) -> None:
         """Removes the labels of deleted recordings."""
-        with suppress(OSError), self._changing():
+        with suppress(OSError), self._lock, locked(self._file):
             labels = self.all()
             gone = [labels.pop(recording) for recording in recordings if recording in labels]
             if gone:
                 self._write(labels)
-
-    @contextmanager
-    def _changing(self) -> Generator[None]:
-        """Locks the labels for a change, also against other servers on the same folder, unless the file system has no locks."""
-        with self._lock, self._file.with_name(f".{FILE}.lock").open("wb") as lock:
-            with suppress(OSError):
-                fcntl.flock(lock, fcntl.LOCK_EX)
-            yield
 
     def _to_change(self) -> dict[str, Label]:
         """Returns the labels; a file that cannot be read is kept aside first.

@@ -20,6 +20,7 @@ from contextlib import AsyncExitStack, contextmanager, nullcontext
 from pathlib import Path
 from statistics import median
 from typing import Any, TypeVar
+from unittest.mock import patch
 
 from actr3d.benchmark import Figure, report
 from tests.bench.pages import CLICKS, PANS, Client, attached, await_scene, looking, opened
@@ -126,16 +127,10 @@ def _shows_the_start(page: Any) -> None:
 
 def _first_start(folder: Path, browser: Any) -> Figure:
     """Measures a start after which nothing that is compiled was kept: with folders of its own for bytecode and for compiled functions."""
-    names = ("PYTHONPYCACHEPREFIX", "NUMBA_CACHE_DIR")
-    before = {name: os.environ[name] for name in names if name in os.environ}
     with tempfile.TemporaryDirectory() as made:
-        os.environ.update({name: str(Path(made) / name) for name in names})
-        try:
+        folders = {name: str(Path(made) / name) for name in ("PYTHONPYCACHEPREFIX", "NUMBA_CACHE_DIR")}
+        with patch.dict(os.environ, folders):
             taken = _start(folder, browser)
-        finally:
-            for name in names:
-                del os.environ[name]
-            os.environ.update(before)
     what = "[s] from the command to the model ready to run on the page, when nothing is compiled yet"
     return Figure(name="first start", value=taken, sense="at most", limit=20, what=what)
 

@@ -46,8 +46,7 @@ def misspelt_words(text: str) -> Iterator[tuple[int, str]]:
                 yield from _in_request(call, word, kinds, given)
             elif part.kind == "BodyPort" and has_body and call.func.attr in ("set", "get", "request"):
                 known = _words_of_bodies(call.func.attr)
-                hint = "" if word in {*known, *defined} else did_you_mean(word, known, SURE)
-                if hint:
+                if hint := _hint(word, known, defined):
                     yield line, f"no body has a {'command' if call.func.attr == 'set' else 'sense'} '{word}'{hint}"
 
 
@@ -60,9 +59,13 @@ def _in_request(call: ast.Call, text: str, kinds: Kinds, given: Collection[str])
     names = [(call.args[0].lineno, slot) for slot in slots_in(text)]
     names += [(keyword.lineno, keyword.arg) for keyword in call.keywords if keyword.arg]
     for line, name in names:
-        hint = "" if name in known or name in given else did_you_mean(name, known, SURE)
-        if hint:
+        if hint := _hint(name, known, given):
             yield line, f"no request for the feature '{kind}' takes '{name}'{hint}"
+
+
+def _hint(word: str, known: Collection[str], own: Collection[str]) -> str:
+    """Returns which known word is surely meant by another one; an empty text if none is, or the word is known or the text's own."""
+    return "" if word in known or word in own else did_you_mean(word, known, SURE)
 
 
 def _in_patterns(method: ast.FunctionDef, parts: Mapping[str, Part], kinds: Kinds, own: Collection[str]) -> Iterator[tuple[int, str]]:
