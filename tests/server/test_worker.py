@@ -14,8 +14,13 @@ from typing import Any
 import pytest
 
 from actr3d.recording import Recorded
+from actr3d.vision.detectors.obstacle import obstacle
+from actr3d.vision.detectors.opening import opening
+from actr3d.vision.kernel import detect
+from tests.helpers.camera_scenes import seen
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.jobs import Job, doing
+from workbench.worker.fork_server import compile_detectors
 from workbench.worker.messages import Start
 
 AGENT = """
@@ -323,6 +328,19 @@ def test_a_server_that_leaves_before_workers_can_be_started_leaves_nothing_behin
     done = subprocess.run(command, pass_fds=[theirs.fileno()], capture_output=True, text=True, timeout=60)
     theirs.close()
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_detectors_are_compiled_beforehand_in_the_form_that_the_views_of_a_camera_need() -> None:
+    detect.gaps.cache_clear()
+    detect.surfaces.cache_clear()
+    compile_detectors()
+    compiled: list[Any] = [detect.gaps(), detect.surfaces()]
+    assert [len(function.signatures) for function in compiled] == [1, 1]
+    _, view = seen('<geom type="box" size=".1 .1 .1" pos="2 0 1"/>')
+    assert len(view.extents) >= 2
+    opening(view)
+    obstacle(view)
+    assert [len(function.signatures) for function in compiled] == [1, 1]
 
 
 def test_a_run_that_is_busy_while_it_is_built_does_not_make_the_shown_run_busy(desk: Desk, tmp_path: Path) -> None:

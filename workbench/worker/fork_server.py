@@ -102,14 +102,40 @@ def main(number: int) -> None:
 
 
 def _preload() -> None:
-    """Imports and compiles what models need, so that runs start at once: it runs a small one for a tenth of a second."""
+    """Imports and compiles what models need, so that runs start at once: it runs a small one for a tenth of a second.
+
+    In a new installation, this process compiles the camera, while a copy of it compiles the detectors, which it then loads.
+    """
     from actr3d.actr.kernel.run_limits import RunLimits
     from actr3d.runner.model_factory import Blueprint
     from workbench.worker import program_run, recorded, simulation_run  # pyright: ignore[reportUnusedImport] # noqa: F401
 
+    copy = os.fork()
+    if copy == 0:
+        try:
+            compile_detectors()
+        finally:
+            os._exit(0)
     with RunLimits(seed=0):
         simulation, _ = Blueprint(SMALL, "small.py", Path()).build({})
         simulation.run(0.1)
+    os.waitpid(copy, 0)
+
+
+def compile_detectors() -> None:
+    """Compiles what the detectors need, or loads it: they are given a view without depth, in which they find nothing."""
+    import numpy as np
+
+    from actr3d.camera.kernel.dtypes import EXTENT
+    from actr3d.camera.parameters import CameraParameters
+    from actr3d.camera.view import View
+    from actr3d.vision.detectors.obstacle import obstacle
+    from actr3d.vision.detectors.opening import opening
+
+    # Arrays that cannot be written to are of other types for numba; those of a camera are such.
+    view = View(CameraParameters(), np.frombuffer(bytes(2 * EXTENT.itemsize), EXTENT), np.frombuffer(np.eye(3).tobytes()).reshape(3, 3))
+    opening(view)
+    obstacle(view)
 
 
 def _end_all(control: socket.socket, children: set[int]) -> None:
