@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple, Protocol, cast
 
 from actr3d.clock import seconds
@@ -270,6 +271,7 @@ class Trace:
         return [e for e in self if e.kind == kind and (source is None or e.source == source)]
 
 
+@lru_cache
 def run_of(source: str) -> int:
     """Returns the number of the run that a source belongs to, counted from 1."""
     return int(source.removeprefix("top#").partition(".")[0]) if source.startswith("top#") else 1

@@ -267,3 +267,57 @@ def test_every_answer_is_that_of_its_moment_in_a_whole_run() -> None:
     source = (MODELS / "aperture_passage.py").read_text(encoding="utf-8")
     with shown_of(source, 1, aperture=0.4) as shown:
         check_going_back(shown, 1_300, 6, random_seed=1)
+
+
+SLOW = """from actr3d.actr import *
+import time
+
+class Slow(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("count 0")
+    def count(goal="count ?n"):
+        time.sleep(0.01)
+        goal.set("count %d" % (int(n) + 1))
+
+model = Slow()
+model.run(6.02)
+"""
+"""A program that takes 1.2 s."""
+
+
+def test_a_program_shows_how_far_it_has_come_on_its_way_to_an_earlier_time(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    events = talk.state["events"]
+    talk.say("seek", time=6.0)
+    on_the_way = talk.wait(lambda: talk.state["status"] == "running" and 0 < talk.state["time"] < 5)
+    assert on_the_way["reason"] == "going to 6 s"
+    assert on_the_way["furthest"] == pytest.approx(6.02)
+    there = talk.until("paused", time=6.0)
+    assert there["reason"] == "went to this time"
+    talk.say("run")
+    assert talk.until("ended")["events"] == events
+
+
+def test_a_program_can_be_paused_on_its_way_to_another_time(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    events = talk.state["events"]
+    talk.say("seek", time=6.0)
+    talk.wait(lambda: talk.state["status"] == "running" and 0 < talk.state["time"] < 5)
+    talk.say("pause")
+    paused = talk.until("paused")
+    assert (paused["reason"], 0 < paused["time"] < 6.0) == ("by the user", True)
+    assert talk.say("explain", production="count")
+    talk.say("run")
+    assert talk.until("ended")["events"] == events
+
+
+def test_a_program_on_its_way_to_a_time_goes_to_another_at_once_and_does_the_rest_when_it_is_there(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    talk.say("seek", time=6.0)
+    talk.wait(lambda: talk.state["status"] == "running" and 1 < talk.state["time"] < 5)
+    talk.say("seek", time=0.5)
+    talk.until("paused", time=0.5)
+    talk.say("seek", time=3.0)
+    talk.say("step")
+    talk.until("paused", time=3.01)

@@ -30,6 +30,7 @@ class Pause(PageCommand):
     """Pauses the run at the end of the current tick."""
 
     type: Literal["pause"] = "pause"
+    leaves_way: ClassVar[bool] = True
 
     async def serve(self, session: Session) -> Reply:
         return await session.ask_all(self)
@@ -125,6 +126,7 @@ class Seek(PageCommand):
 
     type: Literal["seek"] = "seek"
     of_shown_run: ClassVar[bool] = True
+    leaves_way: ClassVar[bool] = True
     time: Seconds
 
     def carry_out(self, controller: RunController) -> None:

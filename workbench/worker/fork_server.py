@@ -68,6 +68,7 @@ def main(number: int) -> None:
     gc.disable()  # nothing that is loaded here is garbage
     _preload()
     gc.enable()
+    gc.set_threshold(5000, 10, 10)  # long runs, whose events stay, are up to a fifth faster than with Python's 700
     adopt()
     control = socket.socket(fileno=number)
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -471,7 +471,9 @@ class ProgramRun(ControlledRun):
                 # While a change is undone, the other changes of that moment are repeated before the program pauses.
                 if to < self._rush or (to == self._rush and (not again or self._undoing is not None)):
                     self._clock = to
-                    return
+                    if self._is_on_its_way():
+                        return
+                    continue
                 self._clock = self._rush
                 self._arrive()
             controller.attend()
@@ -511,15 +513,15 @@ class ProgramRun(ControlledRun):
     def _wait_for_tick(self, simulation: Simulation) -> None:
         """Waits until a simulation may continue."""
         controller = self._controller
-        if self._rush is not None and self._clock < self._rush:
-            return
         self._furthest = max(self._furthest, self._clock)
         if self._rush is None:
             controller.after_ticks()
         while True:
             if self._rush is not None:
                 if self._clock < self._rush:
-                    return
+                    if self._is_on_its_way():
+                        return
+                    continue
                 if self._undoing is not None and self._clock == self._rush:
                     self._repeat_in(simulation)  # the changes of that moment that are not undone come before the one that is
                     if self._changes.made < len(self._changes.known):
@@ -655,8 +657,7 @@ class ProgramRun(ControlledRun):
         self.flush()
         self._undoing = KeptBranch(self._controller, self._recording, moment, self._furthest, drop=drop)
         self._commands = changes.known[: known - 1]
-        self._rush = moment
-        self._controller.status = "running"
+        self._set_off(moment)
         self._again = True
         raise _Again
 
@@ -672,11 +673,23 @@ class ProgramRun(ControlledRun):
         if time > self._furthest:
             raise SimulationError(f"the run has only reached {time_text(seconds(self._furthest))}; continue it instead")
         over = self._controller.status in ENDED
-        self._rush = time
-        self._controller.status = "running"
+        self._set_off(time)
         if over or time < self._clock:
             self._again = True
             raise _Again
+
+    def _set_off(self, time: int) -> None:
+        """Begins the way to another time [us]."""
+        self._rush = time
+        self._controller.status, self._controller.reason = "running", f"going to {time_text(seconds(time))}"
+
+    def _is_on_its_way(self) -> bool:
+        """Returns whether the program continues to the time that a user wants, who may have paused it on the way, or want another time."""
+        wanted = self._rush
+        self._controller.on_the_way(leave=self._undoing is None)
+        if self._controller.status != "running":
+            self._rush = None
+        return self._rush == wanted
 
     def flush(self) -> None:
         self._record(**{REACHED: seconds(self._furthest)})

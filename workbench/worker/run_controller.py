@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 import threading
+from collections import deque
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -76,6 +77,8 @@ class RunController:
         self._interrupted = False
         """Whether the run has something to do although it is paused."""
         self._shown = 0.0
+        self._later: deque[Do] = deque()
+        """Commands that have arrived while the run is on its way to another time, and wait until it is there."""
         self._drawn: tuple[str, ...] = ()
         """The kinds of overlays to compute; empty if no browser shows the 3D view."""
 
@@ -134,12 +137,34 @@ class RunController:
                 self._interrupted = False
                 return
             held = wait and self.status != "running"
-            message = self.channel.receive(None if held else 0)
+            message = self._receive(None if held else 0)
             if message is None:
                 return
             self._hear(message)
             if self.status == "running" and not self._interrupted:
                 return
+
+    def _receive(self, timeout: float | None) -> Do | Draw | Leave | None:
+        """Returns the next command; None if none arrives within the timeout [s]. Without a timeout, it waits."""
+        return self._later.popleft() if self._later else self.channel.receive(timeout)
+
+    def on_the_way(self, *, leave: bool) -> None:
+        """Sends at intervals how far the run has come on its way to another time, and carries out commands to leave the way.
+
+        Other commands wait until the run is there.
+
+        Args:
+            leave: Whether users can leave the way.
+        """
+        if perf_counter() - self._shown < HURRIED:
+            return
+        self._seen = len(self.run.trace)  # stop conditions are for what happens after it
+        self.show()
+        while leave and self.status == "running" and (message := self.channel.receive(0)) is not None:
+            if isinstance(message, Do) and not pickle.loads(message.command).leaves_way:
+                self._later.append(message)
+            else:
+                self._hear(message)
 
     def interrupt(self) -> None:
         """Ends the present wait of a paused run, which has something to do at its present moment."""
@@ -149,7 +174,7 @@ class RunController:
         """Waits until a moment of the run [us] is due; returns False if a command arrived in the meantime."""
         while (early := self.pacer.early(self.run.clock, clock)) > 0:
             self.show_if_due()
-            message = self.channel.receive(min(early, SHOWN))
+            message = self._receive(min(early, SHOWN))
             if message is not None:
                 self._hear(message)
                 return False
@@ -273,6 +298,7 @@ class RunController:
         """
         self._reached = max(self._reached, self.run.clock)
         self.run.take_events()  # the trace ends at the other time
+        self._shown = perf_counter()
         self.run.go_to(time)
         self.show()
 
@@ -295,6 +321,7 @@ class RunController:
             Exception: If it cannot be undone.
         """
         self._reached = max(self._reached, self.run.clock)
+        self._shown = perf_counter()
         self.run.undo(drop=drop)
         self.show()
 
