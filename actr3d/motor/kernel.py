@@ -15,8 +15,8 @@ from actr3d.jit import kept
 Row = NDArray[np.float64]
 
 UNIT, GRID, PLACE, LOW, HIGH, MINIMUM, MAXIMUM, LEAST, MOST, STEP = range(10)
-"""What is kept of each felt value, by row: its unit in commands, the step of the grid in that unit, and its multiple of it; the least and the
-greatest value since that multiple last changed, and ever; those in the postures that were stored, and the step that makes a new one."""
+"""What is kept of each felt value, by row: its unit in commands, the step of the grid in that unit, and its multiple of it; the least and
+the greatest value since that multiple last changed, and ever; those in the postures that were stored, and the step that makes a new one."""
 
 
 @cache

@@ -247,7 +247,7 @@ class Body:
         speeds = self.hold.commanded
         if self._alone:
             speeds = np.append(speeds, [joint.control for joint in self._alone])
-        return tuple(itertools.compress(self._driven, speeds[self._rows].tolist()))
+        return tuple([self._driven[number] for number in speeds[self._rows].nonzero()[0].tolist()])
 
     def fastest(self) -> tuple[float, float, float]:
         """Returns the greatest speeds that it can be commanded to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]."""

@@ -148,6 +148,7 @@ class Passage:
         if not geoms.keys() >= {*joints}:
             raise WorldError(f"body '{body}' has no shoulders to measure")
         self._shoulders = [data.geom_xpos[geoms[name]] for name in joints]
+        self._posture = posture()
         self._clearance = Clearance(model, data, self._body.geoms, wall.gap_in(model))
         hinges = {"stance_yaw": 1.0, "torso_yaw": 1.0, "left_shoulder_yaw": 0.5, "right_shoulder_yaw": 0.5}
         turning = [(joint.q, joint.v, hinges[name]) for name, joint in self._body.joints.items() if name in hinges]
@@ -185,22 +186,21 @@ class Passage:
             ago: By how much the joints are ahead of the geometry [s].
             entered: Whether a part of the body has been in the doorway before.
         """
-        before, angle, logged = posture()(self._axis, *self._shoulders, self._qpos, self._qvel, *self._turning, *self._middle, ago)
+        before, angle, logged = self._posture(self._axis, *self._shoulders, self._qpos, self._qvel, *self._turning, *self._middle, ago)
         turned = logged
         for name, share in self._stepping:
             turned -= share * self._body.hold.added_by_gait(name)
-        room = self._room(time) if abs(before) < self._reach else None
+        left, back = self._away
+        room = self._room(time) if abs(before) < self._reach and not left <= time < back else None
         if room is not None and not entered:
             entered = self._clearance.is_inside(room, self._contacts.held())
-        touches = self._contacts.touches()
+        touches = self._contacts.touches() if self._data.ncon else ()
         forces = {(touch.part, touch.other): touch.force for touch in touches} if touches else _NONE
         return _Sample(time, before, angle, logged, turned, room, entered, ago, forces)
 
     def _room(self, time: float) -> tuple[float, float] | None:
-        """Returns the distances to the wall on both sides [m]; None if no part of the body is between its faces, or could be there yet."""
-        left, back = self._away
-        if left <= time < back:
-            return None
+        """Returns the distances to the wall on both sides [m]; None if no part of the body is between its faces: then it notes until when
+        none can be there."""
         held = self._contacts.held()
         distance = self._clearance.distance_to_wall(held)
         if distance <= 0:
