@@ -84,7 +84,8 @@ class BodySchema:
         self._felt = positions
         count = note_felt()(np.array((*positions, *sizes)), self._rows, self._new)
         new: list[str] = []
-        for number in self._new[:count].tolist():
+        numbers: list[int] = self._new[:count].tolist()
+        for number in numbers:
             if number < len(positions):
                 joint = self.limbs.order[number]
                 new.append(joint)

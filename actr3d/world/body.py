@@ -214,7 +214,7 @@ class Body:
         Raises:
             WorldError: If there is no such sensor, or an option is wrong.
         """
-        if isinstance(word, str) and word in SENSORS and word not in self._sensors:  # pyright: ignore[reportUnnecessaryIsInstance]
+        if isinstance(word, str) and word not in self._sensors and word in SENSORS:  # pyright: ignore[reportUnnecessaryIsInstance]
             self._sensors = SENSORS.of(self) | self._sensors
         if self.physics.observed:
             with self._unchanged():

@@ -121,8 +121,10 @@ def checked_function(name: Any, functions: Mapping[str, BodyFunction[B]], whose:
     Raises:
         WorldError: If there is none of this name.
     """
+    if isinstance(name, str) and name in functions:
+        return functions[name]
     first = name.partition(" ")[0] if isinstance(name, str) else ""
-    if first != name and first in functions:
+    if first in functions:
         takes = functions[first].takes
         how = f"Give its values as arguments of Python after the name: ({takes})" if takes else "It takes no values"
         raise WorldError(f"{whose} has no {kind} '{name}'; did you mean '{first}'? {how}")
