@@ -44,7 +44,7 @@ PARTS: dict[str, set[str]] = {
     "world": BASE | {"jit"},
     "camera": BASE | {"jit", "world"},
     "vision": BASE | {"jit"} | BODILY,
-    "motor": BASE | BODILY,
+    "motor": BASE | {"jit"} | BODILY,
     "sgoms": BASE | {"actr"},
     "recording": BASE | BODILY | {"notebook"},
     "simulation": BASE | BODILY | SENSES | {"recording", "output", "notebook"},

@@ -53,17 +53,19 @@ class Eye:
             CameraError: If the pose was not computed yet, or is not finite.
         """
         place, turn = self._pose(mj_data)
-        x, y, z = turn.reshape(3, 3).T
-        axes = np.stack((x, y, -z, place) if self._kind == "camera" else (-y, z, x, place))
-        length = float(x @ x + y @ y + z @ z)
-        if not math.isfinite(length + float(place.sum())):
+        numbers, at = turn.tolist(), place.tolist()  # to calculate with small arrays takes longer
+        x, y, z = numbers[0::3], numbers[1::3], numbers[2::3]
+        length = sum(part * part for part in numbers)
+        if not math.isfinite(length + sum(at)):
             raise CameraError(f"GeometricCamera: the pose of the {self._kind} '{self._name}' is not a number; did the physics diverge?")
         if abs(length - 3.0) > 1e-6:
             raise CameraError(
                 f"GeometricCamera: the pose of the {self._kind} '{self._name}' was not computed; "
                 "call mujoco.mj_forward, or mj_kinematics, mj_comPos and mj_camlight, before looking"
             )
-        return axes
+        if self._kind == "camera":
+            return np.array((x, y, [-part for part in z], at))
+        return np.array(([-part for part in y], z, x, at))
 
     def _pose(self, mj_data: MjData) -> tuple[Any, Any]:
         if self._kind == "camera":

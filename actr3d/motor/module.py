@@ -21,7 +21,7 @@ from actr3d.errors import SimulationError, WorldError
 from actr3d.motor.checks import check_patterns
 from actr3d.motor.limbs import BASE_GROUP, FINEST, BodyPart, DegreeOfFreedom, Limbs
 from actr3d.motor.movement import INFINITE, JointMovement, Movement, Order, Step, Turn, Walk, gait
-from actr3d.motor.schema import BodySchema
+from actr3d.motor.schema import SIZES, BodySchema
 from actr3d.world.actuators.motion import MOST_TURNS
 from actr3d.world.command_registry import checked_name, number
 from actr3d.world.sensors.anatomy import BodyPlan
@@ -36,8 +36,6 @@ FromZero = Annotated[float, Ge(0), Lt(HUGE)]
 Grid = Annotated[float, Ge(FINEST), Lt(HUGE)]
 """The step to which numbers are rounded."""
 
-SIZES = ("width", "depth", "height", "middle")
-"""The felt sizes of the body."""
 _sizes_of: Callable[[Proprioception], tuple[float, ...]] = attrgetter(*SIZES)
 
 _NOTHING = object()
@@ -361,7 +359,7 @@ class Motor(WithParameters, Port):
         """Stores a known posture with its size."""
         movement, positions = self._known.pop(0)
         schema = self._felt()
-        self._keep(schema.known(movement, positions, {name: self._felt_size(schema, getattr(size, name)) for name in SIZES}))
+        self._keep(schema.known(movement, positions, {name: schema.size(self._with_noise(getattr(size, name))) for name in SIZES}))
         self._show_busy()
 
     def _want(self, name: str, site: CallSite | None) -> None:
@@ -613,31 +611,36 @@ class Motor(WithParameters, Port):
     def _update(self, limbs: Limbs, reading: Proprioception, before: Sequence[float]) -> None:
         """Updates the felt positions of the joints, which were at `before`, and the felt size of the body."""
         draw, schema = self.random.gauss, self._schema
-        felt = dict(zip(limbs.order, reading.positions, strict=True))
+        positions: Sequence[float] = reading.positions
+        sizes: Sequence[float] = _sizes_of(reading)
+        self._sizes = sizes
         if self.angle_noise or self.size_noise:
             noise = {"hinge": radians(self.angle_noise), "slide": self.size_noise}
-            for (joint, at), was in zip(felt.items(), before, strict=True):
+            positions = []
+            for joint, at, was in zip(limbs.order, reading.positions, before, strict=True):
+                sd = noise[limbs.joints[joint].kind]
                 if schema is not None and at == was:
-                    felt[joint] = schema.felt[joint]  # what has not moved feels as it did
-                elif sd := noise[limbs.joints[joint].kind]:
-                    felt[joint] = at + draw(0, sd)
+                    positions.append(schema.felt(joint))  # what has not moved feels as it did
+                else:
+                    positions.append(at + draw(0, sd) if sd else at)
+            sizes = [self._with_noise(size) for size in sizes]
         if schema is None:
             schema = self._schema = BodySchema(
                 limbs,
-                felt,
+                positions,
+                sizes,
                 angle_grid=self.angle_grid,
                 size_grid=self.size_grid,
                 step=self.extreme_step,
                 slide=self.extreme_slide,
             )
-            new = tuple(felt)
+            new: Sequence[str] = limbs.order
         else:
-            new = schema.feel(felt)
+            new = schema.feel(positions, sizes)
         for joint in new:
             self._become(limbs.shown_as[joint], schema.at[joint])
-        self._sizes = _sizes_of(reading)
-        for name, size in zip(SIZES, self._sizes, strict=True):
-            self._become(name, self._felt_size(schema, size))
+        for name, size in schema.box.items():
+            self._become(name, size)
         self._further = schema.extremes(new)
 
     def _remember(self, limbs: Limbs, ended: list[tuple[Movement, str]]) -> None:
@@ -673,9 +676,9 @@ class Motor(WithParameters, Port):
         if self._buffer is not None:
             self._buffer.set(posture)
 
-    def _felt_size(self, schema: BodySchema, length: float) -> float:
-        """Returns how long a length feels [m]: with noise, on the grid."""
-        return schema.size(length + (self.random.gauss(0, self.size_noise) if self.size_noise else 0.0))
+    def _with_noise(self, length: float) -> float:
+        """Returns a length with the noise of felt sizes [m]."""
+        return length + self.random.gauss(0, self.size_noise) if self.size_noise else length
 
     # -- attributes and trace
 

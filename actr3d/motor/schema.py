@@ -6,6 +6,9 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
+from actr3d.motor.kernel import GRID, HIGH, LEAST, LOW, MAXIMUM, MINIMUM, MOST, PLACE, STEP, UNIT, note_felt
 from actr3d.motor.limbs import BodyPart, DegreeOfFreedom, Limbs, on_grid
 from actr3d.world.command_registry import checked_name
 
@@ -14,8 +17,12 @@ AWAY, AWAY_SLIDE = 5.0, 0.01
 [degrees], of a slide [m]. Source: chosen; limbs that hold still while others swing yield by about a degree."""
 
 
+SIZES = ("width", "depth", "height", "middle")
+"""The felt sizes of the body."""
+
+
 class BodySchema:
-    """Stores the felt positions of the joints, and makes posture chunks from them.
+    """Stores the felt positions of the joints and the felt sizes of the body, and makes posture chunks from them.
 
     All numbers in chunks are rounded to a grid; otherwise no posture would ever occur twice and merge.
 
@@ -24,7 +31,8 @@ class BodySchema:
 
     Args:
         limbs: The body.
-        positions: By joint, its first felt position [rad] or [m].
+        positions: The first felt positions of the joints, in the order of the body [rad] or [m].
+        sizes: The first felt sizes, in the order of `SIZES` [m].
         angle_grid: Step to which angles are rounded [degrees].
         size_grid: Step to which lengths are rounded [m].
         step: Distance beyond the former extreme that makes a new one [degrees]; None for never.
@@ -34,7 +42,8 @@ class BodySchema:
     def __init__(
         self,
         limbs: Limbs,
-        positions: Mapping[str, float],
+        positions: Sequence[float],
+        sizes: Sequence[float],
         *,
         angle_grid: float,
         size_grid: float,
@@ -43,55 +52,56 @@ class BodySchema:
     ) -> None:
         self.limbs = limbs
         self._size_grid = size_grid
-        self._grids = {joint: angle_grid if plan.kind == "hinge" else size_grid for joint, plan in limbs.joints.items()}
-        steps = {"hinge": math.inf if step is None else step, "slide": math.inf if slide is None else slide}
-        self._steps = {joint: steps[plan.kind] * limbs.unit[joint] for joint, plan in limbs.joints.items()}
+        self._number = {joint: number for number, joint in enumerate(limbs.order)}
         named = {joint for movement in limbs.plan.movements if movement.to is None for joint, _ in movement.joints}
         self._always = [joint for joint in limbs.order if joint in named or not named]
-        self._first = dict(positions)
-        self.felt = positions
-        """By joint, its felt position [rad] or [m]."""
-        self.minimum, self.maximum = dict(positions), dict(positions)
-        """By joint, the minimum and maximum of its felt positions."""
-        self._start = {joint: self.shown(joint, positions[joint]) for joint in limbs.order}
+        angle = angle_grid, math.inf if step is None else step
+        length = size_grid, math.inf if slide is None else slide
+        units = [limbs.unit[joint] for joint in limbs.order]
+        steps = [angle if limbs.joints[joint].kind == "hinge" else length for joint in limbs.order]
+        felt = [*positions, *sizes]
+        self._rows = rows = np.empty((10, len(felt)))
+        """Of each joint and each size, see `actr3d.motor.kernel`."""
+        rows[UNIT] = [*units, *[1.0] * len(SIZES)]
+        rows[GRID] = [*[grid for grid, _ in steps], *[size_grid] * len(SIZES)]
+        rows[STEP] = [*[step * unit for (_, step), unit in zip(steps, units, strict=True)], *[math.inf] * len(SIZES)]
+        rows[[LOW, HIGH, MINIMUM, MAXIMUM, LEAST, MOST]] = felt
+        rows[PLACE] = np.rint(rows[LOW] / rows[UNIT] / rows[GRID])
+        self._new = np.empty(len(felt), dtype=np.intp)
+        self._first = self._felt = positions
+        self._start = {joint: self.shown(joint, at) for joint, at in zip(limbs.order, positions, strict=True)}
         self.at = dict(self._start)
         """By joint, its felt position on the grid."""
-        self._from, self._to = dict(positions), dict(positions)
-        """By joint, the least and the greatest of its felt positions since the one on the grid last changed."""
-        self._least, self._most = dict(positions), dict(positions)
-        """By joint, the least and the greatest of its positions in the postures that were stored."""
+        self.box = {name: self.size(size) for name, size in zip(SIZES, sizes, strict=True)}
+        """By name, the felt sizes on the grid [m]."""
 
-    def feel(self, positions: Mapping[str, float]) -> Sequence[str]:
-        """Updates the felt positions of all joints [rad] or [m], given in the order of the body, and their values on the grid.
-
-        A position between two felt ones with the same grid value has that value too, and is no new extreme.
+    def feel(self, positions: Sequence[float], sizes: Sequence[float]) -> Sequence[str]:
+        """Updates what is felt, in the order of the body and of `SIZES` [rad] or [m], and the values on the grid.
 
         Returns:
-            The joints whose position is outside the range of felt positions with the same grid value.
+            The joints whose value on the grid has changed, or that are at least one step beyond their extremes in all earlier postures.
         """
-        least, most = self._from, self._to
-        known = zip(positions, least.values(), positions.values(), most.values(), strict=True)
-        new = tuple([joint for joint, low, at, high in known if not low <= at <= high])
-        self.felt = positions
-        for joint in new:
-            at = positions[joint]
-            if at < self.minimum[joint]:
-                self.minimum[joint] = at
-            elif at > self.maximum[joint]:
-                self.maximum[joint] = at
-            shown = self.shown(joint, at)
-            if shown != self.at[joint]:
-                least[joint] = most[joint] = at
-                self.at[joint] = shown
-            elif at < least[joint]:
-                least[joint] = at
+        self._felt = positions
+        count = note_felt()(np.array((*positions, *sizes)), self._rows, self._new)
+        new: list[str] = []
+        numbers: list[int] = self._new[:count].tolist()
+        for number in numbers:
+            if number < len(positions):
+                joint = self.limbs.order[number]
+                new.append(joint)
+                self.at[joint] = self.shown(joint, positions[number])
             else:
-                most[joint] = at
+                number -= len(positions)
+                self.box[SIZES[number]] = self.size(sizes[number])
         return new
+
+    def felt(self, joint: str) -> float:
+        """Returns the felt position of a joint [rad] or [m]."""
+        return self._felt[self._number[joint]]
 
     def shown(self, joint: str, position: float) -> float:
         """Returns a joint's position on the grid: degrees, or metres for a slide."""
-        return on_grid(position / self.limbs.unit[joint], self._grids[joint])
+        return on_grid(position / self.limbs.unit[joint], self._rows.item(GRID, self._number[joint]))
 
     def size(self, length: float) -> float:
         """Returns a length on the grid [m]."""
@@ -106,15 +116,17 @@ class BodySchema:
             box: As for `posture`.
         """
         for joint, at in positions.items():
-            self.minimum[joint], self.maximum[joint] = min(self.minimum[joint], at), max(self.maximum[joint], at)
-        felt, on_the_grid = self.felt, self.at
-        self.felt = {**felt, **positions}
+            number = self._number[joint]
+            self._rows[MINIMUM, number] = min(self._rows[MINIMUM, number], at)
+            self._rows[MAXIMUM, number] = max(self._rows[MAXIMUM, number], at)
+        felt, on_the_grid = self._felt, self.at
+        self._felt = [positions.get(joint, at) for joint, at in zip(self.limbs.order, felt, strict=True)]
         self.at = {**on_the_grid, **{joint: self.shown(joint, at) for joint, at in positions.items()}}
         try:
             chunk = self.posture(name, "done", next(iter(positions)), box)
             self.note(positions)
         finally:
-            self.felt, self.at = felt, on_the_grid
+            self._felt, self.at = felt, on_the_grid
         return chunk
 
     def posture(self, name: str, end: str, joint: str | None, box: dict[str, Any]) -> dict[str, Any]:
@@ -129,7 +141,8 @@ class BodySchema:
         at = self.at
         extreme = "none"
         if joint is not None:
-            ends = {"maximum": self.shown(joint, self.maximum[joint]), "minimum": self.shown(joint, self.minimum[joint])}
+            minimum, maximum = self._extremes(joint)
+            ends = {"maximum": self.shown(joint, maximum), "minimum": self.shown(joint, minimum)}
             extreme = next((which for which, end_at in ends.items() if at[joint] == end_at != self._start[joint]), "none")
             self.note((joint,))
         angles = {of: value for of, value in at.items() if of in self._always or self._away(of)}
@@ -138,24 +151,29 @@ class BodySchema:
     def _away(self, joint: str) -> bool:
         limbs = self.limbs
         away = AWAY * limbs.unit[joint] if limbs.joints[joint].kind == "hinge" else AWAY_SLIDE
-        return abs(self.felt[joint] - self._first[joint]) > away
+        return abs(self.felt(joint) - self._first[self._number[joint]]) > away
+
+    def _extremes(self, joint: str) -> tuple[float, float]:
+        """Returns the minimum and maximum of the felt positions of a joint [rad] or [m]."""
+        number = self._number[joint]
+        return self._rows.item(MINIMUM, number), self._rows.item(MAXIMUM, number)
 
     def extremes(self, joints: Iterable[str]) -> tuple[str, ...]:
         """Returns the joints that are at least one step beyond their extremes in all earlier postures."""
         further: list[str] = []
         for joint in joints:
-            at = self.felt[joint]
-            step = self._steps[joint]
-            if at >= self._most[joint] + step or at <= self._least[joint] - step:
+            number = self._number[joint]
+            at, step = self._felt[number], self._rows.item(STEP, number)
+            if at >= self._rows.item(MOST, number) + step or at <= self._rows.item(LEAST, number) - step:
                 further.append(joint)
         return tuple(further)
 
     def note(self, joints: Iterable[str]) -> None:
         """Updates the extremes of some joints with their present positions."""
         for joint in joints:
-            at = self.felt[joint]
-            self._least[joint] = min(self._least[joint], at)
-            self._most[joint] = max(self._most[joint], at)
+            number = self._number[joint]
+            self._rows[LEAST, number] = min(self._rows[LEAST, number], self._felt[number])
+            self._rows[MOST, number] = max(self._rows[MOST, number], self._felt[number])
 
     def degree_of_freedom(self, joint: str) -> DegreeOfFreedom:
         """Returns the present knowledge of a joint.
@@ -165,14 +183,15 @@ class BodySchema:
         """
         limbs = self.limbs
         plan = limbs.joints[checked_name(joint, limbs.joints, limbs.plan.name, "joint")]
+        minimum, maximum = self._extremes(joint)
         return DegreeOfFreedom(
             name=joint,
             axis=plan.axis,
             lower=plan.lower,
             upper=plan.upper,
-            angle=self.felt[joint],
-            minimum=self.minimum[joint],
-            maximum=self.maximum[joint],
+            angle=self.felt(joint),
+            minimum=minimum,
+            maximum=maximum,
             driven=plan.driven,
         )
 

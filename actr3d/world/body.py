@@ -130,7 +130,13 @@ class Body:
             cycle = GaitCycle(*self.anatomy.gait, dofs.joints, (seed, *self.name.encode()))
         self.hold = PostureHold(physics, self.members, dofs, self.base, self.contacts, cycle)
         self._places = np.array([joint.q for joint in self.joints.values()], dtype=np.intp)
-        self._driven = [(joint, self.hold.row(joint.name)) for joint in self.joints.values() if joint.driven]
+        driven = [joint for joint in self.joints.values() if joint.driven]
+        self._driven = tuple(joint.name for joint in driven)
+        self._alone = [joint for joint in driven if self.hold.row(joint.name) is None]
+        """The driven joints that `hold` does not control."""
+        rows = [len(dofs.q) + self._alone.index(joint) if joint in self._alone else self.hold.row(joint.name) for joint in driven]
+        self._rows = np.array(rows, dtype=np.intp)
+        """By driven joint: its place among the rows of `hold` and these."""
         steering = self.anatomy.steering
         self.motion = MotionCommands(physics, self.root, self.base, self.joints, self.hold, steering, self.controls.get("brake"))
         self.touched: tuple[Touch, ...] | None = None
@@ -208,7 +214,7 @@ class Body:
         Raises:
             WorldError: If there is no such sensor, or an option is wrong.
         """
-        if isinstance(word, str) and word in SENSORS and word not in self._sensors:  # pyright: ignore[reportUnnecessaryIsInstance]
+        if isinstance(word, str) and word not in self._sensors and word in SENSORS:  # pyright: ignore[reportUnnecessaryIsInstance]
             self._sensors = SENSORS.of(self) | self._sensors
         if self.physics.observed:
             with self._unchanged():
@@ -238,8 +244,10 @@ class Body:
 
     def moving(self) -> tuple[str, ...]:
         """Returns the joints whose commanded speed is not 0, whether they really move or not."""
-        speeds = self.hold.commanded.tolist()
-        return tuple([joint.name for joint, row in self._driven if (joint.control if row is None else speeds[row])])
+        speeds = self.hold.commanded
+        if self._alone:
+            speeds = np.append(speeds, [joint.control for joint in self._alone])
+        return tuple([self._driven[number] for number in speeds[self._rows].nonzero()[0].tolist()])
 
     def fastest(self) -> tuple[float, float, float]:
         """Returns the greatest speeds that it can be commanded to walk [m/s], to turn [rad/s] and to turn a joint [rad/s]."""

@@ -33,8 +33,6 @@ class BodyFunction(Generic[B]):
         self._function = function
         self.__module__, self.__qualname__ = function.__module__, function.__qualname__
         self._signature = inspect.signature(function)
-        self._optional = all(of.default is not of.empty for of in [*self._signature.parameters.values()][1:])
-        """Whether it can be called without values."""
 
     def __call__(self, body: Any, *values: Any, **named: Any) -> Any:
         """Carries it out.
@@ -42,12 +40,14 @@ class BodyFunction(Generic[B]):
         Raises:
             WorldError: If it does not take these values; with the values that it takes.
         """
-        if values or named or not self._optional:
+        try:
+            return self._function(body, *values, **named)
+        except TypeError:
             try:
                 self._signature.bind(body, *values, **named)
             except TypeError as error:
                 raise WorldError(f"{body.name}: {self.name} takes ({self.takes}): {error}") from error
-        return self._function(body, *values, **named)
+            raise
 
     @property
     def takes(self) -> str:
@@ -121,8 +121,10 @@ def checked_function(name: Any, functions: Mapping[str, BodyFunction[B]], whose:
     Raises:
         WorldError: If there is none of this name.
     """
+    if isinstance(name, str) and name in functions:
+        return functions[name]
     first = name.partition(" ")[0] if isinstance(name, str) else ""
-    if first != name and first in functions:
+    if first in functions:
         takes = functions[first].takes
         how = f"Give its values as arguments of Python after the name: ({takes})" if takes else "It takes no values"
         raise WorldError(f"{whose} has no {kind} '{name}'; did you mean '{first}'? {how}")

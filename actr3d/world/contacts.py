@@ -45,7 +45,7 @@ class BodyContacts:
 
     def held(self) -> list[int]:
         """Returns the geoms of the objects that the body holds."""
-        return [geom for hand in self._hands for geom in hand.geoms]
+        return [geom for hand in self._hands for geom in hand.geoms] if self._physics.grasped else []
 
     def own_geoms(self) -> NDArray[np.bool_]:
         """Returns by geom of the world (ngeom,) whether it is part of the body or held by it."""

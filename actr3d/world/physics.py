@@ -18,9 +18,6 @@ INTEGRATION = mjtState.mjSTATE_INTEGRATION
 _DIVERGED = slice(int(mujoco.mjtWarning.mjWARN_BADQPOS), int(mujoco.mjtWarning.mjWARN_BADQACC) + 1)
 """MuJoCo's warnings of NaN or huge positions, velocities, accelerations: it resets the state then."""
 
-_POSITIONS = (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_makeM)
-"""The first parts of `mj_fwdPosition`."""
-
 
 class Physics:
     """Holds the compiled scene (`mj_model`) and its state (`mj_data`), and updates derived quantities at most once per state.
@@ -44,7 +41,7 @@ class Physics:
         self.state_number = 0
         """Number of the current state, which grows with every change; a reading made at a smaller number is out of date."""
         self._updated = 0
-        """How much of what follows from the state is up to date: 1 positions and inertia, 2 also contacts, 3 all but forces, 4 all."""
+        """How much of what follows from the state is up to date: 1 positions, 2 also contacts, 3 all but forces, 4 all."""
         self._scratch: MjData | None = None
         self._numbers = np.empty(mujoco.mj_stateSize(self.mj_model, INTEGRATION))
         self._warnings: NDArray[np.int32] = self.mj_data.warning.number[_DIVERGED]
@@ -73,17 +70,22 @@ class Physics:
         self.state_number += 1
 
     def refresh_positions(self) -> None:
-        """Updates positions and inertia to the state, once per state: half of the cost of `refresh`.
+        """Updates the positions of all parts to the state, once per state: a small part of the cost of `refresh`.
 
         After a step, MuJoCo's geometry (`xpos`, contacts) is that of the positions before it.
         """
         if self._updated < 1:
-            for update in _POSITIONS:
-                update(self.mj_model, self.mj_data)
+            mujoco.mj_kinematics(self.mj_model, self.mj_data)
             self._updated = 1
 
+    def refresh_inertia(self) -> None:
+        """Updates positions and inertia to the state."""
+        self.refresh_positions()
+        for update in (mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_makeM):
+            update(self.mj_model, self.mj_data)
+
     def refresh_contacts(self) -> None:
-        """Updates positions, inertia and contacts to the state, once per state."""
+        """Updates positions and contacts to the state, once per state."""
         if self._updated < 2:
             self.refresh_positions()
             mujoco.mj_collision(self.mj_model, self.mj_data)

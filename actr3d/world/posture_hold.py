@@ -224,7 +224,7 @@ class PostureHold:
         If other joints move, this can increase the kinetic energy of the body; then all its speeds are reduced, so that the energy stays
         the same.
         """
-        self._physics.refresh_positions()  # the inertia: otherwise it would matter whether somebody has looked at this state
+        self._physics.refresh_inertia()  # otherwise it would matter whether somebody has looked at this state
         model, data = self._physics.mj_model, self._physics.mj_data
         product = np.zeros(model.nv)
         mujoco.mj_mulM(model, data, product, data.qvel)

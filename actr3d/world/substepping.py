@@ -131,7 +131,7 @@ class Substepping:
 
     def _held(self) -> float:
         """Returns an upper bound of the extent of held objects beyond the hands [m]."""
-        geoms = [geom for hand in self._hands for geom in hand.geoms]
+        geoms = [geom for hand in self._hands for geom in hand.geoms] if self._physics.grasped else []
         return 2 * float(self._physics.mj_model.geom_rbound[geoms].max()) if geoms else 0.0
 
     def _near(self, beyond: float) -> bool:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from contextvars import ContextVar, Token
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import TracebackType
 from typing import Any, NoReturn, Protocol, Self
 from weakref import WeakSet
@@ -117,6 +118,11 @@ class RunLimits:
 
     # -- the end
 
+    @cached_property
+    def _until_us(self) -> int:
+        """The end [us], where there is one."""
+        return microseconds(self.until or 0, "until")
+
     @property
     def ended(self) -> bool:
         """Whether the end has come: no run gets any more time."""
@@ -133,7 +139,7 @@ class RunLimits:
             return outer
         if self._ended:
             self._refuse()
-        last = microseconds(self.until, "until")
+        last = self._until_us
         return last if outer is None else min(last, outer)
 
     def refuse(self, wanted_us: int) -> NoReturn:
@@ -153,7 +159,7 @@ class RunLimits:
 
     def cut(self, wanted_us: int) -> None:
         """Stores that a run was cut short that needed to continue to `wanted_us` [us]: a limit before that gives no more time."""
-        if self.until is not None and microseconds(self.until, "until") < wanted_us:
+        if self.until is not None and self._until_us < wanted_us:
             self._ended = True
         if self._outer is not None:
             self._outer.cut(wanted_us)

@@ -93,8 +93,10 @@ _NONE: Forces = {}
 class _Sample(NamedTuple):
     """The beginning of a physics step on the way."""
 
+    end: float
+    """The end of the physics step [s]."""
     time: float
-    """[s]"""
+    """Its beginning [s]."""
     before: float
     """Distance of the axis before the wall [m]."""
     angle: float
@@ -124,7 +126,6 @@ class Passage:
 
     def __init__(self, body: str, aperture: str = "aperture") -> None:
         self._names = body, aperture
-        self._times: list[float] = []
         self._samples: list[_Sample] = []
 
     def begin(self, world: World) -> None:
@@ -137,21 +138,23 @@ class Passage:
         self._world, self._body = world, world.bodies[body]
         data = world.mj_data
         self._data, self._options, self._contacts = data, world.mj_model.opt, self._body.contacts
-        self._axis, self._qpos, self._qvel = data.xpos[self._body.root], data.qpos, data.qvel
+        self._axis, self._qvel = data.xpos[self._body.root], data.qvel
         wall = next((part for part in world.scene.parts if isinstance(part, Aperture) and part.name == aperture), None)
         if wall is None:
             raise WorldError(f"no aperture '{aperture}' in this scene to measure a passage through")
-        self._middle = *wall.position, math.cos(wall.heading), math.sin(wall.heading)
+        middle = *wall.position, math.cos(wall.heading), math.sin(wall.heading)
         model = world.mj_model
         joints = [f"{side}_shoulder_joint" for side in ("left", "right")]
         geoms = {self._body.geom_name(geom): geom for geom in self._body.geoms.tolist()}
         if not geoms.keys() >= {*joints}:
             raise WorldError(f"body '{body}' has no shoulders to measure")
-        self._shoulders = [data.geom_xpos[geoms[name]] for name in joints]
+        shoulders = [data.geom_xpos[geoms[name]] for name in joints]
         self._clearance = Clearance(model, data, self._body.geoms, wall.gap_in(model))
         hinges = {"stance_yaw": 1.0, "torso_yaw": 1.0, "left_shoulder_yaw": 0.5, "right_shoulder_yaw": 0.5}
         turning = [(joint.q, joint.v, hinges[name]) for name, joint in self._body.joints.items() if name in hinges]
-        self._turning = np.array([row[:2] for row in turning], dtype=np.intp).reshape(-1, 2), np.array([row[2] for row in turning])
+        rows = np.array([row[:2] for row in turning], dtype=np.intp).reshape(-1, 2), np.array([row[2] for row in turning])
+        self._read = self._axis, *shoulders, data.qpos, data.qvel, *rows, *middle
+        """What `posture` reads."""
         self._stepping = [(name, share) for name, share in hinges.items() if self._body.hold.gait_moves(name)]
         self._mass = float(model.body_subtreemass[self._body.root])
         x, y, _ = self._axis.tolist()
@@ -162,45 +165,47 @@ class Passage:
 
     def look(self) -> None:
         """Stores a sample of a physics step, once the body has set out; it replaces earlier samples of that time."""
-        end, ago = self._data.time, self._options.timestep
+        end, ago, samples = self._data.time, self._options.timestep, self._samples
         x, y, _ = self._axis.tolist()
-        number = len(self._times)
-        if number and end <= self._times[-1] + TINY:  # the run has gone back
-            number = bisect_right(self._times, end - ago + TINY)
-            after = bisect_right(self._times, end + TINY)
-            del self._times[number:after], self._samples[number:after]
+        number = len(samples)
+        if number and end <= samples[-1].end + TINY:  # the run has gone back
+            number = self._number_until(end - ago)
+            del samples[number : self._number_until(end)]
         if math.dist((x, y), self._start) < SET_OUT:
             return
         if not number and math.hypot(self._qvel[self._slide], self._qvel[self._slide + 1]) < STANDS:
             self._start = x, y  # it was put elsewhere before it set out
         else:
-            self._times.insert(number, end)
-            self._samples.insert(number, self._sample(end - ago, ago, entered=number > 0 and self._samples[number - 1].entered))
+            samples.insert(number, self._sample(end, ago, number > 0 and samples[number - 1].entered))
 
-    def _sample(self, time: float, ago: float, *, entered: bool) -> _Sample:
-        """Returns the sample of a moment.
+    def _number_until(self, time: float) -> int:
+        """Returns the number of samples up to a time [s]."""
+        return bisect_right(self._samples, time + TINY, key=lambda sample: sample.end)
+
+    def _sample(self, end: float, ago: float, entered: bool) -> _Sample:
+        """Returns the sample of a physics step.
 
         Args:
-            time: The time of the geometry [s].
-            ago: By how much the joints are ahead of the geometry [s].
+            end: The time of the joints [s].
+            ago: By how much they are ahead of the geometry [s].
             entered: Whether a part of the body has been in the doorway before.
         """
-        before, angle, logged = posture()(self._axis, *self._shoulders, self._qpos, self._qvel, *self._turning, *self._middle, ago)
+        time = end - ago
+        before, angle, logged = posture()(*self._read, ago)
         turned = logged
         for name, share in self._stepping:
             turned -= share * self._body.hold.added_by_gait(name)
-        room = self._room(time) if abs(before) < self._reach else None
+        left, back = self._away
+        room = self._room(time) if abs(before) < self._reach and not left <= time < back else None
         if room is not None and not entered:
             entered = self._clearance.is_inside(room, self._contacts.held())
-        touches = self._contacts.touches()
+        touches = self._contacts.touches() if self._data.ncon else ()
         forces = {(touch.part, touch.other): touch.force for touch in touches} if touches else _NONE
-        return _Sample(time, before, angle, logged, turned, room, entered, ago, forces)
+        return _Sample(end, time, before, angle, logged, turned, room, entered, ago, forces)
 
     def _room(self, time: float) -> tuple[float, float] | None:
-        """Returns the distances to the wall on both sides [m]; None if no part of the body is between its faces, or could be there yet."""
-        left, back = self._away
-        if left <= time < back:
-            return None
+        """Returns the distances to the wall on both sides [m]; None if no part of the body is between its faces: then it notes until when
+        none can be there."""
         held = self._contacts.held()
         distance = self._clearance.distance_to_wall(held)
         if distance <= 0:
@@ -211,7 +216,7 @@ class Passage:
     def result(self, *, over: bool) -> PassageResult:
         """Returns the result up to now."""
         now = float(self._world.mj_data.time)
-        samples = self._samples[: bisect_right(self._times, now + TINY)]
+        samples = self._samples[: self._number_until(now)]
         at_wall = next((sample for sample in samples if sample.before <= 0), None)
         onset = _onset(samples)
         rooms = [sample.room for sample in samples if sample.room is not None] if samples and samples[-1].entered else []
