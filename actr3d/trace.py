@@ -21,7 +21,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple, Protocol, cast
 
 from actr3d.clock import seconds
-from actr3d.errors import ParameterError, did_you_mean
+from actr3d.errors import ParameterError, RecordingError, did_you_mean
 from actr3d.trace_kinds import LEVELS, rank_of
 from actr3d.values import Naming, plain, to_json
 
@@ -229,8 +229,9 @@ class Trace:
 
     def _fail(self, listener: Listener, event: TraceEvent, error: Exception) -> None:
         """Removes a listener that raised an error, and stops the runs so that the error can be raised."""
-        who = f"{event.kind}' of {event.source} at {event.time:g} s"
-        error.add_note(f"raised by a listener of the trace, {plain(listener)}, for the event '{who}; it hears no more")
+        if not isinstance(error, RecordingError):  # a user has not made the listener, and its message says all
+            who = f"{event.kind}' of {event.source} at {event.time:g} s"
+            error.add_note(f"raised by a listener of the trace, {plain(listener)}, for the event '{who}; it hears no more")
         self._listeners = tuple(pair for pair in self._listeners if pair[0] != listener)
         self._set_flags()
         self._failures.append(error)

@@ -1,6 +1,6 @@
 // The address of the page: which model, or which recorded run and time; in a window of its own, which panel.
 
-import { exactTime } from "./parts/units.js";
+import { exactTime, timeOfText } from "./parts/units.js";
 
 /** Returns a part of the address: "model", "run", "t", "copied", "panel", "page", "session" or "theme"; null for none. */
 export function addressed(name) {
@@ -25,9 +25,8 @@ function takeName() {
 
 /** Returns the moment of the address [s]; null for none. */
 export function addressedTime() {
-  const text = addressed("t");
-  const time = Number(text);
-  return text !== null && text.trim() !== "" && Number.isFinite(time) && time >= 0 ? time : null;
+  const time = timeOfText(addressed("t") ?? "");
+  return Number.isFinite(time) && time >= 0 ? time : null;
 }
 
 /** Puts what is shown into the address: `kind` is "model" or "run". «Back» and «forward» switch between a recorded run and a model. */

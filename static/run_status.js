@@ -3,8 +3,8 @@
 
 import { computed } from "./vendor/preact.js";
 import { toShowOne } from "./bar/models.js";
-import { timeText } from "./parts/units.js";
 import { alive as stated, connected, events, opening, restarted, session, state } from "./store.js";
+import { runTimeText } from "./timeline/seek.js";
 import { embedded } from "./windows.js";
 
 const AGAIN = embedded === null ? "«Run again» starts it from the beginning." : "Run its cell again to start a new run.";
@@ -52,7 +52,7 @@ function endedLine(facts) {
   const { period = 0.01 } = session.value;
   const last = lastEvent();
   const isQuiet = last !== null && facts.furthest - last > 2 * period;
-  return `${withReason(facts)}${isQuiet ? `; the last event was at ${timeText(last)}` : ""}`;
+  return `${withReason(facts)}${isQuiet ? `; the last event was at ${runTimeText(last)}` : ""}`;
 }
 
 /** A run that has ended by itself may be stopped too: then it can no longer answer questions. */

@@ -9,7 +9,7 @@ import pytest
 from actr3d.actr.kernel.model import ensure_converted
 from actr3d.actr.kernel.run_limits import RunLimits
 from actr3d.actr.loading import load_text
-from actr3d.errors import ParameterError
+from actr3d.errors import ParameterError, RecordingError
 from actr3d.trace import Trace, TraceEvent
 from actr3d.trace_kinds import KINDS, LEVELS
 
@@ -217,3 +217,15 @@ def test_an_events_data_are_those_of_its_moment() -> None:
     agent.goal.chunk["0"] = agent.retrieval.chunk[2] = "changed"
     agent.run(0.2)
     assert [event.to_json() for event in trace][: len(before)] == before
+
+
+def test_a_recording_that_can_no_longer_be_written_is_reported_in_its_own_words() -> None:
+    trace = Trace("all", keep=False)
+
+    def full(_: TraceEvent) -> None:
+        raise RecordingError("cannot write the recording")
+
+    trace.listen(full)
+    with pytest.raises(RecordingError) as raised:
+        agent_of(trace).run(1)
+    assert getattr(raised.value, "__notes__", []) == []

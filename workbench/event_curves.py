@@ -21,6 +21,7 @@ from actr3d.trace import TraceEvent, run_of
 from workbench.curves import Curve, Shape
 from workbench.part_names import part_name
 from workbench.program_time import RunTimes
+from workbench.time_text import time_text
 
 LOGGED = frozenset({"add", "chunks", "buffer", "request"})
 """The kinds of the events from which activations follow."""
@@ -109,7 +110,7 @@ class EventCurves:
                         self.logged[source].append(LoggedEvent(number, times.own, event))
                 if time > self._now:
                     if number == 0:
-                        self._since = f" since {seconds(time):.3f} s"
+                        self._since = f" since {time_text(seconds(time), 3)}"
                     self._now = time
                 if taker is not None:
                     taker(self, source, data)

@@ -50,8 +50,18 @@ class Recordings:
         """Returns the files of opened recordings whose runs do not differ from them: these are not listed."""
 
     def new(self, model: str) -> Path:
-        """Returns a new file path for a run of a model."""
-        self._folder.mkdir(parents=True, exist_ok=True)
+        """Returns a new file path for a run of a model.
+
+        Raises:
+            RecordingError: If the folder cannot be written.
+        """
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            problem = None if os.access(self._folder, os.W_OK) else "it is read-only"
+        except OSError as error:
+            problem = error.strerror or str(error)
+        if problem is not None:
+            raise RecordingError(f"the folder '{self._folder}' cannot be written: {problem}")
         stem = re.sub(r"[^A-Za-z0-9_]", "_", model)[:60] or "model"
         return self._folder / f"{stem}-{stamp()}.sqlite"
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from actr3d.errors import Actr3dError
+from actr3d.errors import Actr3dError, RecordingError
 from workbench.client_feed import MAX_NOTICES, Broadcast, Feed, Raw
 from workbench.event_log import EventLog
 from workbench.overlays import ViewSettings
@@ -95,6 +95,8 @@ class Session(Broadcast, Receiver):
         """What lists show of the run on screen."""
         self._beginning = asyncio.Lock()
         """Held while a new run is being given a worker."""
+        self._not_kept: str | None = None
+        """Why runs are not recorded although they should be."""
         self._closed = False
         self._given_up = 0
         """Attempts up to this number are cancelled if they have no worker yet."""
@@ -135,10 +137,13 @@ class Session(Broadcast, Receiver):
             if self._closed:
                 raise Actr3dError("this session is closed, and begins no more runs: open the model again")
             options = options or RunOptions()
-            record = str(self._recordings.new(self.path.stem)) if options.record else None
+            told = self._not_kept is not None
+            record = self._new_recording() if options.record else None
             more: dict[str, Any] = {"record": record, "factor": self.speed, "real_time": self.real_time, "breakpoints": self.breakpoints}
             start = start_of(self.path, options, attempt=self._attempt + 1, **more)
             self._attempt = start.attempt
+            if self._not_kept is not None and not told:
+                self.add_notice(Notice(level="error", text=self._not_kept), start)
             # Without a process ready to fork, this takes until everything that models need is loaded.
             self._launching = True
             self.changed(facts=True)
@@ -156,6 +161,16 @@ class Session(Broadcast, Receiver):
                 record = self._loading.start.record
                 self._leave(self._loading.worker, None if record is None else Path(record))
             self._await(launched)
+
+    def _new_recording(self) -> str | None:
+        """Returns the path of a new recording; None if there can be none."""
+        self._not_kept = None
+        try:
+            return str(self._recordings.new(self.path.stem))
+        except RecordingError as error:
+            advice = "To keep runs, copy the models to a folder that can be written, and start the workbench with it"
+            self._not_kept = f"Runs are not kept: {error}. {advice}."
+            return None
 
     def adopt(self, worker: Worker) -> None:
         """Shows a run that has been built elsewhere: in the process of a notebook."""
@@ -527,6 +542,7 @@ class Session(Broadcast, Receiver):
             "born": self.born,
             "made": None if self.recorded is None or not is_there(self.recorded) else begun(self.recorded),
             "recording": self.recording,
+            "not_kept": self._not_kept,
         }
         if facts is not None:
             facts_of_session |= {"kind": facts.kind, "period": facts.period, "parameters": Raw(facts.parameters)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import sqlite3
 from array import array
@@ -23,6 +24,7 @@ from actr3d.recording.schema import COLUMNS, LEFT, SCHEMA
 from actr3d.trace import TraceEvent
 from actr3d.values import escape_surrogates, plain_to_json
 
+FULL = "the disk is full"
 INTERVAL = 0.25
 """The interval at which new items are written, besides on request [s of real time]; a killed run loses at most the items of one
 interval."""
@@ -196,7 +198,9 @@ class Writer:
                 work(*args)
             except BaseException as error:
                 # Items may be lost, whatever was raised: nothing may be written after a gap.
-                self.failure = RecordingError(f"cannot write the recording '{self.path}': {_reason(error)}{self._kept_text()}")
+                reason = _reason(error)
+                advice = "; make room on the disk, then run it again" if reason == FULL else ""
+                self.failure = RecordingError(f"cannot write the recording '{self.path}': {reason}{self._kept_text()}{advice}")
                 if not isinstance(error, Exception):
                     raise
 
@@ -358,9 +362,9 @@ def _reason(error: BaseException) -> str:
     if isinstance(error, FileExistsError):
         return "it exists already, and a recording does not replace what is there"
     if isinstance(error, OSError):
-        return error.strerror or str(error)
+        return FULL if error.errno == errno.ENOSPC else error.strerror or str(error)
     if isinstance(error, (sqlite3.Error, ValueError)):
-        return "the disk is full" if "full" in str(error) else str(error)
+        return FULL if "full" in str(error) else str(error)
     return f"{type(error).__name__}: {error}".removesuffix(": ")
 
 

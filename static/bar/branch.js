@@ -3,12 +3,11 @@
 import { html, signal, useEffect } from "../vendor/preact.js";
 import { Button } from "../parts/button.js";
 import { confirmed } from "../parts/dialog.js";
-import { timeText } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { call, isLeft, say } from "../server.js";
 import { complain, session, shownRecording } from "../store.js";
 import { openRun } from "../runs/actions.js";
-import { furthest, present } from "../timeline/seek.js";
+import { furthest, present, runTimeText } from "../timeline/seek.js";
 
 /** Returns whether the server has a recording; it may have been deleted or renamed since it was opened. */
 const isThere = (id) => call("GET", `/api/recordings/${id}`).then(() => true, () => false);
@@ -18,7 +17,7 @@ const isThere = (id) => call("GET", `/api/recordings/${id}`).then(() => true, ()
 export async function change(what, at = present.peek()) {
   const recording = shownRecording.peek();
   if (at > furthest.peek() - 1e-7 || (recording !== null && (await isThere(recording)))) return say(what).then(() => true);
-  const [now, there, end] = [present.peek(), at, furthest.peek()].map((time) => timeText(time));
+  const [now, there, end] = [present.peek(), at, furthest.peek()].map((time) => runTimeText(time));
   const why = recording === null ? "It is not recorded" : "Its recording was deleted or renamed";
   const text = `The run is at ${now} and has reached ${end}. ${why}: if it is changed ${now === there ? "here" : `at ${there}`}, what came after ${there} is lost.`;
   if (!(await confirmed("Change the past?", text, "Change it, and lose the rest"))) return false;
@@ -58,12 +57,12 @@ export function Branch() {
   const where = `the recording ${recording}, which is listed in Runs`;
   const open = () => openRun({ id: recording, model, made });
   if (opened) {
-    const title = `From ${timeText(at)} on it differs from ${where}, or goes beyond it; this is recorded as a branch.`;
+    const title = `From ${runTimeText(at)} on it differs from ${where}, or goes beyond it; this is recorded as a branch.`;
     return html`<${Notice} key=${which} which=${which} title=${title}>
-      <button class="link" onClick=${open}>The recording</button> keeps the run up to ${timeText(until)}
+      <button class="link" onClick=${open}>The recording</button> keeps the run up to ${runTimeText(until)}
     <//>`;
   }
-  return html`<${Notice} key=${which} which=${which} title="Changed at ${timeText(at)}; the original continuation is kept as ${where}">
-    The run up to ${timeText(until)} is kept as <button class="link" onClick=${open}>a branch</button>
+  return html`<${Notice} key=${which} which=${which} title="Changed at ${runTimeText(at)}; the original continuation is kept as ${where}">
+    The run up to ${runTimeText(until)} is kept as <button class="link" onClick=${open}>a branch</button>
   <//>`;
 }

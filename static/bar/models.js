@@ -3,12 +3,12 @@
 import { computed, effect, html, signal, useLayoutEffect } from "../vendor/preact.js";
 import { addressed, addressedTime, goToAddress, leaveMoment } from "../address.js";
 import { commandsOf } from "../commands.js";
-import { exactTime, timeText } from "../parts/units.js";
+import { exactTime, TIMES, timeText } from "../parts/units.js";
 import { AGAIN, call, connect, say, sessionOf, showModel, showRecording, sinceNow } from "../server.js";
 import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
-import { present, travel } from "../timeline/seek.js";
+import { furthest, isBeyond, present, runTimeText, travel } from "../timeline/seek.js";
 import { followWindows, passOn } from "../windows.js";
 
 /** The model files of the folder: {path, title, kind}. */
@@ -106,8 +106,9 @@ async function chooseMoment(run, time) {
       end();
       if (!wanted()) return;
       if (exactTime(present.peek()) === exactTime(time)) return;
+      if (isBeyond(time)) return complain(`The link leads to ${timeText(time)}; this run has only reached ${runTimeText(furthest.peek())}.`);
       const why = running.peek() ? "It goes on now." : isShared.peek() ? "Another page shows it, too." : null;
-      if (why) complain(`The link leads to ${timeText(time)} of this run. ${why}`, "info", { text: "Go there", work: () => travel(time) });
+      if (why) complain(`The link leads to ${runTimeText(time)} of this run. ${why}`, "info", { text: "Go there", work: () => travel(time) });
       else travel(time);
     });
   });
@@ -121,7 +122,7 @@ async function chooseAddressed(id) {
   const text = addressed("t");
   const isShown = await chooseRecording(id);
   if (text !== null && isShown) {
-    complain(`The link's time must be a number of seconds >= 0, such as t=1.5 (got t=${text}).`);
+    complain(`The link's time must be a time, such as ${TIMES} (got ${text}).`);
     leaveMoment();
   }
   return isShown;

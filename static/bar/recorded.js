@@ -4,7 +4,7 @@ import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { timeText } from "../parts/units.js";
 import { runs } from "../runs/list.js";
-import { whenInFull } from "../runs/wording.js";
+import { branchText, ownName, whenInFull } from "../runs/wording.js";
 import { session, state } from "../store.js";
 import { before, choose, models, otherSessions, showSession } from "./models.js";
 
@@ -43,7 +43,8 @@ export function RecordingBanner() {
   const { id, recorded = null, recording, made, model } = session.value ?? {};
   if (recorded === null) return null;
   const branched = recording !== null;
-  const name = runs.value?.find((run) => run.id === recorded)?.label?.name;
+  const run = runs.value?.find(({ id }) => id === recorded);
+  const name = run && (ownName(run) || branchText(run));
   const when = made === null ? "deleted or renamed since it was opened" : `made ${whenInFull(made)}`;
   return html`<div class="recording-banner" role="status">
     <b>Recording</b>

@@ -21,7 +21,7 @@ function pagesText(watching, control) {
 }
 
 export function StatusLine() {
-  const { seed, watching = [], controlled_by: control, recording } = session.value ?? {};
+  const { seed, watching = [], controlled_by: control, recording, not_kept: notKept = null } = session.value ?? {};
   const { is, line } = runStatus.value;
   return html`<footer class="status-line">
     <span id="status" role="status" class=${BAD.includes(is) ? "bad" : is} title=${line}>${line}</span>
@@ -31,6 +31,7 @@ export function StatusLine() {
       ${watching.length > 1 ? html`<span id="browsers" title="All can control the run; the last to do something is in control">${pagesText(watching, control)}</span>` : null}
       <span>${counted(state.value?.events ?? 0, "event")}</span>
       ${seed !== null && seed !== undefined ? html`<span title="The seed of the run">seed ${String(seed)}</span>` : null}
+      ${notKept ? html`<span title=${notKept}>not kept</span>` : null}
       ${recording ? html`<span title="Kept as this recording">rec ${recording}</span>` : null}
     </span>
     ${embedded === null ? html`<${Share} />` : null}

@@ -42,7 +42,7 @@ function Cells({ event, none }) {
   const [time, source] = event;
   const [what, text] = eventText(event);
   return html`
-    <td class="number">${eventTimeText(time)}</td><td class="mono" title=${source}>${source}</td>
+    <td class="number">${eventTimeText(time, time / 1e6)}</td><td class="mono" title=${source}>${source}</td>
     <td class="event" title="${what} ${text}"><b>${what}</b> ${text}</td>
   `;
 }

@@ -66,7 +66,7 @@ export function SideBySide({ runs, changed, units }) {
     line("began", (run) => whenText(run.made)),
     line("branch", (run) => originText(run, recordings.value)),
     line("end", endedText),
-    line("simulated time", (run) => `${run.time.toFixed(2)} s`),
+    line("simulated time", (run) => timeText(run.time)),
     line("events", (run) => run.events.toLocaleString("en")),
     ["size", ...runs.map(({ size }) => sizeText(size)), !isOpen && sizeText(one.size) !== sizeText(other.size)],
   ];

@@ -1,7 +1,9 @@
 // Events as text: groups of kinds, and each event as a line.
 
 import { chunkText, requestText, valueText } from "../parts/chunk.js";
+import { plainTime } from "../parts/units.js";
 import { commandText, isOfUser } from "../timeline/commands.js";
+import { furthest } from "../timeline/seek.js";
 import { GROUPS as REGISTERED, TEXTS } from "../trace_kinds.js";
 
 
@@ -79,7 +81,7 @@ export function pairs(data) {
     .join("  ");
 }
 
-/** Returns the time of an event [us] as text in seconds, without the unit. */
-export function eventTimeText(time) {
-  return (time / 1e6).toFixed(3);
+/** Returns the time of an event [us] as text without a unit, as lists of events show it; `longest` as in `timeText`. */
+export function eventTimeText(time, longest = furthest.value) {
+  return plainTime(time / 1e6, 3, longest);
 }

@@ -2,7 +2,7 @@
 
 import { html } from "../vendor/preact.js";
 import { requestText, valueText } from "../parts/chunk.js";
-import { timeText } from "../parts/units.js";
+import { runTimeText } from "../timeline/seek.js";
 import { fixed, Part, partName } from "./part_names.js";
 
 const MAX_CANDIDATES = 200; // the maximum number of candidates listed
@@ -53,7 +53,7 @@ function Retrieval({ reason }) {
     <h3 class=${outcome === "failed" ? "failed" : ""}><span class="mono">${memory}</span>: ${outcomeText(reason)}</h3>
     <p>
       <span class="quiet">Asked for</span> <span class="mono">${requestText(asked)}</span>${requestText(asked) === requestText(request) ? null : html` <span class="quiet mono">(${requestText(request)})</span>`}
-      <span class="quiet"> at ${timeText(time, 3)}, ${threshold === null ? "no threshold" : `threshold ${valueText(threshold)}`}${fresh ? ", only what was not retrieved recently" : ""}</span>
+      <span class="quiet"> at ${runTimeText(time, 3)}, ${threshold === null ? "no threshold" : `threshold ${valueText(threshold)}`}${fresh ? ", only what was not retrieved recently" : ""}</span>
     </p>
     ${candidates.length ? html`<${Candidates} reason=${reason} />` : null}
     <${Lately} title="Matched, but left out as retrieved recently" chunks=${excluded} open=${excluded.length < 4} />
@@ -66,7 +66,7 @@ export function Search({ reason }) {
   const { module, asked, time, bottom_up: up, outcome, why, features } = reason;
   return html`<section aria-label="Search of ${module}">
     <h3 class=${outcome === "failed" ? "failed" : ""}>
-      <span class="mono">${module}</span>: ${up ? "noticing" : "search"} at ${timeText(time, 3)} for <span class="mono">${asked}</span>: ${outcome}${why ? `, ${why}` : ""}
+      <span class="mono">${module}</span>: ${up ? "noticing" : "search"} at ${runTimeText(time, 3)} for <span class="mono">${asked}</span>: ${outcome}${why ? `, ${why}` : ""}
     </h3>
     ${features.length === 0
       ? html`<p class="quiet">Nothing of that kind was in view.</p>`

@@ -8,14 +8,16 @@ import { Rows } from "./rows.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
 import { askWhy } from "./explanation.js";
 import { Mixed, contactEvents } from "./contacts.js";
-import { seek, travel } from "../timeline/seek.js";
+import { timeUnit } from "../parts/units.js";
+import { furthest, runTimeText, seek, travel } from "../timeline/seek.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { fetching } from "../earlier_events.js";
 import { events, session, state } from "../store.js";
 import { remembered } from "../local_storage.js";
 
 const groups = remembered("trace groups", GROUPS.filter(({ first }) => first).map(({ id }) => id));
-const TIME = "88px"; // wide enough for times of some hours
+/** The width of the column of times: enough for a day. */
+const timeWidth = () => (timeUnit(furthest.value) ? "88px" : "112px");
 const wantedWords = remembered("trace words", "");
 
 function testOf(isShown, words, agent) {
@@ -70,7 +72,7 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
     class="${kind} ${ahead ? "ahead" : ""} ${chosen ? "chosen" : ""}"
     id="event-${number}"
     aria-selected=${chosen}
-    title="${eventTimeText(time)} s  ${source}  ${what}  ${more}${ahead ? "\nafter the present moment" : ""}\nClick: go to this moment"
+    title="${runTimeText(time / 1e6, 3)}  ${source}  ${what}  ${more}${ahead ? "\nafter the present moment" : ""}\nClick: go to this moment"
     onClick=${go}
   >
     <td class="number time">${eventTimeText(time)}</td>
@@ -78,7 +80,7 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
     <td class="what"><b>${what}</b><span>${more}</span></td>
     <td class="ask">
       ${!isTouch && (kind === "fire" || chosen)
-        ? html`<button class="bare" tabindex="-1" title="Why? Explains this moment, and leaves the run where it is (W)" aria-label="Why at ${eventTimeText(time)} s" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
+        ? html`<button class="bare" tabindex="-1" title="Why? Explains this moment, and leaves the run where it is (W)" aria-label="Why at ${runTimeText(time / 1e6, 3)}" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
         : null}
     </td>
   </tr>`;
@@ -130,8 +132,8 @@ export function FiringTrace() {
       label="Firing trace"
       count=${mixed.count}
       row=${row}
-      columns=${several ? [TIME, "22%", "auto", "42px"] : [TIME, "auto", "42px"]}
-      head=${html`<th class="number">Time [s]</th>${several ? html`<th>Agent</th>` : null}<th>Event</th><th><span class="unseen">Why</span></th>`}
+      columns=${several ? [timeWidth(), "22%", "auto", "42px"] : [timeWidth(), "auto", "42px"]}
+      head=${html`<th class="number">Time${timeUnit(furthest.value)}</th>${several ? html`<th>Agent</th>` : null}<th>Event</th><th><span class="unseen">Why</span></th>`}
       aim=${present > 0 ? present - 1 : null}
       chosen=${chosenRow}
       onChoose=${(n) => setChosen(mixed.numberAt(n))}

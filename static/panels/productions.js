@@ -12,28 +12,27 @@ import { FiringTrace } from "../inspector/trace.js";
 import { Placeholder } from "../inspector/placeholder.js";
 import { Why } from "../inspector/why.js";
 import { useAnswer } from "../parts/answer.js";
-import { valueText } from "../parts/chunk.js";
 import { Splitter } from "../parts/splitter.js";
-import { exactTime, timeText } from "../parts/units.js";
+import { plainTime, timeOfText, timeUnit } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { running, state } from "../store.js";
-import { travel } from "../timeline/seek.js";
+import { furthest, runTimeText, travel } from "../timeline/seek.js";
 
 const below = remembered("reasons height", Math.round(Math.min(270, 0.27 * innerHeight)));
 
 function Moment({ result }) {
   const [text, setText] = useState("");
-  useLayoutEffect(() => setText(at.value === null ? "" : String(exactTime(at.value))), [at.value]);
-  const wrong = text.trim() !== "" && !(Number(text) >= 0);
+  useLayoutEffect(() => setText(at.value === null ? "" : plainTime(at.value, null, furthest.peek())), [at.value]);
+  const wrong = text.trim() !== "" && !(timeOfText(text) >= 0);
 
   function take(event) {
     if (event.type === "keydown" && event.key !== "Enter") return;
-    if (!wrong) at.value = text.trim() === "" ? null : Number(text);
+    if (!wrong) at.value = text.trim() === "" ? null : timeOfText(text);
   }
 
   const time = result.answer?.[0]?.time;
   return html`<label class="moment" title="The moment that is explained; nothing for the present one">
-      at <input aria-label="Explain the time [s]" aria-invalid=${wrong} inputmode="decimal" placeholder=${(time ?? state.value?.time ?? 0).toFixed(3)} value=${text} onInput=${(event) => setText(event.currentTarget.value)} onKeyDown=${take} onBlur=${take} /> s
+      at <input aria-label="Explain the time${timeUnit(furthest.value)}" aria-invalid=${wrong} inputmode="decimal" placeholder=${plainTime(time ?? state.value?.time ?? 0, 3, furthest.value)} value=${text} onInput=${(event) => setText(event.currentTarget.value)} onKeyDown=${take} onBlur=${take} />${timeUnit(furthest.value) ? " s" : ""}
     </label>
     <button aria-pressed=${at.value === null} title="Explain the present moment" onClick=${() => (at.value = null)}>Now</button>`;
 }
@@ -42,7 +41,7 @@ function Moment({ result }) {
 function Elsewhere() {
   const known = at.value <= (state.value?.furthest ?? 0) && at.value > (state.value?.time ?? 0);
   return html`<p class="elsewhere">
-    ${known ? html`<button onClick=${() => travel(at.value)}>Go to ${valueText(at.value)} s</button>` : null}
+    ${known ? html`<button onClick=${() => travel(at.value)}>Go to ${runTimeText(at.value, null)}</button>` : null}
     <button onClick=${() => (at.value = null)}>Explain the present moment</button>
   </p>`;
 }
@@ -81,7 +80,7 @@ function Reasons() {
         )}
       </div>
       <span class="stretch"></span>
-      ${old && shown !== "conflict" ? html`<span class="quiet" role="status">as it was at ${timeText(time, 3)}</span>` : null}
+      ${old && shown !== "conflict" ? html`<span class="quiet" role="status">as it was at ${runTimeText(time, 3)}</span>` : null}
       <${Moment} result=${result} />
     </div>
     <div class="reasons-body ${shown}" role="tabpanel" id="reasons-panel" aria-labelledby="reasons-${shown}">

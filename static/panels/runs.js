@@ -8,6 +8,7 @@ import { Chosen } from "../runs/chosen.js";
 import { goToTab } from "../open_tab.js";
 import { addFiles, chooseFiles, deleteRuns, openRun } from "../runs/actions.js";
 import { followRuns, listRuns, loading, problem, runs as list, total, warning } from "../runs/list.js";
+import { session } from "../store.js";
 import { chosen, sorted, Table } from "../runs/table.js";
 import { textOf } from "../runs/wording.js";
 
@@ -79,7 +80,7 @@ function Runs() {
 
 function body(all, ordered, search) {
   if (list.value === null) return html`<p class="empty runs-list" role="status">${problem.value ? "" : "Reading the recordings …"}</p>`;
-  if (all.length === 0) return html`<p class="empty runs-list">No recordings yet. Press Run: each run is recorded, and listed here.</p>`;
+  if (all.length === 0) return html`<p class="empty runs-list">${session.value?.not_kept ?? "No recordings yet. Press Run: each run is recorded, and listed here."}</p>`;
   if (ordered.length > 0) return html`<${Table} list=${ordered} open=${openRun} />`;
   return html`<p class="empty runs-list">No recording has all these words. <button onClick=${() => (search.value = "")}>Show all</button></p>`;
 }

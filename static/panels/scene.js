@@ -12,12 +12,12 @@ import { Icon } from "../parts/icon.js";
 import { ManualLink } from "../parts/manual.js";
 import { pictureName, saveFile, SHARPNESS } from "../parts/picture.js";
 import { optimistic } from "../parts/optimistic_value.js";
-import { timeText } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { rememberedByModel } from "../model_storage.js";
 import { frameBudget } from "../frame_budget.js";
 import { VIEWS } from "../scene/stage.js";
 import { runStatus } from "../run_status.js";
+import { runTimeText } from "../timeline/seek.js";
 import { openWindow } from "../windows.js";
 import { alive, complain, hasScene, running, session, state } from "../store.js";
 
@@ -146,7 +146,7 @@ function Lag({ frame }) {
       shown.value = null;
     };
   }, [running.value]);
-  return shown.value === null ? null : html`<p class="scene-lag number" title="The run goes faster than this machine can draw it">3D view of ${timeText(shown.value, 1)}</p>`;
+  return shown.value === null ? null : html`<p class="scene-lag number" title="The run goes faster than this machine can draw it">3D view of ${runTimeText(shown.value, 1)}</p>`;
 }
 
 /** Returns why there is no picture: [text, whether there will be one]; null if there is one. `drawn` is reported by the frame. */

@@ -244,13 +244,13 @@ export function drawCurves(surface, box, { series, times, span, range, until }) 
 
 /** Draws an axis of time with its lines; returns the step between them [s]. `box` is the position of the drawing it belongs to; its labels
  * stay within the range `room`, and those that would touch the range `taken` are left out [px]. */
-export function drawTimes(surface, box, span, { y, height = 18, lines = true, room = { from: box.x, to: box.x + box.width }, taken = null } = {}) {
+export function drawTimes(surface, box, span, { y, height = 18, lines = true, room = { from: box.x, to: box.x + box.width }, taken = null, longest = span.to } = {}) {
   const step = timeStep(span, Math.max(2, Math.floor(box.width / 80)));
   const scale = box.width / (span.to - span.from);
   for (const time of ticks(span.from, span.to, step)) {
     const x = Math.round(box.x + (time - span.from) * scale) + 0.5;
     if (lines) surface.line([x, box.y, x, box.y + box.height], "line");
-    const text = timeText(time, digitsOf(step), span.to);
+    const text = timeText(time, digitsOf(step), longest);
     const half = widthOf(text, { size: 10 }) / 2;
     const at = Math.min(Math.max(x, room.from + EDGE + half), room.to - EDGE - half);
     if (taken && at + half > taken.from - BETWEEN && at - half < taken.to + BETWEEN) continue;

@@ -100,7 +100,7 @@ export function Plot({ title, series, times = [], span = null, height = 120, cur
           </span>`;
         })}
       </span>
-      <span class="plot-time number quiet">${at === null ? "" : timeText(at)}</span>
+      <span class="plot-time number quiet">${at === null ? "" : timeText(at, 2, shown.to)}</span>
       <button class="bare" title="Save the plot as a PNG" onClick=${() => save("png")}><${Icon} name="download" />PNG</button>
       <button class="bare" title="Save the plot as an SVG" onClick=${() => save("svg")}><${Icon} name="download" />SVG</button>
       <button class="bare" title="Save the values as CSV" onClick=${() => save("csv")}><${Icon} name="download" />CSV</button>

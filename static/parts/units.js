@@ -22,24 +22,33 @@ export function unitOf(name) {
 
 const HOUR = 3600; // [s]
 
-/** Returns a time [s] as people read it: seconds with their unit; from an hour on, hours, minutes and seconds: `1:15:12.30`. Tables and
- * files have seconds.
+/** Returns a time [s] as people read it: seconds with their unit; from an hour on, hours, minutes and seconds: `1:15:12.30`. Files have
+ * seconds.
  *
- * @param digits The number of decimals.
+ * @param digits The number of decimals; null for those that are needed.
  * @param longest The longest of several times that are to look alike [s]. */
 export function timeText(time, digits = 2, longest = time) {
-  if (longest < HOUR) return `${time.toFixed(digits)} s`;
-  const whole = Number(time.toFixed(digits));
-  const [hours, minutes] = [Math.floor(whole / HOUR), Math.floor((whole % HOUR) / 60)];
-  const two = (text) => (text.split(".")[0].length < 2 ? `0${text}` : text);
-  return `${hours}:${two(String(minutes))}:${two((whole - HOUR * hours - 60 * minutes).toFixed(digits))}`;
+  return `${plainTime(time, digits, longest)}${longest < HOUR ? " s" : ""}`;
 }
 
-/** Returns the time [s] of a text as `timeText` writes it: a number of seconds, or hours, minutes and seconds, of which the hours may be
- * left out; NaN for any other text. */
+/** Returns the same without the unit, as fields and columns show it; `timeUnit` is theirs. */
+export function plainTime(time, digits = 2, longest = time) {
+  const write = (seconds) => (digits === null ? String(exactTime(seconds)) : seconds.toFixed(digits));
+  if (longest < HOUR) return write(time);
+  const whole = Number(write(time));
+  const [hours, minutes] = [Math.floor(whole / HOUR), Math.floor((whole % HOUR) / 60)];
+  const two = (text) => (text.split(".")[0].length < 2 ? `0${text}` : text);
+  return `${hours}:${two(String(minutes))}:${two(write(whole - HOUR * hours - 60 * minutes))}`;
+}
+
+/** Returns the unit in the heading of times, of which this is the longest [s]: ` [s]`; from an hour on, an empty text. */
+export const timeUnit = (longest) => (longest < HOUR ? " [s]" : "");
+
+/** Returns the time [s] of a text as `timeText` writes it: a number of seconds, or hours, minutes and seconds; without hours, there may be
+ * any number of minutes. NaN for any other text. */
 export function timeOfText(text) {
   const plain = text.trim().replace(/ ?s$/, "");
-  const [, hours = 0, minutes, rest] = plain.match(/^(?:(\d+):(?=\d\d:))?([0-5]?\d):([0-5]\d(?:\.\d*)?)$/) ?? [];
+  const [, hours = 0, minutes, rest] = plain.match(/^(?:(\d+):(?=[0-5]\d:))?(\d+):([0-5]\d(?:\.\d*)?)$/) ?? [];
   if (minutes !== undefined) return HOUR * Number(hours) + 60 * Number(minutes) + Number(rest);
   return plain === "" ? NaN : Number(plain);
 }

@@ -91,12 +91,17 @@ export function forgetRun(id) {
   total.value -= 1;
 }
 
-/** Keeps the list up to date while it is shown: the server reports whenever a recording of any session began, ended or was changed. Returns the
- * function that stops this. */
+/** Keeps the list up to date while it is shown: the server reports whenever a recording of any session began, ended or was changed; what
+ * others have changed in the folder is seen when the user returns to the page. Returns the function that stops this. */
 export function followRuns() {
   const key = computed(() => `${session.value?.id} ${session.value?.recording_changes} ${way.value}`);
-  return effect(() => {
+  const end = effect(() => {
     key.value;
     untracked(() => void listRuns());
   });
+  addEventListener("focus", listRuns);
+  return () => {
+    removeEventListener("focus", listRuns);
+    end();
+  };
 }

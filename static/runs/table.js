@@ -1,6 +1,7 @@
 // The table of recordings: draws only the visible rows, so that thousands cost no more than a few.
 
 import { html, signal, useLayoutEffect, useRef, useSignal } from "../vendor/preact.js";
+import { timeText } from "../parts/units.js";
 import { remembered } from "../local_storage.js";
 import { alive, session, shownRecording, state } from "../store.js";
 import { agoText, branchText, differentText, endedText, firstMeasure, nameOf, originText, outcomeText, ownName, resultText, sizeText, whenInFull, whenText } from "./wording.js";
@@ -55,7 +56,7 @@ function Head({ column }) {
 /** The length of a run; for the current run, it grows. */
 function Length({ run }) {
   const goesOn = alive.value && run.session === session.value.id && run.id === session.value.recording;
-  return `${(goesOn ? state.value.furthest : run.time).toFixed(2)} s`;
+  return timeText(goesOn ? state.value.furthest : run.time);
 }
 
 function Row({ run, list, number, now, toggle, open }) {

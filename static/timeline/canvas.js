@@ -3,7 +3,6 @@
 import { effect, html, signal, useEffect, useRef, useSignal } from "../vendor/preact.js";
 import { fetching } from "../earlier_events.js";
 import { CanvasSurface, scaled, widthOf } from "../parts/surface.js";
-import { timeText } from "../parts/units.js";
 import { events, running, session, state, way } from "../store.js";
 import { dark } from "../theme.js";
 import { reach } from "./branches.js";
@@ -13,7 +12,7 @@ import { begin, partAt, press, turn } from "./pointer.js";
 import { Painter } from "./painter.js";
 import { lanes, lanesVersion } from "./record.js";
 import { AXIS, column, filter, heights, hidden, layout, scroll } from "./rows.js";
-import { furthest, present } from "./seek.js";
+import { furthest, present, runTimeText } from "./seek.js";
 import { found, Tip } from "./tip.js";
 import { settle, span } from "./view.js";
 
@@ -50,7 +49,7 @@ function labelOfNow() {
   const view = { column: column.peek(), width: size.peek().width, span: span.peek() };
   const x = placeOf(present.peek(), view);
   if (x < view.column - 1 || x > view.width + 1) return null;
-  const width = Math.ceil(widthOf(timeText(present.peek()), { size: 10, bold: true })) + 2 * AROUND;
+  const width = Math.ceil(widthOf(runTimeText(present.peek()), { size: 10, bold: true })) + 2 * AROUND;
   const from = Math.round(Math.min(Math.max(x - width / 2, view.column + 1), view.width - width - 1));
   return { from, to: from + width, width };
 }
@@ -77,7 +76,7 @@ function place(stage) {
   const there = labelOfNow();
   head.hidden = label.hidden = !there;
   if (there) Object.assign(label.style, { transform: `translateX(${there.from}px)`, width: `${there.width}px` });
-  label.textContent = timeText(present.value);
+  label.textContent = runTimeText(present.value);
   paintPresent(stage.querySelector("canvas"));
   head.style.transform = `translateX(${now}px)`;
   veil.style.left = `${inside(now)}px`;
@@ -155,7 +154,7 @@ export function Stage() {
         aria-valuemin="0"
         aria-valuemax=${furthest.value}
         aria-valuenow=${now}
-        aria-valuetext="${timeText(now)} of ${timeText(furthest.value)}"
+        aria-valuetext="${runTimeText(now)} of ${runTimeText(furthest.value)}"
         onPointerDown=${begin}
         onPointerMove=${hover}
         onPointerLeave=${() => (at.value = null)}

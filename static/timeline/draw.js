@@ -93,7 +93,7 @@ function drawAxis(surface, scene) {
   const { width, height, column, now } = scene;
   const box = { x: column, y: AXIS, width: width - column, height: height - AXIS };
   surface.fill(0, 0, width, AXIS, "raised");
-  drawTimes(surface, box, wholeSpan(scene), { y: 0, height: AXIS, lines: false, taken: now });
+  drawTimes(surface, box, wholeSpan(scene), { y: 0, height: AXIS, lines: false, taken: now, longest: scene.end });
   surface.line([column - 0.5, 0, column - 0.5, AXIS], "line");
   surface.line([0, AXIS - 0.5, width, AXIS - 0.5], "line");
 }

@@ -4,10 +4,10 @@ import { html, signal } from "../vendor/preact.js";
 import { command } from "../commands.js";
 import { dialog } from "../parts/dialog.js";
 import { Problem } from "../parts/problem.js";
-import { TIMES, timeOfText, timeText } from "../parts/units.js";
+import { plainTime, TIMES, timeOfText } from "../parts/units.js";
 import { runStatus } from "../run_status.js";
 import { alive } from "../store.js";
-import { furthest, present, seek } from "./seek.js";
+import { furthest, isBeyond, present, runTimeText, seek } from "./seek.js";
 
 const text = signal("");
 /** Why the run cannot go there; null if it can. */
@@ -17,20 +17,19 @@ const problem = signal(null);
 function wrong() {
   const time = timeOfText(text.value);
   if (!(time >= 0)) return `Time: must be a time, such as ${TIMES} (got '${text.value}')`;
-  const end = furthest.peek();
-  return time > end + 0.005 ? `Time: the run has only reached ${timeText(end)}; «Run until …» goes on to a later time (got ${text.value})` : null;
+  return isBeyond(time) ? `Time: the run has only reached ${runTimeText(furthest.peek())}; «Run until …» goes on to a later time (got ${text.value})` : null;
 }
 
 function Body() {
   return html`<label class="field">
-      Time, from 0 to ${timeText(furthest.value)}
+      Time, from 0 to ${runTimeText(furthest.value)}
       <input data-first inputmode="decimal" spellcheck=${false} aria-invalid=${Boolean(problem.value)} value=${text.value} onInput=${(event) => (text.value = event.currentTarget.value)} />
     </label>
     <${Problem} text=${problem.value} />`;
 }
 
 async function ask() {
-  text.value = timeText(present.peek()).replace(" s", "");
+  text.value = plainTime(present.peek(), 2, furthest.peek());
   problem.value = null;
   const check = () => {
     problem.value = wrong();

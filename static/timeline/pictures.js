@@ -24,7 +24,7 @@ function ofPlot(plot) {
   const box = { x: LEFT, y: 22, width: WIDE - LEFT - RIGHT, height: HIGH - 42 };
   const draw = (surface) => {
     drawLegend(surface, LEFT, 8, WIDE - LEFT, plot.series);
-    drawTimes(surface, box, span, { y: box.y + box.height, room: { from: 0, to: WIDE } });
+    drawTimes(surface, box, span, { y: box.y + box.height, room: { from: 0, to: WIDE }, longest: end });
     drawCurves(surface, box, { ...plot, span, until: end });
   };
   return { width: WIDE, height: HIGH, title: `${headingOf(plot)}: ${runName(session.peek())}`, draw };

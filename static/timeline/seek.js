@@ -1,7 +1,7 @@
 // Goes to another time of the run: one seek at a time, and the newest target wins.
 
 import { computed, signal } from "../vendor/preact.js";
-import { exactTime } from "../parts/units.js";
+import { exactTime, timeText } from "../parts/units.js";
 import { order, say } from "../server.js";
 import { alive, session, shownRun, state } from "../store.js";
 
@@ -11,6 +11,10 @@ export const wanted = signal(null);
 export const present = computed(() => wanted.value ?? state.value?.time ?? 0);
 /** The furthest time that the run has reached [s]. */
 export const furthest = computed(() => Math.max(state.value?.furthest ?? 0, state.value?.time ?? 0));
+/** Returns a time of the run [s] as text; all its times look alike. `digits` as in `timeText`. */
+export const runTimeText = (time, digits = 2) => timeText(time, digits, furthest.value);
+/** Whether the run has not reached a time [s] yet; times that people read are rounded to hundredths. */
+export const isBeyond = (time) => time > furthest.peek() + 0.005;
 /** Whether a known future lies ahead of the current moment. */
 export const inThePast = computed(() => state.value !== null && state.value.time < furthest.value - 1e-7);
 

@@ -3,17 +3,12 @@
 import { html, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { valueAt } from "../parts/curve.js";
 import { numberText } from "../parts/ticks.js";
-import { timeText } from "../parts/units.js";
 import { bandText } from "./lanes.js";
-import { furthest } from "./seek.js";
-import { span } from "./view.js";
+import { furthest, runTimeText } from "./seek.js";
 
 const NEAR = 4; // the maximum distance of a mark from the pointer [px]
 const AWAY = 14; // from the pointer [px]
 const MAX_CHARACTERS = 1200; // the maximum number of characters
-
-/** Returns a time in the form of the axis. */
-const textOf = (time, digits = 2) => timeText(time, digits, Math.max(time, span.value.to));
 
 /** Returns what is at a position: {row, time, near, band}. */
 export function found(row, time, secondsPerPixel) {
@@ -22,10 +17,10 @@ export function found(row, time, secondsPerPixel) {
 }
 
 function Times({ band }) {
-  if (band.mark) return html`<p class="number quiet">at ${textOf(band.from, 3)}</p>`;
-  const to = band.to === null ? "the newest moment" : textOf(band.to, 3);
+  if (band.mark) return html`<p class="number quiet">at ${runTimeText(band.from, 3)}</p>`;
+  const to = band.to === null ? "the newest moment" : runTimeText(band.to, 3);
   const length = band.to === null ? "" : `, ${((band.to - band.from) * 1000).toFixed(0)} ms`;
-  return html`<p class="number quiet">${textOf(band.from, 3)} to ${to}${length}${band.end ? `, ${band.end}` : ""}</p>`;
+  return html`<p class="number quiet">${runTimeText(band.from, 3)} to ${to}${length}${band.end ? `, ${band.end}` : ""}</p>`;
 }
 
 function OfBand({ row, band }) {
@@ -41,7 +36,7 @@ function OfRow({ at }) {
 }
 
 function OfPlot({ plot, time, near }) {
-  return html`<p><b>${plot.title}</b> <span class="number quiet">at ${textOf(time)}</span></p>
+  return html`<p><b>${plot.title}</b> <span class="number quiet">at ${runTimeText(time)}</span></p>
     ${plot.series.map((curve) => {
       const { name, unit, colour } = curve;
       const value = numberText(time > furthest.value ? null : valueAt(curve, time, near));

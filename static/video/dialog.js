@@ -4,7 +4,7 @@ import { html, signal } from "../vendor/preact.js";
 import { dialog } from "../parts/dialog.js";
 import { pictureName, saveFile } from "../parts/picture.js";
 import { Problem } from "../parts/problem.js";
-import { TIMES, timeOfText, timeText } from "../parts/units.js";
+import { plainTime, TIMES, timeOfText, timeText, timeUnit } from "../parts/units.js";
 import { session } from "../store.js";
 import { furthest } from "../timeline/seek.js";
 import { encoderFor } from "./encoder.js";
@@ -15,10 +15,10 @@ const SPEEDS = [["1/4 x", 0.25], ["1/2 x", 0.5], ["1 x", 1], ["2 x", 2]];
 const NO_ENCODER =
   "This browser cannot make videos: it has no WebCodecs with VP9 or VP8. Chrome, Edge, Firefox (from 130) and Safari (from 16.4) have, at an address that begins with https:// or on this computer (localhost).";
 
-/** Returns a time of the run, rounded down, so that the run has been there; in the form of the newest time. */
-const reachedText = (time, reached) => timeText(Math.floor(time * 100 + 1e-6) / 100, 2, reached);
-/** Returns the same, as a field shows it. */
-const entry = (time, reached) => reachedText(time, reached).replace(" s", "");
+/** Returns a time of the run, rounded down, so that the run has been there. */
+const roundedDown = (time) => Math.floor(time * 100 + 1e-6) / 100;
+/** Returns a time of the run, as a field shows it. */
+const entry = (time, reached) => plainTime(roundedDown(time), 2, reached);
 /** Returns a time as it stands in the name of a file. */
 const seconds = (time) => `${time.toFixed(2)} s`;
 
@@ -29,12 +29,12 @@ export function problemsOf(texts, reached) {
     const text = texts[name].trim();
     const time = timeOfText(text);
     if (!Number.isFinite(time)) wrong[name] = `must be a time, such as ${TIMES} (got '${text}')`;
-    else if (time < 0 || time > reached + 1e-7) wrong[name] = `must be from 0 to ${reachedText(reached, reached)}, which the run has reached (got ${text})`;
+    else if (time < 0 || time > reached + 1e-7) wrong[name] = `must be from 0 to ${timeText(roundedDown(reached))}, which the run has reached (got ${text})`;
   }
   if (wrong.begin || wrong.end) return wrong;
   const stretch = stretchOf(texts);
   const { begin, end } = stretch;
-  if (end <= begin) return { end: `must be later than the first time, ${timeText(begin)} (got ${texts.end.trim()})` };
+  if (end <= begin) return { end: `must be later than the first time, ${timeText(begin, 2, reached)} (got ${texts.end.trim()})` };
   const length = countOf(stretch) / RATE;
   return length > LONGEST + 1 / RATE ? { end: `a video has at most ${LONGEST / 60} minutes (this one has ${(length / 60).toFixed(1)})` } : {};
 }
@@ -66,7 +66,7 @@ export async function askForVideo() {
   };
 
   const Time = ({ name, label, first = false }) => html`<label class="field">
-      <span>${label}${timeText(furthest.value).endsWith(" s") ? html` <span class="quiet">[s]</span>` : null}</span>
+      <span>${label}<span class="quiet">${timeUnit(furthest.value)}</span></span>
       <input inputmode="decimal" data-first=${first} disabled=${made.value !== null} aria-invalid=${Boolean(wrong.value[name])} aria-describedby="video-${name}" value=${texts.value[name]} onInput=${put(name)} />
     </label>
     <${Problem} id="video-${name}" text=${wrong.value[name]} />`;

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.page import answers, open_tab, shows, until
+from tests.helpers.page import answers, becomes_true, open_tab, shows, until
 from tests.helpers.workbench_server import Served
 from workbench.recording_index import Summary
 
@@ -157,6 +157,19 @@ def test_the_axis_goes_as_far_as_the_longest_branch_unless_branches_are_hidden(p
     until(page, lambda: page.evaluate(SHOWN_SPAN) == [0, 8])
 
 
+def test_what_another_server_has_recorded_is_listed_when_the_user_returns_to_the_page(page: Page) -> None:
+    shows(page, "#status", "at its start")
+    name = page.evaluate("async () => (await part('store.js')).shownRecording.value")
+    becomes_true(page, "async () => (await part('runs/list.js')).runs.value?.some(({ id }) => id === name)".replace("name", repr(name)))
+    start = {**asdict(Summary(id=name, named=name, model="doorway.py", size=0, made=0.0)), "session": "1", "label": None}
+    branch = {**start, "id": "branch", "named": "branch", "session": None, "origin": name, "branched": 2.0, "ended": "left", "time": 7.0}
+    answers(page, "/api/recordings", {"total": 2, "recordings": [start, branch], "warning": None})
+    page.wait_for_timeout(300)
+    expect(page.locator(".branches-head")).to_have_count(0)
+    page.evaluate("dispatchEvent(new Event('focus'))")
+    expect(page.locator(".branches-head")).to_have_text("1 branch")
+
+
 @pytest.mark.slow
 def test_a_branch_is_deleted_by_its_name_and_its_notice_goes_with_it(page: Page) -> None:
     shows(page, "#status", "at its start")
@@ -232,6 +245,22 @@ def test_a_recording_that_is_changed_is_not_said_to_have_a_branch(pages: Callabl
     change_the_past(page)
     shows(page, ".branched", r"The recording keeps the run up to 1\.00 s")
     expect(page.locator(".branched")).not_to_contain_text("branch")
+
+
+def test_the_banner_of_a_branch_has_its_name_with_its_number(pages: Callable[..., Page], workbench: Served) -> None:
+    page = pages("counting.py")
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#time", "0.05 s")
+    name = page.evaluate("async () => (await part('store.js')).session.value.recording")
+    for one in workbench.get("/api/sessions").json()["sessions"]:
+        workbench.post(f"/api/sessions/{one['id']}/close")
+    run = {**asdict(Summary(id=name, named=name, model="counting.py", size=0, made=0.0)), "session": None, "branched": 0.03, "number": 2}
+    for label, shown in ((None, "branch at 0.03 s (2)"), ({"name": "same"}, "same (2)")):
+        answers(page, "/api/recordings", {"total": 1, "recordings": [{**run, "label": label}], "warning": None})
+        page.goto(f"{page.url.partition('?')[0]}?run={name}")
+        expect(page.locator(".recording-banner .name")).to_have_text(shown)
+        expect(page.locator(".recording-banner .name")).to_have_attribute("title", name)
 
 
 WHOLE = """() => {

@@ -276,3 +276,28 @@ def test_a_piece_of_a_class_leaves_the_production_that_the_cursor_is_in(
     page.keyboard.press("Control+s")
     shows(page, ".file-status", "saved")
     assert expected in (workbench.folder / "written.py").read_text(encoding="utf-8")
+
+
+MISSPELT = """from actr3d.actr import *
+from actr3d.simulation import BodyPort
+
+
+class Walker(ACTR):
+    goal = Buffer()
+    felt = Buffer()
+    skin = BodyPort(felt)
+
+    def look(goal="walk"):
+        skin.request("poze")
+"""
+
+
+def test_the_line_of_a_misspelt_word_is_underlined_in_both_themes(opened: Callable[[str], Page]) -> None:
+    page = opened(MISSPELT)
+    marked = page.locator(".cm-lintRange-warning")
+    expect(marked).to_have_text('skin.request("poze")')
+    look = "one => { const style = getComputedStyle(one); return [style.textDecorationLine, style.textDecorationColor]; }"
+    page.emulate_media(color_scheme="light")
+    until(page, lambda: marked.evaluate(look) == ["underline", "rgb(143, 90, 0)"])  # the colour of warnings
+    page.emulate_media(color_scheme="dark")
+    until(page, lambda: marked.evaluate(look) == ["underline", "rgb(240, 180, 92)"])

@@ -252,7 +252,7 @@ def test_a_link_to_a_moment_leads_to_its_branch_once_the_run_was_changed_before_
     shows(page, "#time", r"1\.00 s")
     expect(page).to_have_url(re.compile(r"\?run=counting-[\w-]+-at-0\.100s-"))
     page.goto(link.replace("t=1&", "t=soon&"))
-    expect(page.get_by_text("must be a number of seconds >= 0, such as t=1.5 (got t=soon)").first).to_be_visible()
+    expect(page.get_by_text("The link's time must be a time, such as 1.5 or 1:15:12.3 (got soon)").first).to_be_visible()
     expect(page).not_to_have_url(re.compile("t=soon"))
     page.goto(f"{link.partition('?')[0]}?model=counting.py&t=1")
     expect(page.get_by_text("Only the address of a recorded run can have a time t").first).to_be_visible()

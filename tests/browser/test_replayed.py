@@ -90,6 +90,7 @@ def test_the_clock_of_a_long_run_has_hours(browser: Browser, tmp_path: Path) -> 
         page.goto((tmp_path / "replay.html").as_uri())
         expect(page.locator("#outcome")).to_have_text("Shown up to 1:15:12.30: the run was not over at that time.")
         expect(page.locator("#clock")).to_have_text("0:00:00.00")
+        expect(page.locator(".event time")).to_have_text(["0:00:00.000", "1:15:12.300"])
         page.evaluate("goTo(4000)")
         expect(page.locator("#clock")).to_have_text("1:06:40.00")
         expect(page.get_by_role("slider", name="Time")).to_have_attribute("aria-valuetext", "1:06:40.00")

@@ -1246,6 +1246,7 @@ def test_a_time_is_read_in_the_forms_in_which_it_is_shown(blank: Page) -> None:
         "24:01:01.50": 86_461.5,
         "0:59:59": 3599,
         "5:07": 307,
+        "75:00": 4500,
         "1e3": 1000,
         "-1": -1,
     }
@@ -1253,21 +1254,74 @@ def test_a_time_is_read_in_the_forms_in_which_it_is_shown(blank: Page) -> None:
     assert blank.evaluate(READ, wrong := ["", "soon", "1:75:00", "1:5:00", "1:2:3:4", ":10", "1:00:60"]) == [None] * len(wrong)
 
 
-TIP = """async (to) => {
-  const names = ["timeline/tip.js", "timeline/view.js", "vendor/preact.js"];
-  const [{ Tip }, { span }, { html, render }] = await Promise.all(names.map((name) => part(name)));
-  const before = span.value;
+LONG = """from actr3d.actr import *
+
+class Long(ACTR):
+    goal = Buffer()
+    production_time = 1000
+    def init():
+        goal.set("step")
+    def step(goal="step"):
+        pass
+
+Long().run(7200)
+"""
+AXIS_TIMES = """async () => {
+  const [{ drawTimeline }, { scene }] = [await part("timeline/draw.js"), await part("timeline/canvas.js")];
+  const texts = [];
+  const known = { text: (text) => texts.push(text), within: (...values) => values.at(-1)() };
+  const surface = new Proxy({}, { get: (_, name) => known[name] ?? (() => null) });
+  drawTimeline(surface, scene());
+  return texts.filter((text) => /^[0-9]/.test(text));
+}"""
+LOOK = """async (to) => {
+  const { span, mode } = await part("timeline/view.js");
+  mode.value = "free";
   span.value = { from: 0, to };
-  const box = document.createElement("div");
-  const band = { mark: true, from: 2700, to: 2700 };
-  render(html`<${Tip} at=${{ x: 0, y: 0, band, row: { lane: { label: "goal" } } }} />`, box);
-  span.value = before;
-  return box.querySelector(".number").textContent;
 }"""
 
 
-def test_a_tooltip_of_the_timeline_has_times_in_the_form_of_the_axis(blank: Page) -> None:
-    assert [blank.evaluate(TIP, to) for to in (3000, 7200)] == ["at 2700.000 s", "at 0:45:00.000"]
+def test_all_times_of_a_run_of_hours_look_alike_at_any_moment_of_it(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "long.py").write_text(LONG, encoding="utf-8")
+    page = pages("long.py", tab="productions")
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    page.evaluate("async () => (await part('timeline/seek.js')).seek(1500)")
+    shows(page, "#time", r"t = 0:25:00\.00$")
+    expect(page.locator(".timeline-now")).to_have_text("0:25:00.00")
+    expect(page.locator("#timeline")).to_have_attribute("aria-valuetext", "0:25:00.00 of 2:00:00.00")
+    expect(page.locator("#events .time").first).to_have_text(re.compile(r"^0:\d\d:\d\d\.000$"))
+    expect(page.locator("#events").get_by_text("Time", exact=True)).to_be_visible()
+    page.evaluate(LOOK, 3000)
+    times = page.evaluate(AXIS_TIMES)
+    assert len(times) > 2
+    assert [text for text in times if not re.fullmatch(r"0:\d\d:\d\d", text)] == []
+    assert any(re.search(r"\b0:\d\d:\d\d\.000", tip) for tip in told(page, 0.25))
+    moment = page.get_by_label("Explain the time")
+    moment.fill("16:40")
+    moment.press("Enter")
+    expect(moment).to_have_value("0:16:40")
+    page.keyboard.press("Escape")
+    page.locator("#time").click()
+    page.get_by_label("Time, from 0 to 2:00:00.00").fill("75:00")
+    page.get_by_role("button", name="Go there").click()
+    shows(page, "#time", r"t = 1:15:00\.00$")
+
+
+def test_a_link_has_a_time_in_each_form_in_which_times_are_read(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "long.py").write_text(LONG, encoding="utf-8")
+    page = pages("long.py")
+    shows(page, "#status", "at its start")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    name = page.evaluate("async () => (await part('store.js')).shownRecording.value")
+    page.goto(f"{workbench.url}/?run={name}&t=1:15:00")
+    shows(page, "#time", r"t = 1:15:00\.00$")
+    page.goto(f"{workbench.url}/?run={name}&t=99999")
+    expect(page.get_by_text("The link leads to 27:46:39.00; this run has only reached 2:00:00.00.").first).to_be_visible()
+    expect(page.get_by_role("button", name="Go there")).to_have_count(0)
+    shows(page, "#time", r"t = 1:15:00\.00$")
 
 
 def test_fit_shows_what_happened_without_a_quiet_end_and_again_all_of_the_run(pages: Callable[..., Page]) -> None:

@@ -256,7 +256,7 @@ def test_a_full_disk_stops_the_run_and_spoils_nothing(before: str, reason: str, 
         ticks = recorded.ticks
         kept = f"the first {ticks:,} ticks and {recorded.event_count:,} events of the run are kept, nothing of what came after"
         states = [state.data for state in recorded.states()]
-    assert last.endswith(f"; {kept}")
+    assert last.endswith(f"; {kept}; make room on the disk, then run it again" if before == FULL else f"; {kept}")
     assert whole(path)
     assert ticks > 10
     again = driving()

@@ -7,6 +7,7 @@ import csv
 import io
 import json
 import math
+import re
 import resource
 import sqlite3
 import subprocess
@@ -56,6 +57,34 @@ def taken(desk: Desk, folder: Path, name: str) -> Path:
     away.mkdir()
     (away / "taken.sqlite").write_bytes(answer.body)
     return away / "taken.sqlite"
+
+
+FLOOD = """from actr3d.actr import *
+
+class Flood(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("step")
+    def step(goal="step"):
+        print("x" * 1000)
+
+Flood().run(200)
+"""
+
+
+def test_a_run_whose_recording_can_no_longer_be_written_does_not_blame_a_line_of_the_model(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, FLOOD, record=True)
+    worker = talk.session._worker
+    assert worker is not None
+    limits = resource.prlimit(worker.pid, resource.RLIMIT_FSIZE)
+    resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, (300_000, limits[1]))
+    talk.say("run")
+    talk.until("failed")
+    (notice,) = [one for one in (json.loads(text) for _, text in talk.session.notices) if one["level"] == "error"]
+    kept = r"the first [\d,]+ events of the run are kept, nothing of what came after"
+    assert re.fullmatch(rf"cannot write the recording '.*': .*; {kept}", notice["text"])
+    assert (notice["file"], notice["line"]) == (None, None)
+    assert talk.state["reason"] == notice["text"]
 
 
 @pytest.mark.slow

@@ -25,6 +25,8 @@ from workbench.recordings import Recordings
 from workbench.retention import Keeping, is_unnamed, stands_alone
 from workbench.trash import OWN, NotInTrashError, TrashError, empty_trash, move_to_trash, restore_from_trash
 
+COUNTING = (Path(__file__).parents[2] / "models" / "counting.py").read_text(encoding="utf-8")
+
 
 @pytest.fixture
 def recordings(tmp_path: Path) -> Recordings:
@@ -44,6 +46,24 @@ def models(tmp_path: Path) -> list[str]:
 def test_a_run_gives_its_recording_a_name_that_is_none(tmp_path: Path) -> None:
     assert is_unnamed(Recordings(tmp_path).new("model-1"))
     assert not is_unnamed(Path("my best run.sqlite"))
+
+
+def test_a_run_in_a_folder_that_cannot_be_written_is_shown_and_not_kept(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / OWN).touch()  # as in a folder that is read-only, no folder can be made here
+    talk = desk.begin(tmp_path, COUNTING, record=True)
+    talk.say("run")
+    talk.until("ended")
+    facts = json.loads(talk.session.facts_json())
+    assert facts["recording"] is None
+    assert facts["not_kept"].startswith(f"Runs are not kept: the folder '{tmp_path / OWN / 'recordings'}' cannot be written: ")
+    assert facts["not_kept"].endswith("To keep runs, copy the models to a folder that can be written, and start the workbench with it.")
+    told = [json.loads(notice)["text"] for _, notice in talk.session.notices]
+    assert told.count(facts["not_kept"]) == 1
+    assert Recordings(tmp_path).all() == []
+    (tmp_path / OWN).unlink()
+    desk.do(talk.session.begin())
+    talk.until("paused")
+    assert json.loads(talk.session.facts_json())["not_kept"] is None
 
 
 def test_the_oldest_go(recordings: Recordings, tmp_path: Path) -> None:

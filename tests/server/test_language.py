@@ -139,6 +139,7 @@ class Pole(Feature):
         (DOORWAY.replace("Aperture(", "Aperture(clo|, ").replace("import Aperture(clo|,", "import Aperture,"), ["closing="]),
         (DOORWAY + "\nfrom actr3d.world import Mann|", ["Mannequin"]),
         (VISION.replace('memory.request("count ?now ?next")', 'vision.request("feature:|")'), ["obstacle", "opening"]),
+        (VISION.replace('memory.request("count ?now ?next")', 'vision.request("|")'), ["feature"]),
         (VISION.replace('memory.request("count ?now ?next")', 'vision.request("feature:opening |")'), ["distance", "direction", "motion"]),
         (POLE + VISION.replace('memory.request("count ?now ?next")', 'vision.request("feature:|")'), ["obstacle", "opening", "pole"]),
         (
@@ -155,6 +156,11 @@ class Pole(Feature):
 )
 def test_what_may_stand_at_a_place(ask: Asked, text: str, first: list[str]) -> None:
     assert ask.labels(text)[: len(first)] == first
+
+
+def test_a_request_to_vision_begins_with_the_kind_of_feature(ask: Asked) -> None:
+    text = VISION.replace('memory.request("count ?now ?next")', 'vision.request("|")')
+    assert {one["label"] for one in ask("complete", text)["items"] if one["type"] == "property"} == {"feature"}
 
 
 @pytest.mark.parametrize(("method", "offered"), [("set", "walk"), ("request", "pose")])

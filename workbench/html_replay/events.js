@@ -4,10 +4,11 @@
 const ROW = 22;
 
 class Events {
-  constructor(events, seek) {
+  constructor(events, seek, end) {
     this.rows = events.rows;
     this.kinds = events.kinds; // by kind: its title, and whether it is shown without all details
     this.seek = seek;
+    this.end = end;
     this.list = document.getElementById("events");
     this.now = -1;
     this.made = new Map(); // by number, the rows that are in the page: one that has the keyboard's focus keeps it
@@ -80,7 +81,7 @@ class Events {
     row.type = "button";
     row.style.top = `${number * ROW}px`;
     const when = document.createElement("time"), who = document.createElement("span"), what = document.createElement("b");
-    when.textContent = time.toFixed(3);
+    when.textContent = plainTime(time, 3, this.end);
     who.textContent = `${source} ${this.kinds[kind][0]} `;
     what.textContent = text;
     row.append(when, who, what);

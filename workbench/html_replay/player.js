@@ -37,7 +37,7 @@ if (!drawing) {
 let now = 0, playing = false, before = 0;
 const rows = data.events.rows;
 const end = Math.max(drawing ? drawing.end : 0, rows.length ? rows[rows.length - 1][0] : 0);
-const events = new Events(data.events, (time) => goTo(time));
+const events = new Events(data.events, (time) => goTo(time), end);
 get("time").max = end;
 const over = data.ended ? `Ended: ${ENDINGS[data.ended] || data.ended}.` : `Shown up to ${timeText(end)}: ${data.failed ? "the run failed" : "the run was not over"} at that time.`;
 get("outcome").textContent = (came ? `Outcome: ${came}. ` : "") + over;
@@ -45,14 +45,14 @@ get("outcome").textContent = (came ? `Outcome: ${came}. ` : "") + over;
 function goTo(time) {
   now = Math.min(end, Math.max(0, time));
   get("time").value = now;
-  get("time").setAttribute("aria-valuetext", timeText(now));
+  get("time").setAttribute("aria-valuetext", timeText(now, 2, end));
   get("clock").textContent = timeText(now, 2, end);
   events.mark(now);
   if (!drawing) return;
   const early = Math.fround(now) < drawing.begin;
   get("canvas").hidden = early;
   get("empty").hidden = !early;
-  get("empty").textContent = `No scene is stored before ${timeText(drawing.begin)}.`;
+  get("empty").textContent = `No scene is stored before ${timeText(drawing.begin, 2, end)}.`;
   drawing.draw(now);
 }
 

@@ -188,6 +188,9 @@ def _slots(model: ModelText, text: ChunkText, at: int, attributes: Attributes) -
     own = model.chunks_of(text.part, text.agent)
     parts = model.parts_of(text.agent)
     part = parts.get(text.part)
+    if part is not None and text.kind == "request" and features_of(part.kind) and "feature" not in used:
+        yield Item(label="feature", type="property", detail="what to find", boost=KNOWN, apply="feature:")
+        return
     for word, texts in _answers(model, text, attributes):
         yield from (
             Item(label=name, type="property", detail=f"slot of {word.word}", boost=KNOWN, text=said, apply=f"{name}:")

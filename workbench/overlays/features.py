@@ -11,6 +11,7 @@ from mujoco import MjData
 
 from workbench.overlays.contours import Places, into_world, points_of
 from workbench.overlays.overlay import Drawn, Lines, Observed, Overlay, overlay
+from workbench.time_text import time_text
 
 if TYPE_CHECKING:
     from actr3d.actr.kernel.model import Model
@@ -82,7 +83,7 @@ def drawn_features(agent: Model, body: Body) -> list[dict[str, Any]]:
         for sighting in found:
             lines = _outline(sighting, points)
             place = lines[0].mean(axis=0).tolist()
-            ago = f", seen at {sighting.time:.2f} s" if agent.now() - sighting.time > OLD else ""
+            ago = f", seen at {time_text(sighting.time, 2)}" if agent.now() - sighting.time > OLD else ""
             drawn.append({"text": _text(sighting.feature) + ago, "place": place, "lines": lines.tolist(), "chosen": sighting.chosen})
     return drawn
 

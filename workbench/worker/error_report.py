@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from actr3d.errors import RecordingError
 from actr3d.runner.traceback_report import traceback_report
 from workbench.worker.memory import relieve
 from workbench.worker.messages import Notice, notice, shortened
@@ -31,7 +32,9 @@ def describe_error(error: BaseException) -> str:
 
 
 def notice_of(error: BaseException) -> Notice:
-    """Returns the notice for the user about an error, with the line of the model where it occurred."""
+    """Returns the notice for the user about an error, with the line of the model where it occurred, unless the model did not cause it."""
+    if isinstance(error, RecordingError):
+        return notice("error", describe_error(error))
     if isinstance(error, MemoryError):
         relieve()
     try:
