@@ -95,7 +95,7 @@ export function addEarlier(earlier) {
 
 function withEvents({ list, first, missing, elsewhere = false }, news) {
   if (news.cut !== undefined) list.length = Math.max(0, Math.min(list.length, news.cut - first));
-  if (news.list.length > 0) {
+  if (news.list.length > 0 || news.missing > 0) {
     if (list.length === 0 || news.first !== first + list.length) {
       list = [];
       first = news.first;

@@ -122,14 +122,14 @@ class Feed:
             self._state = shown.state_version
             message["state"] = Raw(shown.state_json())
         first, events = shown.log.since(self._next)
-        if events or self._cut is not None:
+        if events or first > self._next or self._cut is not None:
             update: dict[str, Any] = {"first": first, "list": [Raw(event) for event in events]}
             if self._cut is not None:
                 update["cut"], self._cut = self._cut, None
-            if events and first > self._next:
+            if first > self._next:
                 update["missing"] = first - self._next
             message["events"] = update
-            self._next = first + len(events) if events else self._next
+            self._next = first + len(events)
         notices = [(number, notice) for number, notice in shown.notices if number >= self._notice]
         if notices:
             self._notice = notices[-1][0] + 1

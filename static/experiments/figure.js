@@ -12,7 +12,7 @@ import { remembered } from "../local_storage.js";
 import { dark } from "../theme.js";
 import { useFresh } from "./answer.js";
 import { drawFigure, drawLegend, drawSample, layout, layoutLegend, levelsOf } from "./drawing.js";
-import { experiments, showExperiment } from "./list.js";
+import { experiments, pathOf, showExperiment } from "./list.js";
 import { changedText, columnText, doneText, experimentText, headText, unitText } from "./wording.js";
 
 const MAX_LINES = 12;
@@ -70,9 +70,9 @@ function chosenFor(name, facts, columns) {
   return { x: axis, by: by.filter((one) => known(one) && one !== axis), measure: chosen, over };
 }
 
-function pathOf(id, { x, by, measure, over }) {
+function meansOf(id, { x, by, measure, over }) {
   const query = new URLSearchParams([["x", x], ["measure", measure], ...by.map((name) => ["by", name]), ...(over ? [["over", over]] : [])]);
-  return `/api/experiments/${encodeURIComponent(id)}/means?${query}`;
+  return `${pathOf(id)}/means?${query}`;
 }
 
 /** Returns the lines of an answer: {number, key, name, values, points, dashed, experiment}; the nth combination has the nth colour. */
@@ -139,6 +139,14 @@ function Menus({ experiment, facts, columns, chosen }) {
 function comparable(experiment, { x, by, measure, over }) {
   const needed = [over ? `${measure}_1` : measure, ...[x, ...by].filter((name) => name !== over)];
   return (experiments.value ?? []).filter(({ id, done, columns }) => id !== experiment.id && done > 0 && needed.every((name) => columns.includes(name)));
+}
+
+/** Returns the factors of which two experiments have other levels, apart from those that are drawn: their means would be of other conditions. */
+function unlike(one, other, drawn) {
+  const levels = (facts, name) => (name === "group" ? Object.keys(facts.groups ?? {}) : facts.factors?.[name] ?? [facts.settings?.[name]]);
+  const text = (facts, name) => JSON.stringify(levels(facts, name).toSorted());
+  const names = ["group", ...Object.keys(one.factors ?? {}), ...Object.keys(other.factors ?? {})];
+  return [...new Set(names)].filter((name) => !drawn.includes(name) && text(one, name) !== text(other, name));
 }
 
 /** The choice of another experiment to draw beside this one. */
@@ -252,10 +260,13 @@ export function Figure({ experiment, facts, columns: all }) {
   const chosen = chosenFor(experiment.name, facts, columns);
   const comparables = comparable(experiment, chosen);
   const other = comparables.find(({ id }) => id === compared.value) ?? null;
-  const own = useFresh(failed ? null : pathOf(experiment.id, chosen), experiment.done);
-  const others = useFresh(other && pathOf(other.id, chosen), other?.done);
+  const own = useFresh(failed ? null : meansOf(experiment.id, chosen), experiment.done);
+  const theirs = useFresh(other && pathOf(other.id), other?.state);
+  const differing = other && theirs.path === pathOf(other.id) && theirs.answer ? unlike(facts, theirs.answer.facts, [chosen.x, ...chosen.by]) : [];
+  const wanted = other && theirs.answer && differing.length === 0 ? meansOf(other.id, chosen) : null;
+  const others = useFresh(wanted, other?.done);
   const answer = own.answer;
-  const second = other ? others.answer : null;
+  const second = wanted !== null && others.path === wanted ? others.answer : null;
   const same = (one) => one && one.x === answer.x && one.measure === answer.measure && one.by.join() === answer.by.join();
   const lines = useMemo(() => {
     if (!answer) return EMPTY;
@@ -266,7 +277,8 @@ export function Figure({ experiment, facts, columns: all }) {
   }, [answer, second, other?.id]);
   const drawn = lines.some(({ dashed }) => dashed) ? [experiment, other] : [experiment];
   const combined = answer ? combinationsOf([answer], answer.by, facts).length : 0;
-  const error = own.error ?? (other ? others.error && `${other.name}: ${others.error}` : null);
+  const problem = other && (theirs.error ?? others.error);
+  const error = own.error ?? (problem ? `${other.name}: ${problem}` : null);
   if (failed) {
     return html`<p class="part empty" role="status">${done === 1 ? "The finished trial has failed" : `All ${done.toLocaleString("en")} finished trials have failed`}: there is nothing to draw. The table of trials has the errors.</p>`;
   }
@@ -274,6 +286,7 @@ export function Figure({ experiment, facts, columns: all }) {
     <${Menus} experiment=${experiment} facts=${facts} columns=${columns} chosen=${chosen} />
     <div class="part">
       <${Problem} text=${error} />
+      ${differing.length > 0 ? html`<p class="problem warning">${experimentText(other)} is not drawn: it has other levels of ${differing.map(columnText).join(" and ")}, so its means would be of other conditions. To compare both, choose ${differing.length > 1 ? "them" : "it"} for the lines.</p>` : null}
       ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
       ${answer && lines.length > 0
         ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, across: headText(columns.find(({ name }) => name === answer.x) ?? { name: answer.x }), unit: unitText({ name: answer.measure, unit: answer.unit }), sources: drawn.map(experimentText), counts: countsText(answer, chosen, experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`

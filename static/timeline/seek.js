@@ -12,7 +12,7 @@ export const present = computed(() => wanted.value ?? state.value?.time ?? 0);
 /** The furthest time that the run has reached [s]. */
 export const furthest = computed(() => Math.max(state.value?.furthest ?? 0, state.value?.time ?? 0));
 /** Returns a time of the run [s] as text; all its times look alike. `digits` as in `timeText`. */
-export const runTimeText = (time, digits = 2) => timeText(time, digits, furthest.value);
+export const runTimeText = (time, digits = 2) => timeText(time, digits, Math.max(time, furthest.value));
 /** Whether the run has not reached a time [s] yet; times that people read are rounded to hundredths. */
 export const isBeyond = (time) => time > furthest.peek() + 0.005;
 /** Whether a known future lies ahead of the current moment. */

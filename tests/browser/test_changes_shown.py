@@ -583,3 +583,42 @@ def test_the_timeline_and_the_html_replay_have_the_same_words_for_each_registere
         events = [[0, one.source, one.kind, dict(one.data)] for one in reading.events()]
     live = [{"name": one.name, "unit": one.unit, **asdict(one.live)} for one in listing_of(source).parameters if one.live is not None]
     assert blank.evaluate(TEXTS, [json.loads(change_menu(agents_only=False)), live, events]) == written
+
+
+LONG = """from actr3d.actr import *
+
+class Agent(ACTR):
+    goal = Buffer()
+    other = Buffer()
+    def init():
+        goal.set("a")
+        other.set("x 1")
+    def step(goal="a", other="x ?n"):
+        goal.set("b")
+        other.set("x 2")
+    def back(goal="b", other="x ?n"):
+        goal.set("a")
+        other.set("x 1")
+
+Agent().run(600)
+"""
+"""A program with 60,000 events, more than the server keeps."""
+
+
+def test_a_long_run_that_was_changed_early_is_shown_after_a_reload(pages: Callable[..., Page], workbench: Served) -> None:
+    (workbench.folder / "long.py").write_text(LONG, encoding="utf-8")
+    page = pages("long.py")
+    shows(page, "#status", "at its start")
+    page.evaluate(
+        "async () => { const { say } = await part('server.js'); await say({ type: 'speed', factor: null }); await say({ type: 'run' }); }"
+    )
+    shows(page, "#status", "ended")
+    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'seek', time: 5 }))")
+    shows(page, "#time", "t = 5.00 s")
+    change = {"type": "command", "word": "set_buffer", "values": ["goal", "a"], "drop": True}
+    page.evaluate("async (change) => void (await (await part('server.js')).say(change))", change)
+    shows(page, "#status", "changed at 5.00 s")
+    page.reload()
+    shows(page, "#time", "t = 5.00 s")
+    open_tab(page, "Productions")
+    expect(page.get_by_text("4.950").first).to_be_visible()

@@ -506,6 +506,25 @@ TWO_EXPERIMENTS = """async () => {
 }"""
 
 
+def give_facts_of_the_other(page: Page, **factors: list[Any]) -> None:
+    """Answers what the figure asks of the experiment «theirs»."""
+    page.route("**/experiments/theirs", lambda route: route.fulfill(json={"facts": {"factors": factors}}))
+
+
+def test_an_experiment_with_other_levels_of_what_is_not_drawn_is_not_drawn_beside(blank: Page) -> None:
+    point = {"mean": 0.1, "error": None, "participants": 1, "trials": 2}
+    answer = {"x": "n", "by": [], "measure": "rt", "unit": "s", "columns": [], "points": [{**point, "at": [n]} for n in (1, 2)]}
+    blank.route("**/means?*", lambda route: route.fulfill(json=answer))
+    give_facts_of_the_other(blank, n=[2, 1], ink=["blue", "green"])
+    blank.evaluate(TWO_EXPERIMENTS)
+    blank.get_by_label("Compare with").select_option("theirs")
+    warning = blank.locator("#drawn .problem")
+    expect(warning).to_contain_text("is not drawn: it has other levels of ink, so its means would be of other conditions")
+    expect(blank.locator("#drawn .point")).to_have_count(2)
+    blank.get_by_label("Compare with").select_option("")
+    expect(warning).to_have_count(0)
+
+
 def test_another_experiment_is_drawn_beside_the_one_that_is_shown(blank: Page) -> None:
     def answer(route: Route) -> None:
         mean = 0.2 if "/theirs/" in route.request.url else 0.1
@@ -513,6 +532,7 @@ def test_another_experiment_is_drawn_beside_the_one_that_is_shown(blank: Page) -
         route.fulfill(json={"x": "n", "by": [], "measure": "rt", "unit": "s", "columns": [], "points": points})
 
     blank.route("**/means?*", answer)
+    give_facts_of_the_other(blank, n=[1, 2])
     blank.evaluate(TWO_EXPERIMENTS)
     points, legend = blank.locator("#drawn .point"), blank.locator("#drawn .legend")
     expect(points).to_have_count(2)
@@ -551,6 +571,7 @@ def test_a_saved_figure_says_which_experiments_it_shows_and_what_its_bars_are(bl
         route.fulfill(json={"x": "n", "by": ["kind"], "measure": "rt", "unit": "s", "columns": [], "points": points})
 
     blank.route("**/means?*", answer)
+    give_facts_of_the_other(blank, n=[1, 2])
     blank.evaluate(TWO_EXPERIMENTS)
     blank.get_by_label("Compare with").select_option("theirs")
     expect(blank.locator("#drawn .legend canvas")).to_have_count(5)

@@ -136,6 +136,19 @@ def test_a_slow_browser_learns_of_its_gap(monkeypatch: pytest.MonkeyPatch) -> No
     assert told(feed, feed.wake)["events"] == {"first": 6, "list": [6, 7, 8, 9], "missing": 5}
 
 
+def test_a_browser_that_comes_when_no_event_is_kept_learns_where_they_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(event_log, "MAX_EVENTS", 4)
+    shown = Shown()
+    for number in range(10):
+        shown.add(number)
+    shown.log.cut(3)  # before the first that is kept
+    feed = Feed(shown, "page 1")
+    assert told(feed)["events"] == {"first": 3, "list": [], "cut": 0, "missing": 3}
+    assert told(feed) is None
+    shown.add(30)
+    assert told(feed, feed.wake)["events"] == {"first": 3, "list": [30]}
+
+
 def test_much_that_is_new_comes_in_parts_of_bounded_size() -> None:
     shown = Shown()
     shown.add(*range(5000))

@@ -172,6 +172,7 @@ Idle().run(8000)
 def test_from_an_hour_on_times_are_in_hours_minutes_and_seconds(desk: Desk, tmp_path: Path) -> None:
     assert [time_text(time) for time in (0.5, 2.0, 3599.9, 3600.0, 4512.3)] == ["0.5 s", "2 s", "3599.9 s", "1:00:00", "1:15:12.30"]
     assert [time_text(time, 2) for time in (0.5, 3600.0)] == ["0.50 s", "1:00:00.00"]
+    assert time_text(62.5, longest=3600.0) == "0:01:02.50"
     talk = desk.begin(tmp_path, IDLE)
     talk.say("until", time=4512.3)
     talk.wait(lambda: talk.state["reason"] == "at 1:15:12.30")

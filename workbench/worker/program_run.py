@@ -673,6 +673,8 @@ class ProgramRun(ControlledRun):
         if time > self._furthest:
             raise SimulationError(f"the run has only reached {time_text(seconds(self._furthest))}; continue it instead")
         over = self._controller.status in ENDED
+        if over and time == self._clock:
+            return  # it is there
         self._set_off(time)
         if over or time < self._clock:
             self._again = True
@@ -681,7 +683,8 @@ class ProgramRun(ControlledRun):
     def _set_off(self, time: int) -> None:
         """Begins the way to another time [us]."""
         self._rush = time
-        self._controller.status, self._controller.reason = "running", f"going to {time_text(seconds(time))}"
+        where = time_text(seconds(time), longest=seconds(self._furthest))
+        self._controller.status, self._controller.reason = "running", f"going to {where}"
 
     def _is_on_its_way(self) -> bool:
         """Returns whether the program continues to the time that a user wants, who may have paused it on the way, or want another time."""
