@@ -45,7 +45,6 @@ class Substepping:
         self._bodies = bodies
         self._pushes = pushes
         self._holds = [body.hold for body in bodies]
-        self._hands = [hand for body in bodies for hand in body.hands.values()]
         self._whole = physics.timestep
         self._tick = max(1, round(TICK / self._whole))
         self._qvel = physics.mj_data.qvel
@@ -131,7 +130,7 @@ class Substepping:
 
     def _held(self) -> float:
         """Returns an upper bound of the extent of held objects beyond the hands [m]."""
-        geoms = [geom for hand in self._hands for geom in hand.geoms] if self._physics.grasped else []
+        geoms = [geom for body in self._bodies for geom in body.contacts.held()]
         return 2 * float(self._physics.mj_model.geom_rbound[geoms].max()) if geoms else 0.0
 
     def _near(self, beyond: float) -> bool:

@@ -2,6 +2,7 @@
 
 import { useEffect, useRef, useSignal } from "../vendor/preact.js";
 import { call } from "../server.js";
+import { pathOf } from "./list.js";
 
 const BETWEEN = 1000; // the least interval between two requests [ms]
 
@@ -55,4 +56,12 @@ export function useFresh(path, version) {
   }, [path]);
   useEffect(() => void asker.current?.ask(), [path, version]);
   return found.value;
+}
+
+/** Reads the facts of an experiment, which do not change while it runs; returns {facts, error}, null for facts that are not known yet, or for no
+ * experiment. */
+export function useFacts(experiment) {
+  const wanted = experiment && pathOf(experiment.id);
+  const { path, answer, error } = useFresh(wanted, experiment?.state);
+  return path === wanted ? { facts: answer?.facts ?? null, error } : { facts: null, error: null };
 }

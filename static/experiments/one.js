@@ -8,7 +8,7 @@ import { Icon } from "../parts/icon.js";
 import { Prose } from "../parts/prose.js";
 import { whenInFull, whenText } from "../runs/wording.js";
 import { dark } from "../theme.js";
-import { useFresh } from "./answer.js";
+import { useFacts, useFresh } from "./answer.js";
 import { Figure } from "./figure.js";
 import { canMakeReport, canResume, canStop, deleteExperiment, experiments, isRunning, makeReport, part, pathOf, problem, resumeExperiment, shown, stopExperiment, waitOf } from "./list.js";
 import { Trials } from "./trials.js";
@@ -76,13 +76,6 @@ function About({ experiment, facts }) {
     <div class="description"><${Prose} text=${facts.description ?? ""} /></div>
     <table><tbody>${rows.filter(([, value]) => value !== undefined && value !== "").map(([name, value]) => html`<tr key=${name}><th scope="row">${name}</th><td>${value}</td></tr>`)}</tbody></table>
   </div>`;
-}
-
-/** Reads the facts of an experiment, which do not change while it runs; returns {facts, error}, null for facts that are not known yet. */
-function useFacts(experiment) {
-  const wanted = pathOf(experiment.id);
-  const { path, answer, error } = useFresh(wanted, experiment.state);
-  return path === wanted ? { facts: answer?.facts ?? null, error } : { facts: null, error: null };
 }
 
 /** The report, in the theme of the page: it has no script that could follow it. */

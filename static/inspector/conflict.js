@@ -4,10 +4,9 @@ import { html, useMemo } from "../vendor/preact.js";
 import { useAnswer } from "../parts/answer.js";
 import { chosenText, isGone, nothingYet } from "../run_status.js";
 import { running, state } from "../store.js";
-import { runTimeText } from "../timeline/seek.js";
 import { agentOf, agentsOf } from "./agents.js";
 import { at, production, shownReasons } from "./explanation.js";
-import { pairs } from "./event_text.js";
+import { eventMomentText, pairs } from "./event_text.js";
 import { fixed } from "./part_names.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
 
@@ -27,8 +26,8 @@ function lastCycles(filtered, end, time) {
 }
 
 function comesOf({ select, fire, changed, conflict }) {
-  if (fire) return html`<b class="mono">${fire.production}</b> fired at ${runTimeText(fire.time / 1e6, 3)}`;
-  if (changed) return html`<b class="mono">${changed.production}</b> was chosen, but no longer matched at ${runTimeText(changed.time / 1e6, 3)}`;
+  if (fire) return html`<b class="mono">${fire.production}</b> fired at ${eventMomentText(fire.time)}`;
+  if (changed) return html`<b class="mono">${changed.production}</b> was chosen, but no longer matched at ${eventMomentText(changed.time)}`;
   if (select) return html`<b class="mono">${select.production}</b> ${chosenText(at.value === null)}`;
   return conflict.threshold === undefined ? "nothing is chosen yet" : "none reaches the threshold";
 }
@@ -54,7 +53,7 @@ function Cycle({ cycle, agents }) {
   const { names, rows, own } = rowsOf(cycle);
   const bound = (name) => (fire?.production === name ? pairs(fire.bound) : pairs(reasons.get(name)?.bindings));
   return html`<section aria-label="Conflict set of ${source}">
-    <h3>${source} <span class="quiet">at ${runTimeText(time / 1e6, 3)}:</span> ${rows.length} matched, ${comesOf(cycle)}</h3>
+    <h3>${source} <span class="quiet">at ${eventMomentText(time)}:</span> ${rows.length} matched, ${comesOf(cycle)}</h3>
     <div class="wide">
       <table class="conflict">
         <thead>

@@ -3,7 +3,7 @@
 import { chunkText, requestText, valueText } from "../parts/chunk.js";
 import { plainTime } from "../parts/units.js";
 import { commandText, isOfUser } from "../timeline/commands.js";
-import { furthest } from "../timeline/seek.js";
+import { furthest, runTimeText } from "../timeline/seek.js";
 import { GROUPS as REGISTERED, TEXTS } from "../trace_kinds.js";
 
 
@@ -85,3 +85,6 @@ export function pairs(data) {
 export function eventTimeText(time, longest = furthest.value) {
   return plainTime(time / 1e6, 3, longest);
 }
+
+/** Returns the moment of an event [us] as text with its unit, as sentences have it. */
+export const eventMomentText = (time) => runTimeText(time / 1e6, 3);

@@ -5,10 +5,9 @@ import { requestText, valueText } from "../parts/chunk.js";
 import { counted } from "../parts/count.js";
 import { chosenText } from "../run_status.js";
 import { state } from "../store.js";
-import { pairs } from "./event_text.js";
+import { eventMomentText, pairs } from "./event_text.js";
 import { Flash } from "./flash.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
-import { runTimeText } from "../timeline/seek.js";
 
 /** Returns the newest request to each part up to the current moment, by path. */
 export function useRequests(paths) {
@@ -25,7 +24,7 @@ export function useRequests(paths) {
 function waitingText([time, , , data]) {
   const { call, asked, ...rest } = data;
   const given = Object.fromEntries(Object.entries(rest).filter(([, value]) => value !== null && typeof value !== "object"));
-  return `${asked !== undefined ? `'${requestText(asked)}'` : `${call ?? "request"} ${pairs(given)}`}, asked at ${runTimeText(time / 1e6, 3)}`;
+  return `${asked !== undefined ? `'${requestText(asked)}'` : `${call ?? "request"} ${pairs(given)}`}, asked at ${eventMomentText(time)}`;
 }
 
 /** Returns the status of a part: what it waits for, which production is about to fire, how many chunks it has. */

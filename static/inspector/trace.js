@@ -3,13 +3,13 @@
 import { html, useEffect, useMemo, useRef, useState } from "../vendor/preact.js";
 import { counted } from "../parts/count.js";
 import { agentsOf, isBelow, nameIn, systemsOf } from "./agents.js";
-import { eventText, eventTimeText, GROUPS, isInGroups } from "./event_text.js";
+import { eventMomentText, eventText, eventTimeText, GROUPS, isInGroups } from "./event_text.js";
 import { Rows } from "./rows.js";
 import { eventAt, useEventFilter } from "./event_filter.js";
 import { askWhy } from "./explanation.js";
 import { Mixed, contactEvents } from "./contacts.js";
 import { timeUnit } from "../parts/units.js";
-import { furthest, runTimeText, seek, travel } from "../timeline/seek.js";
+import { furthest, seek, travel } from "../timeline/seek.js";
 import { nothingYet, runStatus } from "../run_status.js";
 import { fetching } from "../earlier_events.js";
 import { events, session, state } from "../store.js";
@@ -72,7 +72,7 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
     class="${kind} ${ahead ? "ahead" : ""} ${chosen ? "chosen" : ""}"
     id="event-${number}"
     aria-selected=${chosen}
-    title="${runTimeText(time / 1e6, 3)}  ${source}  ${what}  ${more}${ahead ? "\nafter the present moment" : ""}\nClick: go to this moment"
+    title="${eventMomentText(time)}  ${source}  ${what}  ${more}${ahead ? "\nafter the present moment" : ""}\nClick: go to this moment"
     onClick=${go}
   >
     <td class="number time">${eventTimeText(time)}</td>
@@ -80,7 +80,7 @@ function Row({ number, event, ahead, chosen, several, onChoose }) {
     <td class="what"><b>${what}</b><span>${more}</span></td>
     <td class="ask">
       ${!isTouch && (kind === "fire" || chosen)
-        ? html`<button class="bare" tabindex="-1" title="Why? Explains this moment, and leaves the run where it is (W)" aria-label="Why at ${runTimeText(time / 1e6, 3)}" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
+        ? html`<button class="bare" tabindex="-1" title="Why? Explains this moment, and leaves the run where it is (W)" aria-label="Why at ${eventMomentText(time)}" onClick=${(press) => (press.stopPropagation(), onChoose(), askWhy(number))}>why</button>`
         : null}
     </td>
   </tr>`;

@@ -29,17 +29,11 @@ function lines(list) {
   };
 }
 
-/** Returns a function that maps a run of the list to the first recording of its tree, by its id. */
-function roots(list) {
-  const lineOf = lines(list);
-  return (run) => lineOf(run).at(-1).id;
-}
-
 /** Returns the tree that a recording is in, as rows with their depth: a branch follows the nearest recording from which it comes; those that
  * come from one that was deleted are side by side. */
 export function treeOf(list, id) {
   const lineOf = lines(list);
-  const rootOf = roots(list);
+  const rootOf = (run) => lineOf(run).at(-1).id; // the first recording of its tree
   const mine = list.find((run) => run.id === id);
   if (!mine) return [];
   const root = rootOf(mine);

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.page import open_tab, shows
+from tests.helpers.page import open_tab, say, shows
 from tests.helpers.workbench_server import Served
 
 LOOK = (Path(__file__).parent / "access.js").read_text(encoding="utf-8")
@@ -143,7 +143,7 @@ def test_all_can_be_read_named_and_reached(pages: Callable[..., Page], workbench
 def test_what_comes_after_the_present_moment_can_be_read_in_both_themes(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py", tab="productions")
     shows(page, "#status", "at its start")
-    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'until', time: 2 }))")
+    say(page, type="until", time=2)
     shows(page, "#time", r"t = 2\.00 s")
     page.evaluate("async () => void (await (await part('timeline/seek.js')).seek(0.3))")
     shows(page, "#time", r"t = 0\.30 s")

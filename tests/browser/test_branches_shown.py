@@ -5,19 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import asdict
-from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.page import answers, becomes_true, open_tab, shows, until
+from tests.helpers.page import answers, becomes_true, open_tab, say, shows, until
 from tests.helpers.workbench_server import Served
 from workbench.recording_index import Summary
-
-
-def say(page: Page, **command: Any) -> None:
-    """Sends a command to the run."""
-    page.evaluate("async (command) => void (await (await part('server.js')).say(command))", command)
 
 
 def change_the_past(page: Page) -> None:

@@ -17,17 +17,12 @@ from actr3d.parameter_schema import parameters_of
 from actr3d.recording import Recorded, Recording
 from actr3d.runner.facts import program_facts
 from actr3d.trace import Trace
-from tests.helpers.page import becomes_true, open_tab, shows, until
+from tests.helpers.page import becomes_true, open_tab, say, shows, until
 from tests.helpers.workbench_server import MODELS, Served
 from tests.server.test_html_replay import inside
 from workbench.html_replay.make import write_replay
 from workbench.loader import listing_of
 from workbench.worker.change_menu import change_menu
-
-
-def say(page: Page, **command: Any) -> None:
-    """Sends a command to the run."""
-    page.evaluate("async (command) => void (await (await part('server.js')).say(command))", command)
 
 
 def commands(page: Page) -> list[str]:
@@ -610,16 +605,13 @@ def test_a_long_run_that_was_changed_early_and_undone_is_shown_after_a_reload(pa
     page = pages("long.py")
     shows(page, "#status", "at its start")
 
-    def say(**command: Any) -> None:
-        page.evaluate("async (command) => void (await (await part('server.js')).say(command))", command)
-
-    say(type="run")
+    say(page, type="run")
     shows(page, "#status", "ended")
-    say(type="seek", time=5)
+    say(page, type="seek", time=5)
     shows(page, "#time", "t = 5.00 s")
-    say(type="command", word="set_buffer", values=["goal", "a"], drop=True)
+    say(page, type="command", word="set_buffer", values=["goal", "a"], drop=True)
     shows(page, "#status", "changed at 5.00 s")
-    say(type="undo", drop=True)
+    say(page, type="undo", drop=True)
     shows(page, "#status", "undone at 5.00 s")
     page.reload()
     shows(page, "#time", "t = 5.00 s")

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.page import becomes_true, choose, drawn, open_tab, shows, until
+from tests.helpers.page import becomes_true, choose, drawn, open_tab, say, shows, until
 from tests.helpers.workbench_server import MODELS, Served
 
 ENDED = """async () => {
@@ -23,7 +23,7 @@ ENDED = """async () => {
 def test_it_goes_to_a_time_that_is_typed(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")
-    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'until', time: 0.3 }))")
+    say(page, type="until", time=0.3)
     shows(page, "#time", "0.30 s")
     page.click("#status")
     page.keyboard.press("g")

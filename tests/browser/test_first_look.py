@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.helpers.page import choose, drawn, open_tab, shows, until
+from tests.helpers.page import choose, drawn, open_tab, say, shows, until
 from tests.helpers.workbench_server import Served
 
 Pages = Callable[..., Page]
@@ -288,7 +288,7 @@ def test_a_search_in_the_console_ends_with_its_run(pages: Pages, workbench: Serv
 def test_the_console_says_that_lines_are_cleared_and_not_that_nothing_was_printed(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("counting.py", tab="console")
     shows(page, "#status", "at its start")
-    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'until', time: 0.3 }))")
+    say(page, type="until", time=0.3)
     shows(page, "#time", r"0\.30 s")
     expect(lines(page)).not_to_have_count(0)
     page.locator(".console").get_by_role("button", name="Clear").click()

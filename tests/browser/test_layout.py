@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.helpers.page import choose, duplicate, open_tab, shows, until
+from tests.helpers.page import choose, duplicate, open_tab, say, shows, until
 from tests.helpers.workbench_server import Served
 
 Pages = Callable[..., Page]
@@ -246,7 +246,7 @@ def test_a_link_to_a_moment_leads_to_its_branch_once_the_run_was_changed_before_
     link = page.evaluate("navigator.clipboard.readText()")
     page.evaluate("async () => (await part('timeline/seek.js')).travel(0.1)")
     shows(page, "#time", r"0\.10 s")
-    page.evaluate("async () => (await part('server.js')).say({ type: 'command', word: 'clear_buffer', named: { buffer: 'goal' } })")
+    say(page, type="command", word="clear_buffer", named={"buffer": "goal"})
     shows(page, "#status", r"changed at 0\.10 s$")
     page.goto(link)
     shows(page, "#time", r"1\.00 s")

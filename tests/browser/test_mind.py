@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
-from tests.helpers.page import open_tab, shows, until
+from tests.helpers.page import open_tab, say, shows, until
 from tests.helpers.workbench_server import MODELS, Served
 
 Pages = Callable[..., Page]
@@ -496,7 +496,7 @@ def test_a_page_that_has_only_the_end_of_a_long_run_shows_the_moment_to_which_it
     page.reload()
     open_tab(page, "Console")
     expect(page.locator("#panel-console")).to_contain_text("line 4999 at 3.00 s")
-    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'seek', time: 0.12 }))")
+    say(page, type="seek", time=0.12)
     shows(page, "#time", r"0\.12 s")
     expect(page.locator("#panel-console")).to_contain_text("line 4999 at 0.10 s")
     expect(page.locator("#panel-console")).not_to_contain_text("being fetched")

@@ -9,7 +9,7 @@ from typing import Any
 
 from playwright.sync_api import Locator, Page, expect
 
-from tests.helpers.page import answers, shows
+from tests.helpers.page import answers, say, shows
 from tests.helpers.workbench_server import Served
 
 INDEX = {
@@ -160,7 +160,7 @@ def test_each_command_that_is_not_possible_says_why_and_none_is_offered_that_a_r
     assert page.evaluate(REFUSED_WITHOUT_REASON) == []
     expect(page.locator("#aperture")).to_be_enabled()
     page.locator("body").press("+")  # there is none above «fastest»
-    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'until', time: 20 }))")
+    say(page, type="until", time=20)
     shows(page, "#status", "ended")
     assert page.evaluate(REFUSED_WITHOUT_REASON) == []
     expect(page.locator("#aperture")).to_be_disabled()

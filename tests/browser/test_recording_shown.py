@@ -5,13 +5,12 @@ from __future__ import annotations
 import re
 import shutil
 from collections.abc import Callable
-from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.test_runs_panel import recorded, row
-from tests.helpers.page import drawn, open_tab, shows, until
+from tests.helpers.page import drawn, open_tab, say, shows, until
 from tests.helpers.workbench_server import MODELS, Served
 
 Pages = Callable[..., Page]
@@ -205,11 +204,6 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     until(page, lambda: page.locator("#width").inner_text() == other.locator("#width").inner_text() != width)
     for one in (page, other):
         expect(one.get_by_role("dialog")).to_have_count(0)
-
-
-def say(page: Page, **command: Any) -> None:
-    """Sends a command to the run."""
-    page.evaluate("async (command) => void (await (await part('server.js')).say(command))", command)
 
 
 def at(page: Page, time: float) -> None:

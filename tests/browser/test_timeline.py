@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import pytest
 from playwright.sync_api import FloatRect, Page, expect
 
-from tests.helpers.page import becomes_true, drawn, shows, until
+from tests.helpers.page import becomes_true, drawn, say, shows, until
 from tests.helpers.workbench_server import Served
 
 NAMES = 200
@@ -651,7 +651,7 @@ def test_curves_have_every_tick_after_a_restart_and_a_reload(ended: Page) -> Non
             }"""
         )
         until(page, lambda: page.evaluate(EVERY_TICK))
-    page.evaluate("async () => (await part('server.js')).say({ type: 'restart', run: true })")
+    say(page, type="restart", run=True)
     page.reload()  # while it goes on
     shows(page, "#status", "ended")
     until(page, lambda: page.evaluate(EVERY_TICK))
@@ -734,7 +734,7 @@ def test_runs_of_a_program_follow_each_other_as_its_clock_counts_them(pages: Cal
     (workbench.folder / "trials.py").write_text(TRIALS, encoding="utf-8")
     page = pages("trials.py")
     shows(page, "#status", "at its start")
-    page.evaluate("async () => (await part('server.js')).say({ type: 'restart', seed: 3, run: true })")
+    say(page, type="restart", seed=3, run=True)
     shows(page, "#status", "ended")
     until(page, lambda: len(page.evaluate(ENDS)["printed"]) == 6)
     ends = page.evaluate(ENDS)
@@ -871,7 +871,7 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
     becomes_true(page, ALL_CURVES)
     shown = page.evaluate(PLOTTED)
     assert len(shown) == 3
-    page.evaluate("async () => (await part('server.js')).say({ type: 'seek', time: 0.2 })")
+    say(page, type="seek", time=0.2)
     page.reload()
     becomes_true(page, ALL_CURVES)
     assert page.evaluate(PLOTTED) == shown  # also what lies ahead
@@ -1327,7 +1327,7 @@ def test_a_link_has_a_time_in_each_form_in_which_times_are_read(pages: Callable[
 def test_fit_shows_what_happened_without_a_quiet_end_and_again_all_of_the_run(pages: Callable[..., Page]) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")
-    page.evaluate("async () => void (await (await part('server.js')).say({ type: 'until', time: 30 }))")
+    say(page, type="until", time=30)
     shows(page, "#status", "30|ended")
     shown = "async () => (await part('timeline/view.js')).span.value.to"
     becomes_true(page, "async () => (await part('run_status.js')).lastEvent() > 0.1")

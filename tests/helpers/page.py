@@ -178,6 +178,11 @@ def shows(page: Page, where: str, text: str) -> None:
     expect(page.locator(where)).to_have_text(re.compile(text))
 
 
+def say(page: Page, **command: Any) -> None:
+    """Sends a command to the run that the page shows, and waits for the reply."""
+    page.evaluate("async (command) => void (await (await part('server.js')).say(command))", command)
+
+
 def until(page: Page, condition: Callable[[], bool]) -> None:
     """Waits for a condition that no locator can express."""
     end = time.monotonic() + PATIENCE / 1000

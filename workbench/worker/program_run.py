@@ -471,7 +471,7 @@ class ProgramRun(ControlledRun):
                 # While a change is undone, the other changes of that moment are repeated before the program pauses.
                 if to < self._rush or (to == self._rush and (not again or self._undoing is not None)):
                     self._clock = to
-                    if self._is_on_its_way():
+                    if self._goes_on():
                         return
                     continue
                 self._clock = self._rush
@@ -519,7 +519,7 @@ class ProgramRun(ControlledRun):
         while True:
             if self._rush is not None:
                 if self._clock < self._rush:
-                    if self._is_on_its_way():
+                    if self._goes_on():
                         return
                     continue
                 if self._undoing is not None and self._clock == self._rush:
@@ -683,11 +683,11 @@ class ProgramRun(ControlledRun):
     def _set_off(self, time: int) -> None:
         """Begins the way to another time [us]."""
         self._rush = time
-        where = time_text(seconds(time), longest=seconds(self._furthest))
-        self._controller.status, self._controller.reason = "running", f"going to {where}"
+        self._controller.set_off(f"going to {time_text(seconds(time), longest=seconds(self._furthest))}")
 
-    def _is_on_its_way(self) -> bool:
-        """Returns whether the program continues to the time that a user wants, who may have paused it on the way, or want another time."""
+    def _goes_on(self) -> bool:
+        """Carries out commands on the way to the time that a user wants; returns whether the program still goes there, and was not paused
+        or sent elsewhere."""
         wanted = self._rush
         self._controller.on_the_way(leave=self._undoing is None)
         if self._controller.status != "running":

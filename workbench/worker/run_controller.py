@@ -148,6 +148,11 @@ class RunController:
         """Returns the next command; None if none arrives within the timeout [s]. Without a timeout, it waits."""
         return self._later.popleft() if self._later else self.channel.receive(timeout)
 
+    def set_off(self, reason: str) -> None:
+        """Begins the way of the run to another time; a short way is not shown."""
+        self.status, self.reason = "running", reason
+        self._shown = perf_counter()
+
     def on_the_way(self, *, leave: bool) -> None:
         """Sends at intervals how far the run has come on its way to another time, and carries out commands to leave the way.
 
@@ -298,7 +303,6 @@ class RunController:
         """
         self._reached = max(self._reached, self.run.clock)
         self.run.take_events()  # the trace ends at the other time
-        self._shown = perf_counter()
         self.run.go_to(time)
         self.show()
 
@@ -321,7 +325,6 @@ class RunController:
             Exception: If it cannot be undone.
         """
         self._reached = max(self._reached, self.run.clock)
-        self._shown = perf_counter()
         self.run.undo(drop=drop)
         self.show()
 
