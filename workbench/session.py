@@ -137,12 +137,12 @@ class Session(Broadcast, Receiver):
             if self._closed:
                 raise Actr3dError("this session is closed, and begins no more runs: open the model again")
             options = options or RunOptions()
-            told = self._not_kept is not None
+            before = self._not_kept
             record = self._new_recording() if options.record else None
             more: dict[str, Any] = {"record": record, "factor": self.speed, "real_time": self.real_time, "breakpoints": self.breakpoints}
             start = start_of(self.path, options, attempt=self._attempt + 1, **more)
             self._attempt = start.attempt
-            if self._not_kept is not None and not told:
+            if self._not_kept is not None and before is None:
                 self.add_notice(Notice(level="error", text=self._not_kept), start)
             # Without a process ready to fork, this takes until everything that models need is loaded.
             self._launching = True
