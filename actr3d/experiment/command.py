@@ -161,7 +161,10 @@ def run(
         experiment, store, sure = _opened(opened, name, values, participants, trials, folder, resume=resume, any_version=any_version)
         total, begin, before = len(experiment.design), time.monotonic(), store.count
         facts = facts_of(experiment)
-        store.write_facts({"event": "facts", **facts})
+        # Of a finished experiment, nothing need be written on a disk that can only be read.
+        writes = before < total or os.access(store.folder, os.W_OK, effective_ids=True)
+        if writes:
+            store.write_facts({"event": "facts", **facts})
         out.event("facts", {**facts, "folder": str(store.folder)})
         out.line((experiment.specification.name, "bold"), f": {_trials(total)} in '{store.folder}', {before:,} finished")
         if before < total:
@@ -173,8 +176,8 @@ def run(
                 run_experiment(experiment, store, client, show=show, stop=stop, sure=sure)
             took, ran = time.monotonic() - begin, store.count - before
             out.line(f"{_trials(ran)} in {took:,.0f} s ({ran / max(took, 1e-9):,.1f} a second)")
-        files = export(store)
-        out.line(f"table: {', '.join(str(path) for path in files)}")
+        if writes:
+            out.line(f"table: {', '.join(str(path) for path in export(store))}")
         _show_failures(store, out)
         out.event("end", {"done": store.count, "total": total, "failures": store.failures, "folder": str(store.folder)})
         if store.count < total:

@@ -150,7 +150,7 @@ class Measured(Configuration):
     name: str
     """The name of its column, which is that of a variable of the program or a field of the model's measure."""
     unit: str | None = None
-    """Its unit, such as `s`; None without one."""
+    """Its unit, such as `s`; None for that of its name's ending, such as `latency_s`, or none."""
     meaning: str = ""
     """What it means, for the list of columns."""
     over: str | None = None

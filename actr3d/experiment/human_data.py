@@ -46,6 +46,8 @@ FOLDER = Path(__file__).parent / "human"
 """The folder of the library's published means."""
 SHOWN = 20
 """The maximum number of errors that are named at a time."""
+MAX_BYTES = 256 * 1024 * 1024
+"""The maximum size of a file: some two million trials."""
 HUGE = 1e100
 """The maximum size of a number: the squares of larger ones may be infinite."""
 OF_MEANS = ("measure", "mean", "sd", "n", "source")
@@ -153,7 +155,11 @@ def read_human_text(path: Path | str) -> str:
         ExperimentError: If it cannot be read.
     """
     try:
-        return Path(path).read_text(encoding="utf-8-sig")
+        with Path(path).open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+        if len(data) <= MAX_BYTES:
+            return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+        why = f"it has more than {MAX_BYTES:,} bytes"
     except IsADirectoryError:
         why = "it is a folder; name a file"
     except (OSError, UnicodeDecodeError) as error:

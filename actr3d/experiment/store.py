@@ -30,6 +30,20 @@ CHUNK = 5_000
 COLUMN_TYPES = ("null", "boolean", "integer", "real", "text")
 """The types of columns. A column with values of several types has the last of their types in this list, but `text` if some of the values
 are True or False and others are not."""
+UNITS = {
+    "_m_s": "m/s",
+    "_n_s": "N s",
+    "_deg": "degrees",
+    "_rad": "rad",
+    "_cm": "cm",
+    "_mm": "mm",
+    "_ms": "ms",
+    "_kg": "kg",
+    "_m": "m",
+    "_s": "s",
+    "_j": "J",
+}
+"""The units of columns by the endings of their names; longer endings before their own endings."""
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS trial (number INTEGER PRIMARY KEY, data TEXT NOT NULL, versions TEXT NOT NULL, wall_s REAL, worker TEXT);
 CREATE TABLE IF NOT EXISTS column (name TEXT PRIMARY KEY, place INTEGER, type TEXT NOT NULL, unit TEXT, meaning TEXT);
@@ -198,7 +212,7 @@ class Store:
         Args:
             finished: The trials.
             versions: The versions of the packages that ran them.
-            about: Units and meanings of columns; see `columns_of`.
+            about: Units and meanings of columns; see `Experiment.about`. A column that is given no unit has that of its name's ending.
 
         Raises:
             ExperimentError: If the file cannot be written.
@@ -233,7 +247,7 @@ class Store:
         for name, (place, kind) in columns.items():
             was = known.get(name, (place, "null", None))
             says = about.get(name, {})
-            unit = was[2] if was[2] is not None else says.get("unit")
+            unit = says.get("unit") or was[2] or _unit_of(name)
             entry = min(was[0], place), _joined(was[1], kind), unit
             if name not in known or entry != was:
                 self._database.execute("INSERT OR REPLACE INTO column VALUES (?, ?, ?, ?, ?)", (name, *entry, says.get("meaning") or ""))
@@ -348,6 +362,12 @@ def write_whole(path: Path, text: str) -> None:
         replace_file(path, text.encode())
     except OSError as error:
         raise ExperimentError(f"'{path}': cannot be written ({_why(error)})") from None
+
+
+def _unit_of(name: str) -> str | None:
+    """Returns the unit that the name of a column ends with, also that of a numbered one, such as `latency_s_1`; None if there is none."""
+    bare = re.sub(r"_[0-9]+$", "", name)
+    return next((unit for ending, unit in UNITS.items() if bare.endswith(ending)), None)
 
 
 def _sync(folder: Path) -> None:

@@ -13,7 +13,7 @@ import { dark } from "../theme.js";
 import { useFacts, useFresh } from "./answer.js";
 import { drawFigure, drawLegend, drawSample, layout, layoutLegend, levelsOf } from "./drawing.js";
 import { experiments, pathOf, showExperiment } from "./list.js";
-import { changedText, columnText, doneText, experimentText, headText, unitText } from "./wording.js";
+import { changedText, columnText, doneText, experimentText, headText } from "./wording.js";
 
 const MAX_LINES = 12;
 const MAX_BUTTONS = 300; // points that keys can reach
@@ -40,7 +40,7 @@ const isMeasure = ({ role, name, type }) => (role === "measure" || name === "wal
 function joined(facts, columns) {
   const numbered = (facts.measures ?? []).filter(({ over }) => over);
   const measureOf = (column) => numbered.find(({ name }) => column.name.startsWith(`${name}_`) && /^\d+$/.test(column.name.slice(name.length + 1)));
-  const found = columns.map((column) => (measureOf(column) ? { ...measureOf(column), type: "real", role: "measure" } : column));
+  const found = columns.map((column) => (measureOf(column) ? { ...measureOf(column), unit: column.unit, type: "real", role: "measure" } : column));
   return found.filter(({ name }, n) => found.findIndex((one) => one.name === name) === n);
 }
 
@@ -289,7 +289,7 @@ export function Figure({ experiment, facts, columns: all }) {
       ${differing.length > 0 ? html`<p class="problem warning">${experimentText(other)} is not drawn: it has other levels of ${differing.map(columnText).join(" and ")}, so its means would be of other conditions. To compare both, choose ${differing.length > 1 ? "them" : "it"} for the lines.</p>` : null}
       ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
       ${answer && lines.length > 0
-        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, across: headText(columns.find(({ name }) => name === answer.x) ?? { name: answer.x }), unit: unitText({ name: answer.measure, unit: answer.unit }), sources: drawn.map(experimentText), counts: countsText(answer, chosen, experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, across: headText(columns.find(({ name }) => name === answer.x) ?? { name: answer.x }), unit: answer.unit ?? "", sources: drawn.map(experimentText), counts: countsText(answer, chosen, experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
         : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
     </div>
   `;

@@ -3,7 +3,6 @@
 import { literal } from "../parameters/values.js";
 import { counted } from "../parts/count.js";
 import { valueText } from "../parts/chunk.js";
-import { unitOf } from "../parts/units.js";
 import { labelOf, whenText } from "../runs/wording.js";
 
 const STATES = { running: "running", stopping: "stopping …", stopped: "stopped", finished: "finished", failed: "ended early", elsewhere: "run by another process" };
@@ -16,17 +15,8 @@ export const stateText = ({ state }) => STATES[state] ?? state;
 /** Returns the name of a column without its unit. */
 export const columnText = (name) => (name === "wall_s" ? "computing time" : labelOf(name));
 
-/** Returns the unit of the values of a column in the table: that which was declared, or else that of its name; empty if there is none. */
-export function unitText({ name, unit: declared }) {
-  const { unit, factor } = unitOf(name);
-  return declared ?? (factor === 1 ? unit : ""); // the table has no values in another unit than the name's
-}
-
-/** Returns the name of a column with its unit. */
-export function headText(column) {
-  const unit = unitText(column);
-  return `${columnText(column.name)}${unit ? ` [${unit}]` : ""}`;
-}
+/** Returns the name of a column with its unit, if it has one. */
+export const headText = ({ name, unit }) => `${columnText(name)}${unit ? ` [${unit}]` : ""}`;
 
 /** Returns a value of a column; participants of an only group have their number. */
 export function cellText(name, value, { groups }) {

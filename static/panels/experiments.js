@@ -1,9 +1,9 @@
 // Experiments: a design run by many trials; their progress, figures and rows, and each trial in the 3D view.
 
-import { html, useEffect, useRef } from "../vendor/preact.js";
+import { html, useEffect, useLayoutEffect, useRef } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { agoText, whenInFull, whenText } from "../runs/wording.js";
-import { experiments, followExperiments, isRunning, listExperiments, problem, showExperiment, shown, total } from "../experiments/list.js";
+import { experiments, followExperiments, isRunning, listExperiments, part, problem, showExperiment, shown, total } from "../experiments/list.js";
 import { NewExperiment } from "../experiments/new.js";
 import { Experiment } from "../experiments/one.js";
 import { changedText, doneText, durationText, failuresText, stateText } from "../experiments/wording.js";
@@ -59,14 +59,14 @@ function Experiments() {
   const place = useRef(null);
   const last = useRef(null);
   const now = shown.value === "new" || isThere ? shown.value : "";
-  // What had the focus may be gone with the view before: then it goes to the row of that view, or to the first control.
-  useEffect(() => {
-    const before = last.current;
+  // What had the focus may be gone with the view before: then it goes to the row of that view, or to the first control; if only another part
+  // of an experiment is shown, to the button of that part. The former at once: a `Button` that is gone looks for another place later.
+  const goOn = (...controls) => document.activeElement === document.body && controls.map((one) => place.current.querySelector(one)).find(Boolean)?.focus();
+  useLayoutEffect(() => {
+    if (last.current !== null) goOn(`[data-experiment="${CSS.escape(last.current)}"] button`, ".tools button");
     last.current = now;
-    if (before === null || document.activeElement !== document.body) return;
-    const row = before && place.current.querySelector(`[data-experiment="${CSS.escape(before)}"] button`);
-    (row || place.current.querySelector(".tools button")).focus();
   }, [now]);
+  useEffect(() => void (now === last.current && goOn(".parts [aria-pressed=true]")), [part.value]);
   const view = shown.value === "new" ? html`<${NewExperiment} />` : isThere ? html`<${Experiment} />` : html`<${List} />`;
   return html`<div class="experiments" ref=${place}>${view}</div>`;
 }

@@ -52,9 +52,12 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
     page.get_by_label("Set another parameter").select_option("mode")
     page.get_by_label("Value of mode").fill("count")
     expect(foot).to_contain_text("s a trial")
-    foot.get_by_role("button", name="Run").click()
+    curves = page.get_by_role("button", name="Curves")
+    curves.focus()  # on the way through the page, before Run
+    foot.get_by_role("button", name="Run").press("Enter")
 
     expect(page.locator(".tools .state")).to_have_text("finished")
+    expect(page.get_by_role("button", name="Experiments", exact=True)).to_be_focused()
     expect(page.locator(".progress")).to_contain_text("24 of 24 trials")
     points = page.locator(".point")
     expect(points).to_have_count(4)
@@ -62,6 +65,7 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
     points.nth(2).press("Enter")
     rows = page.locator(".trials tbody tr")
     expect(rows).to_have_count(6)
+    expect(page.get_by_role("button", name="Trials", exact=True)).to_be_focused()
     page.get_by_role("button", name="Any n").click()
     expect(rows).to_have_count(24)
     page.get_by_role("button", name="Sort by luck").click()

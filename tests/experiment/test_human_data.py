@@ -148,6 +148,8 @@ def test_a_file_that_is_no_text_is_refused(tmp_path: Path) -> None:
     (tmp_path / "people.csv").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ExperimentError, match="it is not UTF-8"):
         read_human_data(tmp_path / "people.csv", SCHEMA)
+    with pytest.raises(ExperimentError, match=r"/dev/zero: cannot be read as human data \(it has more than 268,435,456 bytes\)"):
+        read_human_data("/dev/zero", SCHEMA)
     with pytest.raises(ExperimentError, match="No such file"):
         read_human_data(tmp_path / "nobody.csv", SCHEMA)
 

@@ -709,6 +709,8 @@ def test_the_report_of_an_experiment_that_cannot_be_written_goes_elsewhere(capsy
         other.chmod(0o777)
         write_report(folder, out=outer / "first")  # imports the libraries, which not everybody may be able to read
         with not_writable(folder):
+            assert main(["experiment", str(folder), "--resume"]) == 0  # nothing is left to run
+            assert f"in '{folder}', 12 finished\n" in capsys.readouterr().out
             assert main(["report", str(folder)]) == 1
             error = capsys.readouterr().err
             assert f"error: '{folder}/report': cannot write the report (Permission denied); name another folder with --out\n" == error

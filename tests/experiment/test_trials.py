@@ -526,7 +526,8 @@ def test_tables_have_the_types_and_units_of_their_columns(tmp_path: Path) -> Non
     parquet = pytest.importorskip("pyarrow.parquet")
     with store_of(tmp_path) as store:
         store.add(finished(0, flag=True, name='\u00e9\n,"', none=None), "v", {"x": {"unit": "m", "meaning": "Its width [m]."}})
-        store.add(finished(1, flag=None, name=None, none=None), "v")
+        given = {"walk_cm": {"unit": "m", "meaning": "Its unit is not that of its name."}}
+        store.add(finished(1, flag=None, name=None, none=None, latency_s_2=1.0, speed_m_s=1.0, walk_cm=1.0, items=1), "v", given)
         export(store)
         table = parquet.read_table(store.folder / "trials.parquet")
         assert table.column("flag").to_pylist() == [True, None]
@@ -534,6 +535,10 @@ def test_tables_have_the_types_and_units_of_their_columns(tmp_path: Path) -> Non
         assert table.schema.field("x").metadata[b"unit"] == b"m"
         columns = (store.folder / "columns.csv").read_text()
         assert "x,real,m,Its width [m]." in columns
+        assert "latency_s_2,real,s," in columns
+        assert "speed_m_s,real,m/s," in columns
+        assert "walk_cm,real,m," in columns
+        assert "items,integer,," in columns
         assert 'trial,integer,,"The number of the trial, from 0."' in columns
 
 

@@ -14,13 +14,13 @@ from actr3d.experiment.design import OWN_COLUMNS, Design
 from actr3d.experiment.human_data import absent_levels, factor_name, plain_levels, plain_text
 from actr3d.experiment.report.libraries import pandas
 from actr3d.experiment.specification import Experiment, Specification
-from actr3d.experiment.store import CHUNK, Column, Store, summary
+from actr3d.experiment.store import CHUNK, UNITS, Column, Store, summary
 from actr3d.parameter_schema import Parameter
 
 NUMBERS = ("boolean", "integer", "real")
 """The types of columns that are analysed as numbers."""
-ENDINGS = {"degrees": "_deg", "m/s": "_m_s"}
-"""The endings of names of columns by units, where they are not the unit."""
+ENDINGS = {unit: ending for ending, unit in UNITS.items()}
+"""The endings of names of columns by units."""
 SHORT = {"r2": "r²", "rmse": "RMSE", "aic": "AIC", "sd": "SD", "chi2": "χ²"}
 """Names of statistics as they are written."""
 LEFT_OUT = ("seed", "wall_s", "worker", "position")
@@ -97,7 +97,8 @@ def by_number(results: Results) -> list[Results]:
         if there:
             over, rest = factor_name(measure.over), results.rows.drop(columns=[column for column in numbers if column in results.rows])
             rows = [rest.assign(**{over: number, measure.name: results.rows[column]}) for column, number in there.items()]
-            about = Column(name=measure.name, type="real", unit=measure.unit, meaning=measure.meaning)
+            unit = results.columns[next(iter(there))].unit
+            about = Column(name=measure.name, type="real", unit=unit, meaning=measure.meaning)
             found.append(
                 replace(
                     results,
