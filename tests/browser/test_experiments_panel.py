@@ -458,7 +458,7 @@ def test_trials_have_units_heads_above_their_numbers_and_a_mark_at_the_one_that_
         {"name": "trial"},
         {"name": "participant", "type": "text"},
         {"name": "rt", "unit": "s"},
-        {"name": "turn_deg"},
+        {"name": "turn_deg", "unit": "degrees"},
     ]
     columns = [column | one for one in names]
     rows = [{"trial": number, "participant": f"all {number}", "rt": 1.5, "turn_deg": 20} for number in (1, 2)]
@@ -467,7 +467,7 @@ def test_trials_have_units_heads_above_their_numbers_and_a_mark_at_the_one_that_
     blank.route("**/trial", lambda route: route.fulfill(json={"recording": "sums_trial_1"}))
     blank.evaluate(TRIALS)
     heads, cells = blank.locator("#drawn thead button"), blank.locator("#drawn tbody tr").first.locator("td")
-    expect(heads).to_have_text(["trial▴", "participant", "rt [s]", "turn [°]"])
+    expect(heads).to_have_text(["trial▴", "participant", "rt [s]", "turn [degrees]"])
     expect(cells).to_have_text(["1", "1", "1.5", "20"])
     assert abs(heads.nth(2).evaluate(TEXT_END) - cells.nth(2).evaluate(TEXT_END)) < 2
     marked = blank.locator("#drawn [aria-current=true]")

@@ -707,7 +707,9 @@ def test_the_report_of_an_experiment_that_cannot_be_written_goes_elsewhere(capsy
         other = outer / "others"
         other.mkdir()
         other.chmod(0o777)
-        write_report(folder, out=outer / "first")  # imports the libraries, which not everybody may be able to read
+        main(["experiment", str(folder), "--resume"])  # imports the libraries, which not everybody may be able to read
+        write_report(folder, out=outer / "first")
+        capsys.readouterr()
         with not_writable(folder):
             assert main(["experiment", str(folder), "--resume"]) == 0  # nothing is left to run
             assert f"in '{folder}', 12 finished\n" in capsys.readouterr().out
