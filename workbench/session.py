@@ -221,6 +221,7 @@ class Session(Broadcast, Receiver):
                 launched.add_helper(message)
                 self.changed(facts=shown)
             case Notice() if not shown or not self._was_given(message):
+                launched.unwritten |= message.unwritten
                 self.add_notice(message, start)
             case At():
                 launched.stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
@@ -511,7 +512,7 @@ class Session(Broadcast, Receiver):
     @property
     def writing(self) -> list[Path]:
         """The recordings that runs are still writing: that on screen, and that being built, which is a program's from its first line."""
-        return [Path(one.start.record) for one in self._going if one.start.record is not None]
+        return [Path(one.start.record) for one in self._going if one.start.record is not None and not one.unwritten]
 
     @property
     def alive(self) -> bool:

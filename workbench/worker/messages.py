@@ -206,6 +206,8 @@ class Notice(Message, frozen=True, kw_only=True):
     detail: str = ""
     events: int | None = None
     """Number of events when the notice was made; None if unknown."""
+    unwritten: bool = False
+    """Whether it says that the recording of the run can no longer be written; this holds at every moment of the run."""
 
 
 def notice(
