@@ -601,7 +601,10 @@ class Session(Broadcast, Receiver):
         state = self.state
         if state is None:
             return b"null"
-        values = {name: getattr(state, name) for name in ("status", "reason", "tick", "time", "furthest", "target", "wanted", "measured", "events")}
+        values = {
+            name: getattr(state, name)
+            for name in ("status", "reason", "tick", "time", "furthest", "target", "wanted", "measured", "events")
+        }
         return msgspec.json.encode(
             {
                 **values,

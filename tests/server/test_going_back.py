@@ -347,7 +347,9 @@ def test_a_program_that_is_stopped_on_its_way_stays_there_says_where_it_went_and
 
 def test_a_program_that_does_not_answer_on_its_way_is_ended_by_stop(desk: Desk, tmp_path: Path) -> None:
     again = tmp_path / "again"
-    talk = desk.begin(tmp_path, SLOW.replace("0.01", f"60 if n == '40' and os.path.exists({str(again)!r}) else 0.01").replace("time\n", "time, os\n", 1))
+    talk = desk.begin(
+        tmp_path, SLOW.replace("0.01", f"60 if n == '40' and os.path.exists({str(again)!r}) else 0.01").replace("time\n", "time, os\n", 1)
+    )
     talk.say("until", time=4.0)
     talk.until("paused", time=4.0)
     again.touch()
