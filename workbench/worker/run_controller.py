@@ -79,7 +79,7 @@ class RunController:
         self._shown = 0.0
         self._later: deque[Do] = deque()
         """Commands that have arrived while the run is on its way to another time, and wait until it is there."""
-        self._set_off: list[int] = []
+        self._unanswered: list[int] = []
         """The commands with which the run has begun its way to another time: the next state answers them."""
         self._drawn: tuple[str, ...] = ()
         """The kinds of overlays to compute; empty if no browser shows the 3D view."""
@@ -272,7 +272,7 @@ class RunController:
         try:
             result = pickle.loads(message.command).carry_out(self)
         except EndOfRun:
-            self._set_off.append(message.id)
+            self._unanswered.append(message.id)
             raise
         except Exception as error:  # noqa: BLE001 - any error is reported to the sender
             self.channel.post(Reply(id=message.id, error=describe_error(error)))
@@ -378,8 +378,8 @@ class RunController:
         )
         with self._sending:
             self._send(state, trace)
-        while self._set_off:
-            self.channel.post(Reply(id=self._set_off.pop()))
+        while self._unanswered:
+            self.channel.post(Reply(id=self._unanswered.pop()))
 
     def show_busy(self) -> None:
         """Sends what happened before the model became busy, for example in an endless loop; the thread that listens to the server calls it.
