@@ -65,7 +65,7 @@ class Labels:
         """Returns the labels, and why they cannot be read."""
         try:
             return msgspec.json.decode(self._file.read_bytes(), type=dict[str, Label]), None
-        except FileNotFoundError:
+        except (FileNotFoundError, NotADirectoryError):
             return {}, None
         except OSError as error:
             return {}, error.strerror or type(error).__name__

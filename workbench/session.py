@@ -221,6 +221,7 @@ class Session(Broadcast, Receiver):
                 launched.add_helper(message)
                 self.changed(facts=shown)
             case Notice() if not shown or not self._was_given(message):
+                launched.unwritten |= message.unwritten
                 self.add_notice(message, start)
             case At():
                 launched.stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
@@ -291,7 +292,7 @@ class Session(Broadcast, Receiver):
             if self.state is not None and self.state.status not in ENDED:
                 status_now = "failed" if self._ending != "stopped" else "ended"
                 reason = self._ending or self._after_end
-                self.state = msgspec.structs.replace(self.state, status=status_now, reason=reason, measured=None)
+                self.state = msgspec.structs.replace(self.state, status=status_now, reason=reason, measured=None, target=None)
                 self.state_version += 1
         self.changed(facts=True)
 
@@ -342,6 +343,15 @@ class Session(Broadcast, Receiver):
             self._lists_changed()
 
         self.run_task(end())
+
+    async def leave_way(self, command: object) -> bool:
+        """Sends a command to a run that is on its way to another time; returns whether it was, and has answered soon."""
+        if self.is_loading or self.state is None or self.state.target is None:
+            return False
+        with suppress(TimeoutError):
+            async with asyncio.timeout(LAST_WORDS):
+                return (await self.ask(command, of_shown_run=True)).error is None
+        return False
 
     async def stop(self) -> None:
         """Ends the workers, whatever they are doing, and reads their last messages; after at most two seconds they are gone."""
@@ -502,7 +512,7 @@ class Session(Broadcast, Receiver):
     @property
     def writing(self) -> list[Path]:
         """The recordings that runs are still writing: that on screen, and that being built, which is a program's from its first line."""
-        return [Path(one.start.record) for one in self._going if one.start.record is not None]
+        return [Path(one.start.record) for one in self._going if one.start.record is not None and not one.unwritten]
 
     @property
     def alive(self) -> bool:
@@ -591,7 +601,10 @@ class Session(Broadcast, Receiver):
         state = self.state
         if state is None:
             return b"null"
-        values = {name: getattr(state, name) for name in ("status", "reason", "tick", "time", "furthest", "wanted", "measured", "events")}
+        values = {
+            name: getattr(state, name)
+            for name in ("status", "reason", "tick", "time", "furthest", "target", "wanted", "measured", "events")
+        }
         return msgspec.json.encode(
             {
                 **values,

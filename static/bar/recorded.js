@@ -4,7 +4,7 @@ import { html, useEffect, useSignal } from "../vendor/preact.js";
 import { Icon } from "../parts/icon.js";
 import { timeText } from "../parts/units.js";
 import { runs } from "../runs/list.js";
-import { branchText, ownName, whenInFull } from "../runs/wording.js";
+import { branchText, openText, ownName, whenInFull } from "../runs/wording.js";
 import { session, state } from "../store.js";
 import { before, choose, models, otherSessions, showSession } from "./models.js";
 
@@ -29,7 +29,7 @@ function Others({ id, model }) {
     const show = ({ currentTarget: list }) => showSession(others.find((one) => one.id === list.value));
     return html`<select aria-label="Open runs" value="" onChange=${show}>
       <option value="" disabled>${others.length} other runs are open</option>
-      ${others.map((one) => html`<option key=${one.id} value=${one.id}>${one.recorded ? `recording ${one.recorded}` : `run of ${one.model}`}</option>`)}
+      ${others.map((one) => html`<option key=${one.id} value=${one.id}>${openText(one, runs.value)}</option>`)}
     </select>`;
   }
   const there = before.value?.model ?? (models.value.some(({ path }) => path === model) ? model : null);

@@ -2,6 +2,8 @@
 
 import { otherSessions, showSession } from "../bar/models.js";
 import { commandsOf } from "../commands.js";
+import { runs } from "../runs/list.js";
+import { openText } from "../runs/wording.js";
 import { session } from "../store.js";
 import { signal } from "../vendor/preact.js";
 
@@ -15,7 +17,7 @@ async function read() {
 commandsOf(
   () =>
     others.value.map((one) => ({
-      text: one.recorded ? `Switch to the open recording ${one.recorded}` : `Switch to the open run of ${one.model}`,
+      text: `Switch to the open ${openText(one, runs.value)}`,
       about: () => one.status ?? "",
       group: "Open runs",
       work: () => showSession(one),

@@ -55,6 +55,13 @@ export function nameOf(run) {
   return ownName(run) || [run.model || run.id, whenText(run.made), branchText(run)].filter(Boolean).join(" ");
 }
 
+/** Returns what an open session shows: a recording by its name, which a list of recordings may have, or a model. */
+export function openText({ recorded, model }, list) {
+  if (!recorded) return `run of ${model}`;
+  const run = list?.find(({ id }) => id === recorded);
+  return `recording ${run ? nameOf(run) : recorded}`;
+}
+
 /** Returns when a run began, or its own name instead if that is wanted, and where it is a branch: branches begin with their run. */
 export function beginningText(run, named = false) {
   return [(named && ownName(run)) || whenText(run.made), branchText(run)].filter(Boolean).join(", ");
@@ -148,7 +155,7 @@ export function endedText(run) {
   if (run.problem || run.failed) return run.problem ?? run.failed;
   if (wasLeft(run) && run.branched !== null) return "its past was changed";
   if (run.ended) return ENDED[run.ended] ?? run.ended;
-  return run.session ? "goes on, or waits" : "left before its end";
+  return run.session ? "goes on, or waits" : "its end is not recorded";
 }
 
 /** Returns a name of the model without its unit: `peak_angle_deg` becomes `peak angle`. */

@@ -9,6 +9,8 @@ import { alive, session, shownRun, state } from "../store.js";
 export const wanted = signal(null);
 /** The time of the playhead [s]: the pointer's position at once, although the run may still be on its way. */
 export const present = computed(() => wanted.value ?? state.value?.time ?? 0);
+/** The time at which the playhead will be once the run is there [s]: where it is going, or is. */
+const destination = computed(() => wanted.value ?? state.value?.target ?? present.value);
 /** The furthest time that the run has reached [s]. */
 export const furthest = computed(() => Math.max(state.value?.furthest ?? 0, state.value?.time ?? 0));
 /** Returns a time of the run [s] as text; all its times look alike. `digits` as in `timeText`. */
@@ -28,9 +30,9 @@ export function seek(time) {
   travel(exactTime(Math.round(time / period) * period), time);
 }
 
-/** Goes on or back by a number of ticks. */
+/** Goes on or back by a number of ticks, from where the run is going. */
 export function goTicks(ticks) {
-  seek(Math.max(0, present.peek() + ticks * (session.peek()?.period || 0.01)));
+  seek(Math.max(0, destination.peek() + ticks * (session.peek()?.period || 0.01)));
 }
 
 /** Goes to a time that the run has reached [s]; to the newest if `wish`, from which the time was computed, is as late. */

@@ -85,19 +85,32 @@ NAMES = """async () => {
   const run = (id, branched, number = 1, name = "") => ({ id, branched, number, made: 0, model: "walk.py", label: name ? { name } : null });
   runs.value = [run("a", null), run("c", 2, 2), run("b", 2), run("d", 2, 1, "mine"), run("e", 4, 2, "mine")];
   const when = wording.whenText(0);
-  const { nameInTree, nameOf, beginningText } = wording;
-  const texts = runs.value.map((one) => [nameInTree(one), nameOf(one), beginningText(one), beginningText(one, true)]);
+  const { nameInTree, nameOf, beginningText, openText } = wording;
+  const open = ({ id }) => openText({ recorded: id, model: "walk.py" }, runs.value);
+  const texts = runs.value.map((one) => [nameInTree(one), nameOf(one), beginningText(one), beginningText(one, true), open(one)]);
   return texts.map((all) => all.map((text) => text.replace(when, "then")));
 }"""
 
 
 def test_a_branch_has_the_same_name_everywhere_with_the_number_that_the_server_has_given_it(blank: Page) -> None:
     assert blank.evaluate(NAMES) == [
-        ["then", "walk.py then", "then", "then"],
-        ["at 2.00 s (2)", "walk.py then branch at 2.00 s (2)", "then, branch at 2.00 s (2)", "then, branch at 2.00 s (2)"],
-        ["at 2.00 s", "walk.py then branch at 2.00 s", "then, branch at 2.00 s", "then, branch at 2.00 s"],
-        ["mine", "mine", "then, branch at 2.00 s", "mine, branch at 2.00 s"],
-        ["mine (2)", "mine (2)", "then, branch at 4.00 s", "mine (2), branch at 4.00 s"],
+        ["then", "walk.py then", "then", "then", "recording walk.py then"],
+        [
+            "at 2.00 s (2)",
+            "walk.py then branch at 2.00 s (2)",
+            "then, branch at 2.00 s (2)",
+            "then, branch at 2.00 s (2)",
+            "recording walk.py then branch at 2.00 s (2)",
+        ],
+        [
+            "at 2.00 s",
+            "walk.py then branch at 2.00 s",
+            "then, branch at 2.00 s",
+            "then, branch at 2.00 s",
+            "recording walk.py then branch at 2.00 s",
+        ],
+        ["mine", "mine", "then, branch at 2.00 s", "mine, branch at 2.00 s", "recording mine"],
+        ["mine (2)", "mine (2)", "then, branch at 4.00 s", "mine (2), branch at 4.00 s", "recording mine (2)"],
     ]
 
 

@@ -1343,3 +1343,42 @@ def test_fit_shows_what_happened_without_a_quiet_end_and_again_all_of_the_run(pa
     page.evaluate("async () => (await part('timeline/seek.js')).seek(0)")
     shows(page, "#time", r"0\.00 s")
     assert page.evaluate(shown) < 1.3 * last  # a click does not move the axis
+
+
+SLOW = """from actr3d.actr import *
+import time
+
+class Slow(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("count 0")
+    def count(goal="count ?n"):
+        time.sleep(0.02)
+        goal.set("count %d" % (int(n) + 1))
+
+model = Slow()
+model.run(6.02)
+"""
+"""A program that takes 2.4 s."""
+
+
+def test_on_the_way_to_another_time_steps_back_are_counted_from_where_it_goes_and_stop_leaves_it_where_it_is(
+    pages: Callable[..., Page], workbench: Served
+) -> None:
+    (workbench.folder / "slow_way.py").write_text(SLOW, encoding="utf-8")
+    page = pages("slow_way.py")
+    page.click("#run")
+    shows(page, "#status", "ended")
+    say(page, type="seek", time=5.0)
+    shows(page, "#status", "going to 5 s")
+    page.locator("#timeline").focus()
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("ArrowLeft")
+    shows(page, "#status", "paused")
+    shows(page, "#time", "t = 4.98 s")
+    say(page, type="seek", time=4.5)
+    shows(page, "#status", "going to 4.5 s")
+    page.click("#stop")
+    shows(page, "#status", "paused: stopped while going to 4.5 s")
+    page.keyboard.press("End")
+    shows(page, "#time", "t = 6.02 s")

@@ -85,6 +85,10 @@ def test_a_run_whose_recording_can_no_longer_be_written_does_not_blame_a_line_of
     assert re.fullmatch(rf"cannot write the recording '.*': .*; {kept}", notice["text"])
     assert (notice["file"], notice["line"]) == (None, None)
     assert talk.state["reason"] == notice["text"]
+    talk.say("seek", time=0.0)
+    talk.until("paused", time=0.0)
+    assert notice["events"] == 0, "it is shown at every moment"
+    assert talk.sessions.writing() == {}
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import random
 from collections.abc import Generator
@@ -28,6 +29,7 @@ from workbench.overlays import OVERLAYS
 from workbench.page_commands import COMMANDS, Question
 from workbench.page_commands.agents import Events, Explain, MemoryRows
 from workbench.page_commands.bodies import BodyState, Curves, Present, View
+from workbench.protocol import COMMAND
 from workbench.worker.names import Top
 from workbench.worker.shown import Shown
 
@@ -321,3 +323,72 @@ def test_a_program_on_its_way_to_a_time_goes_to_another_at_once_and_does_the_res
     talk.say("seek", time=3.0)
     talk.say("step")
     talk.until("paused", time=3.01)
+
+
+def on_the_way(talk: Talk, to: float) -> dict[str, Any]:
+    """Goes to a time of a slow program that has ended; returns a state on the way."""
+    talk.say("seek", time=to)
+    return talk.wait(lambda: talk.state["status"] == "running" and 0.5 < talk.state["time"] < to - 1)
+
+
+def test_a_program_that_is_stopped_on_its_way_stays_there_says_where_it_went_and_can_go_on(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    events = talk.state["events"]
+    assert on_the_way(talk, 6.0)["target"] == 6.0
+    talk.say("stop")
+    stopped = talk.until("paused")
+    assert (stopped["reason"], stopped["target"]) == ("stopped while going to 6 s", None)
+    assert 0 < stopped["time"] < 6.0 < stopped["furthest"]
+    talk.say("run")
+    assert talk.until("ended")["events"] == events
+    talk.say("stop")
+    talk.wait(lambda: not talk.session.alive)
+
+
+def test_a_program_that_does_not_answer_on_its_way_is_ended_by_stop(desk: Desk, tmp_path: Path) -> None:
+    again = tmp_path / "again"
+    talk = desk.begin(
+        tmp_path, SLOW.replace("0.01", f"60 if n == '40' and os.path.exists({str(again)!r}) else 0.01").replace("time\n", "time, os\n", 1)
+    )
+    talk.say("until", time=4.0)
+    talk.until("paused", time=4.0)
+    again.touch()
+    talk.say("seek", time=3.0)
+    talk.wait(lambda: talk.facts["stuck"])
+    assert talk.state["target"] == 3.0
+    talk.say("stop")
+    talk.wait(lambda: not talk.session.alive)
+
+
+def test_steps_back_on_the_way_are_counted_from_where_the_user_goes(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    on_the_way(talk, 4.0)
+    talk.say("back")
+    talk.say("back", ticks=2)
+    assert talk.until("paused")["time"] == 3.97
+
+
+def test_the_answer_to_going_elsewhere_comes_with_a_state_that_shows_where(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    talk.say("seek", time=6.0)
+    assert talk.state["target"] == 6.0
+    talk.say("seek", time=0.02)
+    assert 0.02 in (talk.state["target"], talk.state["time"])
+
+
+def test_what_a_user_wants_while_a_change_is_undone_happens_after_it(desk: Desk, tmp_path: Path) -> None:
+    talk = desk.begin(tmp_path, SLOW)
+    talk.say("until", time=4.0)
+    talk.until("paused", time=4.0)
+    talk.say("command", word="set_buffer", named={"buffer": "goal", "chunk": "count 7"})
+    talk.say("until", time=4.5)
+    talk.until("paused", time=4.5)
+    talk.say("undo", drop=True)
+    assert talk.state["target"] == 4.0
+    seek, pause = (COMMAND.validate_python(one) for one in ({"type": "seek", "time": 2.0}, {"type": "pause"}))
+
+    async def both() -> None:
+        await asyncio.gather(seek.submit(talk.session, "test"), pause.submit(talk.session, "test"))
+
+    desk.do(both())
+    assert talk.until("paused")["time"] == 2.0

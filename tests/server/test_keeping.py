@@ -60,6 +60,7 @@ def test_a_run_in_a_folder_that_cannot_be_written_is_shown_and_not_kept(desk: De
     told = [json.loads(notice)["text"] for _, notice in talk.session.notices]
     assert told.count(facts["not_kept"]) == 1
     assert Recordings(tmp_path).all() == []
+    assert Recordings(tmp_path).labels.problem is None  # the reason is given once
     (tmp_path / OWN).unlink()
     desk.do(talk.session.begin())
     talk.until("paused")

@@ -113,11 +113,13 @@ class Back(PageCommand):
 
     type: Literal["back"] = "back"
     of_shown_run: ClassVar[bool] = True
+    leaves_way: ClassVar[bool] = True
     ticks: int = Field(default=1, ge=1, le=100_000)
 
     def carry_out(self, controller: RunController) -> None:
-        clock, period = controller.run.clock, controller.run.period
-        controller.go_to(max(0, -(-clock // period) - self.ticks) * period)
+        run = controller.run
+        begin = run.clock if run.target is None else run.target
+        controller.go_to(max(0, -(-begin // run.period) - self.ticks) * run.period)
 
 
 @page_command

@@ -12,6 +12,7 @@ from workbench.worker.messages import Reply
 
 if TYPE_CHECKING:
     from workbench.session import Session
+    from workbench.worker.run_controller import RunController
 
 
 @page_command
@@ -34,13 +35,19 @@ class Restart(PageCommand):
 
 @page_command
 class Stop(PageCommand):
-    """Ends the worker process of the run, whatever it is doing."""
+    """Ends the worker process of the run, whatever it does; a run on its way to another time stays where it is instead, if it answers."""
 
     type: Literal["stop"] = "stop"
+    leaves_way: ClassVar[bool] = True
 
     async def serve(self, session: Session) -> Reply:
-        await session.stop()
+        if not await session.leave_way(self):
+            await session.stop()
         return Reply(id=0)
+
+    def carry_out(self, controller: RunController) -> None:
+        if controller.run.target is not None:
+            controller.pause(f"stopped while {controller.reason}")
 
 
 def _overlay(name: str) -> str:

@@ -156,7 +156,7 @@ class Channel:
     def post(self, message: Message) -> None:
         """Sends a message after all earlier ones; a notice is left out if very many messages wait."""
         if isinstance(message, Notice) and self.events is not None:
-            message = msgspec.structs.replace(message, events=self.events())
+            message = msgspec.structs.replace(message, events=0 if message.unwritten else self.events())
         with self._something:
             if isinstance(message, Notice) and len(self._messages) >= MAX_MESSAGES and message.level != "error":
                 return

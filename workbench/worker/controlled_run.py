@@ -45,6 +45,11 @@ class ControlledRun(ABC):
         """The furthest time that the run has reached [us]."""
 
     @property
+    def target(self) -> int | None:
+        """The time to which the run is on its way [us]; None if it is not going to another time."""
+        return None
+
+    @property
     @abstractmethod
     def period(self) -> int:
         """The length of a tick [us]."""

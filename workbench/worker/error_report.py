@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import msgspec
+
 from actr3d.errors import RecordingError
 from actr3d.runner.traceback_report import traceback_report
 from workbench.worker.memory import relieve
@@ -34,7 +36,7 @@ def describe_error(error: BaseException) -> str:
 def notice_of(error: BaseException) -> Notice:
     """Returns the notice for the user about an error, with the line of the model where it occurred, unless the model did not cause it."""
     if isinstance(error, RecordingError):
-        return notice("error", describe_error(error))
+        return msgspec.structs.replace(notice("error", describe_error(error)), unwritten=True)
     if isinstance(error, MemoryError):
         relieve()
     try:

@@ -130,6 +130,8 @@ class State(Message, frozen=True, kw_only=True):
     """Time of the run [s]."""
     furthest: float
     """The furthest time that the run has reached [s]."""
+    target: float | None = None
+    """The time to which the run is on its way [s]; None if it is not going to another time."""
     wanted: float | None
     measured: float | None
     """Measured speed as a multiple of real time; None if the run is not going on."""
@@ -204,6 +206,8 @@ class Notice(Message, frozen=True, kw_only=True):
     detail: str = ""
     events: int | None = None
     """Number of events when the notice was made; None if unknown."""
+    unwritten: bool = False
+    """Whether it says that the recording of the run can no longer be written; this holds at every moment of the run."""
 
 
 def notice(

@@ -575,6 +575,10 @@ class ProgramRun(ControlledRun):
         return self._furthest
 
     @property
+    def target(self) -> int | None:
+        return self._rush
+
+    @property
     def period(self) -> int:
         return PERIOD if self._shown is None else self._shown.period
 

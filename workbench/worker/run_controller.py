@@ -79,6 +79,8 @@ class RunController:
         self._shown = 0.0
         self._later: deque[Do] = deque()
         """Commands that have arrived while the run is on its way to another time, and wait until it is there."""
+        self._unanswered: list[int] = []
+        """The commands with which the run has begun its way to another time: the next state answers them."""
         self._drawn: tuple[str, ...] = ()
         """The kinds of overlays to compute; empty if no browser shows the 3D view."""
 
@@ -165,8 +167,8 @@ class RunController:
             return
         self._seen = len(self.run.trace)  # stop conditions are for what happens after it
         self.show()
-        while leave and self.status == "running" and (message := self.channel.receive(0)) is not None:
-            if isinstance(message, Do) and not pickle.loads(message.command).leaves_way:
+        while self.status == "running" and (message := self.channel.receive(0)) is not None:
+            if isinstance(message, Do) and not (leave and pickle.loads(message.command).leaves_way):
                 self._later.append(message)
             else:
                 self._hear(message)
@@ -270,7 +272,7 @@ class RunController:
         try:
             result = pickle.loads(message.command).carry_out(self)
         except EndOfRun:
-            self.channel.post(Reply(id=message.id))
+            self._unanswered.append(message.id)
             raise
         except Exception as error:  # noqa: BLE001 - any error is reported to the sender
             self.channel.post(Reply(id=message.id, error=describe_error(error)))
@@ -363,6 +365,7 @@ class RunController:
             tick=run.clock // run.period,
             time=seconds(run.clock),
             furthest=seconds(max(run.clock, run.furthest)),
+            target=None if run.target is None or self.status != "running" else seconds(run.target),
             wanted=self.pacer.factor,
             measured=self.pacer.measure(run.clock) if self.status == "running" else None,
             events=count,
@@ -375,6 +378,8 @@ class RunController:
         )
         with self._sending:
             self._send(state, trace)
+        while self._unanswered:
+            self.channel.post(Reply(id=self._unanswered.pop()))
 
     def show_busy(self) -> None:
         """Sends what happened before the model became busy, for example in an endless loop; the thread that listens to the server calls it.
