@@ -526,7 +526,7 @@ def test_tables_have_the_types_and_units_of_their_columns(tmp_path: Path) -> Non
     parquet = pytest.importorskip("pyarrow.parquet")
     with store_of(tmp_path) as store:
         store.add(finished(0, flag=True, name='\u00e9\n,"', none=None), "v", {"x": {"unit": "m", "meaning": "Its width [m]."}})
-        given = {"walk_cm": {"unit": "m", "meaning": "Its unit is not that of its name."}}
+        given: dict[str, dict[str, str | None]] = {"walk_cm": {"unit": "m", "meaning": "Its unit is not that of its name."}}
         store.add(finished(1, flag=None, name=None, none=None, latency_s_2=1.0, speed_m_s=1.0, walk_cm=1.0, items=1), "v", given)
         export(store)
         table = parquet.read_table(store.folder / "trials.parquet")
