@@ -637,14 +637,16 @@ class Session(Broadcast, Receiver):
             self._controlled_by = ""
         self.changed(facts=True)
 
-    def add_notice(self, notice: Notice, start: Start | None = None) -> None:
-        """Sends a notice to all who watch, with the number of its attempt and the version of the model's text at that time."""
+    def add_notice(self, notice: Notice, start: Start | None = None, *, of_run: bool = True) -> None:
+        """Sends a notice to all who watch, with the number of its attempt and the version of the model's text at that time; one that is not
+        of a run has neither, and is no part of its console."""
         shown: dict[str, Any] = {"number": self._notice_number, "level": notice.level, "text": notice.text, "detail": notice.detail}
         shown |= {"file": self._shown_file(notice.file, start), "line": notice.line}
         is_shown = self._shown is not None and (self._attempt if start is None else start.attempt) == self._shown.start.attempt
         now = self.log.next if self.state is None else self.state.events
         shown["events"] = notice.events if notice.events is not None else now if is_shown else 0
-        shown |= {"attempt": self._attempt if start is None else start.attempt, "version": start and start.version}
+        if of_run:
+            shown |= {"attempt": self._attempt if start is None else start.attempt, "version": start and start.version}
         self.notices.append((self._notice_number, msgspec.json.encode(shown)))
         self._notice_number += 1
         self.changed()

@@ -230,7 +230,7 @@ class Sessions:
         where = "its recording is under Runs" if recorded else "it was not recorded"
         text = f"At most {MAX_SESSIONS} models can be open: the run of {ended.model}, which no page showed, was ended; {where}."
         for session in self.all():
-            session.add_notice(Notice(level="warning", text=text))
+            session.add_notice(Notice(level="warning", text=text), of_run=False)
 
     async def close(self, name: str) -> None:
         """Ends a session.

@@ -67,12 +67,12 @@ function Dialog() {
   useLayoutEffect(() => box.current.showModal(), []);
 
   return html`<dialog ref=${box} class="compare" aria-labelledby="compare-title" onClose=${() => (pair.value = null)}>
-    <header>
+    <div class="compare-head">
       <h2 id="compare-title">Two runs</h2>
       ${found.answer ? html`<${Head} runs=${found.answer.runs} />` : html`<span class="stretch"></span>`}
       <button class="bare" title="Change sides" onClick=${() => (pair.value = pair.value.toReversed())}>Change sides</button>
       <button class="bare" aria-label="Close" title="Close (Esc)" onClick=${() => box.current.close()}><${Icon} name="close" /></button>
-    </header>
+    </div>
     <${Contents} ...${found} kinds=${kinds} />
   </dialog>`;
 }

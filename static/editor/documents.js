@@ -48,7 +48,7 @@ class Document {
     /** The file's text if this text was not edited from it: {text, version}; {text: null} if the file no longer exists. */
     this.theirs = signal(null);
     this.marks = signal([]);
-    /** The latest action, in a few words. */
+    /** The latest action, in a few words; empty once the text has changed after it. */
     this.note = signal("");
     if (base !== null && text !== base) this.change(minimal(this.state, text));
   }
@@ -59,6 +59,7 @@ class Document {
     this.state = transactions.at(-1).state;
     if (transactions.some(({ docChanged }) => docChanged)) {
       for (const { changes } of transactions) this.since = this.since.compose(changes);
+      this.note.value = "";
       this.settle();
       keepSoon(this);
       watching.changed(this);

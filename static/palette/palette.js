@@ -48,10 +48,11 @@ function found() {
   };
   const hits = all
     .flatMap((of) => {
-      const hit = match(words, `${textOf(of)} ${of.group} ${of.also ?? ""}`);
-      if (hit === null) return [];
-      const own = match(words, textOf(of)) === null ? 0 : OWN;
-      return [{ of, heading: "Commands", places: hit.places, score: hit.score + own + rank(of) }];
+      const fits = [textOf(of), `${textOf(of)} ${of.group} ${of.also ?? ""}`].map((text) => match(words, text));
+      if (fits[1] === null) return [];
+      if (fits[0] !== null) fits[0].score += OWN;
+      const best = fits.filter(Boolean).reduce((one, other) => (other.score > one.score ? other : one));
+      return [{ of, heading: "Commands", places: best.places, score: best.score + rank(of) }];
     })
     .sort((one, other) => other.of.ready() - one.of.ready() || other.score - one.score);
   const best = Math.max(...hits.map(({ score }) => score));

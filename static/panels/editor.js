@@ -119,7 +119,7 @@ function Files({ path, document }) {
 
 function Standing({ document }) {
   const dirty = document.dirty.value;
-  const note = dirty && document.note.value === "saved" ? "" : document.note.value;
+  const note = document.note.value;
   const full = `${folder.value}/${document.path}`;
   return html`<div class="file-status">
     <span class="path" title=${full}><bdi>${full.slice(0, full.lastIndexOf("/") + 1)}</bdi></span>

@@ -159,7 +159,10 @@ def test_names_are_found_and_renamed_and_the_text_formatted(opened: Callable[[st
     page.keyboard.press("Shift+Alt+F")
     has_line(page, "print(asked)")
     expect(page.locator(".cm-activeLine")).to_have_text(re.compile("def ask"))  # the cursor stays
+    note = page.locator(".file-status .state")
+    expect(note).to_contain_text("formatted")
     page.keyboard.press("Control+z")
+    expect(note).not_to_contain_text("formatted")
     has_line(page, "print( asked )")
     page.keyboard.press("Control+z")
     has_line(page, "print( word )")

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, Route, expect
 
 from tests.helpers.page import answers, say, shows
 from tests.helpers.workbench_server import Served
@@ -146,6 +146,24 @@ def test_the_palette_has_the_experiments_and_what_can_be_done_with_the_present_r
     search(page, "name note tags present run")
     page.keyboard.press("Enter")
     expect(page.get_by_role("dialog", name="Name of the run")).to_be_visible()
+
+
+def test_a_model_is_found_before_its_many_recordings(pages: Callable[..., Page]) -> None:
+    page = pages("counting.py")
+
+    def many(route: Route) -> None:
+        answer = route.fetch().json()
+        (one, *_) = answer["recordings"]
+        copies = [{**one, "id": f"{one['id']}-{number}", "made": one["made"] - 60 * number} for number in range(70)]
+        route.fulfill(json={**answer, "recordings": copies, "total": len(copies)})
+
+    page.route("**/api/recordings?*", many)
+    shows(page, "#status", "at its start")
+    page.click("#cycle")
+    shows(page, "#time", "0.05 s")
+    search(page, "counting.py")
+    expect(options(page).filter(has_text="Recording: counting.py")).not_to_have_count(1)
+    expect(options(page).first).to_contain_text("Model: counting.py")
 
 
 REFUSED_WITHOUT_REASON = """async () => {

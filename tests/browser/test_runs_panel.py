@@ -313,6 +313,7 @@ def test_runs_without_a_body_are_compared_by_what_their_agents_did(pages: Callab
     )
     assert len(set(runs)) == 2
     dialog = page.get_by_role("dialog", name="Two runs")
+    expect(page.get_by_role("banner")).to_have_count(1)  # that of the page
     latency = dialog.get_by_role("figure", name="memory latency")
     expect(latency.locator(".plot-of")).to_have_text([re.compile("first"), re.compile("second")])
     dialog.get_by_label("Add a curve").select_option(label="memory busy")
