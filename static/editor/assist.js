@@ -108,10 +108,11 @@ function documentationBox() {
   return Object.assign(document.createElement("div"), { className: "documentation", role: "note", ariaLabel: "Documentation", tabIndex: 0 }); // it may have to be scrolled
 }
 
-/** Returns the text of a documentation as an element; what stands between backticks is code. */
+/** Returns the text of a documentation as an element; what stands between backticks is code. Where a docstring breaks a long line, the text
+ * goes on: the box has its own width. */
 function paragraph(text) {
   const box = document.createElement("p");
-  text.split(/`+([^`]+)`+/).forEach((part, n) => box.append(n % 2 ? Object.assign(document.createElement("code"), { textContent: part }) : part));
+  text.replace(/(.{60,})\n *(?![\s*-]|[\w*]+: )/g, "$1 ").split(/`+([^`]+)`+/).forEach((part, n) => box.append(n % 2 ? Object.assign(document.createElement("code"), { textContent: part }) : part));
   return box;
 }
 

@@ -103,6 +103,9 @@ def test_help_while_writing(opened: Callable[[str], Page]) -> None:
     has_line(page, 'def answer(facts="meaning:pet")')
     hover_until_told(page, page.locator(".cm-line", has_text="memory = Memory").get_by_text("Memory"))
     shows(page, ".documentation", "Declarative memory: stores chunks")
+    text = page.locator(".documentation p").inner_text()
+    assert "Without a threshold, a failure" in text  # where the docstring breaks a line
+    assert "\n    finst_size: " in text
     page.locator("#status").hover()
     expect(page.locator(".documentation")).to_have_count(0)
     at_end_of(page, "memory = Memory(facts)")
