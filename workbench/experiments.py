@@ -139,6 +139,8 @@ class Experiments:
         self._work: defaultdict[str, list[str]] = defaultdict(list)
         """What is being made of each experiment: sentences such as "its report is being made"."""
         self._closed = False
+        self._problems: dict[str, str] = {}
+        """Why experiments ended early; their notes say it too, if these can be written."""
         self._counts: dict[str, tuple[Any, dict[str, Any]]] = {}
         """The numbers of finished and failed trials by name, and the stamps of the tables in which they were counted."""
         self._checked: OrderedDict[str, ExperimentFacts] = OrderedDict()
@@ -209,7 +211,7 @@ class Experiments:
         _, counted = self._counts.get(name, (None, _NOTHING))
         if run is not None:
             return {**found, "columns": counted["columns"], **run.summary()}
-        problem = counted["problem"] or notes.problem
+        problem = counted["problem"] or self._problems.get(name) or notes.problem
         complete = total is not None and counted["done"] >= total
         state = "finished" if complete else "elsewhere" if folder.is_locked else "failed" if problem else "stopped"
         return {**found, **counted, "state": state, "problem": problem, "workers": 0, "rate": None, "remaining": None}
@@ -373,6 +375,7 @@ class Experiments:
             async for event in run.command.events():
                 run.take(event)
                 if isinstance(event, ExperimentFacts) and not began.done():
+                    self._problems.pop(folder.path.name, None)
                     folder.note(problem=None, workers=workers)
                     if new:
                         folder.seal()
@@ -387,6 +390,7 @@ class Experiments:
                 began.set_exception(RefusedDesignError(problem or "it was stopped before it began"))
                 began.exception()  # nobody may wait for it any more
             elif problem is not None:
+                self._problems[folder.path.name] = problem
                 folder.note(problem=problem)
 
     def stop(self, name: str) -> None:

@@ -186,6 +186,26 @@ class Fitted:
     high: float | None
     """The upper bound."""
 
+    @classmethod
+    def of(cls, searched: Range, value: float, low: float | None, high: float | None) -> Fitted:
+        """Returns a fitted parameter whose interval contains the best candidate. Where that is more than a step beyond a bound, the surface
+        does not describe the candidates, and the bound is not determined.
+
+        Args:
+            searched: The range that was searched.
+            value: The best candidate.
+            low: The lower bound by the surface, as a share of the range; None if there is none.
+            high: The upper bound.
+        """
+        span = searched.high - searched.low
+        least, most = (None if part is None else round(searched.low + part * span, DIGITS) for part in (low, high))
+        return cls(
+            name=searched.name,
+            value=value,
+            low=None if least is None or least - value > span / STEPS else min(least, value),
+            high=None if most is None or value - most > span / STEPS else max(most, value),
+        )
+
 
 @dataclass(frozen=True, kw_only=True)
 class FitResult:
@@ -328,7 +348,7 @@ class Fit:
         return FitResult(
             design=self._design,
             measure=self.measure,
-            parameters=tuple(_fitted(one, values[one.name], *bounds) for one, bounds in zip(self._ranges, intervals, strict=True)),
+            parameters=tuple(Fitted.of(one, values[one.name], *bounds) for one, bounds in zip(self._ranges, intervals, strict=True)),
             fit=_agreement_of(tried[best], self.target),
             candidates=candidates,
             tried=tuple(
@@ -809,14 +829,3 @@ def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agre
 
 def _agreement_of(found: _Simulated, target: Mapping[Cell, float]) -> Agreement:
     return replace(agreement(found.means, target), failed=found.failed, trials=found.trials)
-
-
-def _fitted(one: Range, value: float, low: float | None, high: float | None) -> Fitted:
-    """Returns a fitted parameter with its interval, which contains the best candidate even if the surface has its minimum elsewhere."""
-    bounds = [None if part is None else round(one.low + part * (one.high - one.low), DIGITS) for part in (low, high)]
-    return Fitted(
-        name=one.name,
-        value=value,
-        low=None if bounds[0] is None else min(bounds[0], value),
-        high=None if bounds[1] is None else max(bounds[1], value),
-    )

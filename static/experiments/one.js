@@ -30,7 +30,7 @@ function Actions({ experiment }) {
   const inWork = waits || work.length > 0; // perhaps of another page
   return html`
     ${isRunning(experiment) ? html`<${Button} disabled=${waits || !canStop(experiment)} title="Stop; finished trials are kept, and it can go on later" onClick=${() => stopExperiment(experiment)}><${Icon} name="stop" />Stop<//>` : null}
-    ${canResume(experiment) ? html`<${Button} class="primary" disabled=${waits} title=${`Run the trials that are left, ${processesText(experiment)}`} onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume<//>` : null}
+    ${canResume(experiment) ? html`<${Button} class="primary" disabled=${waits} title=${`Run the trials that are left, ${processesText(experiment)}, with model and design as they were at its beginning`} onClick=${() => resumeExperiment(experiment)}><${Icon} name="run" />Resume<//>` : null}
     ${canMakeReport(experiment) ? html`<${Button} disabled=${inWork} title="Make the report: figures, tables, statistics" onClick=${() => makeReport(experiment)}>Make report<//>` : null}
     ${isRunning(experiment) || state === "elsewhere" ? null : html`<${Button} class="danger bare" aria-label="Delete" title="Delete" disabled=${inWork} onClick=${() => deleteExperiment(experiment)}><${Icon} name="trash" /><//>`}
   `;
@@ -62,7 +62,7 @@ function About({ experiment, facts }) {
     ["began", whenInFull(experiment.made)],
     ["folder", html`<span class="mono">.workbench/experiments/${experiment.id}</span>`],
     ["changed", changedText(experiment.changed) || "nothing"],
-    ["model", facts.model],
+    ["model", facts.model && `${facts.model}, as it was at the beginning`],
     ...Object.entries(facts.factors ?? {}).map(([name, levels]) => [name, levelsText(levels)]),
     ...Object.entries(facts.groups ?? {}).map(([name, number]) => [
       `group ${name}`,

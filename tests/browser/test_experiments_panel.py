@@ -83,7 +83,7 @@ def test_an_experiment_is_changed_run_and_looked_into(pages: Callable[..., Page]
     expect(page.locator(".tools .name")).to_have_text("counting")  # the experiment is still shown
     page.get_by_role("button", name="Design").click()
     expect(page.locator(".about-design")).to_contain_text("trials 3 · n 1, 2, 5, 9 · mode count")
-    expect(page.get_by_role("row", name="model", exact=False).locator("td")).to_have_text("course/counter.py")
+    expect(page.get_by_role("row", name="model", exact=False).locator("td")).to_have_text("course/counter.py, as it was at the beginning")
     page.get_by_role("button", name="Make report").click()
     report = page.frame_locator("iframe.report")
     expect(report.get_by_role("heading", level=1)).to_have_text("counting", timeout=120_000)

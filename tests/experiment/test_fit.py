@@ -25,6 +25,7 @@ from actr3d.experiment.design import Measured
 from actr3d.experiment.fit import (
     STARTING,
     Fit,
+    Fitted,
     QuadraticSurface,
     Range,
     TargetMean,
@@ -575,6 +576,23 @@ def test_a_parameter_that_the_data_do_not_determine_has_no_interval() -> None:
     assert (low, high) == (pytest.approx(0.4 - half, abs=0.01), pytest.approx(0.4 + half, abs=0.01))
     assert surface.interval(1) == (None, None)
     assert surface.minimum()[0] == pytest.approx(0.4, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "interval"),
+    [
+        (1.5, 0.2, 0.6, (1.2, 1.6)),
+        (1.605, 0.2, 0.6, (1.2, 1.605)),  # rounded to a step, it is a little beyond
+        (1.8, 0.2, 0.6, (1.2, None)),
+        (1.8, None, 0.6, (None, None)),
+        (1.1, 0.2, 0.6, (None, 1.6)),
+    ],
+)
+def test_an_interval_has_the_best_candidate_or_no_bound_where_that_is_far_beyond(
+    value: float, low: float | None, high: float, interval: tuple[float | None, float | None]
+) -> None:
+    found = Fitted.of(Range(name="x", low=1, high=2), value, low, high)
+    assert (found.low, found.high) == interval
 
 
 @pytest.mark.daily(1)

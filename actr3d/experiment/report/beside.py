@@ -185,7 +185,8 @@ def matched_means(trials: Any, measure: str, keys: Sequence[str], means: Any) ->
 
 
 def fit_to(parts: Sequence[Results], beside: Beside) -> Any:
-    """Returns a `DataFrame` with a row for each measure: the agreement of the means of all cells that both have; see `matched`."""
+    """Returns a `DataFrame` with a row for each measure: the agreement of the means of all cells that both have, see `matched`, and how many
+    of the means beside are left out."""
     found: list[dict[str, Any]] = []
     for results, measure in ((part, measure) for part in parts for measure in part.measures):
         cells = matched(results, beside, measure)
@@ -194,8 +195,9 @@ def fit_to(parts: Sequence[Results], beside: Beside) -> Any:
             difference = float((cells["model"] - cells["beside"]).mean())
             unit = results.unit(measure)
             row = {"measure": measure, "unit": unit, "beside": beside.label, "cells": len(cells)}
+            row["left_out"] = len(beside.of(measure)) - len(cells)
             found.append({**row, "mean_difference": difference, "rmse": rmse, "r": r, "r2": r * r})
-    return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "mean_difference", "rmse", "r", "r2"])
+    return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "left_out", "mean_difference", "rmse", "r", "r2"])
 
 
 def missing(value: Any) -> bool:
