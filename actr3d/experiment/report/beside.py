@@ -185,8 +185,8 @@ def matched_means(trials: Any, measure: str, keys: Sequence[str], means: Any) ->
 
 
 def fit_to(parts: Sequence[Results], beside: Beside) -> Any:
-    """Returns a `DataFrame` with a row for each measure: the agreement of the means of all cells that both have, see `matched`, and how many
-    of the means beside are left out."""
+    """Returns a `DataFrame` with a row for each measure: the agreement of the means of all cells that both have, see `matched`, and how
+    many of the means beside are left out."""
     found: list[dict[str, Any]] = []
     for results, measure in ((part, measure) for part in parts for measure in part.measures):
         cells = matched(results, beside, measure)
