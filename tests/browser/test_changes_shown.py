@@ -600,6 +600,7 @@ Agent().run(600)
 """A program with 60,000 events, more than the server keeps."""
 
 
+@pytest.mark.slow
 def test_a_long_run_that_was_changed_early_and_undone_is_shown_after_a_reload(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "long.py").write_text(LONG, encoding="utf-8")
     page = pages("long.py")

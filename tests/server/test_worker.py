@@ -173,7 +173,7 @@ def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_
     assert explained.error == "the run has ended"
 
 
-@pytest.mark.daily(5)
+@pytest.mark.daily(3)
 @pytest.mark.parametrize(
     ("does", "told"),
     [
