@@ -256,6 +256,7 @@ def test_a_changed_recording_has_the_address_and_the_link_of_the_branch_that_it_
     shows(page, "#time", r"t = 0\.22 s")
 
 
+@pytest.mark.slow
 def test_a_link_to_a_moment_past_the_end_of_a_recording_leads_to_the_branch_that_has_it(pages: Pages, workbench: Served) -> None:
     page, other = pages("counting.py"), pages("counting.py")
     shows(page, "#status", "at its start")
@@ -300,6 +301,7 @@ def test_a_recording_stays_shown_while_its_file_is_renamed(pages: Pages, workben
     assert page.url.endswith("/?model=second.py")
 
 
+@pytest.mark.slow
 def test_a_recording_of_a_model_that_is_gone_shows_the_parameters_of_its_run(pages: Pages, workbench: Served) -> None:
     file = workbench.folder / "gone.py"
     shutil.copy(MODELS / "doorway.py", file)

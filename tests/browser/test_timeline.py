@@ -38,7 +38,7 @@ def at(page: Page, share: float, y: float = 30) -> tuple[float, float]:
 
 
 def told(page: Page, share: float, step: int = LANE) -> Iterator[str]:
-    """Gives what is told of each row at a place of the axis, from the top on. Plots are higher than lanes: for these, a step can be larger."""
+    """Gives what is told of each row at a place of the axis, from the top on. For plots, which are high, a larger `step` is enough."""
     before = ""
     for y in range(30, int(box(page)["height"]), step):
         page.mouse.move(*at(page, share, y))
@@ -1281,6 +1281,7 @@ LOOK = """async (to) => {
 }"""
 
 
+@pytest.mark.slow
 def test_all_times_of_a_run_of_hours_look_alike_at_any_moment_of_it(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "long.py").write_text(LONG, encoding="utf-8")
     page = pages("long.py", tab="productions")
@@ -1309,6 +1310,7 @@ def test_all_times_of_a_run_of_hours_look_alike_at_any_moment_of_it(pages: Calla
     shows(page, "#time", r"t = 1:15:00\.00$")
 
 
+@pytest.mark.slow
 def test_a_link_has_a_time_in_each_form_in_which_times_are_read(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "long.py").write_text(LONG, encoding="utf-8")
     page = pages("long.py")

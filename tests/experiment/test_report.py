@@ -172,7 +172,7 @@ def test_an_error_in_a_measure_ends_its_own_section_and_is_named(
 
 
 def test_the_measures_that_a_design_names_are_open_and_in_the_contents(tmp_path: Path) -> None:
-    path = str(write_experiment(tmp_path, participants=3))
+    path = str(write_experiment(tmp_path, participants=1))
     folder = store_rows(tmp_path / "out", path, count, trials=1)
     write_report(folder)
     assert '<section id="rt--s-">' in page(folder)
@@ -344,8 +344,12 @@ def test_lists_are_shown_by_number_beside_people(tmp_path: Path) -> None:
     assert float(fits["latency"]["r2"]) > 0.8
     assert ">people</text>" in (folder / "report/figures/measure_accuracy.svg").read_text(encoding="utf-8")
     assert "accuracy_3" not in page(folder)
-    write_report(folder, compare=store_rows(tmp_path / "again", "paired_associates", learn, participants=3))
-    assert {row["measure"]: row["cells"] for row in table(folder, "fit_to_other")} == {"accuracy": "8", "latency": "7"}
+    again = read_results(store_rows(tmp_path / "again", "paired_associates", learn, participants=3))
+    parts = by_number(read_results(folder))
+    other = beside_experiment(by_number(again), parts)
+    assert other is not None
+    fits = fit_to(parts, other)
+    assert dict(zip(fits["measure"], fits["cells"], strict=True)) == {"accuracy": 8, "latency": 7}
 
 
 def test_failures_and_missing_trials_are_said_plainly(tmp_path: Path) -> None:
@@ -575,7 +579,7 @@ def test_a_trial_is_turned_by_the_same_angle_in_the_constraints_and_for_each_par
 
 def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
-    path, same = (str(write_experiment(folder, participants=3)) for folder in (tmp_path, tmp_path / "elsewhere"))
+    path, same = (str(write_experiment(folder, participants=1)) for folder in (tmp_path, tmp_path / "elsewhere"))
     one = store_rows(tmp_path / "one", path, count)
 
     def compared(name: str, design: str, **options: Any) -> str:
@@ -585,7 +589,7 @@ def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) 
         return re.findall(rf"{name} \(“there”: counting, \d+ trials\) differs from this experiment \(“now”\) in: (.*)\.", str(text))[0]
 
     assert compared("same", same) == "nothing that was set"
-    more = "--participants: {'all': 4} there, {'all': 3} now; --trials: 5 there, 4 now"
+    more = "--participants: {'all': 4} there, {'all': 1} now; --trials: 5 there, 4 now"
     assert compared("more", same, participants=4, trials=5) == more
     write_report(one, compare=tmp_path / "more")
     assert f"differs from this experiment (“now”) in: {html.escape(more)}.</p>" in page(one)
@@ -786,11 +790,11 @@ def test_levels_that_are_texts_switches_or_none_are_kept_apart(tmp_path: Path) -
 
 
 def test_an_experiment_that_was_run_has_a_report(tmp_path: Path, capsys: Any) -> None:
-    path, folder = write_experiment(tmp_path, participants=3, trials=2), tmp_path / "run"
+    path, folder = write_experiment(tmp_path, participants=1, trials=2), tmp_path / "run"
     assert main(["experiment", str(path), "--out", str(folder), "--workers", "1"]) == 0
     assert main(["report", str(folder)]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(folder / "report" / "index.html")
-    assert [(row["n_"], row["n"]) for row in table(folder, "means_rt")] == [("1", "3"), ("2", "3"), ("5", "3")]
+    assert [(row["n_"], row["n"]) for row in table(folder, "means_rt")] == [("1", "1"), ("2", "1"), ("5", "1")]
 
 
 def test_two_participants_are_described_and_not_tested(tmp_path: Path) -> None:

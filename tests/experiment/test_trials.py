@@ -145,7 +145,8 @@ def test_a_process_ends_while_a_trial_runs_which_then_begins_again_or_has_no_row
     tmp_path: Path, end: Callable[[TrialProcess], None]
 ) -> None:
     begun = tmp_path / "begun"
-    waiting = f"import time\nwith open({str(begun)!r}, 'a+') as file:\n    file.write('x')\n    first = file.tell() == 1\nif first:\n    time.sleep(60)\n"
+    begins = f"with open({str(begun)!r}, 'a+') as file:\n    file.write('x')\n    first = file.tell() == 1\n"
+    waiting = f"{begins}if first:\n    import time\n    time.sleep(60)\n"
     text = specify(str(write_experiment(tmp_path, model=COUNTER.replace("model.run()", f"{waiting}model.run()")))).specification.to_json()
     before, process = trial_processes(), TrialProcess()
     with ThreadPoolExecutor(1) as pool:
