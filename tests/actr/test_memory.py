@@ -98,7 +98,7 @@ def test_recall_has_the_logistic_chance() -> None:
     buffer = Buffer()
     memory = Memory(buffer, threshold=0.3)
     agent = started_agent(buffer=buffer, memory=memory, fixed=DMFixed(memory), noise=DMNoise(memory, noise=0.5), seed=3)
-    n = 2000
+    n = 4000
     for activation in (-0.4, 0.3, 0.9):
         agent.memory.clear()
         agent.memory.add("a", fixed=activation)
