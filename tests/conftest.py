@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -39,9 +40,19 @@ gc.disable()  # until all tests are collected: garbage collections would take a 
 
 
 def pytest_collection_finish() -> None:
-    """Turns garbage collection on, and leaves the thousands of collected tests out of it."""
+    """Turns garbage collection on, and leaves the thousands of collected tests out of it. It runs less often than by default."""
     gc.freeze()
+    gc.set_threshold(10_000)
     gc.enable()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> Iterator[None]:
+    """Leaves out of it, after the tests of each file, what then remains: the libraries that they imported, and what is cached."""
+    yield
+    if nextitem is not None and nextitem.path != item.path:
+        gc.collect()
+        gc.freeze()
 
 
 @pytest.hookimpl(optionalhook=True)

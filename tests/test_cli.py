@@ -167,6 +167,7 @@ def test_an_error_while_matching_names_the_modellers_lines_and_the_production(tm
     assert done.stderr.endswith("ZeroDivisionError: division by zero\nin production 'p' (model.py:8) at 0 s\n")
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("folder", ["actr3d-models", "actr3d/models"])
 def test_a_model_beside_the_library_or_installed_with_it_is_no_part_of_it(tmp_path: Path, folder: str) -> None:
     shutil.copytree(Path(actr3d.__file__).parent, tmp_path / "actr3d", ignore=shutil.ignore_patterns("__pycache__"))
@@ -299,7 +300,7 @@ def test_nothing_comes_between_the_lines_of_json(tmp_path: Path) -> None:
     assert sorted(done.stderr.split()) == ["child", "grandchild", "raw"]
 
 
-@pytest.mark.daily(4)
+@pytest.mark.daily(2)
 @pytest.mark.parametrize("words", [[], ["--trace", "all"], ["--json"]])
 @pytest.mark.parametrize(
     ("source", "message"),

@@ -179,7 +179,7 @@ def test_a_wrong_change_names_what_is_wrong_and_changes_nothing(command: tuple[s
     assert [event.to_json() for event in simulation.trace or ()] == before
 
 
-@pytest.mark.parametrize("text", ["a " * 50_000, "x:" + "y" * 500_000, "\ud800 ‮ <script>", "__class__:1 _name:2 0:z", "a:b:c :: :"])
+@pytest.mark.parametrize("text", ["a " * 10_000, "x:" + "y" * 500_000, "\ud800 ‮ <script>", "__class__:1 _name:2 0:z", "a:b:c :: :"])
 def test_huge_and_hostile_chunks_are_only_text(text: str) -> None:
     def run() -> list[str]:
         simulation.run(0.1)

@@ -64,7 +64,7 @@ def check(store: ChunkStore, wanted: dict[Any, Any]) -> None:
             assert found == [id(c) for c in store if slot in c and as_text(c[slot]) == text]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=75, deadline=None)
 @given(steps=steps, wanted=contents)
 def test_the_indexes_agree_with_a_linear_scan(steps: list[tuple[str, int, dict[Any, Any]]], wanted: dict[Any, Any]) -> None:
     store = ChunkStore()
@@ -77,7 +77,7 @@ words = st.sampled_from(["p", "q", "r"])
 conditions = st.one_of(words, words.map(lambda w: f"!{w}"), st.sampled_from(["?", "?x", "?y", "!?x"]))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(
     chunks=st.lists(st.lists(words, min_size=1, max_size=3), max_size=12),
     pattern=st.lists(conditions, min_size=1, max_size=3).map(" ".join),
@@ -124,7 +124,7 @@ def test_a_copied_chunk_is_in_no_memory() -> None:
 tests_of_a_slot = st.sampled_from(["1", "!1", "x", "!x!y", "None?v", "?v", "!?v", "?w", "?bound", "!?bound", "?", "0.1", "?v!?bound"])
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(
     chunks=st.lists(contents, max_size=8),
     asked=st.dictionaries(st.sampled_from(["a", "b", "0", "1"]), tests_of_a_slot, min_size=1),

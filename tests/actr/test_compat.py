@@ -17,7 +17,7 @@ def cases(*programs: Program) -> list[object]:
     return [pytest.param(program, seed, id=f"{program.name}-{seed}") for program in programs for seed in program.seeds]
 
 
-@pytest.mark.daily(35)
+@pytest.mark.daily(18)
 @pytest.mark.parametrize(("program", "seed"), cases(*PROGRAMS))
 def test_prints_what_python_actr_prints(program: Program, seed: int, tmp_path: Path) -> None:
     folder = tmp_path / "library"  # a model's log goes into a folder beside its file
@@ -33,6 +33,7 @@ def test_prints_what_python_actr_prints(program: Program, seed: int, tmp_path: P
     assert len(done.stdout.splitlines()) > 3, f"{program.name} prints too little to compare"
 
 
+@pytest.mark.daily(13)
 @pytest.mark.parametrize(("program", "seed"), cases(*TUTORIAL_PROGRAMS))
 def test_tutorial_models_print_what_they_print_under_python_actr(program: Program, seed: int, tmp_path: Path) -> None:
     assert program.text != program.file.read_text(encoding="utf-8")

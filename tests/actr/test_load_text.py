@@ -199,7 +199,7 @@ def test_nothing_is_left_of_unused_texts(folders: list[Path]) -> None:
     gc.collect()
     before = len(linecache.cache), len(sys.modules)
     kept: Any = load(1).Agent
-    dead = [weakref.ref(load(number)) for number in range(2, 60)]
+    dead = [weakref.ref(load(number)) for number in range(2, 20)]
     gc.collect()
     assert [ref for ref in dead if ref() is not None] == []
     # The class keeps its module, its lines and its helper modules.

@@ -226,7 +226,7 @@ CHUNKS = st.dictionaries(st.sampled_from(["a", "b", 0, 1, 2]), st.one_of(VALUES,
 CONTENTS = st.one_of(st.none(), CHUNKS)
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(PATTERNS, CHUNKS)
 def test_as_python_actr_does(pattern: str, contents: dict[Any, Any]) -> None:
     assert Pattern(pattern).match(Chunk(contents)) == PeerPattern(pattern).match(Chunk(contents))

@@ -180,13 +180,13 @@ def test_numbers_of_other_kinds() -> None:
     assert seen(world) == [("fraction", 0.25), ("int", 1.25)]
 
 
-def test_a_million_steps_of_ten_milliseconds_do_not_drift() -> None:
+def test_a_hundred_thousand_steps_of_ten_milliseconds_do_not_drift() -> None:
     model = Model()
     model.run(0)
     run = model.run
-    for _ in range(1_000_000):
+    for _ in range(100_000):
         run(0.01)
-    assert model.now() == 10_000.0
+    assert model.now() == 1_000.0
 
 
 def test_ticks_share_out_a_run_exactly() -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from itertools import zip_longest
 
 import pytest
-from golden.make import GOLDEN, MODELS, ROOT, command, golden_file, golden_names, model_file, model_names, options
+from golden.make import GOLDEN, MODELS, ROOT, command, golden_file, golden_names, is_embodied, model_file, model_names, options
 
 from actr3d.actr.loading.sweep import parameters
 from actr3d.cli import main
@@ -29,6 +29,8 @@ NOISY = {
     "utility_learning",
 }
 """The models that draw random numbers which make a difference."""
+QUICK_FIRST = sorted(NAMES, key=lambda name: (is_embodied(name), name not in NOISY))
+"""Models with a body, which take seconds, come last: the daily cases are others."""
 LARGEST = 300_000
 """No golden trace is larger [bytes]."""
 
@@ -73,7 +75,7 @@ def test_does_what_its_golden_trace_says(name: str) -> None:
 
 
 @pytest.mark.daily(2)
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", QUICK_FIRST)
 def test_does_the_same_twice_in_one_process(name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("PYTHONHASHSEED", "0")
@@ -83,13 +85,13 @@ def test_does_the_same_twice_in_one_process(name: str, capsys: pytest.CaptureFix
 
 
 @pytest.mark.daily(3)
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", QUICK_FIRST)
 def test_another_seed_changes_noisy_models_only(name: str) -> None:
     same = without_start(record(name, *options(name, seed=2))) == without_start(golden_file(name).read_bytes())
     assert same == (name not in NOISY), f"{name}: it must be in NOISY, if another seed changes what it does, and only then"
 
 
-@pytest.mark.daily(35)
+@pytest.mark.daily(20)
 @pytest.mark.parametrize("until", ["0.01", "0.12", "3"])
 @pytest.mark.parametrize("name", NAMES)
 def test_can_be_ended_early(name: str, until: str, capsys: pytest.CaptureFixture[str]) -> None:

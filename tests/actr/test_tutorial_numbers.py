@@ -87,6 +87,7 @@ def test_facts_with_a_larger_fan_take_longer(strength: float, attention: float) 
     assert run("fan_effect", strength=strength, attention=attention).agent.times == approx(expected, abs=2e-6)
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize(("noise", "penalty"), [(0.3, 10.0), (0.6, 10.0), (0.3, 20.0)])
 def test_similar_letters_are_confused_as_often_as_the_equation_says(noise: float, penalty: float) -> None:
     trials = 500
@@ -114,8 +115,8 @@ def test_the_faster_way_is_learned_and_chosen_as_often_as_the_equation_says(nois
 
 
 def test_both_ways_are_tried_equally_often_at_first() -> None:
-    firsts = [run("utility_learning", seed=seed, mornings=1).agent.choices[0] for seed in range(200)]
-    assert near(firsts.count("bus") / 200, 0.5, 200)
+    firsts = [run("utility_learning", seed=seed, mornings=1).agent.choices[0] for seed in range(100)]
+    assert near(firsts.count("bus") / 100, 0.5, 100)
 
 
 @pytest.mark.parametrize(("utility", "later"), [(-1, 0.05), (1, 0.15)])

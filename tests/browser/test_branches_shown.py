@@ -254,6 +254,7 @@ def test_a_recording_that_is_changed_is_not_said_to_have_a_branch(pages: Callabl
     expect(page.locator(".branched")).not_to_contain_text("branch")
 
 
+@pytest.mark.slow
 def test_the_banner_of_a_branch_has_its_name_with_its_number(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("counting.py")
     shows(page, "#status", "at its start")

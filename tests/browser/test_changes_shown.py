@@ -238,6 +238,7 @@ def test_branches_are_a_tree_on_the_timeline_and_are_named_switched_and_deleted(
     assert commands(page) == ["set buffer goal task:count number:2 last:5 -> task:count number:2 last:3"]
 
 
+@pytest.mark.slow
 def test_the_form_for_moving_has_the_place_of_the_chosen_thing(pages: Callable[..., Page], workbench: Served) -> None:
     source = "from actr3d.simulation import Simulation\nfrom actr3d.world import Floor, Mannequin, Scene, Wall\n"
     parts = "Floor(), Mannequin(name='walker'), Wall(name='screen', start=(4, 1), end=(4, 3))"
@@ -600,6 +601,7 @@ Agent().run(600)
 """A program with 60,000 events, more than the server keeps."""
 
 
+@pytest.mark.slow
 def test_a_long_run_that_was_changed_early_and_undone_is_shown_after_a_reload(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "long.py").write_text(LONG, encoding="utf-8")
     page = pages("long.py")

@@ -110,6 +110,7 @@ def test_a_breakpoint_that_an_edit_has_lost_is_kept_and_said_to_be(pages: Callab
     expect(page.locator(".stops")).to_have_count(0)
 
 
+@pytest.mark.slow
 def test_the_speed_and_breakpoints_chosen_without_a_run_are_shown_and_are_those_of_the_next_run(pages: Callable[..., Page]) -> None:
     page = pages("doorway.py", paced=True, tab="productions")
     shows(page, "#status", "at its start")

@@ -170,6 +170,7 @@ def test_the_duration_of_a_trial_is_asked_each_time_the_form_is_shown(pages: Cal
         page.get_by_role("button", name="Experiments", exact=True).click()
 
 
+@pytest.mark.slow
 def test_the_duration_of_a_trial_is_measured_for_the_values_that_were_changed(pages: Callable[..., Page], design: str) -> None:
     page = pages(design.partition(":")[0], tab="experiments")
     measured: list[dict[str, Any]] = []

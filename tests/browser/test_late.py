@@ -320,6 +320,7 @@ def test_a_recording_that_cannot_be_opened_does_not_leave_the_page_waiting_for_t
     expect(page.locator("#status")).not_to_contain_text("loading")
 
 
+@pytest.mark.slow
 def test_a_model_chosen_while_a_recording_is_opened_stays_chosen(pages: Callable[..., Page], workbench: Served) -> None:
     page = pages("counting.py", refusals=True)
     shows(page, "#status", "at its start")

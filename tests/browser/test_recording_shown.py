@@ -7,10 +7,10 @@ import shutil
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.browser.test_runs_panel import recorded, row
-from tests.helpers.page import drawn, open_tab, say, shows, until
+from tests.helpers.page import Users, drawn, open_tab, say, shows, until
 from tests.helpers.workbench_server import MODELS, Served
 
 Pages = Callable[..., Page]
@@ -221,6 +221,7 @@ def changed_at(page: Page, time: float, before: str) -> str:
     return page.url.partition("run=")[2]
 
 
+@pytest.mark.slow
 def test_a_changed_recording_has_the_address_and_the_link_of_the_branch_that_it_is_then(pages: Pages, workbench: Served) -> None:
     name = recorded(workbench, "counting.py")
     page, other = pages("counting.py"), pages("doorway.py")  # a run of the same model is open, too
@@ -255,6 +256,7 @@ def test_a_changed_recording_has_the_address_and_the_link_of_the_branch_that_it_
     shows(page, "#time", r"t = 0\.22 s")
 
 
+@pytest.mark.slow
 def test_a_link_to_a_moment_past_the_end_of_a_recording_leads_to_the_branch_that_has_it(pages: Pages, workbench: Served) -> None:
     page, other = pages("counting.py"), pages("counting.py")
     shows(page, "#status", "at its start")
@@ -299,6 +301,7 @@ def test_a_recording_stays_shown_while_its_file_is_renamed(pages: Pages, workben
     assert page.url.endswith("/?model=second.py")
 
 
+@pytest.mark.slow
 def test_a_recording_of_a_model_that_is_gone_shows_the_parameters_of_its_run(pages: Pages, workbench: Served) -> None:
     file = workbench.folder / "gone.py"
     shutil.copy(MODELS / "doorway.py", file)
@@ -438,13 +441,13 @@ def test_a_recording_that_was_stopped_runs_again_as_it_was_recorded(pages: Pages
     expect(page.locator("#panel-console")).not_to_contain_text("another text")
 
 
-def test_an_address_of_a_model_that_is_not_there_says_so(browser: Browser, workbench: Served) -> None:
-    with browser.new_context() as context:
-        page = context.new_page()
-        page.goto(f"{workbench.address}&model=nope.py")
-        open_tab(page, "Messages")
-        shows(page, "#log", "There is no model «nope.py» in this folder; this is another one.")
-        shows(page, "#status", "paused")
+def test_an_address_of_a_model_that_is_not_there_says_so(users: Users, workbench: Served) -> None:
+    page = users.new(scene=False)
+    page.goto(f"{workbench.address}&model=nope.py")
+    open_tab(page, "Messages")
+    shows(page, "#log", "There is no model «nope.py» in this folder; this is another one.")
+    shows(page, "#status", "paused")
+    users.leave()
 
 
 def test_a_test_that_opens_a_page_of_a_model_that_is_not_there_fails(pages: Pages) -> None:
@@ -452,15 +455,13 @@ def test_a_test_that_opens_a_page_of_a_model_that_is_not_there_fails(pages: Page
         pages("nope.py")
 
 
-def test_an_address_of_a_recording_that_is_gone_says_so_and_shows_a_model(browser: Browser, workbench: Served) -> None:
-    with browser.new_context() as context:  # of its own: a browser always complains of what is not found
-        page = context.new_page()
-        page.goto(f"{workbench.address}&model=counting.py")
-        shows(page, "#status", "paused")
-        page.goto(f"{workbench.url}/?run=gone")
-        open_tab(page, "Messages")
-        shows(page, "#log", "The recording «gone» cannot be opened: there is no such recording")
-        shows(page, "#status", "paused")
+def test_an_address_of_a_recording_that_is_gone_says_so_and_shows_a_model(pages: Pages, workbench: Served) -> None:
+    page = pages("counting.py", refusals=True)
+    shows(page, "#status", "paused")
+    page.goto(f"{workbench.url}/?run=gone")
+    open_tab(page, "Messages")
+    shows(page, "#log", "The recording «gone» cannot be opened: there is no such recording")
+    shows(page, "#status", "paused")
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+import pytest
 from playwright.sync_api import Page, Route, expect
 
 from tests.browser.test_runs_panel import recorded
@@ -37,6 +38,7 @@ def test_it_says_that_the_workbench_is_starting(pages: Callable[..., Page]) -> N
 NO_MODELS: dict[str, Any] = {"folder": "/empty", "models": [], "manual": False, "no_manual": None}
 
 
+@pytest.mark.slow
 def test_a_recording_is_shown_though_the_folder_has_no_models(pages: Callable[..., Page], workbench: Served) -> None:
     name = recorded(workbench, "counting.py")
     page = pages("doorway.py", refusals=True)

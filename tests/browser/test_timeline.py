@@ -37,10 +37,10 @@ def at(page: Page, share: float, y: float = 30) -> tuple[float, float]:
     return area["x"] + left + share * (area["width"] - left), area["y"] + y
 
 
-def told(page: Page, share: float) -> Iterator[str]:
-    """Gives what is told of each row at a place of the axis, from the top on."""
+def told(page: Page, share: float, step: int = LANE) -> Iterator[str]:
+    """Gives what is told of each row at a place of the axis, from the top on. For plots, which are high, a larger `step` is enough."""
     before = ""
-    for y in range(30, int(box(page)["height"]), LANE):
+    for y in range(30, int(box(page)["height"]), step):
         page.mouse.move(*at(page, share, y))
         drawn(page)
         tip = page.get_by_role("tooltip")
@@ -515,7 +515,7 @@ UNEVEN = """async () => {
   const { drawCurves, valueAt } = await part("parts/curve.js");
   const [times, all, width, height] = [[], [], 800, 100];
   for (let time = 0; time < 86400; time += 40) {
-    const dense = Math.floor(time / 4000) % 3 === 1 && time % 4000 < 1000; // stretches of each tick in an overview
+    const dense = Math.floor(time / 4000) % 9 === 1 && time % 4000 < 1000; // stretches of each tick in an overview
     for (let n = 0; n < (dense ? 4000 : 1); n += 1) times.push(time + n / 100);
   }
   times.push(86411.53);
@@ -865,7 +865,7 @@ def test_numbers_in_buffers_and_of_modules_are_curves(pages: Callable[..., Page]
     assert rows[0] == ["time [s]", "goal.at"]
     assert [float(value) for _, value in rows[1:]] == [0, 1, 2, 3, 4]
     assert 0 < found["busy"] < found["end"]
-    tips = list(told(page, 0.95))
+    tips = list(told(page, 0.95, 2 * LANE))
     assert any("goal.at 4" in text for text in tips), tips
     assert any("memory latency" in text and " s" in text for text in tips), tips
     becomes_true(page, ALL_CURVES)
@@ -1124,7 +1124,7 @@ def test_each_agent_has_its_own_curves_and_the_pointer_shows_them(pages: Callabl
           while (!["time full", "time busy", "utility"].every(isThere)) await new Promise((done) => setTimeout(done, 20));
         }"""
     )
-    tips = {share: "\n".join(told(page, share)) for share in (0.14, 0.16, 0.4, 0.7)}  # of 1.25 s
+    tips = {share: "\n".join(told(page, share, 2 * LANE)) for share in (0.14, 0.16, 0.4, 0.7)}  # of 1.25 s
     for text in tips.values():
         full = re.search(r"time full at ([\d.]+) s\s+left\.goal full ([\d.]+) s", text)
         assert full is not None, text
@@ -1281,6 +1281,7 @@ LOOK = """async (to) => {
 }"""
 
 
+@pytest.mark.slow
 def test_all_times_of_a_run_of_hours_look_alike_at_any_moment_of_it(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "long.py").write_text(LONG, encoding="utf-8")
     page = pages("long.py", tab="productions")
@@ -1309,6 +1310,7 @@ def test_all_times_of_a_run_of_hours_look_alike_at_any_moment_of_it(pages: Calla
     shows(page, "#time", r"t = 1:15:00\.00$")
 
 
+@pytest.mark.slow
 def test_a_link_has_a_time_in_each_form_in_which_times_are_read(pages: Callable[..., Page], workbench: Served) -> None:
     (workbench.folder / "long.py").write_text(LONG, encoding="utf-8")
     page = pages("long.py")

@@ -134,7 +134,7 @@ def test_a_page_that_is_late_is_shown_as_soon_as_it_is_there(browser: Browser) -
     hurried = MODULE.replace("PATIENCE = 8000", "PATIENCE = 300")
     late = """<p id="size"></p><script>
       document.querySelector("p").textContent = `${innerHeight} px`;
-      setTimeout(() => parent.postMessage("workbench", "*"), 1500);
+      setTimeout(() => parent.postMessage("workbench", "*"), 1000);
     </script>"""
 
     def answer(path: str, port: int) -> str:

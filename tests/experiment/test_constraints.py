@@ -43,7 +43,7 @@ def test_turning_points_are_found() -> None:
     assert critical_ratio([(1.0, True), (1.2, True)]) is None, "nothing is known where nobody walks straight through"
 
 
-@pytest.mark.daily(2)
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(("centre", "slope"), [(1.9, 0.8), (1.5, 1.5), (1.5, 4.0)])
 def test_intervals_of_turning_points_have_the_true_one_as_often_as_they_say(centre: float, slope: float) -> None:
     draw, ratios, runs, inside = random.Random(3), [0.9 + 0.1 * n for n in range(13)], 150, 0

@@ -108,6 +108,7 @@ def test_a_walk_into_the_wall_touches_it_and_stops() -> None:
     assert (result.wall_angle_deg, result.clearance_left_m) == (None, pytest.approx(0, abs=2e-3)) or result.clearance_left_m is None
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize(("aside", "heading"), [(0.9, 0.0), (-0.5, 0.0), (0.5, 2.0)])
 def test_a_body_that_leans_against_the_wall_beside_the_doorway_has_no_clearance(aside: float, heading: float) -> None:
     """Contacts are soft: it is a few millimetres between the faces of the wall."""

@@ -63,9 +63,9 @@ def walk_through(trial: Any) -> dict[str, Any]:
     return {name: value for name, value in walk(trial).items() if name in names}
 
 
-def parts_on_apertures(folder: Path) -> list[str | Table | Plot | Caution]:
+def parts_on_apertures(folder: Path, others: Sequence[Beside] = ()) -> list[str | Table | Plot | Caution]:
     """Returns the parts of the sections on apertures, without writing a report: that would draw all figures and test each measure."""
-    return [part for section in passing_apertures(read_results(folder), []) for part in section.parts]
+    return [part for section in passing_apertures(read_results(folder), list(others)) for part in section.parts]
 
 
 def frames(parts: Sequence[str | Table | Plot | Caution]) -> dict[str, Any]:
@@ -76,6 +76,11 @@ def frames(parts: Sequence[str | Table | Plot | Caution]) -> dict[str, Any]:
 def cautions(parts: Sequence[str | Table | Plot | Caution]) -> str:
     """Returns what parts say that a reader must not overlook."""
     return "\n".join(part.text for part in parts if isinstance(part, Caution))
+
+
+def one_cell(folder: Path) -> str:
+    """Writes a design whose report has no figures and no tests, and returns its file: for what a report does with its folder."""
+    return str(write_experiment(folder, factors='{"n": [2]}', participants=1))
 
 
 def count(trial: Any) -> dict[str, Any]:
@@ -167,7 +172,7 @@ def test_an_error_in_a_measure_ends_its_own_section_and_is_named(
 
 
 def test_the_measures_that_a_design_names_are_open_and_in_the_contents(tmp_path: Path) -> None:
-    path = str(write_experiment(tmp_path, participants=3))
+    path = str(write_experiment(tmp_path, participants=1))
     folder = store_rows(tmp_path / "out", path, count, trials=1)
     write_report(folder)
     assert '<section id="rt--s-">' in page(folder)
@@ -339,8 +344,12 @@ def test_lists_are_shown_by_number_beside_people(tmp_path: Path) -> None:
     assert float(fits["latency"]["r2"]) > 0.8
     assert ">people</text>" in (folder / "report/figures/measure_accuracy.svg").read_text(encoding="utf-8")
     assert "accuracy_3" not in page(folder)
-    write_report(folder, compare=store_rows(tmp_path / "again", "paired_associates", learn, participants=3))
-    assert {row["measure"]: row["cells"] for row in table(folder, "fit_to_other")} == {"accuracy": "8", "latency": "7"}
+    again = read_results(store_rows(tmp_path / "again", "paired_associates", learn, participants=3))
+    parts = by_number(read_results(folder))
+    other = beside_experiment(by_number(again), parts)
+    assert other is not None
+    fits = fit_to(parts, other)
+    assert dict(zip(fits["measure"], fits["cells"], strict=True)) == {"accuracy": 8, "latency": 7}
 
 
 def test_failures_and_missing_trials_are_said_plainly(tmp_path: Path) -> None:
@@ -381,14 +390,15 @@ def test_cells_with_failed_walks_agree_with_nothing(people: Path, tmp_path: Path
         return {"error": "ValueError: no"} if failed else walk_through(trial)
 
     folder = store_rows(tmp_path / "walks", "warren_whang_1987", measures, trials=1, values={"condition": "normal"})
-    write_report(folder, human=people)
-    agreement = {(row["means_of"], row["compared_with"]): row for row in table(folder, "agreement")}
-    (beside,) = [row for row in table(folder, "fit_to_people") if row["measure"] == "wall_angle_deg"]
-    assert agreement["this model", "people"]["cells"] == beside["cells"] == "5"
-    assert float(agreement["this model", "people"]["rmse"]) == pytest.approx(float(beside["rmse"]))
-    assert agreement["this model", "original ACT-R 3D"]["cells"] == "13"
-    assert agreement["geometry (baseline)", "this model"]["cells"] == "15"
-    assert "Cells in which a trial failed are left out" in page(folder)
+    others = beside(folder, people)
+    table = next(part for part in parts_on_apertures(folder, others) if isinstance(part, Table) and part.name == "agreement")
+    agreement = {(row["means_of"], row["compared_with"]): row for row in table.frame.to_dict("records")}
+    (fit,) = fit_to(by_number(read_results(folder)), *others).query("measure == 'wall_angle_deg'").to_dict("records")
+    assert agreement["this model", "people"]["cells"] == fit["cells"] == 5
+    assert agreement["this model", "people"]["rmse"] == pytest.approx(fit["rmse"])
+    assert agreement["this model", "original ACT-R 3D"]["cells"] == 13
+    assert agreement["geometry (baseline)", "this model"]["cells"] == 15
+    assert "Cells in which a trial failed are left out" in table.note
 
 
 def test_the_points_of_figures_on_apertures_are_in_tables(walked: Path) -> None:
@@ -476,7 +486,7 @@ def test_one_cell_has_no_figure(tmp_path: Path) -> None:
 
 
 def test_two_experiments_are_compared(tmp_path: Path) -> None:
-    path = str(write_experiment(tmp_path, participants=3))
+    path = str(write_experiment(tmp_path, participants=1))
     one = store_rows(tmp_path / "one", path, count)
     store_rows(tmp_path / "two", path, lambda trial: {**count(trial), "rt": count(trial)["rt"] + 0.1}, values={"seed": 2})
     assert main(["report", str(one), "--compare", str(tmp_path / "two")]) == 0
@@ -516,7 +526,7 @@ def test_an_experiment_in_a_folder_with_the_name_of_a_column_is_compared(tmp_pat
     def measures(trial: Any) -> dict[str, Any]:
         return {"rt": count(trial)["rt"]}
 
-    path = write_experiment(tmp_path, participants=3)
+    path = write_experiment(tmp_path, participants=1)
     path.write_text(path.read_text(encoding="utf-8").replace('"rt", "luck"', '"rt"'), encoding="utf-8")
     one = store_rows(tmp_path / "one", str(path), measures)
     for name in ("model", "group", "measure"):
@@ -569,7 +579,7 @@ def test_a_trial_is_turned_by_the_same_angle_in_the_constraints_and_for_each_par
 
 def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
-    path, same = (str(write_experiment(folder, participants=3)) for folder in (tmp_path, tmp_path / "elsewhere"))
+    path, same = (str(write_experiment(folder, participants=1)) for folder in (tmp_path, tmp_path / "elsewhere"))
     one = store_rows(tmp_path / "one", path, count)
 
     def compared(name: str, design: str, **options: Any) -> str:
@@ -579,7 +589,7 @@ def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) 
         return re.findall(rf"{name} \(“there”: counting, \d+ trials\) differs from this experiment \(“now”\) in: (.*)\.", str(text))[0]
 
     assert compared("same", same) == "nothing that was set"
-    more = "--participants: {'all': 4} there, {'all': 3} now; --trials: 5 there, 4 now"
+    more = "--participants: {'all': 4} there, {'all': 1} now; --trials: 5 there, 4 now"
     assert compared("more", same, participants=4, trials=5) == more
     write_report(one, compare=tmp_path / "more")
     assert f"differs from this experiment (“now”) in: {html.escape(more)}.</p>" in page(one)
@@ -591,7 +601,7 @@ def test_experiments_are_compared_in_what_determines_their_rows(tmp_path: Path) 
 def test_the_table_of_trials_can_be_the_data_of_people(tmp_path: Path) -> None:
     """With switches, texts, columns of the library's own, and a factor whose name reports change."""
     factors = '{"n": [1, 2, 5], "mode": ["count", None]}'
-    path = write_experiment(tmp_path, factors=factors, participants=3)
+    path = write_experiment(tmp_path, factors=factors, participants=1)
     path.write_text(path.read_text(encoding="utf-8").replace('"luck"', '"luck", "right", "word"'), encoding="utf-8")
     folder = store_rows(
         tmp_path / "out", str(path), lambda trial: {**count(trial), "right": trial.number % 3 > 0, "word": f"{trial.number % 2}"}
@@ -647,7 +657,7 @@ def test_what_has_no_report_says_why(tmp_path: Path, capsys: Any) -> None:
 
 
 def test_reports_that_are_written_at_once_do_not_disturb_one_another(tmp_path: Path) -> None:
-    folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
+    folder = store_rows(tmp_path / "out", one_cell(tmp_path), count)
     with ProcessPoolExecutor(3, get_context("fork")) as pool:
         assert set(pool.map(write_report, [folder] * 4)) == {folder / "report" / "index.html"}
     assert {path.name for path in (folder / "report").iterdir()} == {"figures", "index.html", "tables"}
@@ -670,7 +680,7 @@ def test_a_folder_that_is_no_report_is_not_replaced(tmp_path: Path) -> None:
 
 
 def test_a_report_replaces_an_earlier_one_and_no_file_of_a_user(tmp_path: Path) -> None:
-    folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
+    folder = store_rows(tmp_path / "out", one_cell(tmp_path), count)
     (tmp_path / "place").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "place")
     for _ in range(2):
@@ -688,7 +698,7 @@ def test_a_report_replaces_an_earlier_one_and_no_file_of_a_user(tmp_path: Path) 
 @pytest.mark.daily(1)
 @pytest.mark.parametrize("inner", [".", "figures"])
 def test_the_folder_in_which_the_shell_is_is_not_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inner: str) -> None:
-    folder = store_rows(tmp_path / "out", str(write_experiment(tmp_path, participants=1)), count)
+    folder = store_rows(tmp_path / "out", one_cell(tmp_path), count)
     place = write_report(folder, out=tmp_path / "place").parent
     before = place.stat().st_ino
     monkeypatch.chdir(place / inner)
@@ -703,7 +713,7 @@ def test_the_report_of_an_experiment_that_cannot_be_written_goes_elsewhere(capsy
     with tempfile.TemporaryDirectory() as place:  # pytest's own folders are closed to others
         outer = Path(place)
         outer.chmod(0o755)
-        folder = store_rows(outer / "out", str(write_experiment(outer, participants=1)), count)
+        folder = store_rows(outer / "out", one_cell(outer), count)
         other = outer / "others"
         other.mkdir()
         other.chmod(0o777)
@@ -712,7 +722,7 @@ def test_the_report_of_an_experiment_that_cannot_be_written_goes_elsewhere(capsy
         capsys.readouterr()
         with not_writable(folder):
             assert main(["experiment", str(folder), "--resume"]) == 0  # nothing is left to run
-            assert f"in '{folder}', 12 finished\n" in capsys.readouterr().out
+            assert f"in '{folder}', 4 finished\n" in capsys.readouterr().out
             assert main(["report", str(folder)]) == 1
             error = capsys.readouterr().err
             assert f"error: '{folder}/report': cannot write the report (Permission denied); name another folder with --out\n" == error
@@ -774,17 +784,17 @@ def speed_of_counting(results, others):
 
 def test_levels_that_are_texts_switches_or_none_are_kept_apart(tmp_path: Path) -> None:
     path = write_experiment(tmp_path, factors='{"mode": ["count", None, True], "n": [1, 2]}', participants=3)
-    folder = store_rows(tmp_path / "out", str(path), count)
-    write_report(folder)
-    assert list(dict.fromkeys(row["mode"] for row in table(folder, "means_rt"))) == ["count", "none", "True"]
+    parts = by_number(read_results(store_rows(tmp_path / "out", str(path), count)))
+    means = frames([part for section in measure_sections(parts, []) for part in section.parts])["means_rt"]
+    assert list(dict.fromkeys(means["mode"])) == ["count", "none", "True"]
 
 
 def test_an_experiment_that_was_run_has_a_report(tmp_path: Path, capsys: Any) -> None:
-    path, folder = write_experiment(tmp_path, participants=3, trials=2), tmp_path / "run"
+    path, folder = write_experiment(tmp_path, participants=1, trials=2), tmp_path / "run"
     assert main(["experiment", str(path), "--out", str(folder), "--workers", "1"]) == 0
     assert main(["report", str(folder)]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(folder / "report" / "index.html")
-    assert [(row["n_"], row["n"]) for row in table(folder, "means_rt")] == [("1", "3"), ("2", "3"), ("5", "3")]
+    assert [(row["n_"], row["n"]) for row in table(folder, "means_rt")] == [("1", "1"), ("2", "1"), ("5", "1")]
 
 
 def test_two_participants_are_described_and_not_tested(tmp_path: Path) -> None:

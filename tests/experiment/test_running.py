@@ -89,12 +89,12 @@ def test_rows_are_the_same_for_any_number_of_workers(tmp_path: Path, client: Any
 def test_failures_are_rows_and_the_rest_goes_on(tmp_path: Path, client: Any) -> None:
     factors = '{"mode": ["count", "fail", "hang", "die"]}'
     waiting = COUNTER.replace("        pass", "        __import__('time').sleep(60)")  # to hang by computing is in test_trials.py
-    path = write_experiment(tmp_path, factors=factors, participants=1, trials=2, limit=2, model=waiting)
+    path = write_experiment(tmp_path, factors=factors, participants=1, trials=1, limit=1, model=waiting)
     seen: list[Progress] = []
     rows = csv.DictReader(io.StringIO(run_here(client, path, tmp_path / "out", show=seen.append)))
     ends = sorted((row["mode"], row["end"]) for row in rows)
-    assert ends == sorted([("count", "end"), ("fail", "error"), ("hang", "time limit"), ("die", "crash")] * 2)
-    assert seen[-1].failures == 6
+    assert ends == sorted([("count", "end"), ("fail", "error"), ("hang", "time limit"), ("die", "crash")])
+    assert seen[-1].failures == 3
 
 
 def test_a_trial_whose_drawn_values_cannot_be_derived_is_a_failure_among_others(tmp_path: Path, client: Any) -> None:
@@ -112,36 +112,36 @@ def test_a_trial_whose_drawn_values_cannot_be_derived_is_a_failure_among_others(
 
 
 def test_a_run_that_is_stopped_continues_where_it_was(tmp_path: Path, client: Any) -> None:
-    path = write_experiment(tmp_path, participants=2, trials=50, model=SLOW_COUNTER)
+    path = write_experiment(tmp_path, participants=2, trials=12, model=SLOW_COUNTER)
     experiment, stop = specify(str(path)), threading.Event()
     counts: list[int] = []
 
     def show(progress: Progress) -> None:
         counts.append(progress.done)
-        if progress.done > 20:
+        if progress.done > 5:
             stop.set()
 
     with Store.create(tmp_path / "out", experiment.specification) as store:
         run_experiment(experiment, store, client, show=show, stop=stop)
-        assert 20 < store.count < 300
+        assert 5 < store.count < 72
         before = {row["trial"]: row["wall_s"] for row in store.rows()}
         run_experiment(experiment, store, client)
         after = {row["trial"]: row["wall_s"] for row in store.rows()}
     assert before.items() <= after.items(), "a trial that had finished ran again"
-    assert len(after) == 300
+    assert len(after) == 72
 
 
 def test_a_batch_that_takes_long_returns_its_rows_and_the_rest_is_another(
     tmp_path: Path, client: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = write_experiment(tmp_path, participants=1, trials=20)
+    path = write_experiment(tmp_path, participants=1, trials=8)
     expected = run_here(client, path, tmp_path / "usual")
     monkeypatch.setattr(cluster, "LONGEST_BATCH", 0.0)
     batch = run_batch(specify(str(path)).specification.to_json(), [3, 4, 5], 60, cluster_versions())
     assert [number for number, _, _ in batch.rows] == [3]
     seen: list[Progress] = []
     assert run_here(client, path, tmp_path / "short", show=seen.append) == expected
-    assert [done for done, _ in groupby(progress.done for progress in seen)] == list(range(61))
+    assert [done for done, _ in groupby(progress.done for progress in seen)] == list(range(25))
     assert all(before != after for before, after in pairwise(seen)), "a worker that comes or goes is news, too"
 
 

@@ -97,10 +97,10 @@ if n == 3:
 
 
 def test_a_trial_that_hangs_is_ended_at_its_limit_and_the_rest_goes_on(tmp_path: Path) -> None:
-    path = write_experiment(tmp_path, factors='{"mode": ["hang", "count"]}', participants=1, trials=2, limit=1)
+    path = write_experiment(tmp_path, factors='{"mode": ["hang", "count"]}', participants=1, trials=1, limit=1)
     rows = rows_of(path)
-    assert [row["end"] for row in rows if row["mode"] == "hang"] == ["time limit"] * 2
-    assert [row["end"] for row in rows if row["mode"] == "count"] == ["end"] * 2
+    assert [row["end"] for row in rows if row["mode"] == "hang"] == ["time limit"]
+    assert [row["end"] for row in rows if row["mode"] == "count"] == ["end"]
     assert "longer than its limit of 1 s" in next(row["error"] for row in rows if row["mode"] == "hang")
 
 
@@ -145,12 +145,13 @@ def test_a_process_ends_while_a_trial_runs_which_then_begins_again_or_has_no_row
     tmp_path: Path, end: Callable[[TrialProcess], None]
 ) -> None:
     begun = tmp_path / "begun"
-    waiting = f"import time\nwith open({str(begun)!r}, 'a') as file:\n    file.write('x')\ntime.sleep(1)\n"
+    begins = f"with open({str(begun)!r}, 'a+') as file:\n    file.write('x')\n    first = file.tell() == 1\n"
+    waiting = f"{begins}if first:\n    import time\n    time.sleep(60)\n"
     text = specify(str(write_experiment(tmp_path, model=COUNTER.replace("model.run()", f"{waiting}model.run()")))).specification.to_json()
     before, process = trial_processes(), TrialProcess()
     with ThreadPoolExecutor(1) as pool:
         trial = pool.submit(process.run, text, 0, 60)
-        while not begun.exists():
+        while not (begun.exists() and begun.read_text()):
             time.sleep(0.02)
         end(process)
         if end is TrialProcess.close:
@@ -182,7 +183,9 @@ def test_a_process_that_ends_while_it_loads_an_experiment_loads_it_again(tmp_pat
 
 
 def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:
-    path = write_experiment(tmp_path, factors='{"mode": ["hang"]}', limit=600)
+    begun = tmp_path / "begun"
+    hanging = COUNTER.replace("    while True:", f"    open({str(begun)!r}, 'w').close()\n    while True:")
+    path = write_experiment(tmp_path, factors='{"mode": ["hang"]}', limit=600, model=hanging)
     code = (
         "import sys, threading\n"
         "from actr3d.experiment.specification import specify\n"
@@ -202,9 +205,10 @@ def test_the_process_of_trials_ends_with_its_worker(tmp_path: Path) -> None:
         return subprocess.run(["pgrep", "-P", str(worker.pid), "-f", "trial_process"], capture_output=True, text=True).stdout.split()
 
     deadline = time.monotonic() + 60
-    while not (found := children()) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    time.sleep(1)
+    while not begun.exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    found = children()
+    assert found
     worker.kill()
     worker.wait()
     worker.stdout.close()

@@ -18,7 +18,7 @@ from actr3d.runner.replay import replay
 from tests.helpers.recording_forgery import change, forge
 from tests.helpers.walkers import driving
 
-EDITS = 1_000
+EDITS = 400
 
 
 @pytest.fixture(name="original", scope="module")

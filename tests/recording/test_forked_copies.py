@@ -34,6 +34,7 @@ def complaints(text: str) -> list[str]:
     return [line for line in text.splitlines() if "is multi-threaded, use of fork()" not in line]
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize("forks", FORKS.values(), ids=FORKS)
 def test_a_recording_is_that_of_the_first_process_and_is_replayed(forks: str, tmp_path: Path) -> None:
     (tmp_path / "model.py").write_text(MODEL + forks, encoding="utf-8")

@@ -68,6 +68,7 @@ def test_a_run_is_replayed_while_its_own_helper_modules_are_still_loaded(name: s
             assert str(replay(recorded)).startswith("every byte agrees: ")
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("name", ["program", "built"])
 def test_helper_modules_are_recorded_and_replayed_as_they_were(name: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, known = folder / "run", set(sys.modules)

@@ -43,6 +43,7 @@ def failed(talk: Talk, time: float) -> None:
     assert [data["text"] for _, _, kind, data in talk.events if kind == "output"] == ["says"]
 
 
+@pytest.mark.daily(3)
 @pytest.mark.parametrize("source", [BUILT, PROGRAM], ids=["built", "program"])
 @pytest.mark.parametrize(("does", "production_time", "time"), [("pass", 0.05, 0.15), ("1 / 0", 0.05, 0.15), ("1 / 0", 0.047, 0.141)])
 def test_a_run_that_fails_in_a_tick_shows_the_moment_of_the_failure(

@@ -314,6 +314,7 @@ def test_a_program_can_be_paused_on_its_way_to_another_time(desk: Desk, tmp_path
     assert talk.until("ended")["events"] == events
 
 
+@pytest.mark.slow
 def test_a_program_on_its_way_to_a_time_goes_to_another_at_once_and_does_the_rest_when_it_is_there(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
     talk.say("seek", time=6.0)

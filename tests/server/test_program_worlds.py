@@ -473,6 +473,7 @@ USES = (
 )
 
 
+@pytest.mark.daily(3)
 @pytest.mark.parametrize("source", USES)
 def test_a_program_whose_simulation_is_made_in_another_file_stands_at_its_start_with_its_scene(
     desk: Desk, tmp_path: Path, source: str

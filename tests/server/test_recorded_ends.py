@@ -35,6 +35,7 @@ def build() -> Simulation:
 )
 
 
+@pytest.mark.daily(4)
 @pytest.mark.parametrize(
     ("text", "status", "facts"),
     [

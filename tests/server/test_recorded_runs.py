@@ -80,6 +80,7 @@ def test_a_run_that_has_ended_is_over_there_whenever_one_comes_back(desk: Desk, 
     assert agrees(recording(desk, talk))
 
 
+@pytest.mark.slow
 def test_a_run_that_goes_another_way_after_its_end_has_not_ended(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, APERTURE, record=True, settings={"aperture": 0.3})
     ended(talk)

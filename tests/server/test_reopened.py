@@ -228,6 +228,7 @@ def test_a_changed_recording_goes_by_what_it_writes_and_the_recording_is_opened_
     assert talk.summary(branch).origin == name
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("source", [BUILT, COUNTING], ids=["built", "program"])
 def test_what_runs_past_the_end_of_a_recording_is_kept_as_a_branch_of_it(desk: Desk, tmp_path: Path, source: str) -> None:
     talk = desk.begin(tmp_path, source, record=True)

@@ -77,6 +77,7 @@ def test_the_progress_of_a_replay_is_reported(desk: Desk, tmp_path: Path, source
     assert replays.share(path) is None
 
 
+@pytest.mark.daily(3)
 @pytest.mark.parametrize(
     ("does", "agrees", "text"),
     [

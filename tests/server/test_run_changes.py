@@ -135,6 +135,7 @@ def test_changes_are_repeated_exactly_by_going_back_by_a_replay_and_by_opening(k
         assert replay(recorded).difference is None
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("kind", MODELS)
 def test_an_undone_change_is_not_repeated_and_its_future_is_kept(kind: str, desk: Desk, tmp_path: Path) -> None:
     source, agent, below = MODELS[kind]
@@ -381,6 +382,7 @@ def test_a_branch_of_a_program_is_known_as_far_as_its_run_has_come_even_if_nothi
         assert opened.until("paused", furthest=reached)["time"] == 0
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("kind", MODELS)
 def test_changes_during_a_run_and_while_it_goes_back_are_repeated_exactly(kind: str, desk: Desk, tmp_path: Path) -> None:
     source, agent, below = MODELS[kind]
@@ -459,6 +461,7 @@ def test_a_program_says_what_cannot_be_changed(desk: Desk, tmp_path: Path) -> No
         change(talk, "clear_buffer", buffer="top#2.goal")
 
 
+@pytest.mark.daily(1)
 @pytest.mark.parametrize("kind", MODELS)
 def test_a_paused_run_that_is_changed_says_when_also_after_an_undo(kind: str, desk: Desk, tmp_path: Path) -> None:
     source, _, below = MODELS[kind]

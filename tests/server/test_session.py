@@ -595,6 +595,7 @@ def test_a_session_whose_folder_cannot_be_read_is_described_all_the_same(
     assert not talk.facts["gone"]
 
 
+@pytest.mark.slow
 def test_what_a_program_printed_before_an_endless_loop_is_shown(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, COUNTING + "\nprint('done')\nwhile True:\n    pass\n", run=True, wait=None)
     talk.wait(lambda: talk.events and talk.events[-1][2] == "output" and talk.events[-1][3]["text"] == "done")

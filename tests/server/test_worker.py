@@ -155,6 +155,7 @@ def test_a_loop_that_prints_until_memory_is_full_is_said_to_have_used_too_much(t
         desk.close()
 
 
+@pytest.mark.slow
 def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, of("while True: pass"), run=True, wait="running")
     talk.wait(lambda: talk.facts["stuck"])
@@ -173,7 +174,7 @@ def test_what_is_asked_of_a_loop_is_answered_when_it_is_stopped(desk: Desk, tmp_
     assert explained.error == "the run has ended"
 
 
-@pytest.mark.daily(5)
+@pytest.mark.daily(3)
 @pytest.mark.parametrize(
     ("does", "told"),
     [
@@ -343,6 +344,7 @@ def test_detectors_are_compiled_beforehand_in_the_form_that_the_views_of_a_camer
     assert [len(function.signatures) for function in compiled] == [1, 1]
 
 
+@pytest.mark.slow
 def test_a_run_that_is_busy_while_it_is_built_does_not_make_the_shown_run_busy(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, WALKER)
     go_on = tmp_path / "go on"

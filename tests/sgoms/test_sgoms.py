@@ -86,9 +86,9 @@ def test_a_situated_planning_unit_waits_until_something_fits() -> None:
 
 def test_utility_decides_between_unit_tasks_that_fit_and_chance_between_equals() -> None:
     both = TIDY.replace("dishes:dirty floor:clean", "dishes:dirty floor:dirty")
-    firsts = Counter(cooking(both, seconds=0.2, seed=seed, traced=False).said[0][1] for seed in range(100))
-    assert abs(firsts["wash"] - 50) < 20  # four standard errors
-    assert firsts.total() == 100
+    firsts = Counter(cooking(both, seconds=0.2, seed=seed, traced=False).said[0][1] for seed in range(64))
+    assert abs(firsts["wash"] - 32) < 16  # four standard errors
+    assert firsts.total() == 64
     assert firsts.keys() == {"wash", "sweep"}
 
 
@@ -236,6 +236,7 @@ class Agent(Base):
     assert "sgoms_ask_again" in [name for _, name in fired(module)]
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize("name", ["planning_units", "sgoms_patrol", "sgoms_rows"])
 def test_models_with_buffers_of_their_own_run_without_warnings(name: str, tmp_path: Path) -> None:
     copy = shutil.copy(ROOT / "tests" / "models" / f"{name}.py", tmp_path)

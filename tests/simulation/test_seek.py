@@ -224,6 +224,7 @@ def test_a_recording_holds_each_event_once_after_any_number_of_seeks(tmp_path: P
     assert lines(tmp_path / "straight") == lines(tmp_path / "wandering")
 
 
+@pytest.mark.daily(2)
 @pytest.mark.parametrize("tick", [0, 50, 78])
 def test_a_new_future_replaces_the_recorded_one(tick: int, tmp_path: Path) -> None:
     changed, direct = driving(), driving()

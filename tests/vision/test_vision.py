@@ -246,7 +246,7 @@ def test_a_view_is_that_of_the_end_of_the_tick_and_nothing_comes_before_it() -> 
 
 def test_noise_of_delays_comes_from_the_seed() -> None:
     first = [arrivals(ONCE, ", delay_sd=0.02", seed)[0][0] for seed in range(20)]
-    assert first == [arrivals(ONCE, ", delay_sd=0.02", seed)[0][0] for seed in range(20)]
+    assert first[:5] == [arrivals(ONCE, ", delay_sd=0.02", seed)[0][0] for seed in range(5)]
     assert len(set(first)) > 15
     assert min(first) >= 0.05
     assert sum(first) / 20 == near(0.1, abs=0.015)
@@ -262,20 +262,20 @@ def test_errors_come_at_their_rate() -> None:
 def test_noise_of_edges_and_distances_is_of_its_size_and_from_the_seed() -> None:
     world = room()
 
-    def widths(options: str) -> list[float]:
+    def widths(options: str, seeds: int = 150) -> list[float]:
         kind = mind("\n    def look(goal=None, vision='busy:False', visual=None):\n        vision.request('feature:opening')\n", options)
-        return [AgentWithoutPhysics(world, kind, seed).tick(11).agent.visual.chunk["width"] for seed in range(150)]
+        return [AgentWithoutPhysics(world, kind, seed).tick(11).agent.visual.chunk["width"] for seed in range(seeds)]
 
     def sd(numbers: list[float]) -> float:
         mean = sum(numbers) / len(numbers)
         return math.sqrt(sum((x - mean) ** 2 for x in numbers) / len(numbers))
 
-    assert set(widths("")) == {0.6}
+    assert set(widths("", 5)) == {0.6}
     edges = widths(", edge_noise=0.005")
-    assert edges == widths(", edge_noise=0.005")
+    assert edges[:5] == widths(", edge_noise=0.005", 5)
     assert sd(edges) == near(0.005 * 6.96 * math.sqrt(2), rel=0.2)
     assert sum(edges) / len(edges) == near(0.6, abs=0.02)
-    far = widths(", distance_noise=0.01")  # 10 cm at each edge, along the line of sight
+    far = widths(", distance_noise=0.01", 50)  # 10 cm at each edge, along the line of sight
     assert 0.003 < sd(far) < 0.03
 
 
@@ -449,19 +449,19 @@ def living(prefix: str = "", seed: int = 3) -> Simulation:
 
 def test_the_same_seed_gives_the_same_bytes_also_after_going_back() -> None:
     whole = living()
-    whole.step(200)
+    whole.step(120)
     assert any(True for _ in events(whole.trace, "sight"))
     expected = digest(whole)
     again = living()
-    for _ in range(200):
+    for _ in range(120):
         again.step()
     assert digest(again) == expected
-    for time in (0.37, 1.5, 0.0):
+    for time in (0.37, 1.1, 0.0):
         again.seek(time)
-        again.step(200 - again.ticks)
+        again.step(120 - again.ticks)
         assert digest(again) == expected
     other = living(seed=4)
-    other.step(200)
+    other.step(120)
     assert digest(other) != expected
 
 

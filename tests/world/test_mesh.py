@@ -476,7 +476,7 @@ random.seed(5)
 made = refused = 0
 for path in sorted(Path(sys.argv[1]).iterdir()):
     whole = path.read_bytes()
-    for _ in range(60):
+    for _ in range(30):
         data = bytearray(whole)
         for _ in range(random.choice((1, 2, 8))):
             data[random.randrange(len(data))] = random.choice((0, 45, 48, 57, 127, 255, random.randrange(256)))

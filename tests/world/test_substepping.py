@@ -20,7 +20,7 @@ def random_walker(seed: int, thickness: float) -> tuple[World, Body, list[str], 
     return world, body, list(random.choice(names, size=6, replace=False)), random
 
 
-@pytest.mark.daily(8)
+@pytest.mark.daily(4)
 @pytest.mark.parametrize("thickness", [0.02, 0.05])
 @pytest.mark.parametrize("speed", [8.0, 16.0])
 @pytest.mark.parametrize("seed", range(3))
