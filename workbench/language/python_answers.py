@@ -126,6 +126,15 @@ class PythonAnswers:
                 return Definition(path=None, line=one.line, name=one.name, module=one.module_name)
         return None
 
+    def origin(self, explicit: ExplicitText, path: str, name: str) -> str:
+        """Returns the module from which a name at the end of a text is imported; empty if it is not imported."""
+        code = f"{explicit.text}\n\n{name}"
+        script, line = self._script(code, path), code.count("\n") + 1
+        if not any(_is_known_by_name(one) for one in script.goto(line, 0)):
+            return ""
+        found = script.goto(line, 0, follow_imports=True)
+        return next((one.module_name for one in found if one.module_path != self._folder / path), "")
+
     def references(self, explicit: ExplicitText, path: str, at: int) -> list[int]:
         """Returns the positions of all uses of the name at a position in its text."""
         line, column = explicit.place(at)
@@ -179,7 +188,7 @@ def _public_names(before: str) -> list[str] | None:
     return getattr(module, "__all__", None)
 
 
-def _is_known_by_name(one: jedi.Completion) -> bool:
+def _is_known_by_name(one: jedi.BaseName) -> bool:
     """Returns whether a name that jedi finds is really there: it reads the list of a module's public names only if that is simple."""
     if one.module_name == "builtins" and one.type != "keyword":
         return hasattr(builtins, one.name)
