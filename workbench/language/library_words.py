@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 
-from actr3d import world
+from actr3d import actr, world
+from actr3d.actr.declarative.activation import MemorySubModule
 from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportUnusedImport] # registers the sensor `view`
 from actr3d.vision import DETECTORS
 from actr3d.vision.feature import slot_names
@@ -85,3 +87,9 @@ def answers_of(kind: str) -> tuple[Word, ...]:
 def features_of(kind: str) -> tuple[Word, ...]:
     """Returns the features that a module searches for, which its requests and chunks name in the slot `feature`."""
     return features() if kind == "Vision" else ()
+
+
+def only_reads(kinds: Iterable[str]) -> bool:
+    """Returns whether a part of these classes only reads the buffers that it is made with: an activation module, unlike its memory."""
+    found = (getattr(actr, kind, None) for kind in kinds)
+    return any(isinstance(kind, type) and issubclass(kind, MemorySubModule) for kind in found)
