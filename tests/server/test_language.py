@@ -203,6 +203,22 @@ def test_a_part_of_a_scene_is_offered_with_the_import_that_it_needs(ask: Asked) 
     assert "Car" not in ask.labels(DOORWAY.replace("Aperture(width", "Aperture(Ca|, width"))
 
 
+def test_methods_that_only_the_library_calls_are_not_offered(ask: Asked) -> None:
+    labels = ask.labels(COUNTING.replace("memory.request", "memory.|; memory.request", 1))
+    assert labels[:5] == ["add", "clear", "find_matching_chunks", "get_activation", "request"]
+    assert not {"recall", "fail", "add_adaptor", "start"} & set(labels)
+    blending = COUNTING.replace("Memory(", "BlendingMemory(").replace("memory.request", "memory.|; memory.request", 1)
+    assert not {"recall", "fail"} & set(ask.labels(blending))
+    head = "from actr3d.actr import *\nfrom actr3d.sgoms import SGOMS\n\n"
+    text = head + "class A(SGOMS):\n    b = Buffer()\n    {}\n    def p(b='x'):\n        {}"
+    noise = ask.labels(text.format("noise = PMNoise()", "noise.|"))
+    assert "logisticNoise" in noise
+    assert not {"create", "firing", "utility"} & set(noise)
+    own = ask.labels(text.format("pass", "self.|"))
+    assert {"resume_at", "reward", "stop"} <= set(own)
+    assert not [label for label in own if label.startswith("sgoms_")]
+
+
 def test_private_names_are_offered_when_one_begins(ask: Asked) -> None:
     names = ask.labels(COUNTING.replace("goal.clear()", "goal.|"))
     assert "chunk" in names
@@ -298,6 +314,7 @@ class Reader(ACTR):
 
     def say(goal="task:say"):
         goal.modify(task=len("x"))
+        goal.modify(task=other)
 """
 
 

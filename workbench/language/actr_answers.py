@@ -34,7 +34,7 @@ _SLOT = re.compile(r"(\??[\w.]+):(.*)", re.DOTALL)
 _SIGN = re.compile(r"(!?\??)[<>=]*([\w.-]*)$")
 _WORD_AND_VALUES = re.compile(r"""\(\s*["'](\w+)["']\s*,(.*)""", re.DOTALL)
 _PARTS = re.compile(r"\bparts\s*=\s*$")
-_CONSTANT = re.compile(r"""\s*=\s*(?:(["'])([^\s"']*)\1|([\w.-]+))\s*[,)]""")
+_CONSTANT = re.compile(r"""\s*=\s*(?:(["'])([^\s"']*)\1|([+-]?[\d.]+|True|False|None))\s*[,)]""")
 MAX_NAMED = 8
 """How many names are listed in a documentation."""
 
