@@ -467,6 +467,8 @@ def test_renaming(ask: Asked, text: str, name: str, changed: int) -> None:
         (COUNTING.replace("Memory(ret", "Mem|ory(ret"), "Store", "is defined in actr3d.actr.declarative.memory"),
         (COUNTING.replace("task:count", "task:co|unt", 1), "x", "there is no name here"),
         ("|", "x", "there is no name here"),
+        (NAMES.replace("?i", "?|i", 1), "self", "there is a variable 'self' already"),
+        (NAMES.replace("print(ink)", "print(se|lf.now())"), "agent", "'self' is the agent in every production"),
         (NAMES.replace("word = ", "wo|rd = "), "ink", "'ink' already has a meaning in line 5"),
         (NAMES.replace("word = ", "wo|rd = "), "memory", "'memory' already has a meaning in line 14"),
         (NAMES.replace("ink = ", "in|k = "), "Stroop", "'Stroop' already has a meaning in line 8"),

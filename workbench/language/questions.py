@@ -162,12 +162,15 @@ class Assistant:
         if found.what == "slot":
             return any(slot.text == new for one in model.texts for slot in one.slots)
         names = {piece.text for piece in model.variables_of(text.method)} if found.what == "variable" else set[str]()
-        return new in names or new in model.parts_of(text.agent)
+        return new in names or new == "self" or new in model.parts_of(text.agent)
 
     def _find_uses(self, model: ModelText, path: str, at: int) -> Renaming:
         name = model.name_at(at)
         if name is None or model.text_at(at) is not None:
             raise LanguageError("there is no name here that can be renamed")
+        method = model.method(name.method)
+        if name.text == "self" and not name.before and method is not None and method.sees_parts:
+            raise LanguageError("'self' is the agent in every production, and keeps its name")
         explicit = ExplicitText(model)
         defined = self._python.define(explicit, path, at)
         if defined is not None and defined.at is None:
