@@ -7,10 +7,11 @@ import sys
 import warnings
 from collections.abc import Callable
 from pathlib import Path
+from traceback import walk_tb
 from types import CodeType, FrameType
 from typing import Any
 
-from actr3d.errors import ModelWarning
+from actr3d.errors import Actr3dError, ModelWarning
 
 LIBRARY = str(Path(__file__).parent) + os.sep
 MODELS = f"{LIBRARY}models{os.sep}"
@@ -30,6 +31,14 @@ def of_library(code: CodeType) -> bool:
 def is_generated(filename: str, function: str) -> bool:
     """Checks for the `__init__` that a dataclass generates: it has no file, and runs between a configuration's checks and its caller."""
     return filename == "<string>" and function == "__init__"
+
+
+def locate(error: Exception, file: str, line: int) -> None:
+    """Sets the location of an error of the library, unless it has one or a line of the modeller's led to it."""
+    if not isinstance(error, Actr3dError) or error.location is not None or is_library(file):
+        return
+    if all(of_library(frame.f_code) for frame, _ in walk_tb(error.__traceback__)):
+        error.at(file, line)
 
 
 def warn_modeller(message: str) -> None:

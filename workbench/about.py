@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -90,8 +90,12 @@ def _node(node: SyntaxTreeNode, listing: ModelListing) -> Iterator[Node]:
         case "hr":
             yield {"tag": "hr", "children": []}
         case "code_inline":
-            settings = _settings_in(node.content, listing)
+            given = _given_in(node.content)
+            settings = _settings_in(given, listing)
             yield {"tag": "code", "children": [node.content], **({"settings": settings} if settings else {})}
+            later = [name for name in given if name in listing.later]
+            if later:
+                yield f" ({later[0]} is no parameter, because other code, such as an import, comes before it)"
         case "code_block" | "fence":
             yield {"tag": "pre", "children": [node.content]}
         case "image":
@@ -118,23 +122,23 @@ def _is_tight(item: SyntaxTreeNode) -> bool:
     return len(item.children) == 1 and item.children[0].type == "paragraph" and bool(item.children[0].hidden)
 
 
-def _settings_in(code: str, listing: ModelListing) -> dict[str, Any] | None:
-    """Returns the parameter values in code such as `width = 0.5, speed = 2`; None if the code is anything else."""
+def _given_in(code: str) -> dict[str, Any]:
+    """Returns the values in code such as `width = 0.5, speed = 2`, by name; nothing if the code is anything else."""
     try:
         call = parse(f"_({code})", mode="eval").body
-    except (SyntaxError, ValueError, MemoryError, RecursionError):
-        return None
-    if not isinstance(call, ast.Call) or not call.keywords or call.args or not isinstance(call.func, ast.Name):
-        return None
-    settings: dict[str, Any] = {}
-    for keyword in call.keywords:
-        try:
-            parameter = listing.parameter(keyword.arg or "")
-            value = ast.literal_eval(keyword.value)
-            parameter.check(value)
-        except (ConfigurationError, ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
-            return None
-        if value is not None and type(value) not in (bool, int, float, str):
-            return None
-        settings[parameter.name] = value
-    return settings
+        if not isinstance(call, ast.Call) or call.args or not isinstance(call.func, ast.Name):
+            return {}
+        given = {keyword.arg or "": ast.literal_eval(keyword.value) for keyword in call.keywords}
+    except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
+        return {}
+    return given if all(value is None or type(value) in (bool, int, float, str) for value in given.values()) else {}
+
+
+def _settings_in(given: Mapping[str, Any], listing: ModelListing) -> Mapping[str, Any]:
+    """Returns values that can be given to parameters; nothing if one cannot."""
+    try:
+        for name, value in given.items():
+            listing.parameter(name).check(value)
+    except ConfigurationError:
+        return {}
+    return given

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -61,6 +61,8 @@ class ModelListing:
     kind: str = "program"
     """`simulation` if the file defines `build`, otherwise `program`."""
     parameters: tuple[Parameter, ...] = ()
+    later: tuple[str, ...] = ()
+    """The other variables that a program sets at its top level: after other code, so that they are no parameters."""
     agents: tuple[WrittenAgent, ...] = ()
     problems: tuple[Problem, ...] = field(default=())
 
@@ -87,11 +89,13 @@ def listing_of(source: str, filename: str = "model.py") -> ModelListing:
     tree = syntax_tree(source)
     text = escape_surrogates(ast.get_docstring(tree) or "")
     builds = has_build(source)
+    parameters = tuple(parameters_in(tree, build_of(tree)) if builds else _of_first_lines(source))
     return ModelListing(
         title=text.split("\n", 1)[0],
         text=text,
         kind="simulation" if builds else "program",
-        parameters=tuple(parameters_in(tree, build_of(tree)) if builds else _of_first_lines(source)),
+        parameters=parameters,
+        later=() if builds else tuple(_set_later(tree, {parameter.name for parameter in parameters})),
         agents=tuple(_agents(tree)),
         problems=problems,
     )
@@ -173,6 +177,13 @@ def _of_first_lines(source: str) -> Iterator[Parameter]:
             kind = type(value).__name__
             takes = {"bool": "switch", "int": "number", "float": "number", "str": "text"}.get(kind, kind)
             yield Parameter(name=name, takes=takes, **default, optional=value is None, line=node.lineno)
+
+
+def _set_later(tree: ast.Module, parameters: Collection[str]) -> Iterator[str]:
+    """Yields the variables that the top level of a program sets to literals and that are no parameters."""
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and default_of(node.value, {})["known"]:
+            yield from (one.id for one in node.targets if isinstance(one, ast.Name) and one.id not in parameters)
 
 
 def _agents(tree: ast.Module) -> Iterator[WrittenAgent]:

@@ -6,6 +6,7 @@ from typing import Any
 
 from actr3d.actr import Buffer, Chunk
 from actr3d.actr.chunks.chunk import Slot, as_text
+from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.lint.slot_names import is_misspelt
 from actr3d.errors import PlanError, alternatives, did_you_mean, followed
 from actr3d.sgoms.checks import matches_state
@@ -70,6 +71,7 @@ class Level(Buffer):
         _agent_of(self)
         return Chunk(chunk, self.sch.bound)
 
+    @hook
     def put_back(self, slots: dict[Slot, Any], beginning: str) -> None:
         """Sets a chunk, with another word for its beginning in the trace, such as «resumed»."""
         self._beginning = beginning
@@ -84,6 +86,7 @@ class Level(Buffer):
         """Returns whether the activity has ended."""
         return chunk.get("state") == END
 
+    @hook
     def current_name(self) -> str | None:
         """Returns the name of the activity that has not ended."""
         chunk = self.chunk
@@ -107,6 +110,7 @@ class Level(Buffer):
         if self._open is not None and trace.production:
             self._trace_activity(trace, "going on")
 
+    @hook
     def trace_end(self, trace: Trace, what: str, **more: str) -> None:
         """Traces the end of the activity, after the ends of all on lower levels."""
         if self._open is None:
@@ -116,6 +120,7 @@ class Level(Buffer):
         self._trace_activity(trace, what, **more)
         self._open = None
 
+    @hook
     def traced_name(self) -> str | None:
         """Returns the name of the traced activity, or of the present one."""
         return self._open or self.current_name()

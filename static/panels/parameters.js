@@ -216,7 +216,7 @@ function Parameters() {
       ? html`<p class="note">The text has no parameter <b class="mono">${former.join(", ")}</b> any more, with which this run began: «Restart with these» leaves it out.</p>`
       : null}
     ${changed ? html`<p class="note">${changed === 1 ? "One value is" : `${changed} values are`} not in effect yet: «Restart with these» below uses ${changed === 1 ? "it" : "them"}.</p>` : null}
-    ${fields.length === 0 ? html`<p class="empty">This model declares no parameters. A frozen dataclass that <code>build</code> takes, or numbers at the top of the file, become controls here.</p>` : null}
+    ${fields.length === 0 ? html`<p class="empty">This model declares no parameters. A frozen dataclass that <code>build</code> takes, or numbers and texts that are set at the top of the file, before any import, become controls here.</p>` : null}
     ${fields.map((parameter) => html`<${Field} key=${parameter.name} parameter=${parameter} />`)}
     <div class="parameter">
       <label for="parameter-seed-of-run">seed</label>

@@ -54,9 +54,9 @@ Responder().run()
 """
 
 
-def reported(text: str) -> TracebackReport:
+def reported(text: str, kind: type[Exception] = Actr3dError) -> TracebackReport:
     """Returns the report of the error of a program."""
-    with pytest.raises(Actr3dError) as caught:
+    with pytest.raises(kind) as caught:
         run_text(text, "mine.py")
     return traceback_report(caught.value)
 
@@ -110,6 +110,28 @@ def test_a_module_for_agents_without_a_body_names_the_one_for_agents_with_a_body
     assert report.text.endswith(f"{report.message}\n")
 
 
+TAKES_TIME = """from actr3d.actr import *
+
+
+class Reader(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+    imaginal = Buffer()
+    picture = ImaginalModule(imaginal)
+
+    def init():
+        goal.set("look")
+
+    def look(goal="look"):
+        goal.set("wait")
+        {call}
+
+
+Reader().run()
+"""
+
+
 def test_a_wrong_request_is_reported_at_its_line_where_no_line_of_a_model_is_running() -> None:
     text = WALKER.format(first="pass", statement='skin.set("walk_to", 3, 1.5)')
     module = load_text(text, "mine.py")
@@ -133,6 +155,22 @@ def test_a_wrong_request_of_a_method_is_reported_at_the_line_in_the_method(state
     lines = [n for n, line in enumerate(text.split("\n"), 1) if 'self.skin.set("hop")' in line]
     assert (report.file, report.line) == ("mine.py", lines[nth])
     assert ("in production 'go'" in report.message) == (nth == 1)
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        ("picture.set()", "missing 1 required positional argument: 'chunk'"),
+        ("picture.modify(a=1)", "buffer 'imaginal' is empty"),
+        ("memory.recall('a')", "missing 2 required positional arguments"),
+    ],
+)
+def test_a_wrong_call_that_takes_time_is_reported_at_its_line(call: str, says: str) -> None:
+    text = TAKES_TIME.format(call=call)
+    report = reported(text, Exception)
+    assert (report.file, report.line) == ("mine.py", line_of(text, call))
+    assert says in report.message
+    assert "production 'look'" in report.message
 
 
 def test_a_request_of_a_module_s_own_is_reported_at_no_line_of_the_model(monkeypatch: pytest.MonkeyPatch) -> None:

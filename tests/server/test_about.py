@@ -41,6 +41,16 @@ def test_a_docstring_is_shown_with_its_headings_lists_and_values_to_try() -> Non
     assert [one.get("settings") for one in elements(told["nodes"]) if one["tag"] == "code"] == [{"width": 0.5, "speed": 2}, None]
 
 
+def test_a_value_to_try_of_a_variable_after_other_code_says_why_it_is_no_button() -> None:
+    text = "T\n\nTry `word = 'green'`, `width = 2` and `other = 1`.\n"
+    nodes = about(text, "width = 1\nimport math\nword = 'red'\n")["nodes"]
+    assert [one.get("settings") for one in elements(nodes) if one["tag"] == "code"] == [None, {"width": 2}, None]
+    why = " (word is no parameter, because other code, such as an import, comes before it)"
+    assert texts(nodes) == f"Try word = 'green'{why}, width = 2 and other = 1."
+    first = about(text, "word = 'red'\nwidth = 1\nimport math\n")["nodes"]
+    assert [one.get("settings") for one in elements(first) if one["tag"] == "code"] == [{"word": "green"}, {"width": 2}, None]
+
+
 def test_a_table_is_a_table() -> None:
     told = about("Title.\n\n| a | b |\n|---|--:|\n| 1 | `2` |\n")
     assert [one["tag"] for one in elements(told["nodes"])] == ["table", "thead", "tr", "th", "th", "tbody", "tr", "td", "td", "code"]

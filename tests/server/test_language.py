@@ -203,6 +203,22 @@ def test_a_part_of_a_scene_is_offered_with_the_import_that_it_needs(ask: Asked) 
     assert "Car" not in ask.labels(DOORWAY.replace("Aperture(width", "Aperture(Ca|, width"))
 
 
+def test_methods_that_only_the_library_calls_are_not_offered(ask: Asked) -> None:
+    labels = ask.labels(COUNTING.replace("memory.request", "memory.|; memory.request", 1))
+    assert labels[:5] == ["add", "clear", "find_matching_chunks", "get_activation", "request"]
+    assert not {"recall", "fail", "add_adaptor", "start"} & set(labels)
+    blending = COUNTING.replace("Memory(", "BlendingMemory(").replace("memory.request", "memory.|; memory.request", 1)
+    assert not {"recall", "fail"} & set(ask.labels(blending))
+    head = "from actr3d.actr import *\nfrom actr3d.sgoms import SGOMS\n\n"
+    text = head + "class A(SGOMS):\n    b = Buffer()\n    {}\n    def p(b='x'):\n        {}"
+    noise = ask.labels(text.format("noise = PMNoise()", "noise.|"))
+    assert "logisticNoise" in noise
+    assert not {"create", "firing", "utility"} & set(noise)
+    own = ask.labels(text.format("pass", "self.|"))
+    assert {"resume_at", "reward", "stop"} <= set(own)
+    assert not [label for label in own if label.startswith("sgoms_")]
+
+
 def test_private_names_are_offered_when_one_begins(ask: Asked) -> None:
     names = ask.labels(COUNTING.replace("goal.clear()", "goal.|"))
     assert "chunk" in names
@@ -256,7 +272,7 @@ def test_after_a_buffer_its_own_methods_come_first_and_its_chunk_is_documented(a
         (COUNTING.replace("memory.request", "mem|ory.request", 1), "memory = Memory(retrieval)", "Declarative memory"),
         (COUNTING.replace("memory.request", "memory.req|uest", 1), "request(pattern", "Requests the most active chunk"),
         (COUNTING.replace("task:count", "ta|sk:count", 1), "slot task", "values: start, count"),
-        (COUNTING.replace("task:count", "task:co|unt", 1), "value count", "used in count_on"),
+        (COUNTING.replace("task:count", "task:co|unt", 1), "value count", "used in start_counting, count_on"),
         (COUNTING.replace("print(now)", "print(n|ow)", 1), "?now", "retrieval's word 2"),
         (COUNTING.replace("def count_on", "def count|_on"), "production count_on", "goal: task:count number:?now"),
         (COUNTING.replace("    goal = ", "    go|al = "), "goal = Buffer()", "slots: task, number, last"),
@@ -273,6 +289,48 @@ def test_what_is_known_of_a_name(ask: Asked, text: str, title: str, said: str) -
     assert found["title"].startswith(title)
     assert said in found["text"]
     assert found["start"] <= text.index("|") <= found["end"]
+
+
+READING = """from actr3d.actr import *
+
+
+class Own(DMSpreading):
+    pass
+
+
+class Reader(ACTR):
+    goal = Buffer()
+    found = Buffer()
+    memory = Memory(found)
+    spread = DMSpreading(memory, goal)
+    own = Own(memory, goal)
+    imaginal = ImaginalModule(goal)
+
+    def init():
+        goal.set("task:look")
+
+    def look(goal="task:look"):
+        goal.modify(task="say", count=3, place=f"in {1}")
+
+    def say(goal="task:say"):
+        goal.modify(task=len("x"))
+        goal.modify(task=other)
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (READING.replace("    goal =", "    go|al ="), "filled by imaginal\nslots: task\nmatched in look, say"),
+        (READING.replace("    found =", "    fou|nd ="), "filled by memory"),
+        (READING.replace("task=", "ta|sk=", 1), "matched in look, say\nset in init, look, say\nvalues: look, say"),
+        (READING.replace("count=", "cou|nt="), "set in look\nvalues: 3"),
+        (READING.replace("place=", "pla|ce="), "set in look"),
+        (READING.replace("task:say", "task:s|ay"), "in slot task, used in look, say"),
+    ],
+)
+def test_what_is_known_of_a_buffer_and_its_slots(ask: Asked, text: str, said: str) -> None:
+    assert ask("document", text)["text"].endswith(said)
 
 
 def test_what_is_known_of_a_field_is_what_its_file_says_now(tmp_path: Path) -> None:
@@ -337,6 +395,44 @@ def renamed(asked: Asked, text: str, name: str) -> tuple[str, int]:
     return plain, len(changes)
 
 
+NAMES = """from random import choice
+from actr3d.actr import *
+
+word = "red"
+ink = "green"
+
+
+class Stroop(ACTR):
+    goal = Buffer()
+    retrieval = Buffer()
+    memory = Memory(retrieval)
+
+    def init():
+        goal.set(f"task:ink word:{word} ink:{ink}")
+
+    def look(goal="task:ink ink:?i"):
+        size = 1
+        print(f"{i} {size}")
+        memory.request("of:ink")
+
+    def wrong(goal="task:say"):
+        print(ink)
+
+
+def helps():
+    other = 1
+    return other
+
+
+def counts():
+    count = 2
+    return count
+
+
+model = Stroop()
+"""
+
+
 @pytest.mark.parametrize(
     ("text", "name", "changed"),
     [
@@ -344,6 +440,12 @@ def renamed(asked: Asked, text: str, name: str) -> tuple[str, int]:
         (COUNTING.replace("goal.clear()", "go|al.clear()"), "aim", 8),
         (COUNTING.replace("number:?now last:!", "num|ber:?now last:!"), "size", 5),
         (COUNTING.replace("model.run()", "mo|del.run()"), "agent_1", 2),
+        (NAMES.replace("word = ", "wo|rd = "), "text", 2),
+        (NAMES.replace("def look", "def lo|ok"), "see", 1),
+        (NAMES.replace("class Stroop", "class Str|oop"), "Reading", 2),
+        (NAMES.replace("?i", "?|i", 1), "colour", 2),
+        (NAMES.replace("other = 1", "oth|er = 1"), "count", 2),  # a name of another function
+        (NAMES.replace("goal = Buffer", "go|al = Buffer"), "aim", 4),
     ],
 )
 def test_renaming(ask: Asked, text: str, name: str, changed: int) -> None:
@@ -365,6 +467,21 @@ def test_renaming(ask: Asked, text: str, name: str, changed: int) -> None:
         (COUNTING.replace("Memory(ret", "Mem|ory(ret"), "Store", "is defined in actr3d.actr.declarative.memory"),
         (COUNTING.replace("task:count", "task:co|unt", 1), "x", "there is no name here"),
         ("|", "x", "there is no name here"),
+        (NAMES.replace("?i", "?|i", 1), "self", "there is a variable 'self' already"),
+        (NAMES.replace("print(ink)", "print(se|lf.now())"), "agent", "'self' is the agent in every production"),
+        (NAMES.replace("word = ", "wo|rd = "), "ink", "'ink' already has a meaning in line 5"),
+        (NAMES.replace("word = ", "wo|rd = "), "memory", "'memory' already has a meaning in line 14"),
+        (NAMES.replace("ink = ", "in|k = "), "Stroop", "'Stroop' already has a meaning in line 8"),
+        (NAMES.replace("def look", "def lo|ok"), "wrong", "'wrong' already has a meaning in line 21"),
+        (NAMES.replace("def look", "def lo|ok"), "retrieval", "'retrieval' already has a meaning in line 10"),
+        (NAMES.replace("class Stroop", "class Str|oop"), "ACTR", "'ACTR' is imported from actr3d.actr.* already"),
+        (NAMES.replace("class Stroop", "class Str|oop"), "choice", "'choice' is imported from random already"),
+        (NAMES.replace("?i", "?|i", 1), "print", "'print' is a name of Python itself"),
+        (NAMES.replace("?i", "?|i", 1), "size", "'size' already has a meaning in line 17"),
+        (NAMES.replace("retrieval = Buffer", "retr|ieval = Buffer"), "print", "'print' is a name of Python itself"),
+        (NAMES.replace("retrieval = Buffer", "retr|ieval = Buffer"), "Memory", "'Memory' is imported from actr3d.actr.* already"),
+        (NAMES.replace("retrieval = Buffer", "retr|ieval = Buffer"), "look", "'look' already has a meaning in line 16"),
+        (NAMES.replace("goal = Buffer", "go|al = Buffer"), "ink", "'ink' already has a meaning in line"),
     ],
 )
 def test_what_cannot_be_renamed(ask: Asked, text: str, name: str, why: str) -> None:

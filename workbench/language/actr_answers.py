@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from workbench.language.answers import Completion, Hover, Item, Renaming, Signature
-from workbench.language.library_words import Word, answers_of, features_of, scene_parts, words_for
+from workbench.language.library_words import Word, answers_of, features_of, only_reads, scene_parts, words_for
 from workbench.language.model_text import ChunkText, Method, ModelText, Name, Part, Piece
 
 
@@ -34,6 +34,7 @@ _SLOT = re.compile(r"(\??[\w.]+):(.*)", re.DOTALL)
 _SIGN = re.compile(r"(!?\??)[<>=]*([\w.-]*)$")
 _WORD_AND_VALUES = re.compile(r"""\(\s*["'](\w+)["']\s*,(.*)""", re.DOTALL)
 _PARTS = re.compile(r"\bparts\s*=\s*$")
+_CONSTANT = re.compile(r"""\s*=\s*(?:(["'])([^\s"']*)\1|([+-]?[\d.]+|True|False|None))\s*[,)]""")
 MAX_NAMED = 8
 """How many names are listed in a documentation."""
 
@@ -298,7 +299,7 @@ def document(model: ModelText, at: int) -> Hover | None:
         return Hover(start=name.start, end=name.end, title=f"production {method.name}", text=_of_production(model, method))
     if is_variable(model, name):
         return Hover(start=name.start, end=name.end, title=f"?{name.text}", text=_of_variable(model, name.method, name.text))
-    if name.keyword and name.called[-1:] == ("modify",):
+    if _is_modified(name):
         return Hover(start=name.start, end=name.end, title=f"slot {name.text}", text=_of_slot(model, name.text))
     said = [f"{word.word}: {slots[name.text]}" for word, slots in _conditions(model, name) if name.keyword and slots.get(name.text)]
     if said:
@@ -324,12 +325,27 @@ def _of_slot(model: ModelText, slot: str, text: ChunkText | None = None) -> str:
     if text is not None:
         lines += [f"{word.word}: {slots[slot]}" for word, slots in _answers(model, text) if slots.get(slot)]
     uses = [one for one in model.texts if any(other.text == slot for other in one.slots)]
-    lines.append(_listed("matched in", (one.method.rpartition(".")[2] for one in uses if one.kind == "pattern")))
-    lines.append(_listed("set in", (one.method.rpartition(".")[2] for one in uses if one.kind == "chunk")))
-    lines.append(_listed("requested in", (one.method.rpartition(".")[2] for one in uses if one.kind == "request")))
-    values = (piece.text for one in uses for piece in one.pieces if piece.slot == slot and not piece.is_variable)
-    lines.append(_listed("values:", values))
+    modified = _modified(model, slot)
+    places = {kind: [(one.start, one.method) for one in uses if one.kind == kind] for kind in ("pattern", "chunk", "request")}
+    places["chunk"] += [(name.start, name.method) for name in modified]
+    for what, kind in (("matched in", "pattern"), ("set in", "chunk"), ("requested in", "request")):
+        lines.append(_listed(what, (method.rpartition(".")[2] for _, method in sorted(places[kind]))))
+    values = [(piece.start, piece.text) for one in uses for piece in one.pieces if piece.slot == slot and not piece.is_variable]
+    values += [(name.start, value) for name, value in modified.items() if value]
+    lines.append(_listed("values:", (value for _, value in sorted(values))))
     return "\n".join(line for line in lines if line)
+
+
+def _modified(model: ModelText, slot: str) -> dict[Name, str]:
+    """Returns the names of a slot in calls such as `goal.modify(task="say")`, each with its value; an empty text for a computed one."""
+    named = [one for one in model.names if one.text == slot and _is_modified(one)]
+    values = {name: _CONSTANT.match(model.text, name.end) for name in named}
+    return {name: found[2] or found[3] or "" if found else "" for name, found in values.items()}
+
+
+def _is_modified(name: Name) -> bool:
+    """Returns whether a name is that of a slot in a call such as `goal.modify(task="say")`."""
+    return name.keyword and name.called[-1:] == ("modify",)
 
 
 def _of_value(model: ModelText, text: ChunkText, piece: Piece) -> str:
@@ -338,8 +354,11 @@ def _of_value(model: ModelText, text: ChunkText, piece: Piece) -> str:
     lines = [f"{one.word}({one.takes}): {one.text}" for one in known if one.word == piece.text]
     lines += [f"{word.word}: {word.text}" for word, _ in _answers(model, text) if word.word == piece.text]
     where = f"in slot {piece.slot}" if not piece.slot.isdecimal() else f"word {int(piece.slot) + 1}"
-    uses = [one for one in model.texts if any(other.text == piece.text and other.slot == piece.slot for other in one.pieces)]
-    lines.append(f"{where}, {_listed('used in', (one.method.rpartition('.')[2] for one in uses))}")
+    uses = [
+        (one.start, one.method) for one in model.texts if any(other.text == piece.text and other.slot == piece.slot for other in one.pieces)
+    ]
+    uses += [(name.start, name.method) for name, value in _modified(model, piece.slot).items() if value == piece.text]
+    lines.append(f"{where}, {_listed('used in', (method.rpartition('.')[2] for _, method in sorted(uses)))}")
     return "\n".join(lines)
 
 
@@ -357,11 +376,19 @@ def _of_variable(model: ModelText, method: str, name: str) -> str:
 def _of_part(model: ModelText, part: Part) -> str:
     own = model.chunks_of(part.name, part.agent)
     matched = (one.method.rpartition(".")[2] for one in model.texts if one.part == part.name and one.kind == "pattern")
-    fills = (name for name, one in model.parts_of(part.agent).items() if part.name in one.given)
+    fills = (name for name, one in model.parts_of(part.agent).items() if part.name in one.given and not only_reads(_kinds(model, one)))
     slots = (slot.text for one in own for slot in one.slots)
     words = (piece.text for one in own for piece in one.pieces if piece.slot == "0" and not piece.is_variable)
     lines = [_listed("filled by", fills), _listed("first words:", words), _listed("slots:", slots), _listed("matched in", matched)]
     return "\n".join(line for line in lines if line)
+
+
+def _kinds(model: ModelText, part: Part) -> list[str]:
+    """Returns the class of a part and, if the text defines it, those that it inherits from."""
+    kinds = [part.kind]
+    for kind in kinds:
+        kinds += [base for base in model.agents[kind].bases if base not in kinds] if kind in model.agents else []
+    return kinds
 
 
 def _of_production(model: ModelText, method: Method) -> str:
@@ -438,14 +465,14 @@ def find_uses(model: ModelText, at: int) -> Renaming | None:
     part = part_of(model, name)
     if part is not None:
         return Renaming(name=name.text, what="part", starts=_uses_of_part(model, part))
-    if name.keyword and name.called[-1:] == ("modify",):
+    if _is_modified(name):
         return Renaming(name=name.text, what="slot", starts=_uses_of_slot(model, name.text))
     return None
 
 
 def _uses_of_slot(model: ModelText, slot: str) -> list[int]:
     named = [one.start for text in model.texts for one in text.slots if one.text == slot]
-    given = [one.start for one in model.names if one.text == slot and one.keyword and one.called[-1:] == ("modify",)]
+    given = [one.start for one in model.names if one.text == slot and _is_modified(one)]
     read = [found.start(1) for found in re.finditer(rf"\w\[[\"']({re.escape(slot)})[\"']\]", model.text)]
     return sorted({*named, *given, *read})
 

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 
-from actr3d import world
+from actr3d import actr, world
+from actr3d.actr.declarative.activation import MemorySubModule
+from actr3d.actr.kernel.hooks import is_hook
+from actr3d.actr.procedural.production import defaults_of
+from actr3d.actr.procedural.production_system import ProductionSystem
 from actr3d.simulation import Simulation  # noqa: F401 # pyright: ignore[reportUnusedImport] # registers the sensor `view`
 from actr3d.vision import DETECTORS
 from actr3d.vision.feature import slot_names
@@ -85,3 +90,17 @@ def answers_of(kind: str) -> tuple[Word, ...]:
 def features_of(kind: str) -> tuple[Word, ...]:
     """Returns the features that a module searches for, which its requests and chunks name in the slot `feature`."""
     return features() if kind == "Vision" else ()
+
+
+def is_called_by_library(kind: type, name: str) -> bool:
+    """Returns whether a method of one of the library's classes is called by the library alone: a hook or a production."""
+    if is_hook(kind, name):
+        return True
+    found = inspect.getattr_static(kind, name, None)
+    return issubclass(kind, ProductionSystem) and inspect.isfunction(found) and defaults_of(found) is not None
+
+
+def only_reads(kinds: Iterable[str]) -> bool:
+    """Returns whether a part of these classes only reads the buffers that it is made with: an activation module, unlike its memory."""
+    found = (getattr(actr, kind, None) for kind in kinds)
+    return any(isinstance(kind, type) and issubclass(kind, MemorySubModule) for kind in found)

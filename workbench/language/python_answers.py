@@ -17,6 +17,7 @@ from jedi.inference.compiled.subprocess import InferenceStateSameProcess
 from workbench.language.answers import Definition, Documentation, Item, Signature
 from workbench.language.explicit_names import ExplicitText
 from workbench.language.field_texts import parameter_text, text_at
+from workbench.language.library_words import is_called_by_library
 
 settings.auto_import_modules = []
 settings.allow_unsafe_interpreter_executions = False
@@ -83,6 +84,7 @@ class PythonAnswers:
         start = column - len(found[0].name_with_symbols) + len(found[0].complete or "") if found else column
         if start == column or _before(explicit, line, start + 1) != "_":
             found = [one for one in found if not one.name.startswith("_")]
+        found = [one for one in found if not _is_called_by_library(one)]
         owners: list[str] = []
         if start > 1 and _before(explicit, line, start) == ".":
             owners = [f"{one.full_name}." for one in script.infer(line, start - 2)]
@@ -125,6 +127,15 @@ class PythonAnswers:
             else:
                 return Definition(path=None, line=one.line, name=one.name, module=one.module_name)
         return None
+
+    def origin(self, explicit: ExplicitText, path: str, name: str) -> str:
+        """Returns the module from which a name at the end of a text is imported; empty if it is not imported."""
+        code = f"{explicit.text}\n\n{name}"
+        script, line = self._script(code, path), code.count("\n") + 1
+        if not any(_is_known_by_name(one) for one in script.goto(line, 0)):
+            return ""
+        found = script.goto(line, 0, follow_imports=True)
+        return next((one.module_name for one in found if one.module_path != self._folder / path), "")
 
     def references(self, explicit: ExplicitText, path: str, at: int) -> list[int]:
         """Returns the positions of all uses of the name at a position in its text."""
@@ -179,12 +190,21 @@ def _public_names(before: str) -> list[str] | None:
     return getattr(module, "__all__", None)
 
 
-def _is_known_by_name(one: jedi.Completion) -> bool:
+def _is_known_by_name(one: jedi.BaseName) -> bool:
     """Returns whether a name that jedi finds is really there: it reads the list of a module's public names only if that is simple."""
     if one.module_name == "builtins" and one.type != "keyword":
         return hasattr(builtins, one.name)
     public = getattr(sys.modules.get(one.module_name), "__all__", None) if one.module_name.startswith("actr3d.") else None
     return public is None or one.name in public
+
+
+def _is_called_by_library(one: jedi.Completion) -> bool:
+    """Returns whether what jedi finds is a method that models do not call."""
+    if one.type != "function" or not one.module_name.startswith("actr3d."):
+        return False
+    owner, _, name = (one.full_name or "").removeprefix(f"{one.module_name}.").rpartition(".")
+    kind = getattr(sys.modules.get(one.module_name), owner, None)
+    return isinstance(kind, type) and is_called_by_library(kind, name)
 
 
 def _before(explicit: ExplicitText, line: int, column: int) -> str:

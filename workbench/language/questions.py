@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import keyword
 import re
 import subprocess
@@ -118,9 +119,39 @@ class Assistant:
             return found
         if not allowed:
             raise LanguageError(f"'{new}' is not a name")
-        if new != found.name and self._is_taken(model, found, at, new):
-            raise LanguageError(f"there is a {found.what} '{new}' already")
+        if new != found.name:
+            if self._is_taken(model, found, at, new):
+                raise LanguageError(f"there is a {found.what} '{new}' already")
+            if found.what != "slot":
+                self._check_meaning(model, path, found, at, new)
         return found
+
+    def _check_meaning(self, model: ModelText, path: str, found: Renaming, at: int, new: str) -> None:
+        """Checks that a new name in the code hides nothing, and that no other name means the same once it is written.
+
+        Raises:
+            LanguageError: If it does.
+        """
+        if hasattr(builtins, new):
+            raise LanguageError(f"'{new}' is a name of Python itself")
+        module = self._python.origin(ExplicitText(model), path, new)
+        if module:
+            raise LanguageError(f"'{new}' is imported from {module} already")
+        text, starts = _renamed(model.text, found, new)
+        explicit = ExplicitText(ModelText(text))
+        here = max((start for old, start in zip(found.starts, starts, strict=True) if old <= at), default=starts[0])
+        same = self._uses(explicit, path, here, text, new)
+        for start in starts:
+            if start not in same and found.what != "name":  # each production has its own part or variable
+                same |= self._uses(explicit, path, start, text, new)
+        # Texts of patterns and chunks are no code: there, parts and variables have no uses that Python knows.
+        different = same.difference(starts) or (set(starts) - same if found.what == "name" else None)
+        if different:
+            line = text.count("\n", 0, min(different)) + 1
+            raise LanguageError(f"'{new}' already has a meaning in line {line}")
+
+    def _uses(self, explicit: ExplicitText, path: str, at: int, text: str, name: str) -> set[int]:
+        return {start for start in self._python.references(explicit, path, at) if text.startswith(name, start)}
 
     @staticmethod
     def _is_taken(model: ModelText, found: Renaming, at: int, new: str) -> bool:
@@ -131,17 +162,20 @@ class Assistant:
         if found.what == "slot":
             return any(slot.text == new for one in model.texts for slot in one.slots)
         names = {piece.text for piece in model.variables_of(text.method)} if found.what == "variable" else set[str]()
-        return new in names or new in model.parts_of(text.agent)
+        return new in names or new == "self" or new in model.parts_of(text.agent)
 
     def _find_uses(self, model: ModelText, path: str, at: int) -> Renaming:
         name = model.name_at(at)
         if name is None or model.text_at(at) is not None:
             raise LanguageError("there is no name here that can be renamed")
+        method = model.method(name.method)
+        if name.text == "self" and not name.before and method is not None and method.sees_parts:
+            raise LanguageError("'self' is the agent in every production, and keeps its name")
         explicit = ExplicitText(model)
         defined = self._python.define(explicit, path, at)
         if defined is not None and defined.at is None:
             raise LanguageError(f"'{name.text}' is defined in {defined.path or defined.module}, and keeps its name here")
-        starts = [start for start in self._python.references(explicit, path, at) if model.text.startswith(name.text, start)]
+        starts = sorted(self._uses(explicit, path, at, model.text, name.text))
         if not starts:
             raise LanguageError(f"'{name.text}' cannot be renamed: where it is defined is not known")
         return Renaming(name=name.text, what="name", starts=starts)
@@ -166,6 +200,20 @@ class CodeUnits:
     def unit(self, position: int) -> int:
         """Returns the number of code units before a character."""
         return position + sum(1 for at in self._large if at < position)
+
+
+def _renamed(text: str, found: Renaming, new: str) -> tuple[str, list[int]]:
+    """Returns a text with a new name, and the places of that name in it."""
+    pieces: list[str] = []
+    starts: list[int] = []
+    end = length = 0
+    for start in found.starts:
+        pieces += [text[end:start], new]
+        length += start - end
+        starts.append(length)
+        length += len(new)
+        end = start + len(found.name)
+    return "".join([*pieces, text[end:]]), starts
 
 
 def _plain(answer: Completion | Definition | Documentation | Hover | None, units: CodeUnits) -> Any:

@@ -11,6 +11,7 @@ from typing import Any, Final, Protocol, cast
 
 from actr3d.actr.declarative.activation_parts import activation_part
 from actr3d.actr.declarative.chunk_index import ChunkStore
+from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.model import Model, ensure_converted, is_converted
 from actr3d.actr.kernel.noise import logistic_noise
 from actr3d.actr.kernel.parameters import Count, NotNegative, WithParameters, named_parameters
@@ -59,15 +60,19 @@ class MemorySubModule(WithParameters):
         if parent is not None:
             parent.add_adaptor(self)
 
+    @hook
     def create(self, chunk: Any, **keys: Any) -> None:
         """Handles a new chunk, before it is added to the memory."""
 
+    @hook
     def merge(self, chunk: Any, **keys: Any) -> None:
         """Handles a chunk that is added again."""
 
+    @hook
     def matched(self, chunks: list[Any]) -> None:
         """Handles the chunks that match a request."""
 
+    @hook
     def activation(self, chunk: Any) -> float:
         """Returns this module's part of a chunk's activation.
 
@@ -76,6 +81,7 @@ class MemorySubModule(WithParameters):
         """
         return 0
 
+    @hook
     def recalled(self, chunk: Any) -> None:
         """Handles a chunk that has been retrieved."""
 

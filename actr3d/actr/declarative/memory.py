@@ -17,6 +17,7 @@ from actr3d.actr.declarative.finst import Finst
 from actr3d.actr.declarative.partial_matching import Partial
 from actr3d.actr.declarative.retrieval_record import Retrieval
 from actr3d.actr.kernel.buffer import Buffer, Harvester
+from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.log import dummy
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.noise import pick, total
@@ -248,6 +249,7 @@ class Memory(WithParameters, Model):
         """Returns the activation that is compared with the threshold and determines the time."""
         return best
 
+    @hook
     def fail(self, request_number: int) -> Iterator[float]:
         """Waits for the time of a failure, then sets `error` and clears the buffer."""
         self.sch.discard_remainders()
@@ -261,6 +263,7 @@ class Memory(WithParameters, Model):
         if trace is not None and trace.all:
             trace.emit(self.sch.now_us, self._path, "retrieval", {"failed": True})
 
+    @hook
     def recall(self, chunk: Any, matches: list[Any], request_number: int) -> Iterator[float]:
         """Waits for the retrieval time, then puts a chunk into the buffer."""
         self.finst.add(chunk)
@@ -323,6 +326,7 @@ class Memory(WithParameters, Model):
             chunk = known
         return total(self._parts(chunk))
 
+    @hook
     def add_adaptor(self, a: MemorySubModule) -> None:
         """Adds an activation module; the module calls this itself."""
         self.adaptors.append(a)

@@ -13,6 +13,7 @@ from actr3d.actr.declarative.activation import ActivatedMemory, MemorySubModule
 from actr3d.actr.declarative.activation_parts import activation_part
 from actr3d.actr.declarative.chunk_index import ChunkStore
 from actr3d.actr.kernel.buffer import Buffer
+from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.parameters import named_parameters
 from actr3d.errors import ChunkError
 from actr3d.warnings import warn_modeller
@@ -102,6 +103,7 @@ class DMSpreading(MemorySubModule):
                     total += weight * (self.strength - math.log(self._occurrences(value) + 1))
         return total
 
+    @hook
     def activation_for_observer(self, chunk: Any) -> float:
         """Returns the same as `activation`, without a warning: a later retrieval warns.
 

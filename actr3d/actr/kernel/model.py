@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import inspect
 import random
-from collections.abc import Callable, Generator
+import sys
+from collections.abc import Callable, Generator, Iterable
 from types import MethodType
 from typing import Any, Protocol
 from weakref import ref
@@ -21,6 +22,7 @@ from actr3d.actr.kernel.class_members import (
     with_property_setters,
 )
 from actr3d.actr.kernel.events import Event, Trigger
+from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.profile import PROFILES, PYTHON_ACTR, Profile
 from actr3d.actr.kernel.run_limits import EndOfRun, RunLimits, fresh_seed
 from actr3d.actr.kernel.scheduler import Scheduler
@@ -31,7 +33,7 @@ from actr3d.clock import seconds
 from actr3d.errors import SchedulerError, did_you_mean, hint_for
 from actr3d.trace import Trace, TraceEvent, run_of, top_path, with_number
 from actr3d.values import COLLECTIONS
-from actr3d.warnings import warn_modeller
+from actr3d.warnings import locate, warn_modeller
 
 BEFORE_FIRST_RUN: list[Callable[[Model], object]] = []
 """Called with a top model that is about to run for the first time; `actr3d.actr` adds the checks of models here."""
@@ -356,6 +358,7 @@ class Model(TreeNode):
         attach_trace(top_of(self), trace)
         return trace
 
+    @hook
     def start(self) -> Any:
         """Is called when the model is converted; a generator here runs from time 0. For subclasses."""
 
@@ -520,15 +523,18 @@ class GeneratorWrapper(MethodWrapper):
 
     def __call__(self, *args: Any, **keys: Any) -> Event:
         sch = self.obj.sch
-        return sch.begin(self._steps(args, keys, sch.firing, sch.now_us), self)
+        method = self.func(self.obj, *args, **keys)  # wrong arguments are an error of the calling line
+        frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage] # Python documents it
+        return sch.begin(self._steps(method, sch.firing, (frame.f_code.co_filename, frame.f_lineno), sch.now_us), self)
 
-    def _steps(self, args: tuple[Any, ...], keys: dict[str, Any], caller: Caller | None, called_us: int) -> Generator[Any, Any, None]:
-        """Runs the method and fires its triggers; an error in it names its caller and the time of the call [us]."""
+    def _steps(self, method: Iterable[Any], caller: Caller | None, site: tuple[str, int], called_us: int) -> Generator[Any, Any, None]:
+        """Runs the method and fires its triggers; an error in it names its caller and the place and the time of the call [us]."""
         self._wake(self._begins)
         try:
-            yield from self.func(self.obj, *args, **keys)
+            yield from method
         except Exception as error:
             if caller is not None:
+                locate(error, *site)
                 error.add_note(
                     f"in '{self.__name__}' at {self.obj.now():g} s, called by production '{caller.name}' ({caller.place}) "
                     f"at {seconds(called_us):g} s{hint_for(error, self.func.__globals__)}"

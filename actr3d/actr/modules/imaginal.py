@@ -7,6 +7,7 @@ from typing import Any, cast
 
 from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.kernel.buffer import Buffer
+from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
 from actr3d.actr.modules.registry import module
@@ -32,6 +33,7 @@ class ImaginalModule(WithParameters, Model):
         self.delay = delay
         self.delay_sd = delay_sd
 
+    @hook
     def delay_time(self) -> float:
         """Returns the duration of the next change [s]."""
         time: float = cast("Any", self.delay)() if callable(self.delay) else self.delay

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from traceback import walk_tb
 from typing import Any, NamedTuple
 
 from actr3d.actr.kernel.events import Event
@@ -14,8 +13,8 @@ from actr3d.actr.kernel.parameters import named_parameters
 from actr3d.actr.kernel.scheduler import Scheduler
 from actr3d.actr.kernel.tree import lineage, path_of, subtree
 from actr3d.actr.modules.answers import answer_slots, plain_answer
-from actr3d.errors import Actr3dError, SimulationError
-from actr3d.warnings import is_library, of_library
+from actr3d.errors import SimulationError
+from actr3d.warnings import is_library, locate
 
 RAW_VISION = ("view", "image", "depth")
 """Raw sensors of the eye. Only a vision module should read them; any other part of an agent that reads them bypasses vision."""
@@ -306,6 +305,5 @@ def note_request(error: Exception, port: Port, site: CallSite | None) -> None:
     where = ""
     if site is not None:
         where = f" in {site.describe()}"
-        if isinstance(error, Actr3dError) and all(of_library(frame.f_code) for frame, _ in walk_tb(error.__traceback__)):
-            error.at(site.file, site.line)
+        locate(error, site.file, site.line)
     error.add_note(f"  requested by '{path_of(port)}'{where}")

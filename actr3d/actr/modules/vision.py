@@ -9,6 +9,7 @@ from actr3d.actr.chunks.chunk import Chunk
 from actr3d.actr.chunks.pattern import Pattern
 from actr3d.actr.declarative.finst import Finst
 from actr3d.actr.kernel.buffer import Buffer
+from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.log import log_line
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.parameters import ELSEWHERE, WithParameters, named_parameters
@@ -57,6 +58,7 @@ class Vision(WithParameters, Model):
             return True
         return self.now() < appeared + self.visualOnsetSpan
 
+    @hook
     def environmentUpdate(self) -> Iterator[Any]:  # noqa: N802
         """Puts a new object's place into the empty location buffer, at every change of the environment."""
         environment = self._environment()
@@ -82,6 +84,7 @@ class Vision(WithParameters, Model):
             return False
         return obj not in self.timeAppeared and hasattr(obj, "x") and hasattr(obj, "y")
 
+    @hook
     def lostTrack(self) -> None:  # noqa: N802
         """Ends the tracking of an object that is gone."""
         if self.tracking is not None:

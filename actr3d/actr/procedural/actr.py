@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from actr3d.actr.kernel.class_members import Method
 from actr3d.actr.kernel.events import AGAIN, Event
+from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.noise import pick
 from actr3d.actr.kernel.parameters import Extended, NotNegative
 from actr3d.actr.procedural.conflict_set import ConflictSet
@@ -203,6 +204,7 @@ class ACTR(ProductionSystem):
 
     # -- utility
 
+    @hook
     def add_adaptor(self, module: ProceduralSubModule) -> None:
         """Adds a utility module; the module calls this when it becomes an attribute."""
         self._adaptors.append(module)

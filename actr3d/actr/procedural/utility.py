@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, cast
 
+from actr3d.actr.kernel.hooks import hook
 from actr3d.actr.kernel.model import Model
 from actr3d.actr.kernel.noise import logistic_noise
 from actr3d.actr.kernel.parameters import NotNegative, WithParameters, named_parameters
@@ -23,6 +24,7 @@ class ProceduralSubModule(WithParameters, Model):
         """Registers the module with the agent."""
         self.parent.add_adaptor(self)  # type: ignore[union-attr]
 
+    @hook
     def create(self, prod: Any, parents: list[Production] | None = None) -> None:
         """Is called for each new production.
 
@@ -31,22 +33,28 @@ class ProceduralSubModule(WithParameters, Model):
             parents: The two productions that it was compiled from; None for any other.
         """
 
+    @hook
     def selecting(self, prod: Any) -> None:
         """Is called when a production has been chosen."""
 
+    @hook
     def withdrawn(self, prod: Any) -> None:
         """Is called when a user withdraws the chosen production before it fires."""
 
+    @hook
     def firing(self, prod: Any) -> None:
         """Is called when a production fires."""
 
+    @hook
     def reward(self, value: float) -> None:
         """Is called with each reward."""
 
+    @hook
     def utility(self, prod: Any) -> float:
         """Returns this module's part of a production's utility."""
         return 0
 
+    @hook
     def below_threshold(self) -> None:
         """Is called when no production's utility has reached the threshold."""
 
@@ -283,6 +291,7 @@ class PMNew(RewardLearning):
         """Returns a production's learned utility; 0 before its first reward."""
         return prod.util
 
+    @hook
     def recreated(self, prod: Any, first: Any) -> None:
         """Moves a compiled rule's utility to its first parent's, U += alpha (U_parent - U), with its present one (ACT-R 7)."""
         whole = prod.base_utility + prod.util
