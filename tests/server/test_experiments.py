@@ -176,7 +176,14 @@ def test_means_are_those_of_participants(workbench: Served, finished: str) -> No
         assert point["mean"] == pytest.approx(sum(means) / 2)
         assert point["error"] == pytest.approx(abs(means[0] - means[1]) / 2)
         assert (point["participants"], point["trials"]) == (2, 8)
-    assert len(workbench.get(f"/api/experiments/{finished}/means?x=participant&measure=rt").json()["points"]) == 2
+    path = f"/api/experiments/{finished}/means?x=participant&measure=rt"
+    alone = workbench.get(path).json()
+    assert len(alone["points"]) == 2
+    beside, nothing = workbench.get(f"{path}&beside={finished}").json(), {"conditions": 0, "trials": 0}
+    both: dict[str, Any] = {"left_out": nothing, "beside": {"points": alone["points"], "left_out": nothing}, "apart": []}
+    assert beside == alone | both
+    for name in ("none", "..", "..%2Frecordings", "counting_design.py"):
+        assert workbench.get(f"{path}&beside={name}").status_code == 404
 
 
 def test_the_time_of_an_experiment_is_when_it_was_made_also_in_a_folder_of_another_name(tmp_path: Path) -> None:
