@@ -143,6 +143,54 @@ def test_numbers_that_cannot_be_run_are_named_before_anything_runs(pages: Callab
     assert workbench.get("/api/experiments").json() == before
 
 
+def test_a_value_that_the_model_does_not_take_is_marked_and_cannot_be_run(pages: Callable[..., Page], design: str) -> None:
+    page = pages(design.partition(":")[0], tab="experiments", refusals=True)
+
+    def answer(route: Route) -> None:
+        texts = json.loads(route.request.post_data or "").get("texts", {})
+        refused = [f"{name}: must be <= 5 (got 9)" for name in ("n", "mode") if "9" in texts.get(name, ())]
+        if refused:
+            route.fulfill(status=422, json={"error": refused[0]})
+        else:
+            route.continue_()
+
+    page.route("**/api/designs/check", answer)
+    page.get_by_role("button", name="New experiment").click()
+    page.get_by_label("Design", exact=True).select_option(design)
+    run, problem = page.locator(".foot").get_by_role("button", name="Run"), page.get_by_role("alert")
+    expect(run).to_be_enabled()
+    levels = page.get_by_label("Levels of n")
+    for field, right in ((levels, "1, 2"), (page.get_by_label("Value of mode"), "count")):
+        if field is not levels:
+            page.get_by_label("Set another parameter").select_option("mode")
+        field.fill("9")
+        expect(problem).to_have_text(re.compile("^(n|mode): must be <= 5 [(]got 9[)]$"))
+        expect(field).to_have_attribute("aria-invalid", "true")
+        expect(page.locator(".new [aria-invalid=true]")).to_have_count(1)
+        expect(run).to_be_disabled()
+        field.fill(right)
+        expect(field).to_have_attribute("aria-invalid", "false")
+        expect(problem).to_have_count(0)
+        expect(run).to_be_enabled()
+
+
+LEVELS = """async (texts) => {
+    const { levelsText, readLevels } = await part("experiments/wording.js");
+    return texts.map((text) => [readLevels(text).levels, readLevels(text).texts, levelsText(readLevels(text).levels)]);
+}"""
+
+
+def test_levels_are_read_as_the_command_reads_them(blank: Page) -> None:
+    written = {
+        "None, true, False": ([None, True, False], ["None", "true", "False"], "None, true, false"),
+        "none, no": (["none", "no"], ["none", "no"], "none, no"),
+        '"None", "5", "a, b"': (["None", "5", "a, b"], ['"None"', '"5"', '"a, b"'], '"None", "5", "a, b"'),
+        "3.0; 0.50": ([3, 0.5], ["3.0", "0.50"], "3, 0.5"),
+        "0x1, don't": ([1, "don't"], ["0x1", "don't"], '1, "don\'t"'),
+    }
+    assert blank.evaluate(LEVELS, list(written)) == [list(one) for one in written.values()]
+
+
 def test_the_duration_of_a_trial_is_asked_each_time_the_form_is_shown(pages: Callable[..., Page], design: str) -> None:
     page = pages(design.partition(":")[0], tab="experiments")
     answers = [
@@ -178,7 +226,7 @@ def test_the_duration_of_a_trial_is_measured_for_the_values_that_were_changed(pa
         asked = json.loads(route.request.post_data or "")
         if not asked.pop("trial", False):
             return route.continue_()
-        measured.append(asked.get("values", {}))
+        measured.append(asked.get("texts", {}))
         return route.fulfill(
             json={"seconds_a_trial": 4.0 if measured[-1] else 0.5, "error": "ValueError: no" if measured[-1].get("mode") else ""}
         )
@@ -200,8 +248,8 @@ def test_the_duration_of_a_trial_is_measured_for_the_values_that_were_changed(pa
     page.get_by_role("button", name="Reset n").click()
     expect(foot).to_contain_text("0.50 s a trial")
     expect(page.get_by_role("alert")).to_have_count(0)
-    asked = [one for one in measured if one.get("mode") != "count"]  # its default, if the user pauses there
-    assert asked == [{}, {"n": [9]}, {"n": [9], "mode": "fail"}]
+    asked = [one for one in measured if one.get("mode") != ["count"]]  # its default, if the user pauses there
+    assert asked == [{}, {"n": ["9"]}, {"n": ["9"], "mode": ["fail"]}]
 
 
 def test_a_new_experiment_begins_with_a_design_of_the_model_and_keeps_what_was_typed(
