@@ -16,6 +16,7 @@ import actr3d
 from actr3d.actr.kernel.source_code import last_name, syntax_tree
 from actr3d.actr.loading.source_text import read_source
 from actr3d.errors import Actr3dError, ModelFileError, did_you_mean
+from actr3d.parameter_schema import literal
 from actr3d.values import escape_surrogates
 from workbench.files import MAX_FILE_SIZE, ModelFolder, file_stamp
 from workbench.page_commands import PageMessage
@@ -135,6 +136,12 @@ def _model_of(function: ast.FunctionDef, file: str | None) -> str | None:
 # -- what a user wants of a design
 
 
+def _as_literal(text: str) -> str:
+    """Returns the literal of Python that the command reads as it reads a text, in ASCII also for a text without quotes."""
+    value = literal(text)
+    return ascii(value) if isinstance(value, (str, bool)) else text
+
+
 class WantedDesign(PageMessage):
     """A design, and the values and numbers that replace some of its own."""
 
@@ -142,6 +149,10 @@ class WantedDesign(PageMessage):
     """The name of one of the library's, or `FILE:NAME`."""
     values: dict[Identifier, Level | Annotated[list[Level], Field(max_length=200)]] = Field(default_factory=dict, max_length=100)
     """New levels of factors, or values of other parameters."""
+    texts: dict[Identifier, Annotated[list[Annotated[str, Field(max_length=1_000)]], Field(min_length=1, max_length=200)]] = Field(
+        default_factory=dict, max_length=100
+    )
+    """The same as users write them, one text for each level: each is read as the command reads it, so that both give one experiment."""
     participants: Annotated[int, Field(ge=1, le=MOST["participants"])] | None = None
     """The number of participants of each group; null for that of the design."""
     trials: Annotated[int, Field(ge=1, le=MOST["trials"])] | None = None
@@ -151,6 +162,9 @@ class WantedDesign(PageMessage):
         """Returns what replaces some of the design, as options of the command; values as literals of Python, in ASCII."""
         counts = (("participants", self.participants), ("trials", self.trials))
         sets = [f"--set={name}={value!a}" for name, value in self.values.items()]
+        for name, texts in self.texts.items():
+            levels = list(map(_as_literal, texts))
+            sets.append(f"--set={name}={levels[0] if len(levels) == 1 else '[' + ', '.join(levels) + ']'}")
         return [f"--{name}={count}" for name, count in counts if count is not None] + sets
 
 

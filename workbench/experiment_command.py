@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import re
 import signal
 import sys
 from collections import deque
@@ -24,6 +25,8 @@ LAST_LINES = 60
 """How many lines of its messages are kept."""
 PART = 4_000
 """How much of a message is read at a time, and shown at most [characters]."""
+OF_VALUE = re.compile(r"\A--set (\w+): (?:Design(?:, .*?: \1|\.\w+(?:\['.*?'\])?)?: )?")
+"""How the command begins an error about a value that replaces one of the design: with its option, and the place in the design."""
 
 
 # -- the messages of `actr3d experiment --json`, one JSON object a line; see `actr3d.experiment.command`
@@ -147,11 +150,11 @@ class ExperimentCommand:
 
     @property
     def problem(self) -> str:
-        """Why it failed: the signal that ended it, or its last messages."""
+        """Why it failed: the signal that ended it, or its last messages, which begin with the name of a wrong value if there is one."""
         code = self._process.returncode
         if code is not None and code < 0 and not self._interrupted:
             return f"its process was ended by the signal {signal.Signals(-code).name}"
-        text = "\n".join(self._messages).strip().removeprefix("error: ")
+        text = OF_VALUE.sub(r"\1: ", "\n".join(self._messages).strip().removeprefix("error: "))
         return text if len(text) <= PART else f"… {text[-PART:]}"
 
     async def events(self) -> AsyncGenerator[AnyExperimentEvent]:

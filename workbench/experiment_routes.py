@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import asdict
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request
@@ -156,14 +157,22 @@ async def means(
     measure: Column,
     by: Annotated[list[Column] | None, Query(max_length=4)] = None,
     over: Column | None = None,
+    beside: Annotated[str | None, Query(min_length=1, max_length=160)] = None,
 ) -> Response:
     """Returns the mean of a measure for each combination of the values of columns, over participants, with its standard error.
 
     `{points: [{at: [value of x and of each column of by], mean, error, participants, trials}]}`; of True and False, the share of True.
     With `over`, the measure has a column for each number, `measure_1`, `measure_2`, ..., and `over` is the name of the column of numbers.
+
+    `beside` is another experiment: then the means of both are over the conditions that both have. `{points, left_out, beside: {points,
+    left_out}, apart}`: `left_out: {conditions, trials}` are those that only one of them has, and `apart` the factors without a common
+    level.
     """
+    options = {"x": x, "by": by or [], "measure": measure, "over": over}
+    if beside is not None:
+        return await _means_of_two(request, experiment, beside, **options)
     empty = {"x": x, "by": by or [], "measure": measure, "unit": None, "columns": [], "points": []}
-    return await _made(request, "trial means", experiment, empty, x=x, by=by or [], measure=measure, over=over)
+    return await _made(request, "trial means", experiment, empty, **options)
 
 
 @router.post("/experiments/{experiment}/trial")
@@ -208,6 +217,25 @@ async def _made(request: Request, form: str, name: str, empty: dict[str, Any], *
     if table is None:
         return _json(empty)
     work = experiments.readers.make(form, table, **options)
+    return OpenFile(await while_connected(work, request.receive), "application/json")
+
+
+async def _means_of_two(request: Request, *names: str, **options: Any) -> Response:
+    """Returns what a worker makes of the tables of two experiments.
+
+    Raises:
+        ExperimentRunError: If one has no trial yet, or its factors are not known.
+    """
+    experiments = experiments_of(request)
+    factors: list[str] = []
+    tables: list[Path] = []
+    for folder in map(experiments.folder, names):
+        facts, table = folder.facts, folder.table
+        if facts is None or table is None:
+            raise ExperimentRunError("its factors are not known" if facts is None else "none of its trials has finished")
+        factors += facts.factors
+        tables.append(table)
+    work = experiments.readers.make("trial means of two", *tables, **options, factors=factors)
     return OpenFile(await while_connected(work, request.receive), "application/json")
 
 

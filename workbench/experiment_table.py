@@ -27,6 +27,8 @@ MAX_NUMBERS = 400
 MAX_TEXT = 20_000
 """Maximum length of a value of a row [characters]."""
 NUMBERS = ("integer", "real", "boolean")
+NUMERIC = "typeof(value) IN ('integer', 'real')"
+"""The SQL for whether a trial has a value of the measure."""
 OUTSIDE = {"wall_s": "real", "worker": "text"}
 """Columns that are not part of the rows themselves, with their types."""
 FIRST = ("trial", "participant", "group", "position", "repetition")
@@ -144,7 +146,9 @@ class Table:
         rows = [{**_row(data), "trial": number, "wall_s": wall, "worker": worker} for number, data, wall, worker in found]
         return {"total": total, "first": first, "columns": self.columns, "rows": rows}
 
-    def means(self, x: str, by: Sequence[str], measure: str, over: str | None = None) -> dict[str, Any]:
+    def means(
+        self, x: str, by: Sequence[str], measure: str, over: str | None = None, among: tuple[Sequence[str], Sequence[str]] | None = None
+    ) -> dict[str, Any]:
         """Returns the mean of a measure for each combination of values: the mean of the participants' means, with its standard error.
 
         Args:
@@ -153,19 +157,21 @@ class Table:
             measure: The column that is averaged; of True and False, the share of True.
             over: The name of a further column with the number of a value, for a measure that has a column for each number; None for
                 one with one value a trial.
+            among: Columns, and those of their combinations that are averaged, as `combinations` returns them; None for all.
 
         Raises:
             TableError: If there is no such column, the measure has no numbers, or there are too many points.
         """
         columns = self._numbered(measure, over)
-        parts = [f"SELECT data, wall_s, worker, {number} AS number, {self._value(name)} AS value FROM trial" for number, name in columns]
         keys = [x, *by]
-        wanted = ", ".join("number, NULL" if name == over else f"{self._value(name)}, {self._kind(name)}" for name in keys)
+        wanted = ", ".join(part for name in keys for part in self._value_and_kind(name, over))
+        names, kept = among or ((), ())
+        condition = "" if among is None else f" AND {self._combination(names, over)} IN (SELECT value FROM json_each(?))"
         sql = (
-            f"SELECT {wanted}, json_extract(data, '$.participant'), count(*), avg(value) FROM ({' UNION ALL '.join(parts)}) WHERE "
-            f"typeof(value) IN ('integer', 'real') GROUP BY {', '.join(str(n + 1) for n in range(2 * len(keys) + 1))} LIMIT ?"
+            f"SELECT {wanted}, json_extract(data, '$.participant'), count(*), avg(value) FROM ({self._values(columns)}) WHERE {NUMERIC}"
+            f"{condition} GROUP BY {', '.join(str(n + 1) for n in range(2 * len(keys) + 1))} LIMIT ?"
         )
-        found = self._read(sql, [MAX_CELLS + 1])
+        found = self._read(sql, [*([] if among is None else [json.dumps(kept)]), MAX_CELLS + 1])
         cells: dict[tuple[Any, ...], list[tuple[int, float]]] = defaultdict(list)
         for row in found:
             key = tuple((row[2 * n], row[2 * n + 1]) for n in range(len(keys)))
@@ -175,6 +181,37 @@ class Table:
         points = [{"at": [_typed(*part) for part in key], **_mean(parts)} for key, parts in cells.items()]
         unit = next((column["unit"] for column in self.columns if column["name"] == columns[0][1]), None)
         return {"x": x, "by": list(by), "measure": measure, "unit": unit, "columns": self.columns, "points": points}
+
+    def combinations(self, names: Sequence[str], measure: str, over: str | None = None) -> dict[str, int]:
+        """Returns the numbers of values of a measure by combination of values of columns: a JSON list of the type and value of each.
+
+        Args:
+            names: The columns; the type of one that the table does not have is null.
+            measure: As for `means`.
+            over: As for `means`.
+
+        Raises:
+            TableError: If the measure has no numbers, or there are too many combinations.
+        """
+        values = self._values(self._numbered(measure, over))
+        sql = f"SELECT {self._combination(names, over)}, count(*) FROM ({values}) WHERE {NUMERIC} GROUP BY 1 LIMIT ?"
+        found = self._read(sql, [MAX_CELLS + 1])
+        if len(found) > MAX_CELLS:
+            raise TableError(f"{' and '.join(names)} have too many different values for a comparison")
+        return dict(found)
+
+    def _values(self, columns: Sequence[tuple[int, str]]) -> str:
+        """Returns the SQL for the trials with a value of each of some columns, and its number."""
+        parts = [f"SELECT data, wall_s, worker, {number} AS number, {self._value(name)} AS value FROM trial" for number, name in columns]
+        return " UNION ALL ".join(parts)
+
+    def _combination(self, names: Sequence[str], over: str | None) -> str:
+        """Returns the SQL for the types and values of columns, as a JSON list."""
+        known = [self._value_and_kind(name, over) if name in (over, *self._types) else ("NULL", "NULL") for name in names]
+        return f"json_array({', '.join(f'{kind}, {value}' for value, kind in known)})"
+
+    def _value_and_kind(self, name: str, over: str | None) -> tuple[str, str]:
+        return ("number", "NULL") if name == over else (self._value(name), self._kind(name))
 
     def _numbered(self, measure: str, over: str | None) -> list[tuple[int, str]]:
         """Returns the columns of a measure, each with its number.
@@ -217,6 +254,84 @@ class Table:
             return self._file.execute(sql, values).fetchall()
         except (sqlite3.Error, OverflowError) as error:
             raise TableError(f"the table of trials cannot be read: {error}") from None
+
+
+def means_of_two(
+    path: Path, beside: Path, *, x: str, by: Sequence[str], measure: str, factors: Sequence[str], over: str | None = None
+) -> dict[str, Any]:
+    """Returns the means of an experiment, and those of another one `beside` it, as `Table.means` does, over the conditions that both have.
+
+    A condition is a combination of levels of all factors, drawn or not, of a group, and of a number of the measure. The means of both at
+    one place of the figure are over the same conditions. `left_out` are the numbers of conditions, and of trials (or of values of a
+    measure that has several a trial), that only one of them has; `apart` are the factors of which the two have no level in common.
+
+    Args:
+        path: The table of the experiment.
+        beside: The table of the other one.
+        x: As for `Table.means`.
+        by: As for `Table.means`.
+        measure: As for `Table.means`.
+        factors: The factors of both experiments.
+        over: As for `Table.means`.
+
+    Raises:
+        Actr3dError: If one of the tables cannot be read as requested.
+    """
+    drawn = [x, *by]
+    of_condition: list[str] = [*dict.fromkeys([*factors, "group"] if over is None else [*factors, "group", over])]
+    names = drawn + of_condition
+    with closing(Table(path)) as one, closing(Table(beside)) as other:
+        both = [_Trials(table.combinations(names, measure, over), len(drawn)) for table in (one, other)]
+        kept = [both[0].beside(both[1]), both[1].beside(both[0])]
+        mine, theirs = (table.means(x, by, measure, over, (names, found)) for table, found in zip((one, other), kept, strict=True))
+    left_out = [trials.without(found) for trials, found in zip(both, kept, strict=True)]
+    levels = [[{condition[n] for _, condition in trials.of} for n in range(len(of_condition))] for trials in both]
+    apart = [name for name, here, there in zip(of_condition, *levels, strict=True) if here.isdisjoint(there)]
+    return {**mine, "left_out": left_out[0], "beside": {"points": theirs["points"], "left_out": left_out[1]}, "apart": apart}
+
+
+class _Trials:
+    """The trials of an experiment by their place in a figure and their condition.
+
+    Args:
+        numbers: Their numbers by combination of values, as `Table.combinations` returns them.
+        drawn: How many of the values are the place; the others are the condition.
+    """
+
+    def __init__(self, numbers: Mapping[str, int], drawn: int) -> None:
+        self._numbers = numbers
+        self.of: dict[tuple[Any, Any], list[str]] = defaultdict(list)
+        """The combinations by place and condition: 1 and 1.0 are two of one condition."""
+        for combination in numbers:
+            parts = json.loads(combination)
+            values = tuple(map(_comparable, parts[::2], parts[1::2]))
+            self.of[values[:drawn], values[drawn:]].append(combination)
+
+    def beside(self, other: _Trials) -> list[str]:
+        """Returns the combinations that are averaged beside another experiment: both have their conditions, also at each place of both."""
+        conditions = {condition for _, condition in self.of} & {condition for _, condition in other.of}
+        places = {place for place, _ in self.of} & {place for place, _ in other.of}
+        return [
+            combination
+            for (place, condition), combinations in self.of.items()
+            if condition in conditions and (place not in places or (place, condition) in other.of)
+            for combination in combinations
+        ]
+
+    def without(self, kept: Sequence[str]) -> dict[str, int]:
+        """Returns the numbers of conditions and of trials that are not among some combinations."""
+        left = set(kept)
+        conditions = {condition for (_, condition), combinations in self.of.items() if not left.isdisjoint(combinations)}
+        return {
+            "conditions": len({condition for _, condition in self.of} - conditions),
+            "trials": sum(number for combination, number in self._numbers.items() if combination not in left),
+        }
+
+
+def _comparable(kind: str | None, value: Any) -> tuple[str | None, Any]:
+    """Returns a value that is equal for equal levels: 1 and 1.0 are equal, 1, "1" and True are not."""
+    kind = "number" if kind in ("integer", "real") else kind
+    return kind, json.dumps(value) if isinstance(value, (list, dict)) else value
 
 
 def _typed(value: Any, kind: str | None) -> Any:

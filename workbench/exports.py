@@ -20,7 +20,7 @@ from actr3d.values import to_json
 from workbench.csv_files import write_events_csv, write_states_csv
 from workbench.curves import CurveReader, joined, stretch, thinned
 from workbench.event_curves import EventCurves
-from workbench.experiment_table import Table, counts
+from workbench.experiment_table import Table, counts, means_of_two
 from workbench.html_replay.make import write_replay
 from workbench.program_time import timed_events
 from workbench.recorded_simulations import RecordedSimulation, simulations_of
@@ -100,5 +100,6 @@ EXPORTS: dict[str, Callable[..., None]] = {
     "trial counts": _write(lambda *tables: counts(*tables)),
     "trial rows": _write(_from_table(Table.rows)),
     "trial means": _write(_from_table(Table.means)),
+    "trial means of two": _write(means_of_two),
 }
 """By the kind of file, the function that writes it: called with the paths of recordings or tables, that of the new file, and options."""

@@ -10,7 +10,7 @@ import { CanvasSurface, scaled } from "../parts/surface.js";
 import { numberText } from "../parts/ticks.js";
 import { remembered } from "../local_storage.js";
 import { dark } from "../theme.js";
-import { useFacts, useFresh } from "./answer.js";
+import { useFresh } from "./answer.js";
 import { drawFigure, drawLegend, drawSample, layout, layoutLegend, levelsOf } from "./drawing.js";
 import { experiments, pathOf, showExperiment } from "./list.js";
 import { changedText, columnText, doneText, experimentText, headText } from "./wording.js";
@@ -70,14 +70,14 @@ function chosenFor(name, facts, columns) {
   return { x: axis, by: by.filter((one) => known(one) && one !== axis), measure: chosen, over };
 }
 
-function meansOf(id, { x, by, measure, over }) {
-  const query = new URLSearchParams([["x", x], ["measure", measure], ...by.map((name) => ["by", name]), ...(over ? [["over", over]] : [])]);
-  return `${pathOf(id)}/means?${query}`;
+/** Returns the address of the means of an experiment; with those of another one beside it, if there is one. */
+function meansOf(id, { x, by, measure, over }, beside) {
+  const options = Object.entries({ over, beside: beside?.id }).filter(([, value]) => value);
+  return `${pathOf(id)}/means?${new URLSearchParams([["x", x], ["measure", measure], ...by.map((name) => ["by", name]), ...options])}`;
 }
 
-/** Returns the lines of an answer: {number, key, name, values, points, dashed, experiment}; the nth combination has the nth colour. */
+/** Returns the lines of means: {number, key, name, values, points, dashed, experiment}; the nth combination has the nth colour. */
 function linesOf(answer, facts, combinations, dashed, experiment) {
-  if (!answer) return [];
   const groups = Map.groupBy(answer.points, ({ at }) => JSON.stringify(at.slice(1)));
   const levels = levelsOf(answer.points.map(({ at }) => at[0]), orderOf(facts, answer.x));
   const places = new Map(levels.map((level, n) => [JSON.stringify(level), n]));
@@ -94,7 +94,7 @@ const orderOf = (facts, name) => facts.factors?.[name] ?? (name === "group" ? Ob
 
 /** Returns all combinations of the values of lines, as JSON, in the order of the design. */
 function combinationsOf(answers, by, facts) {
-  const all = [...new Set(answers.flatMap((answer) => answer?.points.map(({ at }) => JSON.stringify(at.slice(1))) ?? []))];
+  const all = [...new Set(answers.flatMap(({ points }) => points.map(({ at }) => JSON.stringify(at.slice(1)))))];
   const ranks = by.map((name, n) => new Map(levelsOf(all.map((key) => JSON.parse(key)[n]), orderOf(facts, name)).map((level, place) => [JSON.stringify(level), place])));
   const rank = (key) => JSON.parse(key).map((value, n) => ranks[n].get(JSON.stringify(value)));
   return all.toSorted((one, other) => rank(one).reduce((found, place, n) => found || place - rank(other)[n], 0));
@@ -103,10 +103,16 @@ function combinationsOf(answers, by, facts) {
 /** Returns the name of an experiment among several of one design: when it began, and what was changed in the design. */
 const nameAmong = (experiment) => `${experimentText(experiment)}, ${changedText(experiment.changed) || "as designed"}`;
 
-/** Returns how many trials the points of an answer are of; of a measure with several values a trial, how many values. */
-function countsText({ points }, { over }, { total }) {
+/** Returns how many trials points are of; of a measure with several values a trial, how many values. */
+function countsText(points, { over }, { total }) {
   const drawn = points.reduce((sum, { trials }) => sum + trials, 0);
   return over ? counted(drawn, "value") : doneText({ done: drawn, total });
+}
+
+/** Returns how many trials the points of one experiment, or of two, are of. */
+function countsOf({ points, beside }, chosen, experiment, other) {
+  const own = countsText(points, chosen, experiment);
+  return other ? `${own}; of the other experiment, ${countsText(beside.points, chosen, other)}` : own;
 }
 
 /** Returns the entries of the legend for experiments, the lines of the second of which are dashed; none for a single one. */
@@ -141,12 +147,17 @@ function comparable(experiment, { x, by, measure, over }) {
   return (experiments.value ?? []).filter(({ id, done, columns }) => id !== experiment.id && done > 0 && needed.every((name) => columns.includes(name)));
 }
 
-/** Returns the factors of which two experiments have other levels, apart from those that are drawn: their means would be of other conditions. */
-function unlike(one, other, drawn) {
-  const levels = (facts, name) => (name === "group" ? Object.keys(facts.groups ?? {}) : facts.factors?.[name] ?? [facts.settings?.[name]]);
-  const text = (facts, name) => JSON.stringify(levels(facts, name).toSorted());
-  const names = ["group", ...Object.keys(one.factors ?? {}), ...Object.keys(other.factors ?? {})];
-  return [...new Set(names)].filter((name) => !drawn.includes(name) && text(one, name) !== text(other, name));
+/** Returns whether there are means of both experiments to draw. */
+const isDrawn = ({ points, beside }) => points.length > 0 && beside.points.length > 0;
+
+/** Returns what two experiments are compared of, if not of all that each of them has; an empty text if there is nothing to say. */
+function comparisonText(pair, other, over) {
+  if (!isDrawn(pair)) {
+    return `${experimentText(other)} is not drawn: it has no condition in common with this experiment${pair.apart.length > 0 ? ` (other levels of ${pair.apart.map(columnText).join(" and ")})` : ""}.`;
+  }
+  const parts = [[pair.left_out, "this experiment"], [pair.beside.left_out, experimentText(other)]].filter(([{ trials }]) => trials > 0);
+  const left = parts.map(([{ conditions, trials }, whose]) => `${conditions > 0 ? `${counted(conditions, "condition")} with ` : ""}${counted(trials, over ? "value" : "trial")} of ${whose}`);
+  return left.length > 0 ? `Only conditions that both experiments have are compared; left out: ${left.join(", ")}.` : "";
 }
 
 /** The choice of another experiment to draw beside this one. */
@@ -260,25 +271,23 @@ export function Figure({ experiment, facts, columns: all }) {
   const chosen = chosenFor(experiment.name, facts, columns);
   const comparables = comparable(experiment, chosen);
   const other = comparables.find(({ id }) => id === compared.value) ?? null;
-  const own = useFresh(failed ? null : meansOf(experiment.id, chosen), experiment.done);
-  const theirs = useFacts(other);
-  const differing = theirs.facts ? unlike(facts, theirs.facts, [chosen.x, ...chosen.by]) : [];
-  const wanted = theirs.facts && differing.length === 0 ? meansOf(other.id, chosen) : null;
-  const others = useFresh(wanted, other?.done);
-  const answer = own.answer;
-  const second = wanted !== null && others.path === wanted ? others.answer : null;
-  const same = (one) => one && one.x === answer.x && one.measure === answer.measure && one.by.join() === answer.by.join();
+  const alone = useFresh(failed ? null : meansOf(experiment.id, chosen), experiment.done);
+  const wanted = other && !failed ? meansOf(experiment.id, chosen, other) : null;
+  const both = useFresh(wanted, `${experiment.done} ${other?.done}`);
+  const pair = wanted !== null && both.path === wanted ? both.answer : null;
+  const together = pair !== null && isDrawn(pair);
+  const answer = together ? pair : alone.answer;
   const lines = useMemo(() => {
     if (!answer) return EMPTY;
-    const both = [answer, same(second) ? second : null];
-    const combinations = combinationsOf(both, answer.by, facts).slice(0, MAX_LINES);
-    const [first, dashed] = both.map((one, n) => linesOf(one, facts, combinations, n === 1, n === 1 ? other?.id : experiment.id));
-    return [...first, ...dashed];
-  }, [answer, second, other?.id]);
-  const drawn = lines.some(({ dashed }) => dashed) ? [experiment, other] : [experiment];
+    const answers = together ? [answer, { ...answer, ...answer.beside }] : [answer];
+    const combinations = combinationsOf(answers, answer.by, facts).slice(0, MAX_LINES);
+    return answers.flatMap((one, n) => linesOf(one, facts, combinations, n === 1, n === 1 ? other.id : experiment.id));
+  }, [answer, together, other?.id]);
+  const drawn = together ? [experiment, other] : [experiment];
   const combined = answer ? combinationsOf([answer], answer.by, facts).length : 0;
-  const problem = other && (theirs.error ?? others.error);
-  const error = own.error ?? (problem ? `${other.name}: ${problem}` : null);
+  const problem = other && both.error;
+  const error = alone.error ?? (problem ? `${other.name}: ${problem}` : null);
+  const comparison = pair ? comparisonText(pair, other, chosen.over) : "";
   if (failed) {
     return html`<p class="part empty" role="status">${done === 1 ? "The finished trial has failed" : `All ${done.toLocaleString("en")} finished trials have failed`}: there is nothing to draw. The table of trials has the errors.</p>`;
   }
@@ -286,10 +295,10 @@ export function Figure({ experiment, facts, columns: all }) {
     <${Menus} experiment=${experiment} facts=${facts} columns=${columns} chosen=${chosen} />
     <div class="part">
       <${Problem} text=${error} />
-      ${differing.length > 0 ? html`<p class="problem warning">${experimentText(other)} is not drawn: it has other levels of ${differing.map(columnText).join(" and ")}, so its means would be of other conditions. To compare both, choose ${differing.length > 1 ? "them" : "it"} for the lines.</p>` : null}
+      ${comparison ? html`<p class="problem warning">${comparison}</p>` : null}
       ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
       ${answer && lines.length > 0
-        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, across: headText(columns.find(({ name }) => name === answer.x) ?? { name: answer.x }), unit: answer.unit ?? "", sources: drawn.map(experimentText), counts: countsText(answer, chosen, experiment), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, across: headText(columns.find(({ name }) => name === answer.x) ?? { name: answer.x }), unit: answer.unit ?? "", sources: drawn.map(experimentText), counts: countsOf(answer, chosen, experiment, together && other), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
         : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
     </div>
   `;

@@ -34,14 +34,14 @@ function readCount(name, text) {
 
 /** Returns what the server is asked for, and the number of trials; `problem` says what is wrong. */
 function requestOf(design, facts) {
-  const { values: texts, ...counts } = draftOf(design);
-  const request = { design, values: {} };
+  const { values, ...counts } = draftOf(design);
+  const request = { design, texts: {} };
   let problem = null;
-  for (const [name, text] of Object.entries(texts)) {
-    const { levels, problem: why } = readLevels(text);
+  for (const [name, text] of Object.entries(values)) {
+    const { levels, texts, problem: why } = readLevels(text);
     const isFactor = Boolean(facts?.factors[name]);
     if (levels === null || (!isFactor && levels.length !== 1)) problem ??= `${name}: ${isFactor ? "levels, each once, separated by commas" : "one value"}; ${why ?? `there are ${levels.length} (got '${text}')`}`;
-    else if (!isFactor || levelsText(levels) !== levelsText(facts.factors[name])) request.values[name] = isFactor ? levels : levels[0];
+    else if (!isFactor || levelsText(levels) !== levelsText(facts.factors[name])) request.texts[name] = texts;
   }
   for (const [name, text] of Object.entries(counts)) {
     const count = readCount(name, text);
@@ -49,7 +49,7 @@ function requestOf(design, facts) {
     else if (count !== null) request[name] = count;
   }
   if (!facts || problem) return { request, problem, trials: null };
-  const cells = Object.entries(facts.factors).map(([name, levels]) => [request.values[name] ?? levels].flat().length);
+  const cells = Object.entries(facts.factors).map(([name, levels]) => (request.texts[name] ?? levels).length);
   const people = Object.values(facts.groups).reduce((sum, number) => sum + (request.participants ?? number), 0);
   const trials = cells.reduce((product, number) => product * number, people * (request.trials ?? facts.trials_a_cell));
   return { request, problem, trials };
@@ -82,7 +82,7 @@ function useFacts(design) {
 function useCheck(request, problem) {
   const found = useSignal({ of: "", error: null });
   const key = JSON.stringify({ ...request, workers: undefined });
-  const changed = Object.keys(request.values).length > 0 || request.participants !== undefined || request.trials !== undefined;
+  const changed = Object.keys(request.texts).length > 0 || request.participants !== undefined || request.trials !== undefined;
   useEffect(() => {
     if (!changed || problem) return undefined;
     const leave = new AbortController();
@@ -99,9 +99,9 @@ function useCheck(request, problem) {
 
 /** Measures how long a trial takes with the values that were changed, when the user pauses; returns {seconds, error}. Without any, it is
  * `usual`, that of the design. */
-function useDuration({ design, values }, problem, usual) {
+function useDuration({ design, texts }, problem, usual) {
   const found = useSignal({ of: "", seconds: null, error: null });
-  const key = usual.facts && Object.keys(values).length > 0 ? JSON.stringify({ design, values, trial: true }) : "";
+  const key = usual.facts && Object.keys(texts).length > 0 ? JSON.stringify({ design, texts, trial: true }) : "";
   useEffect(() => {
     if (!key || problem) return undefined;
     const leave = new AbortController();
@@ -138,7 +138,8 @@ function numberText(groups) {
   return numbers.length === 1 ? String(numbers[0]) : Object.values(groups).join(", ");
 }
 
-function Form({ design, facts }) {
+/** @param wrong The name of the value that the server has refused; null for none. */
+function Form({ design, facts, wrong }) {
   const draft = draftOf(design);
   const set = (name, text) => change(design, { values: { ...draft.values, [name]: text } });
   const unset = (name) => change(design, { values: Object.fromEntries(Object.entries(draft.values).filter(([other]) => other !== name)) });
@@ -164,14 +165,14 @@ function Form({ design, facts }) {
         const read = readLevels(text).levels;
         return html`<tr key=${name}>
           <th scope="row" title="A factor: each participant does all combinations">${name}</th>
-          <td><${Field} wide label="Levels of ${name}" value=${text} invalid=${read === null} onInput=${(entered) => set(name, entered)} /></td>
+          <td><${Field} wide label="Levels of ${name}" value=${text} invalid=${read === null || name === wrong} onInput=${(entered) => set(name, entered)} /></td>
           <td class="quiet number">${read === null ? "" : counted(read.length, "level")}
             ${draft.values[name] === undefined ? null : html`<button class="bare" title="The levels of the design" aria-label="Reset ${name}" onClick=${() => unset(name)}><${Icon} name="restart" /></button>`}</td>
         </tr>`;
       })}
       ${more.map((name) => html`<tr key=${name}>
         <th scope="row" title=${plain(facts.parameters.find((one) => one.name === name)?.help ?? "")}>${name}</th>
-        <td><${Field} wide isNew=${added.current === name} label="Value of ${name}" value=${draft.values[name]} invalid=${readLevels(draft.values[name]).levels?.length !== 1} onInput=${(entered) => set(name, entered)} /></td>
+        <td><${Field} wide isNew=${added.current === name} label="Value of ${name}" value=${draft.values[name]} invalid=${readLevels(draft.values[name]).levels?.length !== 1 || name === wrong} onInput=${(entered) => set(name, entered)} /></td>
         <td class="quiet"><button class="bare" aria-label="Remove ${name}" title="Remove" onClick=${() => unset(name)}><${Icon} name="close" /></button></td>
       </tr>`)}
       ${others.length > 0
@@ -212,7 +213,8 @@ function estimate(each, trials, workers) {
   return `${all < 1 ? "" : "about "}${durationText(all)} (${each < 0.1 ? each.toFixed(3) : each.toFixed(2)} s a trial)`;
 }
 
-function Foot({ design, usual }) {
+/** The form of a design, and below it what an experiment of it would be. */
+function Entry({ design, description, usual }) {
   const starting = useSignal(false);
   const refused = useSignal({ of: "", error: null });
   const { request, problem, trials } = requestOf(design, usual.facts);
@@ -220,6 +222,10 @@ function Foot({ design, usual }) {
   const duration = useDuration(request, problem, usual);
   const key = JSON.stringify(request);
   const error = (refused.value.of === key ? refused.value.error : null) ?? check.error ?? duration.error;
+
+  const { factors = {} } = usual.facts ?? {};
+  const name = error?.split(": ", 1)[0];
+  const wrong = name in factors || name in draftOf(design).values ? name : null;
 
   async function start() {
     starting.value = true;
@@ -232,11 +238,15 @@ function Foot({ design, usual }) {
   }
 
   return html`
+    <div class="new">
+      <div class="description"><${Prose} text=${description} /></div>
+      ${usual.facts ? html`<${Form} design=${design} facts=${usual.facts} wrong=${wrong} />` : null}
+    </div>
     ${error ? html`<pre class="trouble" role="alert">${error}</pre>` : null}
     <div class="foot">
       <span role="status">${problem ? html`<span class="bad">${problem}</span>` : trials === null ? html`<span class="quiet">${duration.error ? "" : html`<progress aria-label="Reading the design"></progress> reading the design …`}</span>` : html`<b class="number">${counted(trials, "trial")}</b> <span class="quiet">${error && duration.seconds === null ? "" : estimate(duration.seconds, trials, request.workers)}${check.waiting ? " · checking …" : ""}</span>`}</span>
       <span class="stretch"></span>
-      <${Button} class="primary" disabled=${starting.value || problem !== null || trials === null} title="Run all trials in the background" onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}<//>
+      <${Button} class="primary" disabled=${starting.value || problem !== null || wrong !== null || trials === null} title="Run all trials in the background" onClick=${start}>${starting.value ? "Starting …" : html`<${Icon} name="run" />Run`}<//>
     </div>
   `;
 }
@@ -266,10 +276,6 @@ export function NewExperiment() {
       ${known.value ? html`<${DesignChoice} design=${design} choose=${choose} />` : null}
     </div>
     ${problem.value ? html`<p class="problem bad" role="alert">The designs cannot be listed: ${problem.value}</p>` : null}
-    <div class="new">
-      ${chosen ? html`<div class="description"><${Prose} text=${chosen.description} /></div>` : null}
-      ${usual.facts ? html`<${Form} key=${design} design=${design} facts=${usual.facts} />` : null}
-    </div>
-    ${chosen ? html`<${Foot} key=${design} design=${design} usual=${usual} />` : null}
+    ${chosen ? html`<${Entry} key=${design} design=${design} description=${chosen.description} usual=${usual} />` : html`<div class="new"></div>`}
   `;
 }

@@ -46,20 +46,22 @@ export const failuresText = (failures) => `${counted(failures, "trial")} failed`
 
 /** Returns the values that replace those of the design, in one line. */
 export function changedText(changed) {
-  return Object.entries(changed ?? {}).map(([name, value]) => `${name} ${Array.isArray(value) ? value.map(valueText).join(", ") : valueText(value)}`).join(" · ");
+  return Object.entries(changed ?? {}).map(([name, value]) => `${name} ${levelsText([value].flat())}`).join(" · ");
 }
 
-/** Returns a level as text that `readLevels` reads as the same value. */
+/** Returns a level as text that `readLevels` and the command read as the same value: a text that is no plain word in quotation marks. */
 function levelText(level) {
-  if (typeof level !== "string") return level === null ? "none" : String(level);
-  return /^[^\s",;][^",;]*[^\s",;]$|^[^\s",;]$/.test(level) && typeof literal(level) === "string" ? level : JSON.stringify(level);
+  if (level !== null && typeof level === "object") return JSON.stringify(level);
+  if (typeof level !== "string") return level === null ? "None" : String(level);
+  return /^[\p{L}_]([^"',;]*[^\s"',;])?$/u.test(level) && typeof literal(level) === "string" ? level : JSON.stringify(level);
 }
 
 export const levelsText = (levels) => levels.map(levelText).join(", ");
 
-/** Returns the levels that a text lists, separated by commas, and what is wrong: {levels, problem}; one of them is null. Texts may be in quotes. */
+/** Returns the levels that a text lists, separated by commas, the text of each, and what is wrong: {levels, texts, problem}; either what
+ * is wrong is null, or the others are. Texts may be in quotes. */
 export function readLevels(text) {
-  const wrong = (problem) => ({ levels: null, problem: `${problem} (got '${text}')` });
+  const wrong = (problem) => ({ levels: null, texts: null, problem: `${problem} (got '${text}')` });
   const parts = [""];
   for (const [token] of text.matchAll(/"(?:[^"\\]|\\.)*"?|[^",;]+|[,;]/g)) {
     if (/^[,;]$/.test(token)) parts.push("");
@@ -67,9 +69,10 @@ export function readLevels(text) {
   }
   if (parts.some((part) => part.trim() === "")) return wrong(parts.length === 1 ? "there is none" : "one is empty");
   try {
-    const levels = parts.map((part) => literal(part.trim()));
+    const texts = parts.map((part) => part.trim());
+    const levels = texts.map(literal);
     const twice = levels.find((level, place) => levels.indexOf(level) < place);
-    return twice === undefined ? { levels, problem: null } : wrong(`${levelText(twice)} is there twice`);
+    return twice === undefined ? { levels, texts, problem: null } : wrong(`${levelText(twice)} is there twice`);
   } catch {
     return wrong("the quotation marks are wrong");
   }

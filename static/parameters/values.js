@@ -5,12 +5,13 @@ export function written(value) {
   return value === null || value === undefined ? "" : String(value);
 }
 
-/** Returns the value of a text: a number, true, false, none (null), or the text itself; what is in quotation marks is always a text.
+/** Returns the value of a text: a number, true, false, None (null), or the text itself; what is in quotation marks is always a text.
  * Throws a SyntaxError if the quotation marks are wrong. */
 export function literal(text) {
   if (text.includes('"')) return JSON.parse(text);
   if (text !== "" && Number.isFinite(Number(text))) return Number(text);
-  return { __proto__: null, true: true, false: false, none: null, True: true, False: false, None: null }[text] ?? (/^[Nn]one$/.test(text) ? null : text);
+  const words = { __proto__: null, true: true, false: false, True: true, False: false, None: null };
+  return text in words ? words[text] : text;
 }
 
 /** Returns the bounds of a parameter as text: "more than 0, at most 3", "0.3 to 0.7". */

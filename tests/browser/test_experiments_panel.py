@@ -143,6 +143,54 @@ def test_numbers_that_cannot_be_run_are_named_before_anything_runs(pages: Callab
     assert workbench.get("/api/experiments").json() == before
 
 
+def test_a_value_that_the_model_does_not_take_is_marked_and_cannot_be_run(pages: Callable[..., Page], design: str) -> None:
+    page = pages(design.partition(":")[0], tab="experiments", refusals=True)
+
+    def answer(route: Route) -> None:
+        texts = json.loads(route.request.post_data or "").get("texts", {})
+        refused = [f"{name}: must be <= 5 (got 9)" for name in ("n", "mode") if "9" in texts.get(name, ())]
+        if refused:
+            route.fulfill(status=422, json={"error": refused[0]})
+        else:
+            route.continue_()
+
+    page.route("**/api/designs/check", answer)
+    page.get_by_role("button", name="New experiment").click()
+    page.get_by_label("Design", exact=True).select_option(design)
+    run, problem = page.locator(".foot").get_by_role("button", name="Run"), page.get_by_role("alert")
+    expect(run).to_be_enabled()
+    levels = page.get_by_label("Levels of n")
+    for field, right in ((levels, "1, 2"), (page.get_by_label("Value of mode"), "count")):
+        if field is not levels:
+            page.get_by_label("Set another parameter").select_option("mode")
+        field.fill("9")
+        expect(problem).to_have_text(re.compile("^(n|mode): must be <= 5 [(]got 9[)]$"))
+        expect(field).to_have_attribute("aria-invalid", "true")
+        expect(page.locator(".new [aria-invalid=true]")).to_have_count(1)
+        expect(run).to_be_disabled()
+        field.fill(right)
+        expect(field).to_have_attribute("aria-invalid", "false")
+        expect(problem).to_have_count(0)
+        expect(run).to_be_enabled()
+
+
+LEVELS = """async (texts) => {
+    const { levelsText, readLevels } = await part("experiments/wording.js");
+    return texts.map((text) => [readLevels(text).levels, readLevels(text).texts, levelsText(readLevels(text).levels)]);
+}"""
+
+
+def test_levels_are_read_as_the_command_reads_them(blank: Page) -> None:
+    written = {
+        "None, true, False": ([None, True, False], ["None", "true", "False"], "None, true, false"),
+        "none, no": (["none", "no"], ["none", "no"], "none, no"),
+        '"None", "5", "a, b"': (["None", "5", "a, b"], ['"None"', '"5"', '"a, b"'], '"None", "5", "a, b"'),
+        "3.0; 0.50": ([3, 0.5], ["3.0", "0.50"], "3, 0.5"),
+        "0x1, don't": ([1, "don't"], ["0x1", "don't"], '1, "don\'t"'),
+    }
+    assert blank.evaluate(LEVELS, list(written)) == [list(one) for one in written.values()]
+
+
 def test_the_duration_of_a_trial_is_asked_each_time_the_form_is_shown(pages: Callable[..., Page], design: str) -> None:
     page = pages(design.partition(":")[0], tab="experiments")
     answers = [
@@ -179,7 +227,7 @@ def test_the_duration_of_a_trial_is_measured_for_the_values_that_were_changed(pa
         asked = json.loads(route.request.post_data or "")
         if not asked.pop("trial", False):
             return route.continue_()
-        measured.append(asked.get("values", {}))
+        measured.append(asked.get("texts", {}))
         return route.fulfill(
             json={"seconds_a_trial": 4.0 if measured[-1] else 0.5, "error": "ValueError: no" if measured[-1].get("mode") else ""}
         )
@@ -201,8 +249,8 @@ def test_the_duration_of_a_trial_is_measured_for_the_values_that_were_changed(pa
     page.get_by_role("button", name="Reset n").click()
     expect(foot).to_contain_text("0.50 s a trial")
     expect(page.get_by_role("alert")).to_have_count(0)
-    asked = [one for one in measured if one.get("mode") != "count"]  # its default, if the user pauses there
-    assert asked == [{}, {"n": [9]}, {"n": [9], "mode": "fail"}]
+    asked = [one for one in measured if one.get("mode") != ["count"]]  # its default, if the user pauses there
+    assert asked == [{}, {"n": ["9"]}, {"n": ["9"], "mode": ["fail"]}]
 
 
 def test_a_new_experiment_begins_with_a_design_of_the_model_and_keeps_what_was_typed(
@@ -511,33 +559,69 @@ TWO_EXPERIMENTS = """async () => {
 }"""
 
 
-def give_facts_of_the_other(page: Page, **factors: list[Any]) -> None:
-    """Answers what the figure asks of the experiment «theirs»."""
-    page.route("**/experiments/theirs", lambda route: route.fulfill(json={"facts": {"factors": factors}}))
+def means(points: list[dict[str, Any]], by: list[str] | None = None, **more: Any) -> dict[str, Any]:
+    return {"x": "n", "by": by or [], "measure": "rt", "unit": "s", "columns": [], "points": points, **more}
 
 
-def test_an_experiment_with_other_levels_of_what_is_not_drawn_is_not_drawn_beside(blank: Page) -> None:
-    point = {"mean": 0.1, "error": None, "participants": 1, "trials": 2}
-    answer = {"x": "n", "by": [], "measure": "rt", "unit": "s", "columns": [], "points": [{**point, "at": [n]} for n in (1, 2)]}
-    blank.route("**/means?*", lambda route: route.fulfill(json=answer))
-    give_facts_of_the_other(blank, n=[2, 1], ink=["blue", "green"])
+NOTHING_LEFT_OUT = {"conditions": 0, "trials": 0}
+
+
+def test_an_experiment_without_a_common_condition_is_not_drawn_beside(blank: Page) -> None:
+    points = [{"at": [n], "mean": 0.1, "error": None, "participants": 1, "trials": 2} for n in (1, 2)]
+    left_out = {"conditions": 2, "trials": 4}
+    apart = means([], left_out=left_out, beside={"points": [], "left_out": left_out}, apart=["ink", "goal_m"])
+    blank.route("**/means?*", lambda route: route.fulfill(json=apart if "beside=theirs" in route.request.url else means(points)))
     blank.evaluate(TWO_EXPERIMENTS)
     blank.get_by_label("Compare with").select_option("theirs")
     warning = blank.locator("#drawn .problem")
-    expect(warning).to_contain_text("is not drawn: it has other levels of ink, so its means would be of other conditions")
+    expect(warning).to_have_text(
+        re.compile(r"^theirs .* is not drawn: it has no condition in common with this experiment \(other levels of ink and goal\)\.$")
+    )
     expect(blank.locator("#drawn .point")).to_have_count(2)
     blank.get_by_label("Compare with").select_option("")
     expect(warning).to_have_count(0)
 
 
-def test_another_experiment_is_drawn_beside_the_one_that_is_shown(blank: Page) -> None:
-    def answer(route: Route) -> None:
-        mean = 0.2 if "/theirs/" in route.request.url else 0.1
-        points = [{"at": [n], "mean": mean * n, "error": None, "participants": 1, "trials": 2} for n in (1, 2)]
-        route.fulfill(json={"x": "n", "by": [], "measure": "rt", "unit": "s", "columns": [], "points": points})
+TWO_FACTORS = SLOW_COUNTER.replace('mode = "count"', 'm = 1\nmode = "count"').replace('if mode == "fail"', 'if mode == "fail" and m == 3')
 
-    blank.route("**/means?*", answer)
-    give_facts_of_the_other(blank, n=[1, 2])
+
+def test_two_experiments_are_compared_over_the_conditions_that_both_have(pages: Callable[..., Page], workbench: Served) -> None:
+    folder = workbench.folder / "two_factors"
+    folder.mkdir()
+    model = TWO_FACTORS.replace("rt = model.now()", "rt = n * m")
+    design = f"two_factors/{write_experiment(folder, factors='dict(n=[1, 2], m=[1, 3])', model=model).name}:counting"
+    whole, failed = (
+        workbench.post("/api/experiments", {"design": design, "trials": 1, "workers": 1, "values": values}).json()["id"]
+        for values in ({}, {"mode": "fail"})
+    )
+    page = pages("two_factors/counter.py", tab="experiments")
+    page.locator(f"tr[data-experiment='{failed}']").click()
+    expect(page.locator(".tools .state")).to_have_text("finished")
+    until(page, lambda: workbench.get(f"/api/experiments/{whole}").json()["state"] == "finished")
+    page.get_by_label("Measure", exact=True).select_option("rt")
+    page.get_by_label("Lines", exact=True).select_option("")
+    points = page.locator(".point")
+    expect(points).to_have_count(2)
+    page.get_by_label("Compare with").select_option(whole)
+    expect(points).to_have_count(4)
+    for place, said in enumerate(("n 1: 1", "n 2: 2", "n 1 · the other experiment: 1", "n 2 · the other experiment: 2")):
+        expect(points.nth(place)).to_have_attribute(
+            "aria-label", re.compile(rf"^Trials of {said}\.00 ± 0\.000 \(2 participants, 2 trials\)$")
+        )
+    expect(page.locator(".means .pointed")).to_contain_text("4 of 8 trials; of the other experiment, 4 of 8 trials")
+    expect(page.locator(".problem")).to_have_text(
+        re.compile("^Only conditions that both experiments have are compared; left out: 2 conditions with 4 trials of counting .*[.]$")
+    )
+    shutil.rmtree(folder)
+
+
+def test_another_experiment_is_drawn_beside_the_one_that_is_shown(blank: Page) -> None:
+    def points_of(mean: float) -> list[dict[str, Any]]:
+        return [{"at": [n], "mean": mean * n, "error": None, "participants": 1, "trials": 2} for n in (1, 2)]
+
+    theirs = {"points": points_of(0.2), "left_out": NOTHING_LEFT_OUT}
+    both = means(points_of(0.1), left_out=NOTHING_LEFT_OUT, beside=theirs, apart=[])
+    blank.route("**/means?*", lambda route: route.fulfill(json=both if "beside=theirs" in route.request.url else means(points_of(0.1))))
     blank.evaluate(TWO_EXPERIMENTS)
     points, legend = blank.locator("#drawn .point"), blank.locator("#drawn .legend")
     expect(points).to_have_count(2)
@@ -548,6 +632,7 @@ def test_another_experiment_is_drawn_beside_the_one_that_is_shown(blank: Page) -
     expect(choice.locator("option").last).to_have_text(re.compile("^theirs .*, latency_factor 0.9$"))
     choice.select_option("theirs")
     expect(points).to_have_count(4)
+    expect(blank.locator("#drawn .problem")).to_have_count(0)
     expect(points.nth(0)).to_have_attribute("aria-label", re.compile(r"^Trials of n 1: 0\.1\d* s \(1 participant, 2 trials\)$"))
     expect(points.nth(3)).to_have_attribute("aria-label", re.compile(r"^Trials of n 2 · the other experiment: 0\.4\d* s "))
     expect(legend.locator("canvas")).to_have_count(2)
@@ -573,10 +658,10 @@ def test_a_saved_figure_says_which_experiments_it_shows_and_what_its_bars_are(bl
             for n in (1, 2)
             for level in ("first", "other", "third")
         ]
-        route.fulfill(json={"x": "n", "by": ["kind"], "measure": "rt", "unit": "s", "columns": [], "points": points})
+        beside = {"points": points, "left_out": NOTHING_LEFT_OUT}
+        route.fulfill(json=means(points, ["kind"], left_out=NOTHING_LEFT_OUT, beside=beside, apart=[]))
 
     blank.route("**/means?*", answer)
-    give_facts_of_the_other(blank, n=[1, 2])
     blank.evaluate(TWO_EXPERIMENTS)
     blank.get_by_label("Compare with").select_option("theirs")
     expect(blank.locator("#drawn .legend canvas")).to_have_count(5)

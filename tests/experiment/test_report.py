@@ -726,6 +726,8 @@ def test_the_report_of_an_experiment_that_cannot_be_written_goes_elsewhere(capsy
             assert main(["report", str(folder)]) == 1
             error = capsys.readouterr().err
             assert f"error: '{folder}/report': cannot write the report (Permission denied); name another folder with --out\n" == error
+            assert main(["report", str(folder), "--out", f"{folder}/mine"]) == 1
+            assert capsys.readouterr().err == f"error: '{folder}/mine': cannot write the report (Permission denied)\n"
             for _ in range(2):  # the second one replaces the first
                 assert main(["report", str(folder), "--out", str(other / "new" / "mine")]) == 0
                 assert capsys.readouterr().out == f"{other}/new/mine/index.html\n"

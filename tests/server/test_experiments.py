@@ -22,6 +22,8 @@ from typing import Any
 import httpx
 import pytest
 
+from actr3d.parameter_schema import literal
+from actr3d.runner.cli_options import read_settings
 from tests.helpers.asgi_client import JSON, ORIGIN, OURS
 from tests.helpers.experiments import COUNTER, write_experiment
 from tests.helpers.sessions import Desk
@@ -111,10 +113,12 @@ def test_a_design_is_checked_with_its_changes(workbench: Served) -> None:
     assert tried["model"] == "slow/counter.py"
     wrong = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"nn": 3}})
     assert wrong.status_code == 422
-    assert wrong.json()["error"].startswith("--set nn: Design: the model has no parameter 'nn'; did you mean 'n'?")
+    assert wrong.json()["error"].startswith("nn: the model has no parameter 'nn'; did you mean 'n'?")
     assert workbench.post("/api/experiments", {"design": COUNTING, "values": {"nn": 3}}).json() == wrong.json()
     empty = workbench.post("/api/designs/check", {"design": COUNTING, "values": {"n": []}})
-    assert (empty.status_code, empty.json()["error"]) == (422, "--set n: Design.factors['n']: must have at least one level (got [])")
+    assert (empty.status_code, empty.json()["error"]) == (422, "n: must have at least one level (got [])")
+    bounds = workbench.post("/api/designs/check", {"design": "warren_whang_1987", "texts": {"aperture": ["0.5", "4"]}})
+    assert (bounds.status_code, bounds.json()["error"]) == (422, "aperture: must be <= 3 (got 4)")
 
 
 @pytest.mark.parametrize("changed", ["model.py", "_helper.py", "parts/legs.py"])
@@ -151,6 +155,37 @@ def test_values_reach_the_design_as_they_are(workbench: Served) -> None:
     assert facts["factors"]["n"] == texts
 
 
+def test_texts_give_the_same_experiment_as_in_the_command(workbench: Served) -> None:
+    facts = workbench.post("/api/designs/check", {"design": COUNTING, "texts": {"n": ["7", "2.0", "1e1"], "mode": ["none"]}}).json()
+    assert repr(facts["factors"]["n"]) == "[7, 2, 10.0]", "2 is a level of the design"
+    assert facts["settings"] == {"mode": "none"}
+    for text in (
+        "none",
+        "None",
+        "true",
+        "False",
+        "no",
+        "'no'",
+        '"a, b"',
+        "5",
+        "3.0",
+        "0x10",
+        "1_000",
+        "don't",
+        "é",
+        "[1, 2]",
+        " x",
+        "--json",
+    ):
+        options = {
+            read: StartRequest(design="d", texts={"mode": texts}).options() for read, texts in (("one", [text]), ("two", [text, "7"]))
+        }
+        (one,), (two,) = ([option.removeprefix("--set=") for option in given] for given in options.values())
+        assert repr(read_settings([one], ())) == repr(read_settings([f"mode={text}"], ()))
+        assert repr(read_settings([two], ())) == repr({"mode": [literal(text), 7]})
+        assert (one + two).isascii()
+
+
 def test_rows_are_paged_sorted_and_filtered(workbench: Served, finished: str) -> None:
     path = f"/api/experiments/{finished}/rows"
     page = workbench.get(path, params={"first": 4, "most": 3}).json()
@@ -176,7 +211,14 @@ def test_means_are_those_of_participants(workbench: Served, finished: str) -> No
         assert point["mean"] == pytest.approx(sum(means) / 2)
         assert point["error"] == pytest.approx(abs(means[0] - means[1]) / 2)
         assert (point["participants"], point["trials"]) == (2, 8)
-    assert len(workbench.get(f"/api/experiments/{finished}/means?x=participant&measure=rt").json()["points"]) == 2
+    path = f"/api/experiments/{finished}/means?x=participant&measure=rt"
+    alone = workbench.get(path).json()
+    assert len(alone["points"]) == 2
+    beside, nothing = workbench.get(f"{path}&beside={finished}").json(), {"conditions": 0, "trials": 0}
+    both: dict[str, Any] = {"left_out": nothing, "beside": {"points": alone["points"], "left_out": nothing}, "apart": []}
+    assert beside == alone | both
+    for name in ("none", "..", "..%2Frecordings", "counting_design.py"):
+        assert workbench.get(f"{path}&beside={name}").status_code == 404
 
 
 def test_the_time_of_an_experiment_is_when_it_was_made_also_in_a_folder_of_another_name(tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ class SetParameter(AgentChange):
     path: str
     """Its path, such as `walker.memory.latency`."""
     value: bool | int | float | str | None
-    """Its new value: a number, true, false, none or a text; a text that reads like one of the others in quotation marks."""
+    """Its new value: a number, true, false, None or a text; a text that reads like one of the others in quotation marks."""
 
     def carry_out(self, on: Parts) -> None:
         place, _, name = self.path.rpartition(".")

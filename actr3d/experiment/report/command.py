@@ -59,7 +59,7 @@ def write_report(
     if other is not None:
         sections.append(comparison_section(results, other, parts, beside))
     sections += measure_sections(parts, others, secondary=not all(section.failed for section in analyses))
-    _write(final, results, sections)
+    _write(final, results, sections, hint="; name another folder with --out" if out is None else "")
     if failed := [section.failed for section in sections if section.failed]:
         raise ExperimentError(f"'{named / PAGE}' is written, but some of its sections are not complete: {'; '.join(failed)}")
     return named / PAGE
@@ -88,8 +88,8 @@ def _check_place(final: Path) -> None:
         raise ExperimentError(f"'{final}': cannot be read ({error.strerror or error})") from None
 
 
-def _write(final: Path, results: Results, sections: Sequence[Section]) -> None:
-    """Writes all files into a new folder, which then replaces the earlier report."""
+def _write(final: Path, results: Results, sections: Sequence[Section], *, hint: str) -> None:
+    """Writes all files into a new folder, which then replaces the earlier report; the hint follows the error if it cannot be written."""
     try:
         final.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=f".{REPORT} ", dir=final.parent, ignore_cleanup_errors=True) as place:
@@ -110,8 +110,7 @@ def _write(final: Path, results: Results, sections: Sequence[Section]) -> None:
             (part / PAGE).write_text(_page(results, sections, drawings), encoding="utf-8")
             _replace(final, part, Path(place))
     except OSError as error:
-        elsewhere = "; name another folder with --out"
-        raise ExperimentError(f"'{final}': cannot write the report ({error.strerror or error}){elsewhere}") from None
+        raise ExperimentError(f"'{final}': cannot write the report ({error.strerror or error}){hint}") from None
 
 
 def _replace(final: Path, part: Path, place: Path) -> None:

@@ -1,0 +1,110 @@
+"""Means of the trials of two experiments, compared only over the conditions that both have."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Mapping, Sequence
+from contextlib import closing
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from workbench.experiment_table import means_of_two
+
+Row = dict[str, Any]
+
+
+def written(path: Path, rows: Sequence[Row]) -> Path:
+    """Writes a table of trials: all keys of the rows are columns."""
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    with closing(sqlite3.connect(path)) as file, file:
+        file.execute("CREATE TABLE trial (number INTEGER PRIMARY KEY, data TEXT, wall_s REAL, worker TEXT)")
+        file.execute("CREATE TABLE column (name TEXT, type TEXT, unit TEXT, meaning TEXT, place INTEGER)")
+        file.executemany("INSERT INTO column VALUES (?, 'real', NULL, '', ?)", [(name, n) for n, name in enumerate(names)])
+        file.executemany("INSERT INTO trial VALUES (?, ?, 1, 'w')", [(n, json.dumps(row)) for n, row in enumerate(rows)])
+    return path
+
+
+def trials(n: Sequence[Any], m: Sequence[Any], people: Sequence[str] = ("all 1", "all 2"), **more: Any) -> list[Row]:
+    """Returns a trial of each participant in each condition, which takes n * m."""
+    return [{**more, "participant": who, "group": "all", "n": one, "m": two, "time": one * two} for who, one, two in product(people, n, m)]
+
+
+def compared(folder: Path, mine: Sequence[Row], theirs: Sequence[Row], **options: Any) -> dict[str, Any]:
+    tables = (written(folder / f"{name}.sqlite", rows) for name, rows in (("mine", mine), ("theirs", theirs)))
+    return means_of_two(*tables, **{"x": "n", "by": [], "measure": "time", "factors": ["n", "m"], **options})
+
+
+def points(of: Mapping[str, Any]) -> list[list[Any]]:
+    return sorted([*point["at"], point["mean"], point["trials"]] for point in of["points"])
+
+
+ALL = {"conditions": 0, "trials": 0}
+
+
+def test_conditions_that_are_the_same_are_all_compared(tmp_path: Path) -> None:
+    found = compared(tmp_path, trials([1, 2], [1, 3]), trials([2.0, 1.0], [3, 1]))
+    assert points(found) == points(found["beside"]) == [[1, 2, 4], [2, 4, 4]]
+    assert (found["left_out"], found["beside"]["left_out"], found["apart"]) == (ALL, ALL, [])
+
+
+def test_a_condition_whose_trials_have_all_failed_in_one_experiment_is_in_no_mean(tmp_path: Path) -> None:
+    failed = [row | {"time": None, "error": "no"} if row["m"] == 3 else row for row in trials([1, 2], [1, 3])]
+    found = compared(tmp_path, trials([1, 2], [1, 3]), failed)
+    assert points(found) == points(found["beside"]) == [[1, 1, 2], [2, 2, 2]]
+    assert (found["left_out"], found["beside"]["left_out"]) == ({"conditions": 2, "trials": 4}, ALL)
+
+
+def test_conditions_that_have_not_run_yet_are_in_no_mean(tmp_path: Path) -> None:
+    found = compared(tmp_path, trials([1, 2], [1, 3])[:3], trials([1, 2], [1, 3]))
+    assert points(found) == [[1, 2, 2], [2, 2, 1]]
+    assert points(found["beside"]) == [[1, 2, 4], [2, 2, 2]]
+    assert found["beside"]["left_out"] == {"conditions": 1, "trials": 2}
+
+
+def test_a_factor_of_one_experiment_is_compared_with_the_value_that_the_other_one_has(tmp_path: Path) -> None:
+    found = compared(tmp_path, trials([1, 2], [1, 3]), trials([1, 5], [3]))
+    assert points(found) == points(found["beside"]) == [[1, 3, 2]]
+    assert (found["left_out"], found["beside"]["left_out"]) == ({"conditions": 3, "trials": 6}, {"conditions": 1, "trials": 2})
+
+
+def test_experiments_without_a_common_condition_have_no_points_and_name_the_factors(tmp_path: Path) -> None:
+    found = compared(tmp_path, trials([1, 2], [1, 3]), trials([1, 2], [4]))
+    assert (found["points"], found["beside"]["points"], found["apart"]) == ([], [], ["m"])
+    (tmp_path / "other").mkdir()
+    other = compared(tmp_path / "other", trials([1], [1], ink="blue"), trials([1], [1]), factors=["n", "m", "ink"])
+    assert (other["points"], other["apart"]) == ([], ["ink"])
+
+
+def test_true_is_another_level_than_one_and_none_another_than_no_level(tmp_path: Path) -> None:
+    pairs: tuple[tuple[Row, Row], ...] = ({"ink": True}, {"ink": 1}), ({"ink": None}, {}), ({"ink": "1"}, {"ink": 1})
+    for name, (mine, theirs) in zip("abc", pairs, strict=True):
+        (tmp_path / name).mkdir()
+        found = compared(tmp_path / name, trials([1], [1], **mine), trials([1], [1], **theirs), factors=["n", "m", "ink"])
+        assert (found["points"], found["apart"]) == ([], ["ink"])
+
+
+def test_points_that_only_one_experiment_has_are_means_over_conditions_that_both_have(tmp_path: Path) -> None:
+    found = compared(tmp_path, trials([1], [1, 3], ["all 1", "all 2"]), trials([1], [1], ["all 1", "all 3"]), x="participant")
+    assert points(found) == [["all 1", 1, 1], ["all 2", 1, 1]]
+    assert points(found["beside"]) == [["all 1", 1, 1], ["all 3", 1, 1]]
+    assert found["left_out"] == {"conditions": 1, "trials": 2}
+
+
+def test_points_of_the_same_participant_are_means_over_the_same_conditions(tmp_path: Path) -> None:
+    both = trials([1], [1, 3])
+    found = compared(tmp_path, both, both[:3], x="participant")
+    assert points(found) == points(found["beside"]) == [["all 1", 2, 2], ["all 2", 1, 1]]
+    assert found["left_out"] == {"conditions": 0, "trials": 1}
+
+
+def test_blocks_that_only_one_experiment_has_are_in_no_mean(tmp_path: Path) -> None:
+    mine = [{"participant": "all 1", "group": "all", "n": 1, "time_1": 1.0, "time_2": 2.0, "time_3": 9.0}]
+    theirs = [{"participant": "all 1", "group": "all", "n": 1, "time_1": 1.0, "time_2": 2.0}]
+    for x in ("n", "block"):
+        folder = tmp_path / x
+        folder.mkdir()
+        found = compared(folder, mine, theirs, x=x, factors=["n"], over="block")
+        assert points(found) == points(found["beside"]) == ([[1, 1.5, 2]] if x == "n" else [[1, 1, 1], [2, 2, 1]])
+        assert found["left_out"] == {"conditions": 1, "trials": 1}
