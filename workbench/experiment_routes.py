@@ -229,13 +229,16 @@ async def _means_of_two(request: Request, *names: str, **options: Any) -> Respon
     experiments = experiments_of(request)
     factors: list[str] = []
     tables: list[Path] = []
+    parameters: list[dict[str, Any]] = []
     for folder in map(experiments.folder, names):
         facts, table = folder.facts, folder.table
         if facts is None or table is None:
             raise ExperimentRunError("its factors are not known" if facts is None else "none of its trials has finished")
         factors += facts.factors
+        parameters.append({one["name"]: one["default"] for one in facts.parameters})
         tables.append(table)
-    work = experiments.readers.make("trial means of two", *tables, **options, factors=factors)
+    fixed = [{name: of[name] for name in factors if name in of} for of in parameters]
+    work = experiments.readers.make("trial means of two", *tables, **options, factors=factors, fixed=fixed)
     return OpenFile(await while_connected(work, request.receive), "application/json")
 
 

@@ -12,6 +12,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
+from statistics import fmean
 from typing import Any
 
 from actr3d.errors import Actr3dError
@@ -85,12 +86,14 @@ class Table:
 
     Args:
         path: The SQLite file.
+        fixed: The values of parameters that are no columns, as all trials have the same.
 
     Raises:
         Actr3dError: If it cannot be read.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, fixed: Mapping[str, Any] | None = None) -> None:
+        self.fixed = fixed or {}
         try:
             self._file = _opened(path)
             listed = self._file.execute(
@@ -157,7 +160,8 @@ class Table:
             measure: The column that is averaged; of True and False, the share of True.
             over: The name of a further column with the number of a value, for a measure that has a column for each number; None for
                 one with one value a trial.
-            among: Columns, and those of their combinations that are averaged, as `combinations` returns them; None for all.
+            among: Columns that make a condition, and those combinations of `x`, `by` and them that are averaged, as `combinations`
+                returns them; then all conditions weigh the same at each place. None for all trials as they are.
 
         Raises:
             TableError: If there is no such column, the measure has no numbers, or there are too many points.
@@ -165,17 +169,18 @@ class Table:
         columns = self._numbered(measure, over)
         keys = [x, *by]
         wanted = ", ".join(part for name in keys for part in self._value_and_kind(name, over))
-        names, kept = among or ((), ())
-        condition = "" if among is None else f" AND {self._combination(names, over)} IN (SELECT value FROM json_each(?))"
+        of_condition, kept = among or ((), ())
+        where = "" if among is None else f" AND {self._combination([*keys, *of_condition], over)} IN (SELECT value FROM json_each(?))"
+        apart = ", ".join(str(n + 1) for n in range(2 * len(keys) + 2))
         sql = (
-            f"SELECT {wanted}, json_extract(data, '$.participant'), count(*), avg(value) FROM ({self._values(columns)}) WHERE {NUMERIC}"
-            f"{condition} GROUP BY {', '.join(str(n + 1) for n in range(2 * len(keys) + 1))} LIMIT ?"
+            f"SELECT {wanted}, {self._combination(of_condition, over)}, json_extract(data, '$.participant'), count(*), avg(value) "
+            f"FROM ({self._values(columns)}) WHERE {NUMERIC}{where} GROUP BY {apart} LIMIT ?"
         )
         found = self._read(sql, [*([] if among is None else [json.dumps(kept)]), MAX_CELLS + 1])
-        cells: dict[tuple[Any, ...], list[tuple[int, float]]] = defaultdict(list)
+        cells: dict[tuple[Any, ...], list[tuple[Any, Any, int, float]]] = defaultdict(list)
         for row in found:
             key = tuple((row[2 * n], row[2 * n + 1]) for n in range(len(keys)))
-            cells[key].append((row[-2], row[-1]))
+            cells[key].append(row[2 * len(keys) :])
         if len(found) > MAX_CELLS or len(cells) > MAX_POINTS:
             raise TableError(f"{' and '.join(keys)} have too many different values for a figure")
         points = [{"at": [_typed(*part) for part in key], **_mean(parts)} for key, parts in cells.items()]
@@ -197,7 +202,7 @@ class Table:
         sql = f"SELECT {self._combination(names, over)}, count(*) FROM ({values}) WHERE {NUMERIC} GROUP BY 1 LIMIT ?"
         found = self._read(sql, [MAX_CELLS + 1])
         if len(found) > MAX_CELLS:
-            raise TableError(f"{' and '.join(names)} have too many different values for a comparison")
+            raise TableError(f"{' and '.join(dict.fromkeys(names))} have too many different values for a comparison")
         return dict(found)
 
     def _values(self, columns: Sequence[tuple[int, str]]) -> str:
@@ -207,7 +212,7 @@ class Table:
 
     def _combination(self, names: Sequence[str], over: str | None) -> str:
         """Returns the SQL for the types and values of columns, as a JSON list."""
-        known = [self._value_and_kind(name, over) if name in (over, *self._types) else ("NULL", "NULL") for name in names]
+        known = [self._value_and_kind(name, over) if name in (over, *self._types) else _constant(self.fixed.get(name)) for name in names]
         return f"json_array({', '.join(f'{kind}, {value}' for value, kind in known)})"
 
     def _value_and_kind(self, name: str, over: str | None) -> tuple[str, str]:
@@ -257,9 +262,18 @@ class Table:
 
 
 def means_of_two(
-    path: Path, beside: Path, *, x: str, by: Sequence[str], measure: str, factors: Sequence[str], over: str | None = None
+    path: Path,
+    beside: Path,
+    *,
+    x: str,
+    by: Sequence[str],
+    measure: str,
+    factors: Sequence[str],
+    over: str | None = None,
+    fixed: Sequence[Mapping[str, Any]] = ({}, {}),
 ) -> dict[str, Any]:
-    """Returns the means of an experiment, and those of another one `beside` it, as `Table.means` does, over the conditions that both have.
+    """Returns the means of an experiment, and those of another one `beside` it, as `Table.means` does, over the conditions that both have,
+    which all weigh the same.
 
     A condition is a combination of levels of all factors, drawn or not, of a group, and of a number of the measure. The means of both at
     one place of the figure are over the same conditions. `left_out` are the numbers of conditions, and of trials (or of values of a
@@ -273,17 +287,20 @@ def means_of_two(
         measure: As for `Table.means`.
         factors: The factors of both experiments.
         over: As for `Table.means`.
+        fixed: For each of them, as for `Table`.
 
     Raises:
-        Actr3dError: If one of the tables cannot be read as requested.
+        Actr3dError: If one of the tables cannot be read as requested, or the measure has another unit in each.
     """
     drawn = [x, *by]
     of_condition: list[str] = [*dict.fromkeys([*factors, "group"] if over is None else [*factors, "group", over])]
     names = drawn + of_condition
-    with closing(Table(path)) as one, closing(Table(beside)) as other:
+    with closing(Table(path, fixed[0])) as one, closing(Table(beside, fixed[1])) as other:
         both = [_Trials(table.combinations(names, measure, over), len(drawn)) for table in (one, other)]
         kept = [both[0].beside(both[1]), both[1].beside(both[0])]
-        mine, theirs = (table.means(x, by, measure, over, (names, found)) for table, found in zip((one, other), kept, strict=True))
+        mine, theirs = (table.means(x, by, measure, over, (of_condition, found)) for table, found in zip((one, other), kept, strict=True))
+    if mine["unit"] and theirs["unit"] and mine["unit"] != theirs["unit"]:
+        raise TableError(f"its {measure} is in {theirs['unit']}, and here in {mine['unit']}")
     left_out = [trials.without(found) for trials, found in zip(both, kept, strict=True)]
     levels = [[{condition[n] for _, condition in trials.of} for n in range(len(of_condition))] for trials in both]
     apart = [name for name, here, there in zip(of_condition, *levels, strict=True) if here.isdisjoint(there)]
@@ -328,6 +345,18 @@ class _Trials:
         }
 
 
+def _constant(value: Any) -> tuple[str, str]:
+    """Returns the SQL for a value and its type, as those of a column; that of no column if it is no finite number and no text."""
+    if isinstance(value, bool):
+        return str(int(value)), "'true'" if value else "'false'"
+    if isinstance(value, (int, float)) and math.isfinite(value):
+        return repr(value), "'integer'" if isinstance(value, int) else "'real'"
+    if not isinstance(value, str):
+        return "NULL", "NULL"
+    quoted = value.replace("'", "''")
+    return f"'{quoted}'", "'text'"
+
+
 def _comparable(kind: str | None, value: Any) -> tuple[str | None, Any]:
     """Returns a value that is equal for equal levels: 1 and 1.0 are equal, 1, "1" and True are not."""
     kind = "number" if kind in ("integer", "real") else kind
@@ -338,12 +367,23 @@ def _typed(value: Any, kind: str | None) -> Any:
     return bool(value) if kind in ("true", "false") else value
 
 
-def _mean(parts: Sequence[tuple[int, float]]) -> dict[str, Any]:
-    """Returns the mean of the means of participants, its standard error, and the numbers of participants and trials."""
-    means = [mean for _, mean in parts]
-    mean, number = math.fsum(means) / len(means), len(means)
-    error = math.sqrt(math.fsum((one - mean) ** 2 for one in means) / (number - 1) / number) if number > 1 else None
-    return {"mean": mean, "error": error, "participants": number, "trials": sum(count for count, _ in parts)}
+def _mean(parts: Sequence[tuple[Any, Any, int, float]]) -> dict[str, Any]:
+    """Returns the mean of the conditions' means, which are those of the participants' means; and its standard error, from how far
+    participants are from the means of their conditions.
+
+    Args:
+        parts: Condition, participant, number of trials and their mean.
+    """
+    of_condition: dict[Any, list[float]] = defaultdict(list)
+    for condition, _, _, mean in parts:
+        of_condition[condition].append(mean)
+    means = {condition: fmean(values) for condition, values in of_condition.items()}
+    off: dict[Any, list[float]] = defaultdict(list)
+    for condition, participant, _, mean in parts:
+        off[participant].append(mean - means[condition])
+    number = len(off)
+    error = math.sqrt(math.fsum(fmean(values) ** 2 for values in off.values()) / (number - 1) / number) if number > 1 else None
+    return {"mean": fmean(means.values()), "error": error, "participants": number, "trials": sum(count for _, _, count, _ in parts)}
 
 
 def _row(data: str) -> dict[str, Any]:

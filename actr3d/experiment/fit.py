@@ -186,26 +186,6 @@ class Fitted:
     high: float | None
     """The upper bound."""
 
-    @classmethod
-    def of(cls, searched: Range, value: float, low: float | None, high: float | None) -> Fitted:
-        """Returns a fitted parameter whose interval contains the best candidate. Where that is more than a step beyond a bound, the surface
-        does not describe the candidates, and the bound is not determined.
-
-        Args:
-            searched: The range that was searched.
-            value: The best candidate.
-            low: The lower bound by the surface, as a share of the range; None if there is none.
-            high: The upper bound.
-        """
-        span = searched.high - searched.low
-        least, most = (None if part is None else round(searched.low + part * span, DIGITS) for part in (low, high))
-        return cls(
-            name=searched.name,
-            value=value,
-            low=None if least is None or least - value > span / STEPS else min(least, value),
-            high=None if most is None or value - most > span / STEPS else max(most, value),
-        )
-
 
 @dataclass(frozen=True, kw_only=True)
 class FitResult:
@@ -348,7 +328,7 @@ class Fit:
         return FitResult(
             design=self._design,
             measure=self.measure,
-            parameters=tuple(Fitted.of(one, values[one.name], *bounds) for one, bounds in zip(self._ranges, intervals, strict=True)),
+            parameters=tuple(_fitted(one, values[one.name], *bounds) for one, bounds in zip(self._ranges, intervals, strict=True)),
             fit=_agreement_of(tried[best], self.target),
             candidates=candidates,
             tried=tuple(
@@ -546,6 +526,7 @@ class QuadraticSurface:
         order = order[np.isfinite(values[order])]
         values = np.maximum(values, 1e-12)
         self._axes, self._data = points.shape[1], data
+        self._points, self._squares = points[order], values[order]
         terms = (self._axes + 1) * (self._axes + 2) // 2
         near = order[: max(2 * terms, len(order) // 2)]
         self._least = float(values[order[0]]) if len(order) else 1e-12
@@ -566,6 +547,9 @@ class QuadraticSurface:
     def interval(self, axis: int) -> tuple[float | None, float | None]:
         """Returns the bounds of the 95 % interval of a parameter; None where the range ends first.
 
+        The interval contains all candidates that fit as well. Where one of them is more than a step beyond the bound of the surface, the
+        surface does not describe the candidates, such as along a curved ridge, and the bound is None.
+
         With few more means than parameters, an interval is wide, because the residual variance is uncertain. With no more means than
         parameters, this variance cannot be estimated, and both bounds are None.
         """
@@ -578,13 +562,15 @@ class QuadraticSurface:
         def above(value: float) -> float:
             return max(self._lowest({axis: value})[1], self._least) - most * max(least, self._least)
 
+        good = self._points[self._squares <= most * max(least, self._least), axis]
         bounds: list[float | None] = []
-        for end in (0.0, 1.0):
+        for end, outermost in ((0.0, min), (1.0, max)):
             outside, inside = end, float(minimum[axis])
             for _ in range(HALVINGS):
                 middle = (outside + inside) / 2
                 outside, inside = (middle, inside) if above(middle) > 0 else (outside, middle)
-            bounds.append(inside if above(end) > 0 else None)
+            bound = float(outermost([inside, *good]))
+            bounds.append(bound if above(end) > 0 and abs(bound - inside) <= 1 / STEPS else None)
         return bounds[0], bounds[1]
 
     def _lowest(self, given: Mapping[int, float]) -> tuple[NDArray[np.float64], float]:
@@ -829,3 +815,9 @@ def agreement(means: Mapping[Cell, float], target: Mapping[Cell, float]) -> Agre
 
 def _agreement_of(found: _Simulated, target: Mapping[Cell, float]) -> Agreement:
     return replace(agreement(found.means, target), failed=found.failed, trials=found.trials)
+
+
+def _fitted(one: Range, value: float, low: float | None, high: float | None) -> Fitted:
+    """Returns a fitted parameter; its bounds are given as shares of the range."""
+    bounds = [None if part is None else round(one.low + part * (one.high - one.low), DIGITS) for part in (low, high)]
+    return Fitted(name=one.name, value=value, low=bounds[0], high=bounds[1])

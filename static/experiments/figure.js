@@ -18,6 +18,7 @@ import { changedText, columnText, doneText, experimentText, headText } from "./w
 const MAX_LINES = 12;
 const MAX_BUTTONS = 300; // points that keys can reach
 const REACH = 12; // [px]
+const NOTE = 16; // the height of a line of text below a saved figure [px]
 const EMPTY = [];
 
 /** What was chosen for the figures of a design: {name: {measure, x, by}}. */
@@ -153,11 +154,11 @@ const isDrawn = ({ points, beside }) => points.length > 0 && beside.points.lengt
 /** Returns what two experiments are compared of, if not of all that each of them has; an empty text if there is nothing to say. */
 function comparisonText(pair, other, over) {
   if (!isDrawn(pair)) {
-    return `${experimentText(other)} is not drawn: it has no condition in common with this experiment${pair.apart.length > 0 ? ` (other levels of ${pair.apart.map(columnText).join(" and ")})` : ""}.`;
+    return `${experimentText(other)} is not drawn: it has no condition in common with this experiment${pair.apart.length > 0 ? ` (no level of ${pair.apart.map(columnText).join(" or ")})` : ""}.`;
   }
   const parts = [[pair.left_out, "this experiment"], [pair.beside.left_out, experimentText(other)]].filter(([{ trials }]) => trials > 0);
   const left = parts.map(([{ conditions, trials }, whose]) => `${conditions > 0 ? `${counted(conditions, "condition")} with ` : ""}${counted(trials, over ? "value" : "trial")} of ${whose}`);
-  return left.length > 0 ? `Only conditions that both experiments have are compared; left out: ${left.join(", ")}.` : "";
+  return left.length > 0 ? `Only conditions that both experiments have are compared, and each weighs the same; left out: ${left.join(", ")}.` : "";
 }
 
 /** The choice of another experiment to draw beside this one. */
@@ -207,15 +208,16 @@ function Plot({ lines, known, about, children }) {
   }, [lines, figure, dark.value]);
 
   function save(kind) {
+    const notes = [caption, about.comparison].filter(Boolean);
     const [wide, high] = [Math.max(640, width), Math.max(360, height)];
     const entries = layoutLegend(legend, wide);
     const draw = (surface) => {
       drawLegend(surface, entries);
       surface.at(0, entries.height, () => drawFigure(surface, lines, layout(lines, known, wide, high), about.across));
-      surface.text(caption, 0, entries.height + high + 8, "quiet");
+      notes.forEach((text, n) => surface.text(text, 0, entries.height + high + 8 + NOTE * n, "quiet"));
     };
     const [source] = about.sources;
-    savePicture({ name: `${source} ${about.measure}`, title: `${title}, ${about.sources.join(" and ")}`, width: wide, height: entries.height + high + 16, draw }, kind);
+    savePicture({ name: `${source} ${about.measure}`, title: `${title}, ${about.sources.join(" and ")}`, width: wide, height: entries.height + high + NOTE * notes.length, draw }, kind);
   }
 
   const points = lines.flatMap((line) => line.points.map((point) => ({ line, point, x: figure.xOf(point.at[0]), y: figure.yOf(point.mean), text: pointText(point, about, line) })));
@@ -251,7 +253,7 @@ function Plot({ lines, known, about, children }) {
         return html`<button key=${key} class="point ${hit.includes(one) ? "hit" : ""}" style=${{ left: `${one.x}px`, top: `${one.y}px` }} aria-label="Trials of ${one.text}" onClick=${press} onFocus=${() => (pointed.value = [one.text])} onBlur=${leave}></button>`;
       })}
     </div>
-    <p class="pointed" role="status">${hit.length > 0 ? html`${hit.length > 1 ? `${hit.length} points, ${hit[0].text}` : hit[0].text} <span class="quiet">– click for the trials</span>` : html`<span class="quiet">${caption}</span>`}</p>
+    <p class="pointed" role="status">${hit.length > 0 ? html`${hit.length > 1 ? `${hit.length} points, ${hit[0].text}` : hit[0].text} <span class="quiet">– click for the trials${about.comparison ? " there, also those left out" : ""}</span>` : html`<span class="quiet">${caption}</span>`}</p>
   </figure>`;
 }
 
@@ -298,7 +300,7 @@ export function Figure({ experiment, facts, columns: all }) {
       ${comparison ? html`<p class="problem warning">${comparison}</p>` : null}
       ${combined > MAX_LINES ? html`<p class="problem warning">The first ${MAX_LINES} of ${combined} lines are drawn.</p>` : null}
       ${answer && lines.length > 0
-        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, over: chosen.over, across: headText(columns.find(({ name }) => name === answer.x) ?? { name: answer.x }), unit: answer.unit ?? "", sources: drawn.map(experimentText), counts: countsOf(answer, chosen, experiment, together && other), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
+        ? html`<${Plot} lines=${lines} known=${orderOf(facts, answer.x)} about=${{ ...answer, comparison: together ? comparison : "", over: chosen.over, across: headText(columns.find(({ name }) => name === answer.x) ?? { name: answer.x }), unit: answer.unit ?? "", sources: drawn.map(experimentText), counts: countsOf(answer, chosen, experiment, together && other), entries: entriesOf(drawn) }}><${ComparedChoice} others=${comparables} other=${other} /><//>`
         : html`<p class="empty" role="status">${answer ? "No finished trial has a value of this measure." : error ? "" : html`<progress aria-label="Reading"></progress> Reading the trials …`}</p>`}
     </div>
   `;

@@ -575,7 +575,7 @@ def test_an_experiment_without_a_common_condition_is_not_drawn_beside(blank: Pag
     blank.get_by_label("Compare with").select_option("theirs")
     warning = blank.locator("#drawn .problem")
     expect(warning).to_have_text(
-        re.compile(r"^theirs .* is not drawn: it has no condition in common with this experiment \(other levels of ink and goal\)\.$")
+        re.compile(r"^theirs .* is not drawn: it has no condition in common with this experiment \(no level of ink or goal\)\.$")
     )
     expect(blank.locator("#drawn .point")).to_have_count(2)
     blank.get_by_label("Compare with").select_option("")
@@ -610,7 +610,10 @@ def test_two_experiments_are_compared_over_the_conditions_that_both_have(pages: 
         )
     expect(page.locator(".means .pointed")).to_contain_text("4 of 8 trials; of the other experiment, 4 of 8 trials")
     expect(page.locator(".problem")).to_have_text(
-        re.compile("^Only conditions that both experiments have are compared; left out: 2 conditions with 4 trials of counting .*[.]$")
+        re.compile(
+            "^Only conditions that both experiments have are compared, and each weighs the same; "
+            "left out: 2 conditions with 4 trials of counting .*[.]$"
+        )
     )
     shutil.rmtree(folder)
 

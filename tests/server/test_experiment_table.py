@@ -10,18 +10,20 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from workbench.experiment_table import means_of_two
+import pytest
+
+from workbench.experiment_table import TableError, means_of_two
 
 Row = dict[str, Any]
 
 
-def written(path: Path, rows: Sequence[Row]) -> Path:
-    """Writes a table of trials: all keys of the rows are columns."""
+def written(path: Path, rows: Sequence[Row], unit: str | None = None) -> Path:
+    """Writes a table of trials: all keys of the rows are columns, with a unit."""
     names = list(dict.fromkeys(name for row in rows for name in row))
     with closing(sqlite3.connect(path)) as file, file:
         file.execute("CREATE TABLE trial (number INTEGER PRIMARY KEY, data TEXT, wall_s REAL, worker TEXT)")
         file.execute("CREATE TABLE column (name TEXT, type TEXT, unit TEXT, meaning TEXT, place INTEGER)")
-        file.executemany("INSERT INTO column VALUES (?, 'real', NULL, '', ?)", [(name, n) for n, name in enumerate(names)])
+        file.executemany("INSERT INTO column VALUES (?, 'real', ?, '', ?)", [(name, unit, n) for n, name in enumerate(names)])
         file.executemany("INSERT INTO trial VALUES (?, ?, 1, 'w')", [(n, json.dumps(row)) for n, row in enumerate(rows)])
     return path
 
@@ -108,3 +110,33 @@ def test_blocks_that_only_one_experiment_has_are_in_no_mean(tmp_path: Path) -> N
         found = compared(folder, mine, theirs, x=x, factors=["n"], over="block")
         assert points(found) == points(found["beside"]) == ([[1, 1.5, 2]] if x == "n" else [[1, 1, 1], [2, 2, 1]])
         assert found["left_out"] == {"conditions": 1, "trials": 1}
+
+
+def test_each_condition_weighs_the_same_however_many_of_its_trials_have_a_value(tmp_path: Path) -> None:
+    mine = trials([1, 2], [1, 3])
+    some = [row for row in mine if row["m"] == 1 or row["participant"] == "all 1"] + [row for row in mine if row["m"] == 1] * 3
+    found = compared(tmp_path, mine, some)
+    assert points(found) == [[1, 2, 4], [2, 4, 4]]
+    assert points(found["beside"]) == [[1, 2, 9], [2, 4, 9]]
+    people = trials([1], [1])
+    groups = [row | {"group": group, "time": times * row["time"]} for row in people for group, times in (("small", 1), ("big", 5))]
+    (tmp_path / "groups").mkdir()
+    uneven = compared(tmp_path / "groups", groups, groups + [row for row in groups if row["group"] == "big"] * 4)
+    assert [point[:2] for point in points(uneven)] == [point[:2] for point in points(uneven["beside"])] == [[1, 3]]
+
+
+def test_a_factor_that_only_one_experiment_varies_has_the_value_of_the_parameter_in_the_other(tmp_path: Path) -> None:
+    plain = [{name: value for name, value in row.items() if name != "m"} for row in trials([1, 2], [3])]
+    found = compared(tmp_path, trials([1, 2], [1, 3]), plain, fixed=({}, {"m": 3.0}))
+    assert points(found) == points(found["beside"]) == [[1, 3, 2], [2, 6, 2]]
+    for name, (level, default) in {"text": ("it's", "it's"), "switch": (True, True)}.items():
+        (tmp_path / name).mkdir()
+        varied = [row | {"ink": ink} for row in trials([1], [1]) for ink in (level, "red")]
+        found = compared(tmp_path / name, varied, trials([1], [1]), factors=["n", "m", "ink"], fixed=({}, {"ink": default}))
+        assert points(found) == points(found["beside"]) == [[1, 1, 2]]
+
+
+def test_a_measure_with_another_unit_is_not_compared(tmp_path: Path) -> None:
+    mine, theirs = (written(tmp_path / unit, trials([1], [1]), unit) for unit in ("s", "ms"))
+    with pytest.raises(TableError, match="its time is in ms, and here in s"):
+        means_of_two(mine, theirs, x="n", by=[], measure="time", factors=["n", "m"])

@@ -120,13 +120,19 @@ def beside_experiment(others: Sequence[Results], parts: Sequence[Results]) -> Be
     for part, other in itertools.product(parts, others):
         if part.numbers.keys() == other.numbers.keys():
             by = ["group", *(name for name in part.all_factors if _is_fixed(other, name))]
-            common = [name for name in part.measures if name in other.measures]
+            common = [name for name in part.measures if name in other.measures and same_unit(part, other, name)]
             pieces += [cell_means(other.rows, measure, by).assign(measure=measure) for measure in common]
     if not pieces:
         return None
     frame = pd.concat(pieces, ignore_index=True)
     columns = ["group", *factors_of(parts), "measure", "mean", "sd", "low", "high", "n"]
     return Beside(label=others[0].label, look="other", frame=frame.reindex(columns=columns), results=others[0])
+
+
+def same_unit(one: Results, other: Results, measure: str) -> bool:
+    """Returns whether a measure has the same unit in two experiments, as far as both have one."""
+    units = {one.unit(measure), other.unit(measure)} - {""}
+    return len(units) <= 1
 
 
 def _is_fixed(results: Results, name: str) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 
 from actr3d.experiment.human_data import HumanData, plain_text
 from actr3d.experiment.report.analyses import find_analyses
-from actr3d.experiment.report.beside import Beside, factors_of, fit_to, matched, missing
+from actr3d.experiment.report.beside import Beside, factors_of, fit_to, matched, missing, same_unit
 from actr3d.experiment.report.figures import Curve, Look, Pane, curves_figure
 from actr3d.experiment.report.libraries import pandas, versions
 from actr3d.experiment.report.parts import Caution, Plot, Section, Table
@@ -173,6 +173,10 @@ def comparison_section(results: Results, other: Results, parts: Sequence[Results
     text = f"{what} differs from this experiment (“now”) in: {'; '.join(different) or 'nothing that was set'}."
     fit = fit_to(parts, beside)
     found: list[str | Table | Plot | Caution] = [text]
+    if varied := [name for name in other.factors if name not in results.all_factors and name not in results.rows]:
+        found.append(Caution(f"Means of {other.label} are over all levels of {', '.join(varied)}, which this experiment does not vary."))
+    if units := [name for name in results.measures if name in other.measures and not same_unit(results, other, name)]:
+        found.append(Caution(f"Not compared, because {other.label} has them in another unit: {', '.join(units)}."))
     if len(fit):
         found.append(Table(name="fit_to_other", title="Agreement of the means of all common cells", frame=fit, hidden=["beside"]))
         found.append(_matched_table(parts, beside, "means_beside_other", f"Means beside those of {other.label}"))
