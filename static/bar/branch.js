@@ -4,24 +4,22 @@ import { html, signal, useEffect } from "../vendor/preact.js";
 import { Button } from "../parts/button.js";
 import { confirmed } from "../parts/dialog.js";
 import { remembered } from "../local_storage.js";
-import { call, isLeft, say } from "../server.js";
-import { complain, session, shownRecording } from "../store.js";
+import { isLeft, say } from "../server.js";
+import { complain, session } from "../store.js";
 import { openRun } from "../runs/actions.js";
-import { furthest, present, runTimeText } from "../timeline/seek.js";
+import { runTimeText } from "../timeline/seek.js";
 
-/** Returns whether the server has a recording; it may have been deleted or renamed since it was opened. */
-const isThere = (id) => call("GET", `/api/recordings/${id}`).then(() => true, () => false);
-
-/** Sends a command that changes the run from a moment [s] on; if this is in its past and the run has no recording, asks first. Returns
- * whether it was sent; throws an Error with the reason if it cannot be done. */
-export async function change(what, at = present.peek()) {
-  const recording = shownRecording.peek();
-  if (at > furthest.peek() - 1e-7 || (recording !== null && (await isThere(recording)))) return say(what).then(() => true);
-  const [now, there, end] = [present.peek(), at, furthest.peek()].map((time) => runTimeText(time));
-  const why = recording === null ? "It is not recorded" : "Its recording was deleted or renamed";
-  const text = `The run is at ${now} and has reached ${end}. ${why}: if it is changed ${now === there ? "here" : `at ${there}`}, what came after ${there} is lost.`;
-  if (!(await confirmed("Change the past?", text, "Change it, and lose the rest"))) return false;
-  await say({ ...what, drop: true });
+/** Sends a command that changes the run; if what lies ahead would be lost, asks whether it may be. Returns whether the run was changed; throws an
+ * Error with the reason if it cannot be. */
+export async function change(what) {
+  try {
+    await say(what);
+  } catch (error) {
+    if (!error.loses) throw error;
+    const text = `${error.message[0].toUpperCase()}${error.message.slice(1)}.`;
+    if (!(await confirmed("Change the past?", text, "Change it, and lose the rest"))) return false;
+    await say({ ...what, drop: true });
+  }
   return true;
 }
 
