@@ -8,6 +8,7 @@ import { isLeft, say } from "../server.js";
 import { complain, session } from "../store.js";
 import { openRun } from "../runs/actions.js";
 import { runTimeText } from "../timeline/seek.js";
+import { embedded } from "../windows.js";
 
 /** Sends a command that changes the run; if what lies ahead would be lost, asks whether it may be. Returns whether the run was changed; throws an
  * Error with the reason if it cannot be. */
@@ -41,7 +42,7 @@ function Notice({ which, title, children }) {
   }, [which]);
   return html`<span class="former branched" role="status" title=${title}>
     <span>${children}</span>
-    <${Button} class="bare" aria-label="Dismiss" title="Dismiss; the recording stays in Runs" onClick=${() => (closed.value = [...closed.value, which])}>✕<//>
+    <${Button} class="bare" aria-label="Dismiss" title=${embedded === null ? "Dismiss; the recording stays in Runs" : "Dismiss"} onClick=${() => (closed.value = [...closed.value, which])}>✕<//>
   </span>`;
 }
 
@@ -53,6 +54,10 @@ export function Branch() {
   const which = `${id} ${born} ${recording}`;
   if (!kept || closed.value.includes(which)) return null;
   const where = `the recording ${recording}, which is listed in Runs`;
+  if (embedded !== null) {
+    const title = `From ${runTimeText(at)} on, this differs from the recording, or goes beyond it.`;
+    return html`<${Notice} key=${which} which=${which} title=${title}>A branch, which ends with the kernel; run the cell again to see the recording<//>`;
+  }
   const open = () => openRun({ id: recording, model, made });
   if (opened) {
     const title = `From ${runTimeText(at)} on it differs from ${where}, or goes beyond it; this is recorded as a branch.`;
