@@ -246,7 +246,7 @@ function update() {
       const { resolve, reject } = waiting.get(reply.id) ?? {};
       waiting.delete(reply.id);
       if (reply.error === null) resolve?.(reply.result);
-      else reject?.(new Error(reply.error));
+      else reject?.(Object.assign(new Error(reply.error), { loses: reply.loses }));
     }
   }
 }
@@ -254,7 +254,7 @@ function update() {
 /** Functions that send what waits for an earlier answer; it is sent before any other command. */
 export const heldBack = new Set();
 
-/** Sends a command or a question; returns its result, or throws an Error with the reason. */
+/** Sends a command or a question; returns its result, or throws an Error with the reason, with `loses` if only because something would be lost. */
 export function say(what) {
   return new Promise((resolve, reject) => {
     if (shown === null || socket?.readyState !== WebSocket.OPEN) {

@@ -97,13 +97,13 @@ function OnePanel() {
 
 /** The bar of a page in a notebook. */
 function NotebookBar() {
-  const { model = "", recorded = null } = session.value ?? {};
+  const { model = "", recorded = null, branched = null } = session.value ?? {};
   useEffect(() => {
     show(embedded);
     parent.postMessage("workbench", "*"); // says only that the page can be reached
   }, []);
   return html`<header class="bar">
-    <h1>${recorded === null ? "ACT-R 3D" : `Recording of ${model}`}</h1>
+    <h1>${recorded === null ? "ACT-R 3D" : `${branched === null ? "Recording" : "Branch of the recording"} of ${model}`}</h1>
     <${Transport} />
     <${Clock} />
   </header>`;

@@ -95,8 +95,8 @@ class LaunchedRun:
         """Set when the worker has ended and its last messages have been read."""
         self.stuck: dict[str, Any] | None = None
         """Where the model has kept its process busy for a while: `file`, `line`, `function`, and any `signal` that has stopped it."""
-        self.unwritten = False
-        """Whether its recording can no longer be written."""
+        self.unwritten = ""
+        """Why its recording can no longer be written; empty if it can."""
         self._digest = text_digest(start.source)
         self._helpers: dict[Path, str] = {}
         for file, text in list(start.helpers.values())[:MAX_HELPERS]:

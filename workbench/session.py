@@ -221,7 +221,7 @@ class Session(Broadcast, Receiver):
                 launched.add_helper(message)
                 self.changed(facts=shown)
             case Notice() if not shown or not self._was_given(message):
-                launched.unwritten |= message.unwritten
+                launched.unwritten = message.text if message.unwritten else launched.unwritten
                 self.add_notice(message, start)
             case At():
                 launched.stuck = {"file": self._shown_file(message.file, start), "line": message.line, "function": message.function}
@@ -278,7 +278,7 @@ class Session(Broadcast, Receiver):
         launched = self._run_of(worker)
         if launched is None or launched.over.is_set():
             return
-        self._ending = "stopped" if asked else ending
+        self._ending = "stopped" if asked else ending or launched.unwritten
         stuck, launched.stuck = launched.stuck, None
         where = f" at {stuck['file']}:{stuck['line']}" if stuck and stuck["file"] else ""
         if ending and not asked:

@@ -150,7 +150,7 @@ class Sessions:
             )
         return start
 
-    async def reopen(self, recording: str, *, trust: bool = False, real_time: bool = False) -> Session:
+    async def reopen(self, recording: str, *, trust: bool = False, real_time: bool = False, record: bool = True) -> Session:
         """Starts a session that repeats a recorded run with all commands of users; or returns the session that is known by it.
 
         A session that is open stays so if its recording is deleted.
@@ -159,6 +159,7 @@ class Sessions:
             recording: The name of the recording.
             trust: As in `trusted`.
             real_time: As in `open`.
+            record: Whether the run is recorded once users change it.
 
         Raises:
             Actr3dError: If there is no such recording, or there are too many sessions.
@@ -171,7 +172,7 @@ class Sessions:
             start = await self.trusted(recording, trust)
             shown = self.folder.shown(start.file)
             path = self.folder.root / shown  # a new run uses the user's own model of that name, if there is one
-            options = RunOptions(settings=start.parameters, seed=start.seed, repeated=start)
+            options = RunOptions(settings=start.parameters, seed=start.seed, record=record, repeated=start)
             return await self._begun(path, shown, options, real_time=real_time)
 
     async def adopt(self, worker: Worker, name: str) -> Session:

@@ -4,24 +4,23 @@ import { html, signal, useEffect } from "../vendor/preact.js";
 import { Button } from "../parts/button.js";
 import { confirmed } from "../parts/dialog.js";
 import { remembered } from "../local_storage.js";
-import { call, isLeft, say } from "../server.js";
-import { complain, session, shownRecording } from "../store.js";
+import { isLeft, say } from "../server.js";
+import { complain, session } from "../store.js";
 import { openRun } from "../runs/actions.js";
-import { furthest, present, runTimeText } from "../timeline/seek.js";
+import { runTimeText } from "../timeline/seek.js";
+import { embedded } from "../windows.js";
 
-/** Returns whether the server has a recording; it may have been deleted or renamed since it was opened. */
-const isThere = (id) => call("GET", `/api/recordings/${id}`).then(() => true, () => false);
-
-/** Sends a command that changes the run from a moment [s] on; if this is in its past and the run has no recording, asks first. Returns
- * whether it was sent; throws an Error with the reason if it cannot be done. */
-export async function change(what, at = present.peek()) {
-  const recording = shownRecording.peek();
-  if (at > furthest.peek() - 1e-7 || (recording !== null && (await isThere(recording)))) return say(what).then(() => true);
-  const [now, there, end] = [present.peek(), at, furthest.peek()].map((time) => runTimeText(time));
-  const why = recording === null ? "It is not recorded" : "Its recording was deleted or renamed";
-  const text = `The run is at ${now} and has reached ${end}. ${why}: if it is changed ${now === there ? "here" : `at ${there}`}, what came after ${there} is lost.`;
-  if (!(await confirmed("Change the past?", text, "Change it, and lose the rest"))) return false;
-  await say({ ...what, drop: true });
+/** Sends a command that changes the run; if what lies ahead would be lost, asks whether it may be. Returns whether the run was changed; throws an
+ * Error with the reason if it cannot be. */
+export async function change(what) {
+  try {
+    await say(what);
+  } catch (error) {
+    if (!error.loses) throw error;
+    const text = `${error.message[0].toUpperCase()}${error.message.slice(1)}.`;
+    if (!(await confirmed("Change the past?", text, "Change it, and lose the rest"))) return false;
+    await say({ ...what, drop: true });
+  }
   return true;
 }
 
@@ -43,7 +42,7 @@ function Notice({ which, title, children }) {
   }, [which]);
   return html`<span class="former branched" role="status" title=${title}>
     <span>${children}</span>
-    <${Button} class="bare" aria-label="Dismiss" title="Dismiss; the recording stays in Runs" onClick=${() => (closed.value = [...closed.value, which])}>✕<//>
+    <${Button} class="bare" aria-label="Dismiss" title=${embedded === null ? "Dismiss; the recording stays in Runs" : "Dismiss"} onClick=${() => (closed.value = [...closed.value, which])}>✕<//>
   </span>`;
 }
 
@@ -55,6 +54,10 @@ export function Branch() {
   const which = `${id} ${born} ${recording}`;
   if (!kept || closed.value.includes(which)) return null;
   const where = `the recording ${recording}, which is listed in Runs`;
+  if (embedded !== null) {
+    const title = `From ${runTimeText(at)} on, this differs from the recording, or goes beyond it.`;
+    return html`<${Notice} key=${which} which=${which} title=${title}>A branch, which ends with the kernel; run the cell again to see the recording<//>`;
+  }
   const open = () => openRun({ id: recording, model, made });
   if (opened) {
     const title = `From ${runTimeText(at)} on it differs from ${where}, or goes beyond it; this is recorded as a branch.`;

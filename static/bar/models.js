@@ -9,7 +9,7 @@ import { parts, withPresentNames } from "../runs/list.js";
 import { withTrust } from "../runs/trust.js";
 import { alive, complain, connected, isShared, running, session, shownRecording } from "../store.js";
 import { furthest, isBeyond, present, runTimeText, travel } from "../timeline/seek.js";
-import { followWindows, passOn } from "../windows.js";
+import { alone, followWindows, passOn } from "../windows.js";
 
 /** The model files of the folder: {path, title, kind}. */
 export const models = signal([]);
@@ -173,11 +173,12 @@ function follow() {
 addEventListener("popstate", follow);
 
 /** A recording that is changed becomes another one: the address becomes that of the branch. One that is started as a new run is no longer a
- * recording: the address becomes the model's. */
+ * recording: the address becomes the model's. A window of its own has the address of what its page shows. */
 let shown = { id: null, recorded: null };
 effect(() => {
   const { id = null, recorded = null, model: path } = session.value ?? {};
-  const isOther = id !== null && id === shown.id && shown.recorded !== null && recorded !== shown.recorded;
+  const isChanged = id === shown.id && shown.recorded !== null && recorded !== shown.recorded;
+  const isOther = id !== null && (isChanged || (alone !== null && id !== shown.id));
   shown = { id, recorded };
   if (isOther && recorded === null) note(path);
   else if (isOther) goToAddress("run", recorded);

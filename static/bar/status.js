@@ -26,7 +26,7 @@ export function StatusLine() {
   return html`<footer class="status-line">
     <span id="status" role="status" class=${BAD.includes(is) ? "bad" : is} title=${line}>${line}</span>
     <span class="if-room hint"><${Hint} /></span>
-    ${embedded === null ? html`<${Branch} /><${Former} />` : null}
+    <${Branch} />${embedded === null ? html`<${Former} />` : null}
     <span class="if-room facts">
       ${watching.length > 1 ? html`<span id="browsers" title="All can control the run; the last to do something is in control">${pagesText(watching, control)}</span>` : null}
       <span>${counted(state.value?.events ?? 0, "event")}</span>

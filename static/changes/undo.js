@@ -21,9 +21,8 @@ function canUndo() {
 }
 
 async function undo() {
-  const [time = 0] = latest() ?? [];
   try {
-    await change({ type: "undo" }, time / 1e6);
+    await change({ type: "undo" });
   } catch (error) {
     if (!isLeft(error)) complain(error.message);
   }

@@ -65,7 +65,17 @@ function Row({ run, list, number, now, toggle, open }) {
   const different = differentText(run);
   const name = ownName(run);
   const { tags = [] } = run.label ?? {};
+  const row = useRef(null);
+  // A row that goes, such as one that is deleted, passes the focus on.
+  useLayoutEffect(
+    () => () => {
+      const { previousElementSibling: before, nextElementSibling: after } = row.current;
+      if (row.current.contains(document.activeElement)) (after.querySelector("input") ?? before.querySelector("input"))?.focus({ preventScroll: true });
+    },
+    [],
+  );
   return html`<tr
+    ref=${row}
     class="${isChosen ? "chosen" : ""} ${own ? "present" : ""}"
     aria-selected=${isChosen}
     aria-rowindex=${number + 2}

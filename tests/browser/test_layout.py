@@ -135,7 +135,7 @@ def test_a_panel_has_a_window_of_its_own_which_follows_the_page(pages: Pages) ->
     expect(window).to_have_title("Buffers · doorway.py")
     page.close()
     window.reload()  # without the page that has opened it
-    expect(window).to_have_title("Buffers · counting.py")
+    expect(window).to_have_title("Buffers · doorway.py")
 
 
 @pytest.fixture
@@ -175,6 +175,10 @@ def test_what_is_chosen_in_a_window_of_its_own_is_shown_by_the_page(second: str,
     expect(window).to_have_title(f"Runs · {second}")
     window.get_by_role("button", name="Editor", exact=True).click()
     expect(window).to_have_title(f"Editor · {second}")
+    assert f"run={recorded}" in window.url
+    choose(page, "counting.py")
+    expect(window).to_have_title("Editor · counting.py")
+    expect(window).not_to_have_url(re.compile("run="))
 
 
 def test_a_link_leads_to_a_moment_of_a_run(pages: Pages, workbench: Served) -> None:

@@ -170,7 +170,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     file = workbench.folder / ".workbench" / "recordings" / f"{name}.sqlite"
     file.rename(file.with_suffix(".away"))
     drag("End")
-    expect(asked).to_contain_text("has reached 6.80 s. Its recording was deleted or renamed: if it is changed here")
+    expect(asked).to_contain_text("because the recording that this run repeats has been deleted or renamed: what lies ahead, from 1 s")
     asked.get_by_role("button", name="Cancel").click()
     expect(asked).to_have_count(0)
     file.with_suffix(".away").rename(file)
@@ -189,7 +189,7 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     order("until", 2)
     order("seek", 1.5)
     drag("Home")
-    expect(asked).to_contain_text("The run is at 1.50 s and has reached 2.00 s. It is not recorded")
+    expect(asked).to_contain_text("Nothing was changed, because the run is not recorded: what lies ahead, from 1.5 s to 2 s,")
     asked.get_by_role("button", name="Cancel").click()
     expect(asked).to_have_count(0)
     expect(page.locator("#width")).to_have_text(width)
@@ -204,6 +204,27 @@ def test_a_changed_recording_loses_nothing_before_something_is_lost_it_is_asked_
     until(page, lambda: page.locator("#width").inner_text() == other.locator("#width").inner_text() != width)
     for one in (page, other):
         expect(one.get_by_role("dialog")).to_have_count(0)
+
+
+def test_before_what_cannot_be_kept_is_lost_it_is_asked_also_if_the_run_is_recorded(pages: Pages, workbench: Served) -> None:
+    page = pages("counting.py", tab="buffers", refusals=True)
+    shows(page, "#status", "at its start")
+    say(page, type="until", time=0.2)
+    shows(page, "#time", r"t = 0\.20 s")
+    say(page, type="seek", time=0.1)
+    shows(page, "#time", r"t = 0\.10 s")
+    where = workbench.folder / ".workbench" / "recordings"
+    aside = where.rename(where.with_name("aside"))  # no file can be made there, as on a full disk
+    try:
+        change = {"type": "command", "word": "clear_buffer", "named": {"buffer": "goal"}}
+        page.evaluate("async (what) => void (await part('bar/branch.js')).orderChange(what)", change)
+        asked = page.get_by_role("dialog", name="Change the past?")
+        expect(asked).to_contain_text("because what lies ahead, from 0.1 s to 0.2 s, cannot be kept: cannot write the recording")
+        expect(asked).not_to_contain_text("drop")
+        asked.get_by_role("button", name="Change it, and lose the rest").click()
+        shows(page, "#status", r"changed at 0\.10 s; the rest was lost")
+    finally:
+        aside.rename(where)
 
 
 def at(page: Page, time: float) -> None:

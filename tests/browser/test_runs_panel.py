@@ -177,6 +177,29 @@ def test_a_recording_is_run_again_taken_away_opened_and_deleted(page: Page, work
     expect(page.get_by_text("in the trash folder")).to_have_count(0)  # which would no longer be true
 
 
+def test_after_a_row_was_deleted_by_keys_the_next_one_has_the_focus(page: Page, workbench: Served, recordings: Path) -> None:
+    names = [recorded(workbench, "counting.py") for _ in range(3)]
+    open_tab(page, "Runs")
+    page.get_by_label("Search recordings").fill("counting.py ended")
+    rows = page.locator("tr[data-run]")
+    expect(rows).to_have_count(3)
+    order = [rows.nth(n).get_attribute("data-run") for n in range(3)]
+    assert sorted(names) == sorted(str(name) for name in order)
+    for gone, focused in (order[1], order[2]), (order[2], order[0]):
+        page.keyboard.press("Shift")  # from now on by keys
+        row(page, str(gone)).locator("input").focus()
+        page.keyboard.press("Space")
+        expect(page.get_by_role("button", name="Delete", exact=True)).to_be_visible()
+        page.keyboard.press("Delete")
+        expect(page.get_by_role("dialog").get_by_role("button", name="Cancel")).to_be_focused()
+        page.keyboard.press("Tab")
+        page.keyboard.press("Enter")
+        expect(row(page, str(gone))).to_have_count(0)
+        expect(row(page, str(focused)).locator("input")).to_be_focused()
+    page.get_by_role("button", name="Read the list again").click()
+    expect(rows).to_have_count(1)
+
+
 @pytest.mark.slow
 def test_files_are_added_by_choosing_or_dropping_them(pages: Callable[..., Page], recordings: Path, two: list[str], tmp_path: Path) -> None:
     page = pages("counting.py", refusals=True)

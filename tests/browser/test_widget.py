@@ -16,7 +16,7 @@ import pytest
 from playwright.sync_api import Browser, FrameLocator, Page, expect
 
 from tests.browser.test_access import AXE, LOOK, RUN_AXE
-from tests.helpers.page import PATIENCE, shows
+from tests.helpers.page import PART, PATIENCE, shows
 from workbench.notebook import widget
 
 KERNEL = """
@@ -150,6 +150,40 @@ def test_a_page_that_is_late_is_shown_as_soon_as_it_is_there(browser: Browser) -
         expect(page.locator(".actr3d-note")).to_have_count(0)
         expect(page.frame_locator("iframe").locator("#size")).to_be_visible()
         expect(page.frame_locator("iframe").locator("#size")).to_have_text("560 px")
+
+
+@pytest.mark.slow
+def test_a_recording_in_a_notebook_says_that_it_was_changed_and_asks_before_more_is_lost(
+    browser: Browser, kernel: Kernel, notebook: str, tmp_path: Path
+) -> None:
+    model, path = Path(__file__).parents[2] / "models" / "counting.py", tmp_path / "run.sqlite"
+    subprocess.run([Path(sys.executable).with_name("actr3d"), "run", str(model), "--record", str(path)], check=True, capture_output=True)
+    kernel.page = kernel.cell(f"dict(__import__('actr3d.recording').recording.Recorded({str(path)!r}).show(trust=True).page)")
+    page = opened(browser, notebook)
+    frame = page.frame_locator("iframe").first
+    expect(frame.get_by_role("heading", name="Recording of")).to_be_visible()
+    inner = next(one for one in page.frames if "session=" in one.url)
+    inner.evaluate(f"() => void ({PART})")
+
+    def order(part: str, function: str, **what: Any) -> None:
+        inner.evaluate(f"async (what) => void (await part('{part}')).{function}(what)", what)
+
+    def change(time: float) -> None:
+        order("server.js", "order", type="seek", time=time)
+        time_of(frame, f"t = {time:.2f} s")
+        order("bar/branch.js", "orderChange", type="command", word="clear_buffer", named={"buffer": "goal"})
+
+    change(0.1)
+    expect(frame.get_by_role("heading", name="Branch of the recording of")).to_be_visible()
+    expect(frame.locator(".branched")).to_contain_text("A branch, which ends with the kernel; run the cell again to see the recording")
+    expect(frame.get_by_title("Kept as this recording")).to_have_count(0)
+    order("server.js", "order", type="step")
+    time_of(frame, "t = 0.11 s")
+    change(0.05)
+    asked = frame.get_by_role("dialog", name="Change the past?")
+    expect(asked).to_contain_text("because the run is not recorded: what lies ahead, from 0.05 s to 0.11 s, would be lost")
+    asked.get_by_role("button", name="Change it, and lose the rest").click()
+    expect(frame.locator("#status")).to_have_text("paused: changed at 0.05 s; the rest was lost")
 
 
 @pytest.mark.slow

@@ -12,6 +12,7 @@ from actr3d.recording import Recorded
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from tests.server.test_curves import PUSHED
 from workbench import retention
+from workbench.protocol import COMMAND
 from workbench.recording_index import summary_json
 
 STOPPED = PUSHED.replace(
@@ -140,6 +141,8 @@ def test_on_a_full_disk_nothing_is_changed_and_the_known_part_of_the_run_can_sti
     resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, (1, limits[1]))  # no file can grow, as on a full disk
     with pytest.raises(RefusedError, match=r"nothing was changed, because what lies ahead, from 0.1 s to 0.4 s, cannot be kept"):
         talk.say("command", word="aperture", values=[0.3])
+    change = COMMAND.validate_python({"type": "command", "word": "aperture", "values": [0.3]})
+    assert desk.do(change.submit(talk.session, "test")).loses
     talk.say("until", time=0.4)
     assert talk.until("paused", time=0.4)["furthest"] == 0.4
     resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, limits)

@@ -91,6 +91,16 @@ def test_a_run_whose_recording_can_no_longer_be_written_does_not_blame_a_line_of
     assert talk.sessions.writing() == {}
 
 
+def test_a_run_that_cannot_begin_on_a_full_disk_ends_with_the_reason(desk: Desk, tmp_path: Path) -> None:
+    ended(desk.begin(tmp_path, HELPED.replace("from helper import WORD", 'WORD = "go"')))  # the process that starts workers is ready
+    with nearly_full_disk(desk, 1):
+        talk = desk.begin(tmp_path, FLOOD, name="flood.py", record=True, wait=None)
+        for run in talk.session._going:
+            desk.do(run.over.wait())
+    assert re.fullmatch(r"cannot write the recording '.*': .*; nothing of the run is kept", talk.facts["ending"])
+    assert talk.facts["kind"] == "program"
+
+
 @pytest.mark.slow
 def test_what_is_taken_of_a_run_that_has_ended_is_replayed_while_its_session_is_open(desk: Desk, tmp_path: Path) -> None:
     talk = desk.begin(tmp_path, HELPED.replace("from helper import WORD", 'WORD = "go"'), record=True)

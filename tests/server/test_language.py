@@ -456,6 +456,10 @@ def test_renaming(ask: Asked, text: str, name: str, changed: int) -> None:
     assert (count, again.replace("|", "")) == (changed, text.replace("|", ""))
 
 
+INHERITED = ("traced", "now", "stop", "explain")
+DERIVED = "class Derived(Base):\n    def lo|ok(self): pass\n"
+
+
 @pytest.mark.parametrize(
     ("text", "name", "why"),
     [
@@ -482,6 +486,10 @@ def test_renaming(ask: Asked, text: str, name: str, changed: int) -> None:
         (NAMES.replace("retrieval = Buffer", "retr|ieval = Buffer"), "Memory", "'Memory' is imported from actr3d.actr.* already"),
         (NAMES.replace("retrieval = Buffer", "retr|ieval = Buffer"), "look", "'look' already has a meaning in line 16"),
         (NAMES.replace("goal = Buffer", "go|al = Buffer"), "ink", "'ink' already has a meaning in line"),
+        *((NAMES.replace("def look", "def lo|ok"), name, f"^'{name}' is a method of ACTR already$") for name in INHERITED),
+        *((NAMES.replace("goal.set", "go|al.set"), name, f"^'{name}' is a method of ACTR already$") for name in INHERITED),
+        (NAMES.replace("def look", "def lo|ok"), "parent", "^'parent' is an attribute of .* already$"),
+        (f"class Base:\n    def read(self): pass\n\n{DERIVED}", "read", "^'read' is a method of Base already$"),
     ],
 )
 def test_what_cannot_be_renamed(ask: Asked, text: str, name: str, why: str) -> None:

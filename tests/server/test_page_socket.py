@@ -88,7 +88,7 @@ def test_a_request_may_speak_of_attach(server: Served, session: str) -> None:
         async with await attached(server, session) as socket:
             await socket.send(json.dumps({"id": 7, "command": {"type": "explain", "production": "attach"}}))
             told = await heard(socket, lambda message: "replies" in message)
-            assert told["replies"][0] == {"id": 7, "result": None, "error": "no production 'attach'; there are: none"}
+            assert told["replies"][0] == {"id": 7, "result": None, "error": "no production 'attach'; there are: none", "loses": False}
 
     asyncio.run(talk())
 

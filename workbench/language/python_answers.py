@@ -137,6 +137,18 @@ class PythonAnswers:
         found = script.goto(line, 0, follow_imports=True)
         return next((one.module_name for one in found if one.module_path != self._folder / path), "")
 
+    def owner(self, explicit: ExplicitText, path: str, at: int) -> str:
+        """Returns the class in whose body the name at a position is defined, after those around it; empty if it is defined in none."""
+        found = self._script(explicit.text, path).goto(*explicit.place(at))
+        owners = [owner for one in found if one.module_path == self._folder / path and (owner := one.parent()) and owner.type == "class"]
+        return (owners[0].full_name or "").removeprefix(f"{owners[0].module_name}.") if owners else ""
+
+    def attribute(self, explicit: ExplicitText, path: str, owner: str, name: str) -> str:
+        """Returns what a name is of the objects of a class: "a method" or "an attribute"; empty if they do not have it."""
+        code = f"{explicit.text}\n\n{owner}()."
+        found = self._script(f"{code}{name}", path).goto(code.count("\n") + 1, len(owner) + len("()."))
+        return "" if not found else "a method" if found[0].type == "function" else "an attribute"
+
     def references(self, explicit: ExplicitText, path: str, at: int) -> list[int]:
         """Returns the positions of all uses of the name at a position in its text."""
         line, column = explicit.place(at)

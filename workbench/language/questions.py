@@ -134,9 +134,15 @@ class Assistant:
         """
         if hasattr(builtins, new):
             raise LanguageError(f"'{new}' is a name of Python itself")
-        module = self._python.origin(ExplicitText(model), path, new)
+        original = ExplicitText(model)
+        module = self._python.origin(original, path, new)
         if module:
             raise LanguageError(f"'{new}' is imported from {module} already")
+        owners = {self._python.owner(original, path, start) for start in found.starts} & model.agents.keys()
+        for base in [base for owner in owners for base in model.agents[owner].bases]:
+            kind = self._python.attribute(original, path, base, new)
+            if kind:
+                raise LanguageError(f"'{new}' is {kind} of {base} already")
         text, starts = _renamed(model.text, found, new)
         explicit = ExplicitText(ModelText(text))
         here = max((start for old, start in zip(found.starts, starts, strict=True) if old <= at), default=starts[0])

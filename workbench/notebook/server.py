@@ -113,7 +113,7 @@ class Requests:
         path = Path(request["recording"])
         copy = self._sessions.recordings.new(path.stem)
         await asyncio.to_thread(_copy, path, copy)
-        return await self._sessions.reopen(copy.stem, trust=request["trust"], real_time=True)
+        return await self._sessions.reopen(copy.stem, trust=request["trust"], real_time=True, record=False)
 
 
 def _copy(path: Path, to: Path) -> None:

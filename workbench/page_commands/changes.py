@@ -16,7 +16,7 @@ class Change(PageCommand):
     """Base of the commands that change the run itself.
 
     If the run has gone back, it continues differently from here. The part that lies ahead is kept as a recording of its own, a
-    branch. If the run is not recorded, the change is refused unless `drop` is true.
+    branch. If it cannot be kept, the change is refused unless `drop` is true; the reply says so in `loses`.
     """
 
     drop: bool = False

@@ -21,6 +21,10 @@ from workbench.worker.shown import Shown
 from workbench.worker.stop_conditions import Touches
 
 
+class LossError(SimulationError):
+    """A change is refused because what lies ahead of it would be lost; see `Change.drop`."""
+
+
 class ControlledRun(ABC):
     """A run that a controller controls."""
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from actr3d.clock import seconds
-from actr3d.errors import Actr3dError, SimulationError
+from actr3d.errors import Actr3dError
 from actr3d.recording import Recording
 from actr3d.runner.facts import NAMED
 from workbench.retention import new_branch, superfluous_branches
 from workbench.time_text import time_text
+from workbench.worker.controlled_run import LossError
 from workbench.worker.messages import Branched
 from workbench.worker.run_controller import RunController
 
@@ -25,7 +26,7 @@ class KeptBranch:
         drop: Whether what lies ahead may be lost if it cannot be kept.
 
     Raises:
-        SimulationError: If it cannot be kept, and may not be lost.
+        LossError: If it cannot be kept, and may not be lost.
     """
 
     def __init__(self, controller: RunController, recording: Recording | None, clock: int, furthest: int, *, drop: bool) -> None:
@@ -49,7 +50,7 @@ class KeptBranch:
             if drop:
                 return None
             why = "the recording that this run repeats has been deleted or renamed" if self._is_gone else "the run is not recorded"
-            raise SimulationError(f"{why}: {ahead} would be lost; go to its newest moment, or set `drop` to lose it")
+            raise LossError(f"nothing was changed, because {why}: {ahead} would be lost")
         path, origin = new_branch(Path(self._start.record), self._at), Path(self._start.record).stem
         try:
             # The copy is of the run as it was. If the run branched from another recording after the present moment, the copy has that
@@ -59,7 +60,7 @@ class KeptBranch:
         except Actr3dError as error:
             if drop:
                 return None
-            raise SimulationError(f"nothing was changed, because {ahead} cannot be kept: {error}; set `drop` to lose it") from None
+            raise LossError(f"nothing was changed, because {ahead} cannot be kept: {error}") from None
         return path
 
     def undo(self) -> None:

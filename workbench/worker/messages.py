@@ -226,6 +226,8 @@ class Reply(Message, frozen=True, kw_only=True):
     result: bytes = b"null"
     """The result as JSON."""
     error: str | None = None
+    loses: bool = False
+    """Whether it was refused only because something would be lost; see `Change.drop`."""
 
 
 class At(Message, frozen=True, kw_only=True):
