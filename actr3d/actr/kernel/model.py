@@ -6,7 +6,7 @@ import inspect
 import random
 import sys
 from collections.abc import Callable, Generator, Iterable
-from types import MethodType
+from types import CodeType, MethodType
 from typing import Any, Protocol
 from weakref import ref
 
@@ -525,16 +525,20 @@ class GeneratorWrapper(MethodWrapper):
         sch = self.obj.sch
         method = self.func(self.obj, *args, **keys)  # wrong arguments are an error of the calling line
         frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage] # Python documents it
-        return sch.begin(self._steps(method, sch.firing, (frame.f_code.co_filename, frame.f_lineno), sch.now_us), self)
+        return sch.begin(self._steps(method, sch.firing, frame.f_code, frame.f_lasti, sch.now_us), self)
 
-    def _steps(self, method: Iterable[Any], caller: Caller | None, site: tuple[str, int], called_us: int) -> Generator[Any, Any, None]:
-        """Runs the method and fires its triggers; an error in it names its caller and the place and the time of the call [us]."""
+    def _steps(
+        self, method: Iterable[Any], caller: Caller | None, code: CodeType, instruction: int, called_us: int
+    ) -> Generator[Any, Any, None]:
+        """Runs the method and fires its triggers; an error in it names its caller, the place of the call, which is an instruction of some
+        code, and its time [us]."""
         self._wake(self._begins)
         try:
             yield from method
         except Exception as error:
             if caller is not None:
-                locate(error, *site)
+                line = next(line for start, end, line in code.co_lines() if start <= instruction < end)
+                locate(error, code.co_filename, line or code.co_firstlineno)
                 error.add_note(
                     f"in '{self.__name__}' at {self.obj.now():g} s, called by production '{caller.name}' ({caller.place}) "
                     f"at {seconds(called_us):g} s{hint_for(error, self.func.__globals__)}"
