@@ -14,6 +14,7 @@ import pytest
 from playwright.sync_api import FloatRect, Page, expect
 
 from tests.helpers.page import becomes_true, drawn, say, shows, until
+from tests.helpers.sessions import SLOW_PROGRAM
 from tests.helpers.workbench_server import Served
 
 NAMES = 200
@@ -1347,27 +1348,10 @@ def test_fit_shows_what_happened_without_a_quiet_end_and_again_all_of_the_run(pa
     assert page.evaluate(shown) < 1.3 * last  # a click does not move the axis
 
 
-SLOW = """from actr3d.actr import *
-import time
-
-class Slow(ACTR):
-    goal = Buffer()
-    def init():
-        goal.set("count 0")
-    def count(goal="count ?n"):
-        time.sleep(0.02)
-        goal.set("count %d" % (int(n) + 1))
-
-model = Slow()
-model.run(6.02)
-"""
-"""A program that takes 2.4 s."""
-
-
 def test_on_the_way_to_another_time_steps_back_are_counted_from_where_it_goes_and_stop_leaves_it_where_it_is(
     pages: Callable[..., Page], workbench: Served
 ) -> None:
-    (workbench.folder / "slow_way.py").write_text(SLOW, encoding="utf-8")
+    (workbench.folder / "slow_way.py").write_text(SLOW_PROGRAM.replace("0.01", "0.02"), encoding="utf-8")
     page = pages("slow_way.py")
     page.click("#run")
     shows(page, "#status", "ended")

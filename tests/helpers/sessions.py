@@ -20,6 +20,23 @@ from workbench.session import Session
 from workbench.sessions import Sessions
 from workbench.worker.workers import Workers
 
+SLOW_PROGRAM = """from actr3d.actr import *
+import time
+
+class Slow(ACTR):
+    goal = Buffer()
+    def init():
+        goal.set("count 0")
+    def count(goal="count ?n"):
+        time.sleep(0.01)
+        goal.set("count %d" % (int(n) + 1))
+
+model = Slow()
+model.run(6.02)
+"""
+"""A program that takes 1.2 s."""
+
+
 T = TypeVar("T")
 PATIENCE = 180.0
 """Maximum time that a test waits [s]; machines are slow at times."""

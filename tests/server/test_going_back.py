@@ -23,7 +23,7 @@ from actr3d.runner.model_factory import Blueprint
 from actr3d.simulation import Simulation
 from actr3d.trace import TraceEvent
 from actr3d.values import to_json
-from tests.helpers.sessions import Desk, RefusedError, Talk
+from tests.helpers.sessions import SLOW_PROGRAM, Desk, RefusedError, Talk
 from tests.simulation.test_seek import COUNTED
 from workbench.overlays import OVERLAYS
 from workbench.page_commands import COMMANDS, Question
@@ -271,25 +271,8 @@ def test_every_answer_is_that_of_its_moment_in_a_whole_run() -> None:
         check_going_back(shown, 1_300, 6, random_seed=1)
 
 
-SLOW = """from actr3d.actr import *
-import time
-
-class Slow(ACTR):
-    goal = Buffer()
-    def init():
-        goal.set("count 0")
-    def count(goal="count ?n"):
-        time.sleep(0.01)
-        goal.set("count %d" % (int(n) + 1))
-
-model = Slow()
-model.run(6.02)
-"""
-"""A program that takes 1.2 s."""
-
-
 def test_a_program_shows_how_far_it_has_come_on_its_way_to_an_earlier_time(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    talk = desk.begin(tmp_path, SLOW_PROGRAM, run=True, wait="ended")
     events = talk.state["events"]
     talk.say("seek", time=6.0)
     on_the_way = talk.wait(lambda: talk.state["status"] == "running" and 0 < talk.state["time"] < 5)
@@ -302,7 +285,7 @@ def test_a_program_shows_how_far_it_has_come_on_its_way_to_an_earlier_time(desk:
 
 
 def test_a_program_can_be_paused_on_its_way_to_another_time(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    talk = desk.begin(tmp_path, SLOW_PROGRAM, run=True, wait="ended")
     events = talk.state["events"]
     talk.say("seek", time=6.0)
     talk.wait(lambda: talk.state["status"] == "running" and 0 < talk.state["time"] < 5)
@@ -316,7 +299,7 @@ def test_a_program_can_be_paused_on_its_way_to_another_time(desk: Desk, tmp_path
 
 @pytest.mark.slow
 def test_a_program_on_its_way_to_a_time_goes_to_another_at_once_and_does_the_rest_when_it_is_there(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    talk = desk.begin(tmp_path, SLOW_PROGRAM, run=True, wait="ended")
     talk.say("seek", time=6.0)
     talk.wait(lambda: talk.state["status"] == "running" and 1 < talk.state["time"] < 5)
     talk.say("seek", time=0.5)
@@ -333,7 +316,7 @@ def on_the_way(talk: Talk, to: float) -> dict[str, Any]:
 
 
 def test_a_program_that_is_stopped_on_its_way_stays_there_says_where_it_went_and_can_go_on(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    talk = desk.begin(tmp_path, SLOW_PROGRAM, run=True, wait="ended")
     events = talk.state["events"]
     assert on_the_way(talk, 6.0)["target"] == 6.0
     talk.say("stop")
@@ -349,7 +332,8 @@ def test_a_program_that_is_stopped_on_its_way_stays_there_says_where_it_went_and
 def test_a_program_that_does_not_answer_on_its_way_is_ended_by_stop(desk: Desk, tmp_path: Path) -> None:
     again = tmp_path / "again"
     talk = desk.begin(
-        tmp_path, SLOW.replace("0.01", f"60 if n == '40' and os.path.exists({str(again)!r}) else 0.01").replace("time\n", "time, os\n", 1)
+        tmp_path,
+        SLOW_PROGRAM.replace("0.01", f"60 if n == '40' and os.path.exists({str(again)!r}) else 0.01").replace("time\n", "time, os\n", 1),
     )
     talk.say("until", time=4.0)
     talk.until("paused", time=4.0)
@@ -362,7 +346,7 @@ def test_a_program_that_does_not_answer_on_its_way_is_ended_by_stop(desk: Desk, 
 
 
 def test_steps_back_on_the_way_are_counted_from_where_the_user_goes(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    talk = desk.begin(tmp_path, SLOW_PROGRAM, run=True, wait="ended")
     on_the_way(talk, 4.0)
     talk.say("back")
     talk.say("back", ticks=2)
@@ -370,7 +354,7 @@ def test_steps_back_on_the_way_are_counted_from_where_the_user_goes(desk: Desk, 
 
 
 def test_the_answer_to_going_elsewhere_comes_with_a_state_that_shows_where(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, SLOW, run=True, wait="ended")
+    talk = desk.begin(tmp_path, SLOW_PROGRAM, run=True, wait="ended")
     talk.say("seek", time=6.0)
     assert talk.state["target"] == 6.0
     talk.say("seek", time=0.02)
@@ -378,7 +362,7 @@ def test_the_answer_to_going_elsewhere_comes_with_a_state_that_shows_where(desk:
 
 
 def test_what_a_user_wants_while_a_change_is_undone_happens_after_it(desk: Desk, tmp_path: Path) -> None:
-    talk = desk.begin(tmp_path, SLOW)
+    talk = desk.begin(tmp_path, SLOW_PROGRAM)
     talk.say("until", time=4.0)
     talk.until("paused", time=4.0)
     talk.say("command", word="set_buffer", named={"buffer": "goal", "chunk": "count 7"})
