@@ -237,8 +237,7 @@ async def _means_of_two(request: Request, *names: str, **options: Any) -> Respon
         factors += facts.factors
         parameters.append({one["name"]: one["default"] for one in facts.parameters})
         tables.append(table)
-    fixed = [{name: of[name] for name in factors if name in of} for of in parameters]
-    work = experiments.readers.make("trial means of two", *tables, **options, factors=factors, fixed=fixed)
+    work = experiments.readers.make("trial means of two", *tables, **options, factors=factors, fixed=parameters)
     return OpenFile(await while_connected(work, request.receive), "application/json")
 
 

@@ -86,7 +86,7 @@ class Table:
 
     Args:
         path: The SQLite file.
-        fixed: The values of parameters that are no columns, as all trials have the same.
+        fixed: The values of parameters by name, for those that are no columns, as all trials have the same.
 
     Raises:
         Actr3dError: If it cannot be read.

@@ -10,8 +10,8 @@ import { openRun } from "../runs/actions.js";
 import { runTimeText } from "../timeline/seek.js";
 import { embedded } from "../windows.js";
 
-/** Sends a command that changes the run; if what lies ahead would be lost, asks whether it may be. Returns whether the run was changed; throws an
- * Error with the reason if it cannot be. */
+/** Sends a command that changes the run; if what lies ahead would be lost, asks whether it may be. Returns whether the run was changed;
+ * throws an Error with the reason if it cannot be. */
 export async function change(what) {
   try {
     await say(what);

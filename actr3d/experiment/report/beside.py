@@ -200,8 +200,8 @@ def fit_to(parts: Sequence[Results], beside: Beside) -> Any:
             rmse, r = rmse_and_r(cells["model"], cells["beside"])
             difference = float((cells["model"] - cells["beside"]).mean())
             unit = results.unit(measure)
-            row = {"measure": measure, "unit": unit, "beside": beside.label, "cells": len(cells)}
-            row["left_out"] = len(beside.of(measure)) - len(cells)
+            left_out = len(beside.of(measure)) - len(cells)
+            row = {"measure": measure, "unit": unit, "beside": beside.label, "cells": len(cells), "left_out": left_out}
             found.append({**row, "mean_difference": difference, "rmse": rmse, "r": r, "r2": r * r})
     return pandas().DataFrame(found, columns=["measure", "unit", "beside", "cells", "left_out", "mean_difference", "rmse", "r", "r2"])
 
