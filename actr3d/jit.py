@@ -23,6 +23,8 @@ BLAS = "scipy.linalg.cython_blas"
 
 _inner: set[FunctionType] = set()
 """The functions that are marked with `compiled`."""
+_kept: dict[FunctionType, Any] = {}
+"""The functions that are compiled on their own, as `kept` returns them."""
 
 
 @cache
@@ -58,9 +60,11 @@ def _compiled(function: FunctionType) -> Any:
 
 
 def _linked(function: FunctionType) -> FunctionType:
-    """Returns a function that calls the compiled forms of the marked functions."""
+    """Returns a function that calls the compiled forms of the marked and of the kept functions."""
     there = {name: function.__globals__.get(name) for name in function.__code__.co_names}
-    inner = {name: _compiled(value) for name, value in there.items() if isinstance(value, FunctionType) and value in _inner}
+    functions = {name: value for name, value in there.items() if isinstance(value, FunctionType)}
+    inner = {name: _compiled(value) for name, value in functions.items() if value in _inner}
+    inner |= {name: _kept[value] for name, value in functions.items() if value in _kept}
     linked = FunctionType(function.__code__, function.__globals__ | inner, function.__name__, function.__defaults__, function.__closure__)
     linked.__qualname__ = function.__qualname__
     return linked
@@ -73,15 +77,18 @@ def kept(function: Callable[P, R], *sources: Path) -> Callable[P, R]:
     found by the function's name. So a digest of the sources is added to the name.
 
     Args:
-        function: A function that may call compiled functions.
+        function: A function that may call compiled functions, and others for which this was called before: these are compiled on their
+            own, so that another process can compile them meanwhile.
         sources: The files of the function and of those functions, or folders of such files.
     """
     linked = _linked(cast("FunctionType", function))
     linked.__qualname__ += f"-{sources_digest(*sources):x}"
     try:
-        return _njit(cache=True, **OPTIONS)(linked)
+        made = _njit(cache=True, **OPTIONS)(linked)
     except RuntimeError:  # no writable cache folder
-        return _njit(**OPTIONS)(linked)
+        made = _njit(**OPTIONS)(linked)
+    _kept[cast("FunctionType", function)] = made
+    return made
 
 
 def sources_digest(*sources: Path) -> int:

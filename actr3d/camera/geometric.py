@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from actr3d.camera.eye import Eye, Kind, names_of
 from actr3d.camera.kernel.dtypes import EXTENT
-from actr3d.camera.kernel.scan import MAX_PIECES_OF_A_PATCH, scan
+from actr3d.camera.kernel.scan import MAX_PIECES_OF_A_PATCH, row_tracer, scan, scene_setter
 from actr3d.camera.kernel.scene import room_for_scene
 from actr3d.camera.kernel.upper_envelope import room_for
 from actr3d.camera.parameters import CameraParameters, optics_of
@@ -138,6 +138,19 @@ class GeometricCamera:
             own = len(self._labels) - 1
             raise CameraError(f"GeometricCamera.restore: the state is of a camera with {len(state) - 1} objects, not {own}")
         self._labels[:] = state
+
+    def compile_half(self, mj_data: MjData, half: Literal["scene", "rows"]) -> None:
+        """Compiles half of what `look` needs, or loads it, so that two processes can share the work: the first look loads both halves.
+
+        Args:
+            mj_data: The poses.
+            half: What finds all that may be in view, or what traces it row by row.
+        """
+        axes, optics, topology, scene = self._eye.axes(mj_data), self._optics, self._topology, self._scene
+        if half == "scene":
+            scene_setter()(axes, mj_data.geom_xpos, mj_data.geom_xmat, optics, self._geoms, topology, scene)
+        else:
+            row_tracer()(axes, optics, topology, scene, self._row, self._labels, self._extents)
 
     def _scan(self, axes: NDArray[np.float64], mj_data: MjData) -> int:
         count = scan()(

@@ -9,10 +9,11 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
+from actr3d.camera.kernel.scan import row_tracer, scan, scene_setter
 from actr3d.recording import Recorded
 from actr3d.vision.detectors.obstacle import obstacle
 from actr3d.vision.detectors.opening import opening
@@ -20,7 +21,7 @@ from actr3d.vision.kernel import detect
 from tests.helpers.camera_scenes import seen
 from tests.helpers.sessions import Desk, RefusedError, Talk
 from workbench.jobs import Job, doing
-from workbench.worker.fork_server import compile_detectors
+from workbench.worker.fork_server import compile_camera, compile_detectors
 from workbench.worker.messages import Start
 
 AGENT = """
@@ -329,6 +330,18 @@ def test_a_server_that_leaves_before_workers_can_be_started_leaves_nothing_behin
     done = subprocess.run(command, pass_fds=[theirs.fileno()], capture_output=True, text=True, timeout=60)
     theirs.close()
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_the_halves_of_the_camera_are_compiled_beforehand_in_the_form_that_a_look_needs() -> None:
+    seen('<geom type="box" size=".1 .1 .1" pos="2 0 1"/>')
+    halves: list[Any] = [scene_setter(), row_tracer()]
+    for function in halves:
+        function.overloads.clear()
+    compile_camera("scene")
+    compile_camera("rows")
+    eye, place, turn, optics, geoms, topology, scene, row, labels, extents = cast("Any", scan()).signatures[0]
+    assert halves[0].signatures == [(eye, place, turn, optics, geoms, topology, scene)]
+    assert halves[1].signatures == [(eye, optics, topology, scene, row, labels, extents)]
 
 
 def test_detectors_are_compiled_beforehand_in_the_form_that_the_views_of_a_camera_need() -> None:

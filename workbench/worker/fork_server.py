@@ -21,6 +21,7 @@ import sys
 import time
 from contextlib import suppress
 from pathlib import Path
+from typing import Literal
 
 from workbench.worker.orphans import adopt, end_orphans
 
@@ -105,7 +106,7 @@ def main(number: int) -> None:
 def _preload() -> None:
     """Imports and compiles what models need, so that runs start at once: it runs a small one for a tenth of a second.
 
-    In a new installation, this process compiles the camera, while a copy of it compiles the detectors, which it then loads.
+    In a new installation, a copy of this process compiles the longer half of the camera, which this one then loads.
     """
     from actr3d.actr.kernel.run_limits import RunLimits
     from actr3d.runner.model_factory import Blueprint
@@ -114,13 +115,28 @@ def _preload() -> None:
     copy = os.fork()
     if copy == 0:
         try:
-            compile_detectors()
+            compile_camera("rows")
         finally:
             os._exit(0)
+    compile_camera("scene")
+    compile_detectors()
+    os.waitpid(copy, 0)
     with RunLimits(seed=0):
         simulation, _ = Blueprint(SMALL, "small.py", Path()).build({})
         simulation.run(0.1)
-    os.waitpid(copy, 0)
+
+
+def compile_camera(half: Literal["scene", "rows"]) -> None:
+    """Compiles half of what a camera needs, or loads it."""
+    import mujoco
+
+    from actr3d.camera.geometric import GeometricCamera
+
+    xml = '<mujoco><worldbody><site name="eye"/><geom type="sphere" size="1" pos="3 0 0"/></worldbody></mujoco>'
+    mj_model = mujoco.MjModel.from_xml_string(xml)
+    mj_data = mujoco.MjData(mj_model)
+    mujoco.mj_kinematics(mj_model, mj_data)
+    GeometricCamera(mj_model, site="eye").compile_half(mj_data, half)
 
 
 def compile_detectors() -> None:

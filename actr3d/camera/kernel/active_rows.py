@@ -26,7 +26,7 @@ class ActiveRows(NamedTuple):
 def room_for_active_rows(things: int, rows: int) -> ActiveRows:
     """Returns the arrays for a given number of items and rows."""
     return ActiveRows(
-        starting=np.zeros(rows, np.int64),
+        starting=np.full(rows, -1),
         following=np.zeros(things, np.int64),
         ending=np.zeros(things, np.int64),
         present=np.zeros(things, NUMBER),

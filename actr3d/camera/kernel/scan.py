@@ -23,6 +23,8 @@ from actr3d.jit import compiled, kept
 MAX_PIECES_OF_A_PATCH = 10
 """Eight cuts leave at most five pieces on each side."""
 
+SetScene: TypeAlias = Callable[[Array, Array, Array, Array, Geoms, Topology, EyeScene], int]
+TraceRows: TypeAlias = Callable[[Array, Array, Topology, EyeScene, Row, Array, Array], int]
 Scan: TypeAlias = Callable[[Array, Array, Array, Array, Geoms, Topology, EyeScene, Row, Array, Array], int]
 
 
@@ -34,7 +36,21 @@ def scan() -> Scan:
     topology, work arrays for the scene and for a row, the labels of objects, and the output array of extents. It returns the number
     of extents, or `-1 - geom` if the pose of a geom is not finite.
     """
+    scene_setter()
+    row_tracer()
     return kept(_scan, SOURCES)
+
+
+@cache
+def scene_setter() -> SetScene:
+    """Returns the first half of `scan`, compiled: it finds what may be in view."""
+    return kept(_set_scene, SOURCES)
+
+
+@cache
+def row_tracer() -> TraceRows:
+    """Returns the second half of `scan`, compiled: it traces the rows of what may be in view."""
+    return kept(_trace_rows, SOURCES)
 
 
 def _scan(
@@ -49,25 +65,20 @@ def _scan(
     labels: Array,
     extents: Records,
 ) -> int:
-    return _look(eye, place, turn, optics[0], geoms, topology, scene, row, labels, extents)
+    failed = _set_scene(eye, place, turn, optics, geoms, topology, scene)
+    return failed if failed < 0 else _trace_rows(eye, optics, topology, scene, row, labels, extents)
+
+
+def _set_scene(eye: Array, place: Array, turn: Array, optics: Array, geoms: Geoms, topology: Topology, scene: EyeScene) -> int:
+    return set_scene(eye, place, turn, geoms, topology, optics[0], scene)
+
+
+def _trace_rows(eye: Array, optics: Array, topology: Topology, scene: EyeScene, row: Row, labels: Array, extents: Records) -> int:
+    return _look(eye, optics[0], topology, scene, row, labels, extents)
 
 
 @compiled
-def _look(
-    eye: Array,
-    place: Array,
-    turn: Array,
-    optics: Record,
-    geoms: Geoms,
-    topology: Topology,
-    scene: EyeScene,
-    row: Row,
-    labels: Array,
-    extents: Records,
-) -> int:
-    failed = set_scene(eye, place, turn, geoms, topology, optics, scene)
-    if failed < 0:
-        return failed
+def _look(eye: Array, optics: Record, topology: Topology, scene: EyeScene, row: Row, labels: Array, extents: Records) -> int:
     done, present = zero(), zero()
     row.stretches[0].count = row.stretches[0].open = 0
     for number in range(optics.rows):
