@@ -68,7 +68,8 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     """Begins to compile what models with a body need, while the processes collect the tests."""
     if "PYTEST_XDIST_WORKER" not in os.environ and session.config.getoption("numprocesses", None):
         model = Path(__file__).parents[1] / "models" / "aperture_passage.py"
-        compiling = subprocess.Popen([sys.executable, "-m", "actr3d", "run", str(model)], stdout=subprocess.DEVNULL)
+        run = f"from workbench.worker.fork_server import preload; from actr3d.cli import main; preload(); main(['run', {str(model)!r}])"
+        compiling = subprocess.Popen([sys.executable, "-c", run], stdout=subprocess.DEVNULL)
         session.config.stash[COMPILING] = compiling
 
         def reap() -> None:

@@ -67,7 +67,7 @@ def main(number: int) -> None:
         number: The file descriptor of the socket to the server.
     """
     gc.disable()  # nothing that is loaded here is garbage
-    _preload()
+    preload()
     gc.enable()
     gc.set_threshold(5000, 10, 10)  # long runs, whose events stay, are up to a fifth faster than with Python's 700
     adopt()
@@ -103,7 +103,7 @@ def main(number: int) -> None:
     _end_all(control, children)
 
 
-def _preload() -> None:
+def preload() -> None:
     """Imports and compiles what models need, so that runs start at once: it runs a small one for a tenth of a second.
 
     In a new installation, a copy of this process compiles the longer half of the camera, which this one then loads.
